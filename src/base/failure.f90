@@ -18,7 +18,8 @@ module mech9_failure
   public :: failure_few_points, failure_points_order, failure_no_spline
   public :: failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, failure_chain_off_plane
   public :: failure_no_initial_position, failure_not_started, failure_backwards, failure_interrupted
-  public :: failure_accuracy, failure_gimbal_lock, failure_lost_angles, last_failure
+  public :: failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
+    failure_driven_dead_point, last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
@@ -127,7 +128,11 @@ module mech9_failure
   integer, parameter :: failure_gimbal_lock = 51
   !> The angles of a ball joint could not be followed through gimbal lock: coordinates, t.
   integer, parameter :: failure_lost_angles = 52
-  integer, parameter :: last_failure = 52
+  !> A drive is elsewhere than its rates lead: coordinates (the driven one), t.
+  integer, parameter :: failure_drive_jumps = 53
+  !> The same as failure_dead_point in a motion with free coordinates; others and values are those of driven coordinates.
+  integer, parameter :: failure_driven_dead_point = 54
+  integer, parameter :: last_failure = 54
 
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type

@@ -16,7 +16,7 @@ module mech9_articulated_bodies
   implicit none
   private
   public :: articulated_type, articulated_work_type, new_articulated, new_articulated_work, add_to_frame, set_bodies, &
-    go_inward, go_outward, rigid_inertia, add_to_parent
+    go_inward, go_outward, pass_inward, pass_outward, rigid_inertia, add_to_parent
 
   !> The steps and bodies of a mechanism in the form that the passes use. Indices are the numbers of frames, which are those of
   !> the steps.
@@ -278,4 +278,41 @@ contains
       motion(4:6, s) = dv + x*axis_v(:, s)
     end do
   end subroutine go_outward
+
+  !> Pass the inertia and the wrench of a run of driven open steps to the parents, the last step first: a step whose acceleration
+  !> is given resists like a rigid joint. All vectors are in fixed axes.
+  pure subroutine pass_inward(first, last, m, parent, p, inertia, wrench, amount)
+    integer, intent(in) :: first                    !< first step of the run
+    integer, intent(in) :: last                     !< last step of the run
+    integer, intent(in) :: m                        !< number of steps of the plan
+    integer, intent(in) :: parent(m)                !< frame from which each step departs
+    real(wp), intent(in) :: p(3, 0:m)               !< origin of each frame [m]
+    real(wp), intent(inout) :: inertia(3, 9, 0:m)   !< J, H, M of each frame's own bodies; then of all links beyond it too
+    real(wp), intent(inout) :: wrench(6, 0:m)       !< torque_0 and force_0 in the same way [N m, N]
+    real(wp), intent(inout) :: amount(5, 0:m)       !< mass, moment and sum of m r^2 in the same way, as if rigid
+    integer :: s
+
+    do s = last, first, -1
+      if (parent(s) == 0) cycle
+      call add_to_parent(p(:, s) - p(:, parent(s)), inertia(:, :, s), wrench(:, s), amount(:, s), inertia(:, :, parent(s)), &
+                         wrench(:, parent(s)), amount(:, parent(s)))
+    end do
+  end subroutine pass_inward
+
+  !> Move the frames of a run of driven open steps with their parents, the first step first: their own accelerations are among
+  !> those that rates and drives give. All vectors are in fixed axes.
+  pure subroutine pass_outward(first, last, m, parent, p, motion)
+    integer, intent(in) :: first                    !< first step of the run
+    integer, intent(in) :: last                     !< last step of the run
+    integer, intent(in) :: m                        !< number of steps of the plan
+    integer, intent(in) :: parent(m)                !< frame from which each step departs
+    real(wp), intent(in) :: p(3, 0:m)               !< origin of each frame [m]
+    real(wp), intent(inout) :: motion(6, 0:m)       !< gets accelerations less those that rates and drives give
+    integer :: s
+
+    do s = first, last
+      motion(1:3, s) = motion(1:3, parent(s))
+      motion(4:6, s) = motion(4:6, parent(s)) + cross(motion(1:3, parent(s)), p(:, s) - p(:, parent(s)))
+    end do
+  end subroutine pass_outward
 end module mech9_articulated_bodies

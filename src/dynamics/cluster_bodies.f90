@@ -12,9 +12,11 @@ module mech9_cluster_bodies
   use mech9_rotation, only: turn, turn_back, cross
   use mech9_cholesky, only: cholesky_factorize
   use mech9_articulated_bodies, only: add_to_parent, rigid_inertia
+  use mech9_driven_equations, only: hold
   implicit none
   private
-  public :: cluster_work_type, new_cluster_work, find_rest, divide_columns, find_accelerations, eliminate_cluster, move_cluster
+  public :: cluster_work_type, new_cluster_work, find_rest, hold_columns, divide_columns, find_accelerations, &
+    eliminate_cluster, move_cluster
 
   !> Scratch of one closed cluster with n independent coordinates, sized once.
   type :: cluster_work_type
@@ -56,9 +58,10 @@ contains
 
   !> Eliminate the accelerations of a cluster; its base gets the inertia and the wrench that are left. `found` is false where A is
   !> not positive definite beyond round-off.
-  pure subroutine eliminate_cluster(n, n_frames, frames, base, m, n_entries, first, local, w, v, p, inertia, wrench, amount, &
+  pure subroutine eliminate_cluster(n, held, n_frames, frames, base, m, n_entries, first, local, w, v, p, inertia, wrench, amount, &
                                     factors, column, rest, rigid, found)
     integer, intent(in) :: n                        !< number of independent coordinates of the cluster
+    integer, intent(in) :: held(:)                  !< those of them that are driven
     integer, intent(in) :: n_frames                 !< number of its frames that carry anything
     integer, intent(in) :: frames(n_frames)         !< these frames
     integer, intent(in) :: base                     !< frame on which the cluster stands; nothing passes to frame 0
@@ -103,6 +106,7 @@ contains
       call add_to_parent(arm, inertia(:, :, f), wrench(:, f), amount(:, f), inertia(:, :, base), wrench(:, base), &
                          amount(:, base))
     end do
+    if (size(held) > 0) call hold_columns(n, held, 6, factors, column, rest, rigid)
     call divide_columns(m, n, 6, factors, column, rest, rigid, found)
     if (base == 0 .or. .not. found) return
     do j = 1, n
@@ -114,6 +118,21 @@ contains
       wrench(:, base) = wrench(:, base) + column(:, j)*rest(j)
     end do
   end subroutine eliminate_cluster
+
+  !> Leave the accelerations of driven coordinates as they are given: nothing of them is eliminated.
+  pure subroutine hold_columns(n, held, dimensions, factors, column, rest, rigid)
+    integer, intent(in) :: n                             !< number of independent coordinates of the cluster
+    integer, intent(in) :: held(:)                       !< those of them that are driven
+    integer, intent(in) :: dimensions                    !< of a motion: 6 in space, 3 in a plane
+    real(wp), intent(inout) :: factors(n, n)             !< A, lower triangle
+    real(wp), intent(inout) :: column(dimensions, n)     !< U
+    real(wp), intent(inout) :: rest(n)                   !< Q - S^T p
+    real(wp), intent(inout) :: rigid(n)                  !< bound of A_jj as if rigid
+
+    call hold(n, held, factors, rest)
+    column(:, held) = 0.0_wp
+    rigid(held) = 0.0_wp
+  end subroutine hold_columns
 
   !> Factorize A = L L^T, and divide by L: Y = U L^-T, z = L^-1 (Q - S^T p). `found` is false where A is not positive definite
   !> beyond round-off, which is that of the inertia as if rigid.

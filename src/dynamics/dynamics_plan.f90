@@ -29,6 +29,7 @@ contains
     do i = 1, size(plan%independent)
       dynamics%place_of(plan%independent(i)) = i
     end do
+    dynamics%held = pack([(i, i=1, size(plan%independent))], plan%driven(plan%independent))
     allocate (dynamics%load_links(plan%n_links), source=.false.)
     dynamics%acting = pack([(i, i=1, size(mechanism%loads))], &
                            [(.not. mechanism%loads(i)%load%is_idle(), i=1, size(mechanism%loads))])

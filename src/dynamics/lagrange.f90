@@ -7,6 +7,11 @@
 !>   h_p  = sum m J_c,p . a_c + J_w,p . (I alpha + omega x I omega)
 !> with the accelerations a_c, alpha that rates alone give (no accelerations of independent coordinates);
 !> then a ddq_i = Q - h. The result is the same, at the cost O(links I^2) for I independent coordinates of one closed cluster.
+!>
+!> Driven coordinates have the accelerations of their drives, which count among those that rates alone give: then h_p contains
+!> a_pd ddq_d, and the unknowns of the equations are what the free accelerations add to these (the terms of (19) for driven
+!> coordinates are moved to the right side). The accelerations that are found are zero for driven coordinates.
+!>
 !> The accelerations of other mechanisms do not require the coefficients: articulated bodies give them, in O(links).
 module mech9_lagrange
   use mech9_kinds, only: wp
@@ -14,6 +19,7 @@ module mech9_lagrange
   use mech9_failure, only: failure_no_inertia
   use mech9_tolerances, only: negligible_inertia
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
+  use mech9_driven_equations, only: hold
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -49,18 +55,19 @@ contains
     call find_equations(mechanism, plan, dynamics, state, work, err)
     if (allocated(err)) return
     n = size(plan%independent)
-    if (n == 1 .and. work%coefficients(1, 1) > 0.0_wp) then
+    if (n == 1 .and. size(plan%free) == 1 .and. work%coefficients(1, 1) > 0.0_wp) then
       work%accelerations(1) = (work%forces(1) - work%velocity_terms(1))/work%coefficients(1, 1)
       return
     end if
     work%factors = work%coefficients
+    work%accelerations = work%forces - work%velocity_terms
+    if (size(dynamics%held) > 0) call hold(n, dynamics%held, work%factors, work%accelerations)
     call cholesky_factorize(n, work%factors, failed_at)
     if (failed_at > 0) then
       call raise(err, exit_data, failure_no_inertia)
       err%failure%coordinates = [plan%independent(failed_at)]
       return
     end if
-    work%accelerations = work%forces - work%velocity_terms
     call cholesky_solve(n, work%factors, work%accelerations)
   end subroutine find_motion
 
@@ -82,7 +89,7 @@ contains
     end do
     do i = 1, size(plan%independent)
       k = plan%independent(i)
-      if (work%coefficients(i, i)*plan%unit_of(k)**2 > negligible_inertia*largest) cycle
+      if (plan%driven(k) .or. work%coefficients(i, i)*plan%unit_of(k)**2 > negligible_inertia*largest) cycle
       call raise(err, exit_data, failure_no_inertia)
       err%failure%coordinates = [k]
       return
@@ -125,8 +132,8 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if a block is in a singular position
     integer :: i, b
 
-    do i = 1, size(plan%independent)
-      state%ddq(plan%independent(i)) = 0.0_wp
+    do i = 1, size(plan%free)
+      state%ddq(plan%free(i)) = 0.0_wp
     end do
     work%conditioning = 1.0_wp
     if (size(plan%closures) == 0) then

@@ -53,6 +53,7 @@ module mech9_lagrange_types
     type(frame_body_type), allocatable :: bodies(:)    !< links with mass or inertia, without link 1
     real(wp) :: gravity(3) = 0.0_wp                    !< in the axes of frame 0 [m/s^2]
     integer, allocatable :: place_of(:)                !< (M) place of a coordinate among the independent ones, or 0
+    integer, allocatable :: held(:)                    !< places of driven coordinates among the independent ones
     integer, allocatable :: first(:)                   !< (0:M+1) first entry of each frame
     integer, allocatable :: column(:)                  !< (entries) place of the coordinate among the independent ones
     integer, allocatable :: parent_entry(:)            !< (entries) the same column in the parent frame, 0 for none

@@ -9,7 +9,8 @@ module mech9_planar_articulated
   use mech9_planar_lagrange, only: planar_body_type
   implicit none
   private
-  public :: planar_work_type, new_planar_work, set_bodies, go_inward, go_outward, add_to_parent
+  public :: planar_work_type, new_planar_work, set_bodies, go_inward, go_outward, pass_inward, pass_outward, &
+    add_to_parent
 
   !> Scratch of the passes, sized once, in the plane's axes. An inertia is (J, Hx, Hy, Mxx, Mxy, Myy) [kg m^2, kg m, kg].
   type :: planar_work_type
@@ -197,4 +198,44 @@ contains
       motion(:, i) = d
     end do
   end subroutine go_outward
+
+  !> Pass the inertia and the wrench of a run of driven open steps to the parents, the last step first: a step whose acceleration
+  !> is given resists like a rigid joint. Vectors are in the plane's axes.
+  pure subroutine pass_inward(first, last, m, steps, f, inertia, wrench, amount)
+    integer, intent(in) :: first                     !< first step of the run
+    integer, intent(in) :: last                      !< last step of the run
+    integer, intent(in) :: m                         !< number of steps of the plan
+    type(planar_step_type), intent(in) :: steps(m)   !< the steps of the plan
+    real(wp), intent(in) :: f(4, 0:m)                !< pose of each frame: cosine, sine, origin [m]
+    real(wp), intent(inout) :: inertia(6, 0:m)       !< J, H, M of each frame's own bodies; then of all links beyond it too
+    real(wp), intent(inout) :: wrench(3, 0:m)        !< torque_0 and force_0 in the same way [N m, N]
+    real(wp), intent(inout) :: amount(4, 0:m)        !< mass, moment and inertia in the same way, as if rigid
+    integer :: i, p
+
+    do i = last, first, -1
+      p = steps(i)%parent
+      if (p == 0) cycle
+      call add_to_parent(f(3, i) - f(3, p), f(4, i) - f(4, p), inertia(:, i), wrench(:, i), amount(:, i), &
+                         inertia(:, p), wrench(:, p), amount(:, p))
+    end do
+  end subroutine pass_inward
+
+  !> Move the frames of a run of driven open steps with their parents, the first step first: their own accelerations are among
+  !> those that rates and drives give. Vectors are in the plane's axes.
+  pure subroutine pass_outward(first, last, m, steps, f, motion)
+    integer, intent(in) :: first                     !< first step of the run
+    integer, intent(in) :: last                      !< last step of the run
+    integer, intent(in) :: m                         !< number of steps of the plan
+    type(planar_step_type), intent(in) :: steps(m)   !< the steps of the plan
+    real(wp), intent(in) :: f(4, 0:m)                !< pose of each frame: cosine, sine, origin [m]
+    real(wp), intent(inout) :: motion(3, 0:m)        !< gets accelerations less those that rates and drives give
+    integer :: i, p
+
+    do i = first, last
+      p = steps(i)%parent
+      motion(1, i) = motion(1, p)
+      motion(2, i) = motion(2, p) - motion(1, p)*(f(4, i) - f(4, p))
+      motion(3, i) = motion(3, p) + motion(1, p)*(f(3, i) - f(3, p))
+    end do
+  end subroutine pass_outward
 end module mech9_planar_articulated

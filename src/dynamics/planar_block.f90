@@ -27,6 +27,7 @@ module mech9_planar_block
 
   !> The loops of a block.
   type :: planar_block_type
+    logical :: driven = .false.                          !< a coordinate of the block is driven
     integer :: columns = 0                               !< number of independent coordinates on which the block depends
     type(loop_part_type), allocatable :: unknowns(:)     !< steps with the unknowns of the block
     type(loop_part_type), allocatable :: independent(:)  !< steps with independent coordinates
@@ -55,6 +56,7 @@ contains
       flat%first_entries = first(block%unknowns)
       flat%units = plan%unit_of(block%coordinates)
       if (size(block%unknowns) == 0) return
+      flat%driven = any(plan%driven(plan%steps(block%first_step:block%last_step)%coordinate))
       flat%columns = first(block%unknowns(1) + 1) - first(block%unknowns(1))
       associate (columns => column(first(block%unknowns(1)):first(block%unknowns(1) + 1) - 1))
         flat%given = plan%independent(columns)

@@ -2,7 +2,7 @@
 !> wrenches of three numbers in the plane's axes, as in mech9_planar_articulated.
 module mech9_planar_cluster
   use mech9_kinds, only: wp
-  use mech9_cluster_bodies, only: divide_columns
+  use mech9_cluster_bodies, only: hold_columns, divide_columns
   use mech9_planar_articulated, only: add_to_parent
   implicit none
   private
@@ -12,9 +12,10 @@ contains
 
   !> Eliminate the accelerations of a cluster; its base gets the inertia and the wrench that are left. `found` is false where A is
   !> not positive definite beyond round-off.
-  pure subroutine eliminate_cluster(n, n_frames, frames, base, m, n_entries, first, local, s, f, inertia, wrench, amount, &
+  pure subroutine eliminate_cluster(n, held, n_frames, frames, base, m, n_entries, first, local, s, f, inertia, wrench, amount, &
                                     factors, column, rest, rigid, found)
     integer, intent(in) :: n                       !< number of independent coordinates of the cluster
+    integer, intent(in) :: held(:)                 !< those of them that are driven
     integer, intent(in) :: n_frames                !< number of its frames that carry anything
     integer, intent(in) :: frames(n_frames)        !< these frames
     integer, intent(in) :: base                    !< frame on which the cluster stands; nothing passes to frame 0
@@ -61,6 +62,7 @@ contains
       if (base == 0) cycle
       call add_to_parent(x, y, inertia(:, k), wrench(:, k), amount(:, k), inertia(:, base), wrench(:, base), amount(:, base))
     end do
+    if (size(held) > 0) call hold_columns(n, held, 3, factors, column, rest, rigid)
     call divide_columns(m, n, 3, factors, column, rest, rigid, found)
     if (base == 0 .or. .not. found) return
     do j = 1, n

@@ -6,7 +6,7 @@ module mech9_spatial_dynamics
   use mech9_state, only: state_type
   use mech9_block_solver, only: solver_factorize => factorize_block
   use mech9_articulated_bodies, only: articulated_type, new_articulated, new_articulated_work, add_to_frame, set_bodies, &
-    go_inward, go_outward
+    go_inward, go_outward, pass_inward, pass_outward
   use mech9_cluster_bodies, only: find_rest, eliminate_cluster, find_accelerations, move_cluster
   use mech9_tree_coefficients, only: accelerate_in_space, collect_in_space
   use mech9_spatial_lagrange, only: spread_columns, add_body
@@ -201,9 +201,11 @@ contains
             cluster%rest = 0.0_wp
             if (work%sum%any_generalized) call find_rest(stage%steps, stage%coordinates, dynamics%first, dynamics%local, &
                                                          jacobian%b, work%sum%generalized, cluster%rest)
-            call eliminate_cluster(size(stage%places), size(stage%frames), stage%frames, stage%base, m, n_entries, &
+            call eliminate_cluster(size(stage%places), stage%held, size(stage%frames), stage%frames, stage%base, m, n_entries, &
                                    dynamics%first, dynamics%local, jacobian%w, jacobian%v, state%p, own%inertia, own%wrench, &
                                    own%amount, cluster%factors, cluster%column, cluster%rest, cluster%rigid, found)
+          else if (stage%driven) then
+            call pass_inward(stage%first_step, stage%last_step, m, chains%parent, state%p, own%inertia, own%wrench, own%amount)
           else
             call go_inward(stage%first_step, stage%last_step, m, chains%parent, chains%coordinate, chains%slides, state%p, &
                            state%axis_w, state%axis_v, work%sum%generalized, own%inertia, own%wrench, own%amount, own%column, &
@@ -219,6 +221,8 @@ contains
                                     own%motion(:, stage%base), cluster%ddq, work%accelerations)
             call move_cluster(size(stage%places), size(stage%feet), stage%feet, stage%base, m, n_entries, dynamics%first, &
                               dynamics%local, jacobian%w, jacobian%v, state%p, cluster%ddq, own%motion)
+          else if (stage%driven) then
+            call pass_outward(stage%first_step, stage%last_step, m, chains%parent, state%p, own%motion)
           else
             call go_outward(stage%first_step, stage%last_step, m, chains%parent, chains%place, state%p, state%axis_w, &
                             state%axis_v, own%column, own%pivot, own%rest, own%motion, work%accelerations)

@@ -1,4 +1,5 @@
-!> The order in which articulated bodies go through a mechanism: runs of open steps, and closed clusters.
+!> The order in which articulated bodies go through a mechanism: runs of open steps, and closed clusters. The steps of a run are
+!> all free or all driven.
 !>
 !> A stage stands on frames of earlier stages only. A sweep inward goes through the stages from the last to the first, a sweep
 !> outward from the first to the last.
@@ -12,12 +13,14 @@ module mech9_tree_stages
   !> A run of open steps with successive numbers, each a cluster by itself, or one closed cluster.
   type :: stage_type
     logical :: closed = .false.         !< a closed cluster
+    logical :: driven = .false.         !< a run of open steps whose coordinates are driven
     integer :: first_step = 0           !< first step
     integer :: last_step = 0            !< last step of the run, or of the cluster, between whose steps others may lie
     integer :: base = 0                 !< frame on which the cluster stands
     integer, allocatable :: steps(:)    !< steps of the cluster, ascending
     integer, allocatable :: coordinates(:)   !< coordinates of these steps
     integer, allocatable :: places(:)   !< places of the cluster's coordinates among the independent ones, ascending
+    integer, allocatable :: held(:)     !< those of them that are driven, as their numbers in `places`
     integer, allocatable :: frames(:)   !< frames of the cluster with bodies or loads, or on which other stages stand
     integer, allocatable :: feet(:)     !< those on which other stages stand
   end type stage_type
@@ -42,7 +45,7 @@ contains
       is_foot(clusters%base(s)) = .true.
       if (clusters%of_step(s) /= s) then
         number(s) = number(clusters%of_step(s))
-      else if (continues_run(clusters, s)) then
+      else if (continues_run(plan, clusters, s)) then
         number(s) = n
       else
         n = n + 1
@@ -58,17 +61,31 @@ contains
       end associate
     end do
     do n = 1, size(stages)
-      if (clusters%closed(stages(n)%first_step)) call list_cluster(plan, number, n, place_of, bears, is_foot, stages(n))
+      if (clusters%closed(stages(n)%first_step)) then
+        call list_cluster(plan, number, n, place_of, bears, is_foot, stages(n))
+      else
+        stages(n)%driven = is_driven(plan, stages(n)%first_step)
+      end if
     end do
   end function find_stages
 
+  !> Whether a step has a driven coordinate.
+  pure logical function is_driven(plan, s)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    integer, intent(in) :: s              !< number of the step
+
+    is_driven = plan%driven(plan%steps(s)%coordinate)
+  end function is_driven
+
   !> Whether an open step continues the run of the open step before it.
-  pure logical function continues_run(clusters, s)
+  pure logical function continues_run(plan, clusters, s)
+    type(plan_type), intent(in) :: plan           !< the plan of the mechanism
     type(clusters_type), intent(in) :: clusters   !< clusters of the plan
     integer, intent(in) :: s                      !< number of the step, the first of its cluster
 
     continues_run = s > 1 .and. .not. clusters%closed(s)
-    if (continues_run) continues_run = clusters%of_step(s - 1) == s - 1 .and. .not. clusters%closed(s - 1)
+    if (continues_run) continues_run = clusters%of_step(s - 1) == s - 1 .and. .not. clusters%closed(s - 1) .and. &
+                                       (is_driven(plan, s) .eqv. is_driven(plan, s - 1))
   end function continues_run
 
   !> The lists of a closed cluster.
@@ -89,6 +106,7 @@ contains
     stage%frames = pack(stage%steps, bears(stage%steps) .or. is_foot(stage%steps))
     stage%feet = pack(stage%steps, is_foot(stage%steps))
     stage%places = sorted(place_of(pack(stage%coordinates, .not. plan%steps(stage%steps)%dependent)))
+    stage%held = pack([(s, s=1, size(stage%places))], plan%driven(plan%independent(stage%places)))
   end subroutine list_cluster
 
   !> Numbers in ascending order.

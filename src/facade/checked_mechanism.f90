@@ -57,25 +57,13 @@ contains
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
     type(model_type) :: unused
 
-    call read_model(mechanism%document, has_drives(mechanism%document), unused, diagnostics)
+    call read_model(mechanism%document, .false., unused, diagnostics)
     call fail_as(diagnostics, err)
     mechanism%is_read = .not. allocated(err)
   end subroutine check
 
-  !> Whether a document drives coordinates.
-  pure logical function has_drives(document)
-    type(document_type), intent(in) :: document   !< the data file as groups and items
-    integer :: i
-
-    has_drives = .true.
-    do i = 1, size(document%groups)
-      if (document%groups(i)%name == 'drive') return
-    end do
-    has_drives = .false.
-  end function has_drives
-
   !> The model of a driven or of a free motion, with all coordinates and their derivatives requested. Fails with exit_data
-  !> where drives are missing for the one, or given for the other.
+  !> where drives are missing for the former.
   subroutine take(self, driven, model, err)
     class(checked_mechanism_type), intent(in) :: self      !< the mechanism
     logical, intent(in) :: driven                          !< all independent coordinates must have drives

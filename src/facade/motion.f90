@@ -71,11 +71,11 @@ contains
     end if
   end subroutine start_kinematics
 
-  !> Start a free motion from the initial positions and rates of the independent coordinates. Fails as start_kinematics does,
-  !> with exit_data also where the mechanism has drives or no initial position.
+  !> Start a motion under forces from the initial positions and rates of the free coordinates. Those with drives move as these
+  !> say. Fails as start_kinematics does, with exit_data also where a free coordinate has no initial position.
   subroutine start_dynamics(self, mechanism, err, interruption)
     class(motion_type), intent(inout) :: self                        !< the motion; one that it held is closed
-    type(checked_mechanism_type), intent(in) :: mechanism            !< with bodies, loads and gravity, and without drives
+    type(checked_mechanism_type), intent(in) :: mechanism            !< with bodies, loads and gravity
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
     type(free_simulation_type), allocatable :: simulation

@@ -14,7 +14,7 @@ module mech9_drive_reader
   use mech9_procedure_drive, only: procedure_drive_type, make_procedure_drive
   use mech9_source, only: span_type
   use mech9_document, only: document_type, group_type, item_type
-  use mech9_lookup, only: groups_named, has_unsound, get_integer, get_integers, get_real, get_reals, get_text, span_of
+  use mech9_lookup, only: groups_named, get_integer, get_real, get_reals, get_text, span_of
   use mech9_table_file, only: read_table_file
   use mech9_diagnostics, only: diagnostics_type
   implicit none
@@ -24,7 +24,7 @@ module mech9_drive_reader
 contains
 
   !> Make the drives of all sound groups.
-  subroutine read_drives(document, partition, pairs, angle_unit, start, parameters, needed, drives, diagnostics)
+  subroutine read_drives(document, partition, pairs, angle_unit, start, parameters, drives, diagnostics)
     type(document_type), intent(in) :: document                   !< the data file as groups and items
     type(partition_type), intent(inout) :: partition              !< kinds of the coordinates, none where the structure is unknown;
                                                                   !< those with drives become driven ones
@@ -32,7 +32,6 @@ contains
     real(wp), intent(in) :: angle_unit                            !< unit of angles in the file [rad]
     real(wp), intent(in) :: start                                 !< time of the first result [s]
     real(wp), intent(in) :: parameters(:)                         !< numbers of the group &user, for the user's procedures
-    logical, intent(in) :: needed  !< true: every independent coordinate must have a drive; false: none may
     type(drive_slot_type), allocatable, intent(out) :: drives(:)  !< the drives of sound groups, in their order
     type(diagnostics_type), intent(inout) :: diagnostics          !< gets what is wrong
     integer, allocatable :: numbers(:)
@@ -53,11 +52,6 @@ contains
         n = n + 1
       end associate
     end do
-    if (.not. needed) then
-      call refuse_all(document, partition, diagnostics)
-    else if (.not. has_unsound(document, 'drive')) then
-      call check_complete(document, partition, diagnostics)
-    end if
     do i = 1, n
       k = drives(i)%drive%coordinate
       if (k < 1 .or. k > size(partition%kind)) cycle
@@ -79,7 +73,7 @@ contains
     if (pairs(k)%pair%angular) unit = angle_unit
   end function unit_of_coordinate
 
-  !> Report a drive of a coordinate that does not exist or is dependent.
+  !> Report a drive of a coordinate that does not exist.
   pure subroutine check_coordinate(group, partition, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(partition_type), intent(in) :: partition         !< kinds of the coordinates; none where the structure is unknown
@@ -88,61 +82,10 @@ contains
 
     if (size(partition%kind) == 0) return
     k = get_integer(group, 'coordinate')
-    if (k > size(partition%kind)) then
+    if (k > size(partition%kind)) &
       call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '//to_text(k)//'; they are 1 to '// &
                            to_text(size(partition%kind)))
-    else if (.not. partition%is_independent(k)) then
-      call diagnostics%add(span_of(group, 'coordinate', 1), 'coordinate '//to_text(k)//' is dependent and cannot be '// &
-                           'driven; drive an independent one (see cq)')
-    end if
   end subroutine check_coordinate
-
-  !> Report the drives of independent coordinates where the motion follows from forces: to ignore them silently
-  !> would give another motion than the one that the file describes.
-  pure subroutine refuse_all(document, partition, diagnostics)
-    type(document_type), intent(in) :: document           !< the data file as groups and items
-    type(partition_type), intent(in) :: partition         !< kinds of the coordinates; none where the structure is unknown
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-    integer, allocatable :: numbers(:)
-    integer :: i, k
-
-    numbers = groups_named(document, 'drive')
-    do i = 1, size(numbers)
-      k = get_integer(document%groups(numbers(i)), 'coordinate')
-      if (k < 1 .or. k > size(partition%kind)) cycle
-      if (.not. partition%is_independent(k)) cycle
-      call diagnostics%add(document%groups(numbers(i))%span, 'in dynamics the independent coordinate '//to_text(k)// &
-                           ' moves as the forces make it and cannot be driven; take this &drive away and give &initial '// &
-                           'coordinate='//to_text(k)//', position=..., velocity=... /, or let mech9k compute the driven motion')
-    end do
-  end subroutine refuse_all
-
-  !> Report independent coordinates without a drive.
-  pure subroutine check_complete(document, partition, diagnostics)
-    type(document_type), intent(in) :: document           !< the data file as groups and items
-    type(partition_type), intent(in) :: partition         !< kinds of the coordinates; none where the structure is unknown
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-    integer, allocatable :: numbers(:), cq(:)
-    type(span_type) :: span
-    logical :: driven(size(partition%kind))
-    integer :: i, k
-
-    driven = .false.
-    numbers = groups_named(document, 'drive')
-    do i = 1, size(numbers)
-      k = get_integer(document%groups(numbers(i)), 'coordinate')
-      if (k <= size(driven)) driven(k) = .true.
-    end do
-    numbers = groups_named(document, 'structure')
-    do k = 1, size(partition%kind)
-      if (driven(k) .or. .not. partition%is_independent(k)) cycle
-      if (size(numbers) > 0) then
-        cq = get_integers(document%groups(numbers(1)), 'cq')
-        span = span_of(document%groups(numbers(1)), 'cq', findloc(cq, k, dim=1))
-      end if
-      call diagnostics%add(span, 'the independent coordinate '//to_text(k)//' has no drive; give it a &drive')
-    end do
-  end subroutine check_complete
 
   !> One drive, in rad, m and s; the slot stays empty where something was reported.
   subroutine read_drive(document, group, angle_unit, unit, start, parameters, slot, diagnostics)

@@ -51,7 +51,8 @@ module mech9_grammar
     group_row_type('initial', .true., 'coordinate', 'both', &
                    'a coordinate at the start: a guess of a dependent one, the value of an independent one'), &
     group_row_type('point', .true., 'name', 'both', 'a point of a link whose motion is recorded'), &
-    group_row_type('drive', .true., 'coordinate', 'mech9k', 'an independent coordinate as a function of time; mech9d refuses it'), &
+    group_row_type('drive', .true., 'coordinate', 'both', &
+                   'an independent coordinate as a function of time; mech9k needs one for each, in mech9d the others are free'), &
     group_row_type('body', .true., 'link', 'mech9d', 'mass, centre and inertia of a link; links without a body are massless'), &
     group_row_type('gravity', .false., '', 'mech9d', 'the acceleration of gravity'), &
     group_row_type('load', .true., '', 'mech9d', 'a force, torque, spring or damper, or a user''s procedure'), &

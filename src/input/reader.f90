@@ -13,6 +13,7 @@ module mech9_reader
   use mech9_structure_reader, only: read_structure
   use mech9_pair_reader, only: read_pairs
   use mech9_drive_reader, only: read_drives
+  use mech9_drive_check, only: check_drives
   use mech9_motion_reader, only: read_initial, read_points
   use mech9_body_reader, only: read_bodies, read_gravity
   use mech9_load_reader, only: read_loads
@@ -60,7 +61,8 @@ contains
     call read_request(checked, model%request, diagnostics)
     call read_structure(checked, model%mechanism%structure, model%problem%partition, known, diagnostics)
     if (.not. known) call forget(model%mechanism%structure, model%problem%partition)
-    call read_parts(checked, needs_drives, model%mechanism, model%problem, model%request, diagnostics)
+    call read_parts(checked, model%mechanism, model%problem, model%request, diagnostics)
+    call check_drives(checked, needs_drives, model, diagnostics)
   end subroutine read_model
 
   !> Set a structure and its partition to the form that means unknown: no links and no coordinates.
@@ -72,9 +74,8 @@ contains
   end subroutine forget
 
   !> Read the groups whose numbers refer to the structure.
-  subroutine read_parts(document, needs_drives, mechanism, problem, request, diagnostics)
+  subroutine read_parts(document, mechanism, problem, request, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
-    logical, intent(in) :: needs_drives                   !< whether independent coordinates must have drives (mech9k)
     type(mechanism_type), intent(inout) :: mechanism      !< the mechanism, with its structure
     type(problem_type), intent(inout) :: problem          !< the problem, with its partition
     type(request_type), intent(inout) :: request          !< the request for results, with its times
@@ -84,8 +85,8 @@ contains
       call read_pairs(document, n_coordinates, m%angle_unit, m%parameters, m%pairs, diagnostics)
       call read_initial(document, problem%partition, m%pairs, m%angle_unit, problem%initial, diagnostics)
       call read_points(document, n_links, m%points, diagnostics)
-      call read_drives(document, problem%partition, m%pairs, m%angle_unit, request%time%start, m%parameters, needs_drives, &
-                       problem%drives, diagnostics)
+      call read_drives(document, problem%partition, m%pairs, m%angle_unit, request%time%start, m%parameters, problem%drives, &
+                       diagnostics)
       call read_bodies(document, m%structure, m%pairs, m%bodies, diagnostics)
       m%gravity = read_gravity(document)
       call read_loads(document, n_links, m%pairs, m%angle_unit, m%parameters, m%loads, diagnostics)

@@ -5,6 +5,7 @@ module mech9_dynamic_task
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
+  use mech9_partition, only: free_coordinate
   use mech9_model, only: model_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_plan, only: plan_type
@@ -18,7 +19,8 @@ module mech9_dynamic_task
   use mech9_accuracy, only: find_accuracy
   use mech9_row_source, only: row_source_type, signal_interruption_type, new_row_source
   use mech9_recording, only: recording_outcome_type, record
-  use mech9_explained_assembly, only: assemble_free_start
+  use mech9_explained_assembly, only: assemble_free_start, assemble_driven_start
+  use mech9_kinematic_task, only: work_driven
   use mech9_dynamic_report, only: print_dynamic_report, save_dynamic_report, print_coefficients, &
                                    dynamic_facts, write_dynamics, write_events
   implicit none
@@ -49,7 +51,11 @@ contains
     type(state_type), intent(out) :: state              !< position and motion of the mechanism
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call assemble_free_start(model, plan, state, err)
+    if (is_all_driven(model)) then
+      call assemble_driven_start(model, plan, state, err)
+    else
+      call assemble_free_start(model, plan, state, err)
+    end if
   end subroutine assemble
 
   !> Make the plan, assemble the mechanism, compute its state at the start, and run unless only an answer is requested.
@@ -67,6 +73,10 @@ contains
     type(free_simulation_type), target :: simulation
     type(error_type), allocatable :: err
 
+    if (is_all_driven(model)) then
+      call work_driven(self%program_name, .true., options, model, diagnostics, reported, kept)
+      return
+    end if
     reported = .false.
     used = model
     call read_picture_requests(options, model, self%program_name, pictures, err)
@@ -85,6 +95,13 @@ contains
     end if
     call simulation%close()
   end subroutine work
+
+  !> Whether nothing is left to integrate: all independent coordinates are driven.
+  pure logical function is_all_driven(model)
+    type(model_type), intent(in) :: model   !< the model
+
+    is_all_driven = any(model%problem%partition%driven()) .and. .not. any(model%problem%partition%kind == free_coordinate)
+  end function is_all_driven
 
   !> Fail in a check where a run would fail at its start.
   subroutine check_motion(model, simulation, err)

@@ -1,4 +1,4 @@
-!> The report of mech9k at the end of a run: a few lines for a person, JSON for a program.
+!> The report of a driven motion at the end of a run: a few lines for a person, JSON for a program.
 module mech9_kinematic_report
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -86,8 +86,9 @@ contains
   end subroutine kinematic_facts
 
   !> Write the report as JSON, with the structure.
-  subroutine save_kinematic_report(path, model, plan, table_path, diagnostics, outcome, driven, err)
+  subroutine save_kinematic_report(path, program_name, model, plan, table_path, diagnostics, outcome, driven, err)
     character(len=*), intent(in) :: path                  !< of the report
+    character(len=*), intent(in) :: program_name          !< mech9k or mech9d
     type(model_type), intent(in) :: model             !< the model
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
@@ -98,7 +99,7 @@ contains
     type(json_type) :: json
     type(facts_type) :: facts
 
-    call begin_report(json, 'mech9k', model, diagnostics, table_path)
+    call begin_report(json, program_name, model, diagnostics, table_path)
     call kinematic_facts(plan, outcome, driven, facts)
     call facts%to_json(json)
     call add_structure(json, model, plan)

@@ -1,4 +1,4 @@
-!> The work of mech9k on a mechanism.
+!> The work of mech9k on a mechanism, and that of mech9d where all independent coordinates are driven.
 module mech9_kinematic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mech9_kinds, only: wp
@@ -23,7 +23,7 @@ module mech9_kinematic_task
   use mech9_kinematic_report, only: print_kinematic_report, save_kinematic_report, kinematic_facts
   implicit none
   private
-  public :: kinematic_task_type, kinematic_task
+  public :: kinematic_task_type, kinematic_task, work_driven
 
   type, extends(task_type) :: kinematic_task_type
   contains
@@ -56,6 +56,19 @@ contains
   subroutine work(self, options, model, diagnostics, reported, kept)
     class(kinematic_task_type), intent(in) :: self          !< the kinematic task
     type(command_line_type), intent(in) :: options          !< the command line
+    type(model_type), intent(in), target :: model           !< the model
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
+    logical, intent(out) :: reported                        !< the run has written the report
+    type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
+
+    call work_driven(self%program_name, .false., options, model, diagnostics, reported, kept)
+  end subroutine work
+
+  !> The work on a mechanism whose independent coordinates are all driven.
+  subroutine work_driven(program_name, with_masses, options, model, diagnostics, reported, kept)
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+    logical, intent(in) :: with_masses                      !< bodies count, and energies are recorded
+    type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in), target :: model               !< the model
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
     logical, intent(out) :: reported                        !< the run has written the report
@@ -67,10 +80,10 @@ contains
     type(error_type), allocatable :: err
 
     reported = .false.
-    call read_picture_requests(options, model, self%program_name, pictures, err)
+    call read_picture_requests(options, model, program_name, pictures, err)
     if (.not. allocated(err)) call assemble_driven_start(model, plan, start, err)
     if (allocated(err)) then
-      if (options%has('check')) call print_given(model, .false.)
+      if (options%has('check')) call print_given(model, with_masses)
       call diagnostics%add_error(err)
       return
     end if
@@ -83,9 +96,9 @@ contains
       if (allocated(err)) call diagnostics%add_error(err)
       return
     end if
-    call new_driven_simulation(model, plan, start, simulation, pictures%any_wanted())
-    call carry_out(options, pictures, model, plan, simulation, diagnostics, reported, kept)
-  end subroutine work
+    call new_driven_simulation(model, plan, start, simulation, pictures%any_wanted(), with_masses)
+    call carry_out(program_name, options, pictures, model, plan, simulation, diagnostics, reported, kept)
+  end subroutine work_driven
 
   !> Fail in a check where a run would fail: at a start from which the motion cannot begin, or at drives without values
   !> at the end of the time.
@@ -107,7 +120,8 @@ contains
   end subroutine check_motion
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, model, plan, simulation, diagnostics, reported, kept)
+  subroutine carry_out(program_name, options, pictures, model, plan, simulation, diagnostics, reported, kept)
+    character(len=*), intent(in) :: program_name                        !< mech9k or mech9d
     type(command_line_type), intent(in) :: options                      !< the command line
     type(picture_requests_type), intent(in) :: pictures                 !< the pictures of the mechanism that are requested
     type(model_type), intent(in), target :: model                           !< the model
@@ -123,7 +137,7 @@ contains
     type(error_type), allocatable :: err
     logical :: ready
 
-    call new_row_source('mech9k', simulation, source)
+    call new_row_source(program_name, simulation, source)
     call begin_run(options, pictures, model, plan, simulation%requested, source, results, diagnostics, ready)
     reported = ready .and. options%has('report')
     if (.not. ready) return
@@ -137,7 +151,7 @@ contains
     call results%write_facts(facts, diagnostics%code())
     call end_run(options, pictures, model, source, results, diagnostics)
     if (.not. reported) return
-    call save_kinematic_report(options%argument('report'), model, simulation%plan, results%table_path, diagnostics, &
+    call save_kinematic_report(options%argument('report'), program_name, model, simulation%plan, results%table_path, diagnostics, &
                                outcome, simulation%driven, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out

@@ -22,41 +22,50 @@ module mech9_coordinate_choice
 contains
 
   !> The independent coordinates with the best conditioned dependent ones at a closed position, cluster by cluster. Chains that are
-  !> left out stay dependent.
-  subroutine best_independent(plan, state, independent)
+  !> left out stay dependent. Driven coordinates stay as they are, unless drives shall not count: then one that does not become
+  !> independent drives its chains into a dead point.
+  subroutine best_independent(plan, state, independent, without_drives)
     type(plan_type), intent(in) :: plan      !< the plan of the mechanism
     type(state_type), intent(in) :: state    !< frames in place
     logical, intent(out) :: independent(:)   !< (M)
+    logical, intent(in), optional :: without_drives   !< driven coordinates are chosen like free ones; not unless given
+    logical :: driven(plan%n_coordinates)
     type(clusters_type) :: clusters
     integer :: place(plan%n_coordinates), i, s
     integer, allocatable :: steps(:)
 
     independent = .false.
     independent(plan%independent) = .true.
+    driven = plan%driven
+    if (present(without_drives)) driven = driven .and. .not. without_drives
     clusters = find_clusters(plan)
     place = 0
     do s = 1, plan%n_coordinates
       if (clusters%of_step(s) /= s .or. .not. clusters%closed(s)) cycle
       steps = pack([(i, i=s, plan%n_coordinates)], clusters%of_step(s:) == s)
       place(steps) = [(i, i=1, size(steps))]
-      call choose_in_cluster(plan, state, clusters, steps, place, independent)
+      call choose_in_cluster(plan, state, clusters, steps, place, driven, independent)
     end do
   end subroutine best_independent
 
   !> The choice in one closed cluster: each of its blocks in turn exchanges coordinates on which it depends for unknowns of its own,
-  !> where these serve better.
-  subroutine choose_in_cluster(plan, state, clusters, steps, place, independent)
+  !> where these serve better. Driven coordinates stay as they are.
+  subroutine choose_in_cluster(plan, state, clusters, steps, place, driven, independent)
     type(plan_type), intent(in) :: plan         !< the plan of the mechanism
     type(state_type), intent(in) :: state       !< frames in place
     type(clusters_type), intent(in) :: clusters !< clusters of the plan
     integer, intent(in) :: steps(:)             !< steps of the cluster, ascending
     integer, intent(in) :: place(:)             !< (M) place of a step in `steps`
+    logical, intent(in) :: driven(:)            !< (M) the coordinate stays independent
     logical, intent(inout) :: independent(:)    !< (M) gets the choice for the cluster's coordinates
     integer, allocatable :: free(:)
     real(wp), allocatable :: rates(:, :)
+    logical :: held(size(steps))
     integer :: b, i
 
-    free = pack(steps, .not. plan%steps(steps)%dependent)
+    held = driven(plan%steps(steps)%coordinate)
+    free = pack(steps, .not. (plan%steps(steps)%dependent .or. held))
+    if (size(free) == 0) return
     allocate (rates(size(steps), size(free)), source=0.0_wp)
     do i = 1, size(free)
       rates(place(free(i)), i) = 1.0_wp
@@ -66,7 +75,7 @@ contains
       if (clusters%of_step(plan%blocks(b)%unknowns(1)) /= steps(1)) cycle
       call exchange(plan, state, plan%blocks(b), place, free, rates)
     end do
-    independent(plan%steps(steps)%coordinate) = .false.
+    independent(plan%steps(steps)%coordinate) = held
     independent(plan%steps(free)%coordinate) = .true.
   end subroutine choose_in_cluster
 

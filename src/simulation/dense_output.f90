@@ -2,7 +2,7 @@
 !>
 !> Positions, rates and accelerations at the nearest points that are known, ends of steps and points inserted into the last
 !> one, give a polynomial. Without the farthest of these points it is a worse one; where both agree within the
-!> tolerance the better one is far inside it. Independent coordinates are taken from there, the chains are closed by Newton's
+!> tolerance the better one is far inside it. Free coordinates are taken from there, the chains are closed by Newton's
 !> method, and accelerations are worked out anew: every position is one of closed chains that satisfies (19).
 module mech9_dense_output
   use mech9_kinds, only: wp
@@ -169,8 +169,8 @@ contains
     y(:m) = q
     found = .true.
     associate (solver => system%model%request%solver)
-      do i = 1, size(system%plan%independent)
-        k = system%plan%independent(i)
+      do i = 1, size(system%plan%free)
+        k = system%plan%free(i)
         y(m + i) = dq(k)
         ! a difference may vanish here by chance, but not together with its derivative
         change = abs(q(k) - worse_q(k))

@@ -8,7 +8,7 @@ module mech9_driven_simulation
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
   use mech9_frame_motion, only: show_all_frames
-  use mech9_requested, only: requested_by_results, leave_out_unrequested
+  use mech9_requested, only: requested_by_results, add_forces, leave_out_unrequested
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance, set_inputs
   use mech9_lagrange_types, only: dynamics_plan_type
   use mech9_dynamics_plan, only: make_dynamics_plan
@@ -28,7 +28,7 @@ module mech9_driven_simulation
   contains
     procedure :: begin
     procedure :: go_to
-    procedure :: present
+    procedure :: present => present_state
     procedure :: present_closure
     procedure :: watch_conditioning
     procedure :: energies
@@ -53,16 +53,19 @@ contains
   end subroutine assemble_driven
 
   !> A driven motion from its assembled start.
-  subroutine new_driven_simulation(model, plan, assembled, simulation, pictures)
+  subroutine new_driven_simulation(model, plan, assembled, simulation, pictures, with_masses)
     type(model_type), intent(in), target :: model             !< the model; it must outlive the simulation
     type(plan_type), intent(in) :: plan                       !< its plan
     type(state_type), intent(in) :: assembled                 !< its closed position at the start
     type(driven_simulation_type), intent(out) :: simulation   !< to be started
     logical, intent(in), optional :: pictures                 !< the motion of all links is requested; not unless given
+    logical, intent(in), optional :: with_masses              !< energies are requested as in dynamics; not unless given
 
     simulation%model => model
     simulation%plan = plan
     simulation%requested = requested_by_results(model%mechanism, model%request%output, pictures)
+    if (present(with_masses)) simulation%with_energies = with_masses .and. model%request%output%energies
+    if (simulation%with_energies) call add_forces(model%mechanism, simulation%requested)
     call leave_out_unrequested(simulation%plan, simulation%requested)
     simulation%assembled = assembled
     simulation%with_conditioning = model%request%output%conditioning
@@ -89,7 +92,7 @@ contains
   end subroutine go_to
 
   !> The plan and the present state.
-  subroutine present(self, plan, state)
+  subroutine present_state(self, plan, state)
     class(driven_simulation_type), intent(in), target :: self   !< the simulation
     type(plan_type), pointer, intent(out) :: plan               !< the plan that is executed
     type(state_type), pointer, intent(out) :: state             !< the present state; before the start the assembled one
@@ -97,7 +100,7 @@ contains
     plan => self%plan
     state => self%driven%state
     if (.not. self%started) state => self%assembled
-  end subroutine present
+  end subroutine present_state
 
   !> Largest closure error of the present position [m].
   real(wp) function present_closure(self)

@@ -5,11 +5,13 @@ module mech9_free_simulation
   use mech9_tolerances, only: doubtful_conditioning, refused_conditioning, regular_conditioning
   use mech9_error, only: error_type, raise, add_place, exit_data, exit_singular, exit_integrator
   use mech9_failure, only: failure_no_initial_position, failure_lost_angles
+  use mech9_partition, only: free_coordinate
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_block_equations, only: largest_gap
   use mech9_planning, only: make_plan
+  use mech9_branch_stepping, only: set_inputs
   use mech9_requested, only: requested_by_results, add_forces, leave_out_unrequested, request_planned
   use mech9_conditioning, only: conditioning_type
   use mech9_energy, only: kinetic_energy, potential_energy
@@ -47,26 +49,30 @@ module mech9_free_simulation
 
 contains
 
-  !> The plan, and the closed position at the start: positions and rates of the independent coordinates as given; those
-  !> at rest need no velocity.
+  !> The plan, and the closed position at the start: positions and rates of the free coordinates as given, those of driven ones by
+  !> their drives. Free coordinates at rest need no velocity.
   subroutine assemble_free(model, plan, state, err)
     type(model_type), intent(in) :: model           !< the model
     type(plan_type), intent(out) :: plan                !< the plan of the mechanism
     type(state_type), intent(out) :: state              !< the closed position, with the rates of independent coordinates
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp), dimension(size(model%mechanism%pairs)) :: q, dq, ddq
     integer :: k
 
     do k = 1, size(model%mechanism%pairs)
-      if (model%problem%initial%position_given(k) .or. .not. model%problem%partition%is_independent(k)) cycle
+      if (model%problem%initial%position_given(k) .or. model%problem%partition%kind(k) /= free_coordinate) cycle
       call raise(err, exit_data, failure_no_initial_position)
       err%failure%coordinates = [k]
       call add_place(err, place=model%mechanism%pairs(k)%pair%place)
       return
     end do
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
+    q = model%problem%initial%position
+    call set_inputs(model%problem%drives, model%request%time%start, q, dq, ddq, err)
+    if (.not. allocated(err)) call make_plan(model%mechanism, model%problem%partition, q, plan, state, err)
     if (allocated(err)) return
     state%t = model%request%time%start
-    state%dq(plan%independent) = model%problem%initial%velocity(plan%independent)
+    state%dq(plan%free) = model%problem%initial%velocity(plan%free)
+    call set_inputs(model%problem%drives, state%t, state%q, state%dq, state%ddq, err)
   end subroutine assemble_free
 
   !> A free motion from its assembled start; the accelerations there are worked out. To be closed at the end, also where this

@@ -1,4 +1,6 @@
-!> The vector that is integrated: all coordinates, and after them the rates of the independent ones.
+!> The vector that is integrated: all coordinates, and after them the rates of the free ones.
+!>
+!> Driven coordinates are in the vector, too, but they are not taken from it: their drives give them.
 module mech9_integrated_vector
   use mech9_kinds, only: wp
   use mech9_plan, only: plan_type
@@ -13,7 +15,7 @@ contains
   pure integer function length_of_vector(plan)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
 
-    length_of_vector = plan%n_coordinates + size(plan%independent)
+    length_of_vector = plan%n_coordinates + size(plan%free)
   end function length_of_vector
 
   !> The coordinate that a number of the vector belongs to, by itself or by its rate.
@@ -22,13 +24,13 @@ contains
     integer, intent(in) :: place          !< of the number in the vector
 
     coordinate_of = place
-    if (place > plan%n_coordinates) coordinate_of = plan%independent(place - plan%n_coordinates)
+    if (place > plan%n_coordinates) coordinate_of = plan%free(place - plan%n_coordinates)
   end function coordinate_of
 
   !> The vector of a state.
   pure subroutine pack_state(plan, state, y)
     type(plan_type), intent(in) :: plan     !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< coordinates, and rates of the independent ones
+    type(state_type), intent(in) :: state   !< coordinates, and rates of the free ones
     real(wp), intent(out) :: y(:)           !< the vector
     integer :: i, m
 
@@ -36,8 +38,8 @@ contains
     do i = 1, m
       y(i) = state%q(i)
     end do
-    do i = 1, size(plan%independent)
-      y(m + i) = state%dq(plan%independent(i))
+    do i = 1, size(plan%free)
+      y(m + i) = state%dq(plan%free(i))
     end do
   end subroutine pack_state
 
@@ -53,12 +55,13 @@ contains
     do i = 1, m
       ydot(i) = state%dq(i)
     end do
-    do i = 1, size(accelerations)
-      ydot(m + i) = accelerations(i)
+    do i = 1, size(plan%free)
+      ydot(m + i) = accelerations(plan%free_places(i))
     end do
   end subroutine pack_rates
 
-  !> Put time, coordinates and independent rates of a vector into a state.
+  !> Put time, coordinates and free rates of a vector into a state. The drives give the motion of driven coordinates
+  !> afterwards.
   pure subroutine unpack_state(plan, t, y, state)
     type(plan_type), intent(in) :: plan        !< the plan of the mechanism
     real(wp), intent(in) :: t                  !< time [s]
@@ -71,8 +74,8 @@ contains
     do i = 1, m
       state%q(i) = y(i)
     end do
-    do i = 1, size(plan%independent)
-      state%dq(plan%independent(i)) = y(m + i)
+    do i = 1, size(plan%free)
+      state%dq(plan%free(i)) = y(m + i)
     end do
   end subroutine unpack_state
 end module mech9_integrated_vector

@@ -1,13 +1,14 @@
 !> The motion as differential equations for an integrator.
 !>
-!> The vector that is integrated holds all coordinates and the rates of the independent ones. An
+!> The vector that is integrated holds all coordinates and the rates of the free ones; the motion of driven coordinates is that of
+!> their drives. An
 !> evaluation takes the positions as they are, and the chains are closed after each accepted step:
 !> half the cost of closing them in every evaluation, at the same error (docs/design-decisions.md).
 module mech9_motion_system
   use mech9_kinds, only: wp, long
   use mech9_tolerances, only: trusted_between_steps, trusted_closing, third_derivative_step
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_failure, only: failure_singular_step, failure_unclosed_step
+  use mech9_failure, only: failure_singular_step, failure_unclosed_step, failure_drive_jumps
   use mech9_partition, only: partition_type
   use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
@@ -23,6 +24,7 @@ module mech9_motion_system
   use mech9_lagrange, only: find_motion, find_equations, check_inertia, complete_accelerations
   use mech9_generalized_forces, only: show_state
   use mech9_frame_motion, only: place_all
+  use mech9_branch_stepping, only: set_inputs
   implicit none
   private
   public :: motion_system_type, set_motion_system, find_coefficients
@@ -108,20 +110,50 @@ contains
   !> The vector of the present state.
   pure function vector(self) result(y)
     class(motion_system_type), intent(in) :: self   !< the motion system
-    real(wp) :: y(self%plan%n_coordinates + size(self%plan%independent))
+    real(wp) :: y(length_of_vector(self%plan))
 
     call pack_state(self%plan, self%state, y)
   end function vector
+
+  !> Take time, coordinates and free rates from a vector, and the motion of the driven coordinates from their drives. Fails where
+  !> a drive has no value.
+  subroutine take_vector(self, t, y, err)
+    class(motion_system_type), intent(inout) :: self    !< the motion system; gets the state, whose frames are not placed yet
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(in) :: y(:)                        !< the vector
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    call unpack_state(self%plan, t, y, self%state)
+    call set_inputs(self%model%problem%drives, t, self%state%q, self%state%dq, self%state%ddq, err)
+  end subroutine take_vector
+
+  !> Fail where a drive is elsewhere than its rates have led since the last step: it jumps.
+  subroutine check_drives(self, y, err)
+    class(motion_system_type), intent(in) :: self       !< the motion system, with the driven positions in its state
+    real(wp), intent(in) :: y(:)                        !< the vector at the end of a step, with their integrated rates
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    integer :: i, k
+
+    do i = 1, size(self%model%problem%drives)
+      k = self%model%problem%drives(i)%drive%coordinate
+      if (abs(self%state%q(k) - y(k)) <= trusted_closing*self%plan%unit_of(k)) cycle
+      call raise(err, exit_singular, failure_drive_jumps)
+      err%failure%t = self%state%t
+      err%failure%coordinates = [k]
+      return
+    end do
+  end subroutine check_drives
 
   !> Derivatives of the vector. A trial state in a singular position fails with exit_singular.
   subroutine rate(self, t, y, ydot, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     real(wp), intent(in) :: t                           !< time [s]
-    real(wp), intent(in) :: y(:)                        !< the vector: all coordinates, and the rates of the independent ones
+    real(wp), intent(in) :: y(:)                        !< the vector: all coordinates, and the rates of the free ones
     real(wp), intent(out) :: ydot(:)                    !< its rate of change
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call unpack_state(self%plan, t, y, self%state)
+    call take_vector(self, t, y, err)
+    if (allocated(err)) return
     call place_all(self%plan, self%state, err)
     if (allocated(err)) return
     call find_motion(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, err)
@@ -148,11 +180,14 @@ contains
   subroutine settle(self, t, y, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     real(wp), intent(in) :: t                           !< time of the end of the step [s]
-    real(wp), intent(inout) :: y(:)   !< the vector: all coordinates, and the rates of the independent ones; closed on return
+    real(wp), intent(inout) :: y(:)   !< the vector: all coordinates, and the rates of the free ones; closed on return
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: failed
 
-    call unpack_state(self%plan, t, y, self%state)
+    call take_vector(self, t, y, err)
+    if (allocated(err)) return
+    call check_drives(self, y, err)
+    if (allocated(err)) return
     call close_chains(self, trusted_closing, failed, err)
     if (allocated(err)) return
     if (failed > 0) then
@@ -190,13 +225,14 @@ contains
   subroutine close_near(self, t, y, ok, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     real(wp), intent(in) :: t                           !< time between the settled states [s]
-    real(wp), intent(in) :: y(:)                        !< the vector: all coordinates, and the rates of the independent ones
+    real(wp), intent(in) :: y(:)                        !< the vector: all coordinates, and the rates of the free ones
     logical, intent(out) :: ok                          !< the chains are certain to close on the same branch
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: failed
 
     ok = .false.
-    call unpack_state(self%plan, t, y, self%state)
+    call take_vector(self, t, y, err)
+    if (allocated(err)) return
     call close_chains(self, trusted_between_steps, failed, err)
     if (allocated(err) .or. failed > 0) return
     call self%present(err)
@@ -210,8 +246,8 @@ contains
     real(wp), intent(in) :: y(:)                        !< as settled
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call unpack_state(self%plan, t, y, self%state)
-    call place_all(self%plan, self%state, err)
+    call take_vector(self, t, y, err)
+    if (.not. allocated(err)) call place_all(self%plan, self%state, err)
     if (.not. allocated(err)) call self%present(err)
   end subroutine move_to
 

@@ -29,7 +29,7 @@ contains
     type(integrator_type), intent(inout) :: integrator          !< of the system, at its start
     type(motion_system_type), intent(inout), target :: system   !< must outlive the integrator
     real(wp), intent(in) :: t                                   !< time of the start [s]
-    real(wp), intent(in) :: y(:)   !< the vector: all coordinates, and the rates of the independent ones
+    real(wp), intent(in) :: y(:)   !< the vector: all coordinates, and the rates of the free ones
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
     real(wp) :: absolute(size(y))
 

@@ -1,21 +1,26 @@
 !> The cause for which a free motion cannot begin or go on.
 !>
+!> A dead point of the drives differs from a position in which branches meet: other independent coordinates in place of driven ones
+!> would serve there.
+!>
 !> In gimbal lock some coordinates can move together without moving any mass: the matrix of the coefficients of motion is
 !> singular, although each coordinate has inertia. Its entries are divided by the roots of the diagonal ones, so that units do
 !> not matter. Long chains have nearly singular matrices everywhere; so the least singular value counts against that of the
 !> start.
 module mech9_stopped_motion
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: locked, locked_together
+  use mech9_tolerances, only: locked, locked_together, doubtful_conditioning
   use mech9_error, only: error_type, raise, exit_singular, exit_integrator
   use mech9_failure, only: failure_gimbal_lock, failure_no_inertia, failure_infinite_rate, failure_singular_block, &
-    failure_singular_start_block
+    failure_singular_start_block, failure_driven_dead_point
+  use mech9_masks, only: numbers_of
   use mech9_lapack, only: dgesvd
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: place_all
   use mech9_lagrange, only: find_equations
+  use mech9_coordinate_choice, only: best_independent
   use mech9_integrated_vector, only: coordinate_of
   use mech9_motion_system, only: motion_system_type, find_coefficients
   implicit none
@@ -32,16 +37,19 @@ contains
     real(wp), intent(in) :: at_start(:, :)                        !< coefficients of motion at the start, lower triangle
     type(error_type), allocatable, intent(inout) :: failure       !< of the integration; perhaps another one afterwards
     type(error_type), allocatable :: err
-    logical :: is_locked(size(at_start, 1))
+    logical :: is_locked(size(system%plan%free))
 
     call name_coordinate(system%plan, failure)
+    call name_dead_point(system, t, y, failure)
     if (.not. (failure%code == exit_integrator .or. is_of_kind(failure, failure_no_inertia))) return
     call system%move_to(t, y, err)
     if (allocated(err)) return
     call find_equations(system%model%mechanism, system%plan, system%dynamics, system%state, system%work, err)
     if (allocated(err)) return
-    is_locked = find_lock(system%work%coefficients, at_start)
-    if (any(is_locked)) call refuse_lock(pack(system%plan%independent, is_locked), t, failure)
+    associate (places => system%plan%free_places)
+      is_locked = find_lock(system%work%coefficients(places, places), at_start(places, places))
+    end associate
+    if (any(is_locked)) call refuse_lock(pack(system%plan%free, is_locked), t, failure)
   end subroutine name_cause
 
   !> Complete the failure of a start: a singular block, or gimbal lock where it seems that a coordinate has no inertia. Open
@@ -54,7 +62,7 @@ contains
     type(error_type), allocatable :: err
     type(state_type) :: elsewhere
     real(wp), allocatable :: at_start(:, :), others(:, :)
-    logical :: is_locked(size(plan%independent))
+    logical :: is_locked(size(plan%free))
     integer :: i
 
     if (is_of_kind(failure, failure_singular_block)) failure%failure%kind = failure_singular_start_block
@@ -66,8 +74,8 @@ contains
     call place_all(plan, elsewhere, err)
     if (.not. allocated(err)) call find_coefficients(model%mechanism, plan, elsewhere, others, err)
     if (allocated(err)) return
-    is_locked = find_lock(at_start, others)
-    if (any(is_locked)) call refuse_lock(pack(plan%independent, is_locked), assembled%t, failure)
+    is_locked = find_lock(at_start(plan%free_places, plan%free_places), others(plan%free_places, plan%free_places))
+    if (any(is_locked)) call refuse_lock(pack(plan%free, is_locked), assembled%t, failure)
   end subroutine name_cause_at_start
 
   !> Whether a failure is of a kind.
@@ -78,6 +86,50 @@ contains
     is_of_kind = .false.
     if (allocated(failure%failure)) is_of_kind = failure%failure%kind == kind
   end function is_of_kind
+
+  !> Replace the failure of an integration by a dead point of the drives, if that is its cause: the worst conditioned block with the
+  !> driven coordinates that would not be chosen if they were free.
+  subroutine name_dead_point(system, t, y, failure)
+    type(motion_system_type), intent(inout) :: system         !< the system; it may be moved to the end of the last step
+    real(wp), intent(in) :: t                                 !< end of the last step [s]
+    real(wp), intent(in) :: y(:)                              !< the vector there
+    type(error_type), allocatable, intent(inout) :: failure   !< of the integration; perhaps another one afterwards
+    type(error_type), allocatable :: err
+    logical :: chosen(system%plan%n_coordinates)
+    real(wp) :: conditioning(size(system%work%blocks))
+    integer, allocatable :: dead(:)
+    integer :: b
+
+    if (.not. any(system%plan%driven) .or. size(system%plan%closures) == 0) return
+    if (failure%code /= exit_singular .and. failure%code /= exit_integrator) return
+    call system%move_to(t, y, err)
+    if (allocated(err)) return
+    call best_independent(system%plan, system%state, chosen, without_drives=.true.)
+    dead = numbers_of(system%plan%driven .and. .not. chosen)
+    conditioning = [(system%work%blocks(b)%equations%conditioning(), b=1, size(conditioning))]
+    b = minloc(conditioning, dim=1)
+    if (size(dead) == 0 .or. conditioning(b) > doubtful_conditioning) return
+    call raise(failure, exit_singular, failure_driven_dead_point)
+    failure%failure%chains = system%plan%blocks(b)%chains
+    failure%failure%coordinates = system%plan%blocks(b)%coordinates
+    failure%failure%number = system%plan%blocks(b)%last_closure - system%plan%blocks(b)%first_closure + 1
+    failure%failure%t = time_of_dead_point(system%state, system%plan%blocks(b)%coordinates)
+    call system%move_to(failure%failure%t, y, err)
+    failure%failure%others = dead
+    failure%failure%values = reshape(system%state%q(dead)/system%plan%result_unit(dead), [size(dead), 1])
+  end subroutine name_dead_point
+
+  !> The time of the dead point t* that a block has nearly reached. Its coordinates approach their positions there as the root of
+  !> t* - t, so that t* - t is half the rate over the acceleration.
+  pure real(wp) function time_of_dead_point(state, coordinates) result(t)
+    type(state_type), intent(in) :: state      !< near the dead point, with rates and accelerations
+    integer, intent(in) :: coordinates(:)      !< the dependent coordinates of the block
+    integer :: k
+
+    k = coordinates(maxloc(abs(state%dq(coordinates)), dim=1))
+    t = state%t
+    if (abs(state%ddq(k)) > 0.0_wp) t = t + 0.5_wp*state%dq(k)/state%ddq(k)
+  end function time_of_dead_point
 
   !> Replace a failure by gimbal lock.
   subroutine refuse_lock(coordinates, t, failure)

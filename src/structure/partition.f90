@@ -17,6 +17,7 @@ module mech9_partition
   contains
     procedure :: is_independent
     procedure :: independent
+    procedure :: driven
     procedure :: with_independent
   end type partition_type
 
@@ -47,6 +48,14 @@ contains
 
     independent = self%kind /= dependent_coordinate
   end function independent
+
+  !> Whether a drive gives the motion of each coordinate.
+  pure function driven(self)
+    class(partition_type), intent(in) :: self   !< the partition
+    logical :: driven(size(self%kind))
+
+    driven = self%kind == driven_coordinate
+  end function driven
 
   !> The partition with other independent coordinates. Those that are driven now stay driven.
   pure subroutine with_independent(self, structure, independent, other)

@@ -14,7 +14,8 @@ module mech9_explanation
     failure_unclosed_step, failure_other_branch, failure_infinite_rate, failure_infinite_jacobian, failure_few_points, &
     failure_points_order, failure_no_spline, failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, &
     failure_chain_off_plane, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
-    failure_interrupted, failure_accuracy, failure_gimbal_lock, failure_lost_angles
+    failure_interrupted, failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
+    failure_driven_dead_point
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_choice_words, only: explain_choice, longest_list
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
@@ -179,6 +180,9 @@ contains
     case (failure_escape)
       ! the end is known less sharply than that at a dead point
       digits = 7
+    case (failure_driven_dead_point)
+      ! the last step ends a little before it
+      digits = 8
     case (failure_dead_point, failure_lost_branch)
       digits = 13
     case default
@@ -196,7 +200,7 @@ contains
       return
     end if
     text = text//trim(merge(' reach  ', ' reaches', failure%number > 1))
-    if (failure%kind == failure_dead_point) then
+    if (failure%kind == failure_dead_point .or. failure%kind == failure_driven_dead_point) then
       text = text//' a dead point at '//place//' and cannot follow farther'
     else
       text = text//' a singular position at '//place//', where it is not certain how the motion goes on'
@@ -235,6 +239,9 @@ contains
     case (failure_lost_angles)
       text = 'coordinates '//to_text(failure%coordinates)//' cannot be continued through gimbal lock at t = '// &
              to_text(failure%t, 10)//' s; lower the tolerances, or turn about the axes in another order'
+    case (failure_drive_jumps)
+      text = 'the drive of coordinate '//to_text(failure%coordinates)//' jumps at t = '//to_text(failure%t, 7)//' s: its '// &
+             'position is not where its rate has led; let it have a continuous position, over a short time if need be'
     case (failure_infinite_rate)
       if (allocated(failure%coordinates)) then
         text = 'the motion of coordinate '//to_text(failure%coordinates)

@@ -33,6 +33,7 @@ UNREACHABLE = {
     'step_settings': 'an error of the program itself',
     'few_points': 'the reader of tables refuses the file',
     'points_order': 'the reader of tables refuses the line with its place',
+    'drive_jumps': 'drives of the data file are continuous',
     'lost_angles': 'positions within a step that was made are always found',
     'not_started': 'the programs start each motion',
     'backwards': 'the times of a data file are in order',
@@ -274,6 +275,7 @@ def free_cases():
     chain = 'closed chain 1 (coordinates 2, 3, 4)'
     stops = 'the integration cannot go on from t = '
     swings = four_bar(ROCKER, START, BODY)
+    limit = dead_point(ROCKER)
     return [
         ('no_inertia', four_bar(ROCKER, START), (), DATA,
          ['independent coordinate 1 has no inertia: no link with mass moves with it (apart from those that the independent '
@@ -293,6 +295,12 @@ def free_cases():
         ('singular_block', four_bar(FLAT, initial(1, 60, ', velocity=240'), turned(60), BODY), (), SINGULAR,
          [f'{stops}0.49999', f': {chain} is in a singular position for these independent coordinates; others may pass it (cq), '
           'unless branches meet there']),
+        # a pendulum on a crank that is driven to its dead point
+        ('driven_dead_point', four_bar(ROCKER, drive(1, '40, 60'), revolute(5, (2, 5)), initial(5, 10), '&body link=5, mass=1, '
+                                       'centre=0.1,0,0 /\n', cq=(1, 5)).replace('links=4, coordinates=4', 'links=5, coordinates=5'),
+         ('--set', 'time.end=3'), SINGULAR,
+         [f'the motion cannot go on beyond t = {(limit - 40) / 60:.8g}'[:-2], f': {chain} reaches a dead point at q1 = {limit:.8g}'[:-2],
+          ' and cannot follow farther']),
         # tolerances with which any step is good
         ('singular_step', swings, ('--set', 'time.end=1e40', *settings(relative_tolerance=0.9, absolute_tolerance='1e60')), SINGULAR,
          [f'{stops}4.17', ': a singular position for these independent coordinates is too near; others may pass it (cq), or smaller '

@@ -89,8 +89,10 @@ contains
       call draft%give('pair', i, 'kind', ''''//trim(pairs(i))//'''')
       if (way == 'pairs') call draft%give('pair', i, 'links', trim(links(i)))
     end do
-    call draft%give('drive', 1, 'coordinate', '1')
-    call draft%give('drive', 1, 'kind', ''''//drive//'''')
+    if (program_name == 'mech9k') then
+      call draft%give('drive', 1, 'coordinate', '1')
+      call draft%give('drive', 1, 'kind', ''''//drive//'''')
+    end if
     do i = 1, size(loads)
       call draft%give('load', i, 'kind', ''''//trim(loads(i))//'''')
     end do

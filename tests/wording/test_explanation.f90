@@ -10,7 +10,7 @@ program test_explanation
     failure_no_jacobian, failure_step_memory, failure_step_settings, failure_no_inertia, failure_unknown_method, &
     failure_relative_tolerance, failure_absolute_tolerance, failure_tolerance_count, failure_infinite_rate, &
     failure_infinite_jacobian, failure_few_points, failure_points_order, failure_not_started, failure_backwards, &
-    failure_interrupted, failure_lost_angles
+    failure_interrupted, failure_lost_angles, failure_drive_jumps
   use mech9_integration_methods, only: integration_methods
   use mech9_explanation, only: explain
   use mech9_testing, only: tester_type, message_of
@@ -256,6 +256,11 @@ contains
     err%failure%t = 0.25_wp
     call says(err, 'coordinates 1, 2, 3 cannot be continued through gimbal lock at t = 0.25 s; lower the tolerances, or turn '// &
               'about the axes in another order')
+    call raise(err, exit_singular, failure_drive_jumps)
+    err%failure%coordinates = [2]
+    err%failure%t = 0.25_wp
+    call says(err, 'the drive of coordinate 2 jumps at t = 0.25 s: its position is not where its rate has led; let it have a '// &
+              'continuous position, over a short time if need be')
   end subroutine uses_of_the_library
 
   !> An error with a message of its own stays as it is, and so do places.

@@ -62,7 +62,7 @@ contains
   end function kind_in
 
   !> The groups that are needed are made: a pair for each coordinate, a drive or initial values for each independent
-  !> coordinate, and guesses for the other coordinates if they are wanted.
+  !> coordinate (in mech9d initial values for those without a drive), and guesses for the other coordinates if they are wanted.
   pure subroutine make_groups(draft, outline)
     type(draft_type), intent(inout) :: draft   !< groups and names with their values as text
     type(outline_type), intent(in) :: outline  !< facts known beside the draft
@@ -75,10 +75,24 @@ contains
     if (outline%program_name == 'mech9k') then
       call make_numbered(draft, 'drive', outline%independent)
     else
-      call make_numbered(draft, 'initial', outline%independent)
+      call make_numbered(draft, 'initial', outline%independent .and. .not. has_drive(draft, size(outline%independent)))
     end if
     if (outline%guesses) call make_numbered(draft, 'initial', .not. outline%independent)
   end subroutine make_groups
+
+  !> Whether the draft drives each coordinate.
+  pure function has_drive(draft, m)
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
+    integer, intent(in) :: m               !< number of coordinates
+    logical :: has_drive(m)
+    integer :: k, place
+
+    has_drive = .false.
+    do place = 1, draft%count_of('drive')
+      k = draft%number('drive', place, 'coordinate')
+      if (k >= 1 .and. k <= m) has_drive(k) = .true.
+    end do
+  end function has_drive
 
   !> The pairs get their links from the structure, unless they have them already in either order.
   pure subroutine give_links(draft, links)

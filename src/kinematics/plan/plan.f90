@@ -131,6 +131,9 @@ module mech9_plan
     real(wp), allocatable :: result_unit(:)         !< (M) one unit of each coordinate in results and messages [rad, m]
     real(wp) :: angle_unit = 1.0_wp                 !< one unit of angle in them [rad]
     integer, allocatable :: independent(:)          !< coordinates, ascending
+    logical, allocatable :: driven(:)               !< (M) a drive gives the motion of the coordinate
+    integer, allocatable :: free(:)                 !< independent coordinates without a drive, ascending
+    integer, allocatable :: free_places(:)          !< their places among the independent ones
     type(pair_slot_type), allocatable :: pairs(:)   !< (M) only pairs without a fixed axis are set
     type(planar_plan_type) :: planar                !< the plan in planar arithmetic, as far as that can be used
   end type plan_type

@@ -47,6 +47,9 @@ contains
       plan%n_links = structure%n_links
       plan%n_coordinates = structure%n_coordinates
       plan%independent = pack([(i, i=1, structure%n_coordinates)], partition%independent())
+      plan%driven = partition%driven()
+      plan%free_places = pack([(i, i=1, size(plan%independent))], .not. plan%driven(plan%independent))
+      plan%free = plan%independent(plan%free_places)
     end associate
     plan%data_tolerance = mechanism%data_tolerance
     allocate (plan%steps(plan%n_coordinates), plan%step_of(plan%n_coordinates))

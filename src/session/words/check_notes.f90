@@ -4,6 +4,7 @@ module mech9_check_notes
   use mech9_error, only: error_type
   use mech9_text, only: to_text, some_of
   use mech9_masks, only: numbers_of
+  use mech9_partition, only: free_coordinate
   use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
   use mech9_result_units, only: unit_of
@@ -27,25 +28,24 @@ contains
   subroutine print_notes(unit, model, with_masses)
     integer, intent(in) :: unit                    !< Fortran unit to write to
     type(model_type), intent(in) :: model      !< the model
-    logical, intent(in) :: with_masses  !< true: notes for mech9d, on bodies and initial velocities; false: for mech9k, on drives
+    logical, intent(in) :: with_masses  !< with notes for mech9d, on bodies and initial velocities
     type(error_type), allocatable :: err
     real(wp) :: q, dq, ddq
     integer :: i, k
 
     if (with_masses) then
       do k = 1, size(model%mechanism%pairs)
-        if (model%problem%partition%is_independent(k)) &
+        if (model%problem%partition%kind(k) == free_coordinate) &
           call note_angle(unit, model%mechanism, k, 'the start', model%problem%initial%position(k), &
                           model%problem%initial%velocity(k))
       end do
       call note_bodies(unit, model%mechanism)
-    else
-      do i = 1, size(model%problem%drives)
-        k = model%problem%drives(i)%drive%coordinate
-        call model%problem%drives(i)%drive%evaluate(model%request%time%start, q, dq, ddq, err)
-        if (.not. allocated(err)) call note_angle(unit, model%mechanism, k, 'the drive', q, dq)
-      end do
     end if
+    do i = 1, size(model%problem%drives)
+      k = model%problem%drives(i)%drive%coordinate
+      call model%problem%drives(i)%drive%evaluate(model%request%time%start, q, dq, ddq, err)
+      if (.not. allocated(err)) call note_angle(unit, model%mechanism, k, 'the drive', q, dq)
+    end do
   end subroutine print_notes
 
   !> Note an angle or a rate that seems to be in the other unit.

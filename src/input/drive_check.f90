@@ -1,0 +1,145 @@
+!> Checks of drives that need the whole model: a drive of a dependent coordinate, and initial values that contradict a drive.
+module mech9_drive_check
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: to_text
+  use mech9_model, only: model_type
+  use mech9_drive, only: drive_type
+  use mech9_result_units, only: unit_of
+  use mech9_independent_choice, only: find_choice
+  use mech9_partition, only: partition_type
+  use mech9_source, only: span_type
+  use mech9_document, only: document_type, group_type
+  use mech9_lookup, only: groups_named, has_unsound, get_integer, get_integers, span_of
+  use mech9_diagnostics, only: diagnostics_type
+  implicit none
+  private
+  public :: check_drives, check_independent
+
+  !> An initial value agrees with a drive where it differs by no more than this part of it, or by the second number [rad, m, ...].
+  real(wp), parameter :: same_value = 1.0e-6_wp, same_zero = 1.0e-9_wp
+
+contains
+
+  !> Check all drives.
+  subroutine check_drives(document, needed, model, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    logical, intent(in) :: needed                         !< every independent coordinate must have a drive
+    type(model_type), intent(in) :: model                 !< all that was read; sound where there are no errors
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    integer, allocatable :: numbers(:)
+    integer :: i
+    logical :: sound
+
+    sound = .not. diagnostics%failed()
+    numbers = groups_named(document, 'drive')
+    do i = 1, size(numbers)
+      call check_independent(document%groups(numbers(i)), model, sound, 'be driven', &
+                             'drive an independent one (see cq)', diagnostics)
+    end do
+    if (needed .and. .not. has_unsound(document, 'drive')) call check_complete(document, model%problem%partition, diagnostics)
+    numbers = groups_named(document, 'initial')
+    do i = 1, size(numbers)
+      call check_start(document%groups(numbers(i)), model, diagnostics)
+    end do
+  end subroutine check_drives
+
+  !> Report independent coordinates without a drive.
+  pure subroutine check_complete(document, partition, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(partition_type), intent(in) :: partition         !< kinds of the coordinates; none where the structure is unknown
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    integer, allocatable :: numbers(:), cq(:)
+    type(span_type) :: span
+    logical :: driven(size(partition%kind))
+    integer :: i, k
+
+    driven = .false.
+    numbers = groups_named(document, 'drive')
+    do i = 1, size(numbers)
+      k = get_integer(document%groups(numbers(i)), 'coordinate')
+      if (k <= size(driven)) driven(k) = .true.
+    end do
+    numbers = groups_named(document, 'structure')
+    do k = 1, size(partition%kind)
+      if (driven(k) .or. .not. partition%is_independent(k)) cycle
+      if (size(numbers) > 0) then
+        cq = get_integers(document%groups(numbers(1)), 'cq')
+        span = span_of(document%groups(numbers(1)), 'cq', findloc(cq, k, dim=1))
+      end if
+      call diagnostics%add(span, 'the independent coordinate '//to_text(k)//' has no drive; give it a &drive')
+    end do
+  end subroutine check_complete
+
+  !> Report a group about a dependent coordinate that must be independent, with a choice that would serve where one is found.
+  subroutine check_independent(group, model, sound, use, otherwise, diagnostics)
+    type(group_type), intent(in) :: group                 !< a group with a name `coordinate`
+    type(model_type), intent(in) :: model                 !< all that was read
+    logical, intent(in) :: sound                          !< the model is sound apart from such groups
+    character(len=*), intent(in) :: use                   !< the words for that of which it is incapable, for example 'be driven'
+    character(len=*), intent(in) :: otherwise             !< the remedy where no choice is found
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    character(len=:), allocatable :: remedy
+    integer, allocatable :: choice(:)
+    integer :: k
+    logical :: known
+
+    k = get_integer(group, 'coordinate')
+    if (k < 1 .or. k > size(model%problem%partition%kind)) return
+    if (model%problem%partition%is_independent(k)) return
+    remedy = otherwise
+    known = .false.
+    if (sound) call find_choice(model, k, known, choice)
+    if (known) then
+      if (size(choice) > 0) then
+        remedy = 'cq = '//to_text(choice)//' would make it independent'
+      else
+        remedy = 'the coordinates that are driven determine it already'
+      end if
+    end if
+    call diagnostics%add(span_of(group, 'coordinate', 1), 'coordinate '//to_text(k)//' is dependent and cannot '//use//'; '//remedy)
+  end subroutine check_independent
+
+  !> Report initial values of a driven coordinate that its drive does not have at the start.
+  subroutine check_start(group, model, diagnostics)
+    type(group_type), intent(in) :: group                 !< a group &initial
+    type(model_type), intent(in) :: model                 !< all that was read
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(error_type), allocatable :: err
+    real(wp) :: q, dq, ddq
+    integer :: i, k
+
+    k = get_integer(group, 'coordinate')
+    do i = 1, size(model%problem%drives)
+      if (.not. allocated(model%problem%drives(i)%drive)) cycle
+      associate (drive => model%problem%drives(i)%drive, initial => model%problem%initial)
+        if (drive%coordinate /= k .or. k > size(initial%position)) cycle
+        if (.not. model%problem%partition%is_independent(k)) cycle
+        if (.not. (initial%position_given(k) .or. initial%velocity_given(k))) cycle
+        call drive%evaluate(model%request%time%start, q, dq, ddq, err)
+        if (allocated(err)) cycle
+        if (initial%position_given(k)) call compare(group, 'position', model, drive, initial%position(k), q, diagnostics)
+        if (initial%velocity_given(k)) call compare(group, 'velocity', model, drive, initial%velocity(k), dq, diagnostics)
+      end associate
+    end do
+  end subroutine check_start
+
+  !> Report one initial value that is not that of the drive.
+  subroutine compare(group, name, model, drive, given, driven, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group &initial
+    character(len=*), intent(in) :: name                  !< 'position' or 'velocity'
+    type(model_type), intent(in) :: model                 !< all that was read
+    class(drive_type), intent(in) :: drive                !< of the same coordinate
+    real(wp), intent(in) :: given                         !< initial value [rad, m; per s]
+    real(wp), intent(in) :: driven                        !< value of the drive at the start [rad, m; per s]
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    real(wp) :: unit
+
+    if (abs(given - driven) <= same_value*max(abs(given), abs(driven)) + same_zero) return
+    unit = 1.0_wp
+    if (allocated(model%mechanism%pairs(drive%coordinate)%pair)) unit = unit_of(model%mechanism, drive%coordinate)
+    call diagnostics%add(span_of(group, name, 1), 'the '//name//' of coordinate '//to_text(drive%coordinate)// &
+                         ' at the start is '//to_text(driven/unit)//' by its drive in line '//to_text(drive%place%line)// &
+                         ', not '//to_text(given/unit)//'; leave the initial value out, or correct the drive')
+  end subroutine compare
+end module mech9_drive_check
