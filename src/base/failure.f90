@@ -19,7 +19,7 @@ module mech9_failure
   public :: failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, failure_chain_off_plane
   public :: failure_no_initial_position, failure_not_started, failure_backwards, failure_interrupted
   public :: failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
-    failure_driven_dead_point, last_failure
+    failure_driven_dead_point, failure_unbalanced, last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
@@ -132,7 +132,9 @@ module mech9_failure
   integer, parameter :: failure_drive_jumps = 53
   !> The same as failure_dead_point in a motion with free coordinates; others and values are those of driven coordinates.
   integer, parameter :: failure_driven_dead_point = 54
-  integer, parameter :: last_failure = 54
+  !> No finite forces in the pairs balance the links in a singular position: coordinates (of the closed chains), t.
+  integer, parameter :: failure_unbalanced = 55
+  integer, parameter :: last_failure = 55
 
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type

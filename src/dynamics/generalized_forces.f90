@@ -5,13 +5,14 @@ module mech9_generalized_forces
   use mech9_mechanism, only: mechanism_type
   use mech9_call_fault, only: call_fault_type
   use mech9_motion_view, only: motion_view_type
+  use mech9_force_sum, only: force_sum_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_frame_motion, only: link_motion
   implicit none
   private
-  public :: collect_loads, collect_forces, add_generalized, show_state
+  public :: collect_loads, sum_loads, collect_forces, add_generalized, show_state
 
 contains
 
@@ -23,19 +24,33 @@ contains
     type(state_type), intent(in) :: state               !< position and motion of the mechanism
     type(lagrange_work_type), intent(inout) :: work     !< gets the loads' sums and the motion that they read
     type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
+
+    if (size(dynamics%acting) == 0) return
+    call sum_loads(mechanism, plan, dynamics%acting, dynamics%loaded, state, work%view, work%sum, err)
+  end subroutine collect_loads
+
+  !> The sums of loads on links and coordinates, from the motion that they read.
+  subroutine sum_loads(mechanism, plan, acting, loaded, state, view, sum, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    integer, intent(in) :: acting(:)                    !< numbers of the loads
+    integer, intent(in) :: loaded(:)                    !< links on whose motion they depend
+    type(state_type), intent(in) :: state               !< position and motion of the mechanism
+    type(motion_view_type), intent(inout) :: view       !< gets the motion that the loads read
+    type(force_sum_type), intent(inout) :: sum          !< gets the sums
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
     type(call_fault_type), target :: fault
     integer :: i
 
-    if (size(dynamics%acting) == 0) return
-    call show_state(plan, dynamics, state, work%view)
-    call work%sum%clear()
-    call work%view%note_faults_in(fault)
-    do i = 1, size(dynamics%acting)
-      call mechanism%loads(dynamics%acting(i))%load%apply(work%view, work%sum, err)
+    call show_links(plan, loaded, state, view)
+    call sum%clear()
+    call view%note_faults_in(fault)
+    do i = 1, size(acting)
+      call mechanism%loads(acting(i))%load%apply(view, sum, err)
       if (allocated(err)) exit
     end do
-    call work%view%note_no_faults()
-  end subroutine collect_loads
+    call view%note_no_faults()
+  end subroutine sum_loads
 
   !> Add the generalized forces Q_p (25) of the loads on links to work%forces, for one cluster on link 1.
   pure subroutine collect_forces(plan, dynamics, state, work)
@@ -74,6 +89,16 @@ contains
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     type(state_type), intent(in) :: state              !< position and motion of the mechanism
     type(motion_view_type), intent(inout) :: view      !< gets time, coordinates and the links on which loads depend
+
+    call show_links(plan, dynamics%loaded, state, view)
+  end subroutine show_state
+
+  !> The time, all coordinates and the motion of some links as loads read them.
+  pure subroutine show_links(plan, links, state, view)
+    type(plan_type), intent(in) :: plan             !< the plan of the mechanism
+    integer, intent(in) :: links(:)                 !< numbers of the links
+    type(state_type), intent(in) :: state           !< position and motion of the mechanism
+    type(motion_view_type), intent(inout) :: view   !< gets time, coordinates and these links
     integer :: i, k
 
     view%t = state%t
@@ -81,9 +106,9 @@ contains
       view%q(i) = state%q(i)
       view%dq(i) = state%dq(i)
     end do
-    do i = 1, size(dynamics%loaded)
-      k = dynamics%loaded(i)
+    do i = 1, size(links)
+      k = links(i)
       call link_motion(plan, state, k, view%links(k)%r, view%links(k)%p, view%links(k)%omega, view%links(k)%v)
     end do
-  end subroutine show_state
+  end subroutine show_links
 end module mech9_generalized_forces

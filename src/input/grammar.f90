@@ -236,6 +236,13 @@ module mech9_grammar
     item_row_type('output', 'energies', 'logical', 1, 1, '', optional, '.true.', '', '', '', &
                   'whether mech9d records kinetic and potential energy and their sum', '.false.', seldom=.true., &
                   program='mech9d'), &
+    item_row_type('output', 'reactions', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
+                  'forces and moments in the pairs, for which bodies, gravity and loads count in mech9k too', '.true.', &
+                  seldom=.true.), &
+    item_row_type('output', 'reaction_pairs', 'integer', 1, unlimited, '', optional, '(all)', '>=1', '', '', &
+                  'pairs whose forces and moments are recorded, by the numbers of their coordinates', '1, 4', seldom=.true.), &
+    item_row_type('output', 'drive_forces', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
+                  'the force or torque that each drive needs for its motion', '.true.', seldom=.true.), &
     item_row_type('user', 'parameters', 'real', 1, unlimited, '', optional, '(none)', '', '', '', &
                   'numbers that every user procedure receives', '0.1, 2.0')]
 

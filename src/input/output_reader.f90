@@ -31,16 +31,23 @@ contains
     output%coordinates = get_integers(group, 'coordinates')
     output%derivatives = get_integer(group, 'derivatives')
     output%energies = get_logical(group, 'energies')
+    output%reaction_pairs = get_integers(group, 'reaction_pairs')
+    output%reactions = get_logical(group, 'reactions') .or. size(output%reaction_pairs) > 0
+    output%drive_forces = get_logical(group, 'drive_forces')
     if (output%compression > 9) &
       call diagnostics%add(span_of(group, 'compression', 1), 'compression goes from 0 (none) to 9 (the smallest file)')
     if (output%derivatives > 2) call diagnostics%add(span_of(group, 'derivatives', 1), 'derivatives is 0 (positions), '// &
                                                      '1 (velocities too) or 2 (accelerations too)')
-    if (n_coordinates > 0) call check_coordinates(group, n_coordinates, output%coordinates, diagnostics)
+    if (n_coordinates == 0) return
+    call check_coordinates(group, 'coordinates', 'coordinate', n_coordinates, output%coordinates, diagnostics)
+    call check_coordinates(group, 'reaction_pairs', 'pair', n_coordinates, output%reaction_pairs, diagnostics)
   end subroutine read_output
 
-  !> Report recorded coordinates that do not exist or are named twice.
-  pure subroutine check_coordinates(group, n_coordinates, coordinates, diagnostics)
+  !> Report recorded coordinates, or pairs, that do not exist or are named twice.
+  pure subroutine check_coordinates(group, name, counted, n_coordinates, coordinates, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
+    character(len=*), intent(in) :: name                  !< of the item with their numbers
+    character(len=*), intent(in) :: counted               !< 'coordinate' or 'pair'
     integer, intent(in) :: n_coordinates                  !< how many coordinates there are
     integer, intent(in) :: coordinates(:)                 !< numbers of the recorded coordinates
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
@@ -48,10 +55,10 @@ contains
 
     do i = 1, size(coordinates)
       if (coordinates(i) > n_coordinates) then
-        call diagnostics%add(span_of(group, 'coordinates', i), 'there is no coordinate '//to_text(coordinates(i))// &
+        call diagnostics%add(span_of(group, name, i), 'there is no '//counted//' '//to_text(coordinates(i))// &
                              '; they are 1 to '//to_text(n_coordinates))
       else if (any(coordinates(:i - 1) == coordinates(i))) then
-        call diagnostics%add(span_of(group, 'coordinates', i), 'coordinate '//to_text(coordinates(i))//' is there already')
+        call diagnostics%add(span_of(group, name, i), counted//' '//to_text(coordinates(i))//' is there already')
       end if
     end do
   end subroutine check_coordinates

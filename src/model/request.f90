@@ -36,8 +36,13 @@ module mech9_request
     integer, allocatable :: coordinates(:)       !< coordinates that have columns; none listed: all
     integer :: derivatives = 2                   !< order of the highest derivative in time that is recorded
     logical :: energies = .true.                 !< the energies have columns
+    logical :: reactions = .false.               !< the wrenches of pairs have columns
+    integer, allocatable :: reaction_pairs(:)    !< coordinates of these pairs; none listed: all
+    logical :: drive_forces = .false.            !< the forces of drives have columns
   contains
     procedure :: recorded
+    procedure :: reacting
+    procedure :: with_forces
   end type output_settings_type
 
   !> The results of a problem that the user wants.
@@ -61,6 +66,26 @@ contains
     recorded = .false.
     recorded(self%coordinates) = .true.
   end function recorded
+
+  !> Whether the wrench of each pair is recorded.
+  pure function reacting(self, n_coordinates)
+    class(output_settings_type), intent(in) :: self   !< the output settings
+    integer, intent(in) :: n_coordinates              !< M
+    logical :: reacting(n_coordinates)
+
+    reacting = self%reactions
+    if (.not. (self%reactions .and. allocated(self%reaction_pairs))) return
+    if (size(self%reaction_pairs) == 0) return
+    reacting = .false.
+    reacting(self%reaction_pairs) = .true.
+  end function reacting
+
+  !> Whether forces are recorded, which depend on the motion of all links.
+  pure logical function with_forces(self)
+    class(output_settings_type), intent(in) :: self   !< the output settings
+
+    with_forces = self%reactions .or. self%drive_forces
+  end function with_forces
 
   !> Time of output i; the last one is exactly the end.
   pure real(wp) function time(self, i)

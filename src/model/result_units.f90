@@ -4,7 +4,7 @@ module mech9_result_units
   use mech9_mechanism, only: mechanism_type
   implicit none
   private
-  public :: unit_of, unit_name
+  public :: unit_of, unit_name, force_unit_name
 
 contains
 
@@ -30,4 +30,17 @@ contains
       unit_name = merge('rad', 'deg', abs(mechanism%angle_unit - 1.0_wp) <= 0.0_wp)
     end if
   end function unit_name
+
+  !> Name of the unit of a generalized force on coordinate k: of a torque, whatever the unit of angles, or of a force; 'J' over the
+  !> unit of a user's own pair.
+  pure character(len=3) function force_unit_name(mechanism, k)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: k                        !< number of the coordinate
+
+    if (mechanism%pairs(k)%pair%kind_name() == 'user') then
+      force_unit_name = 'J'
+    else
+      force_unit_name = merge('N m', 'N  ', mechanism%pairs(k)%pair%angular)
+    end if
+  end function force_unit_name
 end module mech9_result_units

@@ -4,7 +4,7 @@ module mech9_columns
   use mech9_text, only: string_type, to_text
   use mech9_request, only: output_settings_type
   use mech9_mechanism, only: mechanism_type
-  use mech9_result_units, only: unit_of, unit_name
+  use mech9_result_units, only: unit_of, unit_name, force_unit_name
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_poses, only: poses_type, poses_of
@@ -24,9 +24,14 @@ module mech9_columns
     real(wp), allocatable :: factors(:)     !< (coordinates) factors from the program's units to those of the results
     integer :: derivatives = 2              !< highest derivative that is recorded
     integer :: motion = 0                   !< how many columns, the first ones, belong to time, coordinates and points
+    integer, allocatable :: drives(:)       !< driven coordinates whose forces have columns, ascending
+    integer, allocatable :: reacting(:)     !< pairs whose wrenches have columns, ascending
     type(poses_type) :: poses               !< columns after the others, if they were requested
   contains
     procedure :: append
+    procedure :: append_forces
+    procedure :: forces
+    procedure :: fill_forces
     procedure :: width
     procedure :: fill
     procedure :: fill_poses
@@ -71,6 +76,59 @@ contains
       end do
     end do
   end function kinematic_columns
+
+  !> Append the columns of forces: of drives, then of pairs.
+  pure subroutine append_forces(self, mechanism, drives, reacting)
+    class(columns_type), intent(inout) :: self     !< the columns
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    integer, intent(in) :: drives(:)               !< driven coordinates, ascending
+    integer, intent(in) :: reacting(:)             !< pairs, by their coordinates, ascending
+    character(len=4), parameter :: kinds(2) = ['f   ', 'm   ']
+    integer :: i, j, k
+
+    self%drives = drives
+    self%reacting = reacting
+    do i = 1, size(drives)
+      call self%append('F'//to_text(drives(i)), force_unit_name(mechanism, drives(i)), &
+                       'force of the drive of coordinate '//to_text(drives(i)))
+    end do
+    do i = 1, size(reacting)
+      do j = 1, 2
+        do k = 1, 3
+          call self%append('R'//to_text(reacting(i))//'.'//trim(kinds(j))//directions(k), trim(merge('N  ', 'N m', j == 1)))
+        end do
+      end do
+    end do
+  end subroutine append_forces
+
+  !> How many columns belong to forces.
+  pure integer function forces(self)
+    class(columns_type), intent(in) :: self  !< the columns
+
+    forces = 0
+    if (allocated(self%drives)) forces = size(self%drives) + 6*size(self%reacting)
+  end function forces
+
+  !> Fill the columns of forces in a row.
+  pure subroutine fill_forces(self, needed, force, moment, row)
+    class(columns_type), intent(in) :: self  !< the columns, some of forces
+    real(wp), intent(in) :: needed(:)        !< (M) forces of drives [N m, N]
+    real(wp), intent(in) :: force(:, :)      !< (3,M) of each pair [N]
+    real(wp), intent(in) :: moment(:, :)     !< (3,M) of each pair [N m]
+    real(wp), intent(inout) :: row(:)        !< numbers of one row, one for each column
+    integer :: i, at
+
+    at = self%motion
+    do i = 1, size(self%drives)
+      row(at + i) = needed(self%drives(i))
+    end do
+    at = at + size(self%drives)
+    do i = 1, size(self%reacting)
+      row(at + 1:at + 3) = force(:, self%reacting(i))
+      row(at + 4:at + 6) = moment(:, self%reacting(i))
+      at = at + 6
+    end do
+  end subroutine fill_forces
 
   !> Append a column.
   pure subroutine append(self, name, unit, long_name)

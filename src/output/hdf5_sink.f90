@@ -6,6 +6,7 @@ module mech9_hdf5_sink
   use mech9_clock, only: pacer_type
   use mech9_request, only: request_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: force_unit_name
   use mech9_poses, only: poses_type
   use mech9_columns, only: columns_type
   use mech9_result_sink, only: result_sink_type
@@ -17,8 +18,8 @@ module mech9_hdf5_sink
 
   !> Longest time after which readers of the file see new rows [s].
   real(wp), parameter :: longest_wait = 1.0_wp
-  !> Number of quantities: time, coordinates and points with their derivatives; poses.
-  integer, parameter :: quantities_of_motion = 7 + 3
+  !> Number of quantities: time, coordinates and points with their derivatives; poses; forces.
+  integer, parameter :: quantities_of_motion = 7 + 3 + 3
   !> Number of events in a chunk of their data sets.
   integer, parameter :: most_events = 64
   character, parameter :: directions(3) = ['x', 'y', 'z']
@@ -52,10 +53,11 @@ contains
     type(columns_type), intent(in) :: columns          !< columns of the rows to come
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: scalars
+    logical :: has_axes
 
     call self%file%create(path, err)
     if (allocated(err)) return
-    scalars = columns%count - columns%motion
+    scalars = columns%count - columns%motion - columns%forces()
     self%takes_poses = .true.
     call self%series%start(quantities_of_motion + scalars, columns%width(), request%time%intervals + 1, &
                            request%output%compression)
@@ -64,7 +66,9 @@ contains
     call self%series%create(self%file)
     call add_coordinate_scales(self%file, mechanism, columns)
     if (size(mechanism%points) > 0) call add_point_scales(self%file, mechanism)
-    if (columns%poses%n_links > 0) call add_pose_scales(self%file, columns%poses, size(mechanism%points) > 0)
+    has_axes = size(mechanism%points) > 0
+    if (columns%forces() > 0) call add_force_scales(self%file, mechanism, columns, has_axes)
+    if (columns%poses%n_links > 0) call add_pose_scales(self%file, columns%poses, has_axes)
     call self%series%attach(self%file)
     call self%pacer%start(longest_wait)
     call self%tell(err)
@@ -91,6 +95,7 @@ contains
       if (size(mechanism%points) > 0) &
         call add_of_points(self, mechanism, columns, trim(of_points(order)), trim(point_units(order)), order)
     end do
+    if (columns%forces() > 0) call add_forces(self, columns)
     do i = 1, scalars
       at = columns%count - scalars + i
       call self%series%add(identifier(columns%names(at)%text), [at], [integer ::], &
@@ -133,6 +138,27 @@ contains
                          ['/time ', '/point', '/axis '])
   end subroutine add_of_points
 
+  !> Add the forces of drives and the wrenches of pairs.
+  subroutine add_forces(self, columns)
+    class(hdf5_sink_type), intent(inout) :: self  !< the HDF5 sink
+    type(columns_type), intent(in) :: columns     !< columns of the rows to come
+    integer :: n, at, i, k
+
+    n = size(columns%drives)
+    at = columns%motion
+    if (n > 0) call self%series%add('drive_force', [(at + i, i=1, n)], [n], 'forces that the drives need', &
+                                    common_unit(columns%units(at + 1:at + n)), ['/time  ', '/driven'])
+    at = at + n
+    n = size(columns%reacting)
+    if (n == 0) return
+    call self%series%add('reaction_force', [((at + 6*(i - 1) + k, k=1, 3), i=1, n)], [3, n], &
+                         'forces that the reference links pass to the moving links through the pairs, in the fixed frame', 'N', &
+                         ['/time', '/pair', '/axis'])
+    call self%series%add('reaction_moment', [((at + 6*(i - 1) + 3 + k, k=1, 3), i=1, n)], [3, n], &
+                         'moments that they pass, about the origins of the pairs'' frames in the moving links', 'N m', &
+                         ['/time', '/pair', '/axis'])
+  end subroutine add_forces
+
   !> Add poses of links, and the vertices of their drawing.
   subroutine add_poses(self, columns)
     class(hdf5_sink_type), intent(inout) :: self  !< the HDF5 sink
@@ -150,6 +176,31 @@ contains
                          'vertices of the drawn links in the fixed frame', 'm', &
                          ['/time         ', '/vertex_number', '/axis         '])
   end subroutine add_poses
+
+  !> Write the numbers of the pairs with forces and of the driven coordinates, and the unit of the force of each.
+  subroutine add_force_scales(file, mechanism, columns, has_axes)
+    type(hdf5_file_type), intent(inout) :: file    !< the open file
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(columns_type), intent(in) :: columns      !< columns of the rows to come
+    logical, intent(inout) :: has_axes             !< whether the axes of the fixed frame are in the file
+    type(string_type) :: units(size(columns%drives))
+    integer :: i
+
+    if (size(columns%drives) > 0) then
+      do i = 1, size(units)
+        units(i)%text = trim(force_unit_name(mechanism, columns%drives(i)))
+      end do
+      call file%put('driven', columns%drives, 'number of the driven coordinate')
+      call file%make_scale('driven')
+      call file%put('drive_force_unit', units, 'unit of the force of each drive')
+      call file%attach_scales('drive_force_unit', ['/driven'])
+    end if
+    if (size(columns%reacting) == 0) return
+    call file%put('pair', columns%reacting, 'number of the pair, which is that of its coordinate')
+    call file%make_scale('pair')
+    if (.not. has_axes) call put_axes(file, 'axis', 'axis of the fixed frame')
+    has_axes = .true.
+  end subroutine add_force_scales
 
   !> Write scales of the poses, and to which links vertices and lines belong. A scale stands in the group of the data set
   !> that it scales, or above: readers that follow the rules of netCDF look for it nowhere else.

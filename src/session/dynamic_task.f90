@@ -136,6 +136,7 @@ contains
     logical :: ready
 
     call new_row_source('mech9d', simulation, source)
+    call source%forces%judge(model, plan, start)
     call begin_run(options, pictures, model, plan, simulation%requested, source, results, diagnostics, ready)
     reported = ready .and. options%has('report')
     if (.not. ready) return

@@ -138,6 +138,7 @@ contains
     logical :: ready
 
     call new_row_source(program_name, simulation, source)
+    call source%forces%judge(model, plan, simulation%assembled)
     call begin_run(options, pictures, model, plan, simulation%requested, source, results, diagnostics, ready)
     reported = ready .and. options%has('report')
     if (.not. ready) return

@@ -21,6 +21,10 @@ module mech9_task
   use mech9_geometry_text, only: print_dimensions
   use mech9_check_notes, only: print_notes
   use mech9_plan_text, only: print_plan
+  use mech9_force_text, only: print_uniqueness, print_forceless
+  use mech9_force_record, only: force_record_type
+  use mech9_hdf5_sink, only: hdf5_sink_type
+  use mech9_hdf5_record, only: write_uniqueness
   use mech9_system, only: asked_to_end
   implicit none
   private
@@ -91,6 +95,7 @@ contains
     if (options%has('check')) then
       call print_given(model, pictures%with_masses)
       call print_start(model, start)
+      call print_forces(model, plan, start)
     end if
     if (options%has('sketch')) call pictures%save_start(model, plan, start, err)
     if (allocated(err)) call diagnostics%add_error(err)
@@ -120,6 +125,20 @@ contains
     end do
   end subroutine print_start
 
+  !> Print what is known about the forces that the model requests.
+  subroutine print_forces(model, plan, start)
+    type(model_type), intent(in) :: model   !< the model
+    type(plan_type), intent(in) :: plan     !< its plan
+    type(state_type), intent(in) :: start   !< assembled position
+    type(force_record_type) :: forces
+
+    if (.not. model%request%output%with_forces()) return
+    call print_forceless(output_unit, model%mechanism)
+    call forces%judge(model, plan, start)
+    if (allocated(forces%unique)) &
+      call print_uniqueness(output_unit, model%request%output%reacting(size(model%mechanism%pairs)), forces%unique)
+  end subroutine print_forces
+
   !> Carry out --graph.
   subroutine draw_graph(options, model, plan, diagnostics)
     type(command_line_type), intent(in) :: options         !< the command line
@@ -146,18 +165,22 @@ contains
     type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
     type(requested_type), intent(in) :: requested          !< the requested part of the motion
     type(row_source_type), intent(inout) :: source         !< computes the rows; gets a film where pictures are wanted
-    type(results_type), intent(out) :: results             !< opened
+    type(results_type), intent(out), target :: results     !< opened
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     logical, intent(out) :: ready                          !< the run can begin
     type(error_type), allocatable :: err
+    type(hdf5_sink_type), pointer :: hdf5
 
     call announce(options, model, plan, requested)
+    if (model%request%output%with_forces() .and. .not. options%has('quiet')) call print_forceless(error_unit, model%mechanism)
     if (pictures%any_wanted()) &
       source%film = new_film(model%mechanism, model%problem%partition%independent(), model%request%time%intervals + 1, &
                              source%columns)
     call results%open(options, model, diagnostics%sources(1)%text, source%program_name, source%columns, err)
     ready = .not. allocated(err)
     if (.not. ready) call diagnostics%add_error(err)
+    hdf5 => results%hdf5()
+    if (ready .and. associated(hdf5)) call write_uniqueness(hdf5%file, source%columns, source%forces)
   end subroutine begin_run
 
   !> Close the results of a run, draw the mechanism, and print which files were written.

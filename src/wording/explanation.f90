@@ -15,7 +15,7 @@ module mech9_explanation
     failure_points_order, failure_no_spline, failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, &
     failure_chain_off_plane, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
     failure_interrupted, failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
-    failure_driven_dead_point
+    failure_driven_dead_point, failure_unbalanced
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_choice_words, only: explain_choice, longest_list
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
@@ -242,6 +242,10 @@ contains
     case (failure_drive_jumps)
       text = 'the drive of coordinate '//to_text(failure%coordinates)//' jumps at t = '//to_text(failure%t, 7)//' s: its '// &
              'position is not where its rate has led; let it have a continuous position, over a short time if need be'
+    case (failure_unbalanced)
+      text = 'the closed chains of coordinates '//some_of(failure%coordinates, longest_list)// &
+             ' are in a singular position at t = '//to_text(failure%t, 10)//' s, in which no finite forces in their pairs '// &
+             'balance the links; choose times that leave it out, or record neither reactions nor drive_forces'
     case (failure_infinite_rate)
       if (allocated(failure%coordinates)) then
         text = 'the motion of coordinate '//to_text(failure%coordinates)

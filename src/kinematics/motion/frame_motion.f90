@@ -10,7 +10,7 @@ module mech9_frame_motion
   private
   public :: place_frames, place_unshown, place_frames_after_change
   public :: spread_velocities, spread_accelerations, place_all, spread_all_velocities, spread_all_accelerations
-  public :: show_all_frames, link_motion, point_motion, step_screw
+  public :: show_all_frames, link_motion, link_turning, point_motion, step_screw
 
 contains
 
@@ -201,6 +201,16 @@ contains
     call plan%arithmetics(arithmetic_of(plan, plan%frame_of(link)))%kind%point_motion(plan, state, link, place, position, &
       velocity, acceleration)
   end subroutine point_motion
+
+  !> The angular acceleration of a link, in the axes of link 1.
+  pure subroutine link_turning(plan, state, link, alpha)
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< with the accelerations of the frames
+    integer, intent(in) :: link             !< number of the link
+    real(wp), intent(out) :: alpha(3)       !< angular acceleration [rad/s^2]
+
+    call plan%arithmetics(arithmetic_of(plan, plan%frame_of(link)))%kind%link_turning(plan, state, link, alpha)
+  end subroutine link_turning
 
   !> The angular velocity and the velocity of the new frame's origin that a step gives per unit rate, and that origin; in the
   !> axes of frame 0, from its origin.

@@ -22,6 +22,7 @@ module mech9_planar_arithmetic
     procedure, nopass :: spread_accelerations
     procedure, nopass :: link_motion
     procedure, nopass :: point_motion
+    procedure, nopass :: link_turning
     procedure, nopass :: step_screw
   end type planar_arithmetic_type
 
@@ -133,6 +134,16 @@ contains
       end if
     end associate
   end subroutine point_motion
+
+  !> The angular acceleration of a link, in the axes of link 1.
+  pure subroutine link_turning(plan, state, link, alpha)
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< with the accelerations of the frames
+    integer, intent(in) :: link             !< number of the link
+    real(wp), intent(out) :: alpha(3)       !< angular acceleration [rad/s^2]
+
+    alpha = to_space(plan%planar, 0.0_wp, 0.0_wp, state%planar%acceleration(1, plan%frame_of(link)))
+  end subroutine link_turning
 
   !> The screw of a step at its new frame's origin, in the axes of frame 0.
   pure subroutine step_screw(plan, state, s, w, v, place)

@@ -2,7 +2,7 @@
 !> and links, points and screws are composed with the motion of the base where they are asked for.
 module mech9_planar_block_arithmetic
   use mech9_kinds, only: wp
-  use mech9_rotation, only: turn, combine
+  use mech9_rotation, only: turn, combine, cross
   use mech9_pose, only: transformed
   use mech9_plan, only: plan_type
   use mech9_planar_formulas, only: turn_in_plane, point_velocity, point_acceleration
@@ -18,6 +18,7 @@ module mech9_planar_block_arithmetic
   contains
     procedure, nopass :: link_motion
     procedure, nopass :: point_motion
+    procedure, nopass :: link_turning
     procedure, nopass :: step_screw
   end type planar_block_arithmetic_type
 
@@ -79,6 +80,22 @@ contains
       acceleration = seen_acceleration(state, base, axes, arm, v_plane, a_plane)
     end associate
   end subroutine point_motion
+
+  !> The angular acceleration of a link, in the axes of link 1.
+  pure subroutine link_turning(plan, state, link, alpha)
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< with the accelerations of the frames
+    integer, intent(in) :: link             !< number of the link
+    real(wp), intent(out) :: alpha(3)       !< angular acceleration [rad/s^2]
+    real(wp) :: axes(3, 3)
+    integer :: i, base
+
+    i = plan%frame_of(link)
+    base = plan%planar%planes(plan%planar%plane_of(i))%base
+    axes = plane_in_space(plan, state, i)
+    alpha = state%alpha(:, base) + state%planar%acceleration(1, i)*axes(:, 3) &
+            + state%planar%velocity(1, i)*cross(state%omega(:, base), axes(:, 3))
+  end subroutine link_turning
 
   !> The screw of a step at its new frame's origin, in the axes of frame 0.
   pure subroutine step_screw(plan, state, s, w, v, place)

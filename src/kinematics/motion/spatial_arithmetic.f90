@@ -22,6 +22,7 @@ module mech9_spatial_arithmetic
     procedure, nopass :: spread_accelerations
     procedure, nopass :: link_motion
     procedure, nopass :: point_motion
+    procedure, nopass :: link_turning
     procedure, nopass :: step_screw
   end type spatial_arithmetic_type
 
@@ -299,6 +300,16 @@ contains
     if (present(acceleration)) acceleration = state%a(:, f) + cross(state%alpha(:, f), arm) &
                                               + cross(state%omega(:, f), cross(state%omega(:, f), arm))
   end subroutine point_motion
+
+  !> The angular acceleration of a link, in the axes of link 1.
+  pure subroutine link_turning(plan, state, link, alpha)
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< with the accelerations of the frames
+    integer, intent(in) :: link             !< number of the link
+    real(wp), intent(out) :: alpha(3)       !< angular acceleration [rad/s^2]
+
+    alpha = state%alpha(:, plan%frame_of(link))
+  end subroutine link_turning
 
   !> The screw of a step at its new frame's origin, in the axes of frame 0.
   pure subroutine step_screw(plan, state, s, w, v, place)

@@ -87,6 +87,7 @@ module mech9_plan
     procedure(spread_interface), deferred, nopass :: spread_accelerations
     procedure(link_motion_interface), deferred, nopass :: link_motion
     procedure(point_motion_interface), deferred, nopass :: point_motion
+    procedure(link_turning_interface), deferred, nopass :: link_turning
     procedure(step_screw_interface), deferred, nopass :: step_screw
   end type arithmetic_type
 
@@ -203,6 +204,15 @@ module mech9_plan
       real(wp), intent(out), optional :: velocity(3)       !< [m/s]
       real(wp), intent(out), optional :: acceleration(3)   !< [m/s^2]
     end subroutine point_motion_interface
+
+    !> The angular acceleration of a link, in the axes of link 1.
+    pure subroutine link_turning_interface(plan, state, link, alpha)
+      import :: plan_type, state_type, wp
+      type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+      type(state_type), intent(in) :: state   !< with the accelerations of the frames
+      integer, intent(in) :: link             !< number of the link
+      real(wp), intent(out) :: alpha(3)       !< [rad/s^2]
+    end subroutine link_turning_interface
 
     !> The angular velocity and the velocity of the new frame's origin that a step gives per unit rate, and the position of
     !> this origin, in the axes of frame 0, from its origin.

@@ -32,7 +32,18 @@ contains
     allocate (requested%links(mechanism%structure%n_links), source=whole .or. output%poses)
     requested%links(mechanism%points%link) = .true.
     requested%derivatives = merge(2, output%derivatives, whole)
+    if (output%with_forces()) call request_all(requested)
   end function requested_by_results
+
+  !> Request the motion of all links and coordinates: a force may come from any of them.
+  pure subroutine request_all(requested)
+    type(requested_type), intent(inout) :: requested   !< the requested coordinates and links
+
+    requested%coordinates = .true.
+    requested%links = .true.
+    requested%derivatives = 2
+    requested%frames = .true.
+  end subroutine request_all
 
   !> Request the motion that the equations of motion need: of links with mass, and of all links and coordinates that loads
   !> depend on.

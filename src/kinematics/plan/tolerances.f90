@@ -18,7 +18,7 @@ module mech9_tolerances
     far_slide, escaped_slide, escaping_speed, escape_law, just_short_of_end, shorter_crossing, trusted_crossing, &
     trusted_crossing_rates, first_move, doubtful_conditioning, worthwhile_improvement, regular_conditioning, &
     refused_conditioning, trusted_closing, trusted_between_steps, steepest_slope, negligible_inertia, &
-    doubtful_margin, short_way, third_derivative_step, locked, locked_together
+    doubtful_margin, short_way, third_derivative_step, locked, locked_together, balanced, balanced_singular
 
   ! Ranks and singular positions: judged alike by --check, driven motion and dynamics.
 
@@ -227,6 +227,11 @@ module mech9_tolerances
   real(wp), parameter :: locked = 1.0e-6_wp
   !> Coordinates have a part in gimbal lock that is at least this part of the largest.
   real(wp), parameter :: locked_together = 0.1_wp
+  !> Wrenches of pairs balance the links if what remains is below this part of the largest wrench: a thousand times the round-off
+  !> of the sums.
+  real(wp), parameter :: balanced = 1.0e-12_wp
+  !> The same beside a singular position, where wrenches are large against what the links require.
+  real(wp), parameter :: balanced_singular = 1.0e-9_wp
   !> Distance in time of two evaluations whose difference gives third derivatives, over the time that the motion takes for
   !> 1 rad: the square of this and round-off over it are both the error, about 1e-10.
   real(wp), parameter :: third_derivative_step = 1.0e-5_wp

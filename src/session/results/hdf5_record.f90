@@ -1,14 +1,16 @@
 !> Content of an HDF5 file of results besides the rows: their origin, and the structure of the mechanism.
 module mech9_hdf5_record
-  use mech9_text, only: to_text
+  use mech9_text, only: to_text, string_type
   use mech9_lapack, only: ilaver
   use mech9_model, only: model_type
+  use mech9_columns, only: columns_type
+  use mech9_force_record, only: force_record_type
   use mech9_hdf5_file, only: hdf5_file_type, hdf5_version
   use mech9_command_line, only: command_line_type
   use mech9_version, only: version, revision, compiler, sundials_version
   implicit none
   private
-  public :: write_provenance, write_structure
+  public :: write_provenance, write_structure, write_uniqueness
 
   !> Most links with which the coincidence matrix is written; for more links it would be larger than the results.
   integer, parameter :: largest_matrix = 1000
@@ -81,6 +83,27 @@ contains
       call write_vector(file, 'nrw', vectors%nrw, 'closed chains that are complete')
     end associate
   end subroutine write_structure
+
+  !> Write which components of the recorded wrenches equilibrium determines.
+  subroutine write_uniqueness(file, columns, forces)
+    type(hdf5_file_type), intent(inout) :: file        !< the open file
+    type(columns_type), intent(in) :: columns          !< the columns, with the pairs whose wrenches are recorded
+    type(force_record_type), intent(in) :: forces      !< with the components that are unique
+    character(len=2), parameter :: names(6) = ['fx', 'fy', 'fz', 'mx', 'my', 'mz']
+    type(string_type) :: components(6)
+    integer :: i
+
+    if (.not. allocated(forces%unique) .or. columns%forces() == 0) return
+    if (size(columns%reacting) == 0) return
+    do i = 1, 6
+      components(i)%text = names(i)
+    end do
+    call file%put('component', components, 'component in the axes of the pair''s frame in its moving link, z along its axis')
+    call file%make_scale('component')
+    call file%put('reaction_unique', merge(1, 0, forces%unique(:, columns%reacting)), &
+                  '1 where equilibrium determines the component; elsewhere that of least norm is given')
+    call file%attach_scales('reaction_unique', ['/pair     ', '/component'])
+  end subroutine write_uniqueness
 
   subroutine write_vector(file, name, values, long_name)
     type(hdf5_file_type), intent(inout) :: file   !< the open file

@@ -8,6 +8,7 @@ module mech9_row_source
   use mech9_simulation, only: simulation_type, interruption_type
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_film, only: film_type
+  use mech9_force_record, only: force_record_type
   implicit none
   private
   public :: row_source_type, signal_interruption_type, new_row_source
@@ -16,6 +17,7 @@ module mech9_row_source
     character(len=6) :: program_name = ''
     class(simulation_type), pointer, private :: simulation => null()   !< not owned
     type(columns_type) :: columns
+    type(force_record_type) :: forces      !< computes the forces that are recorded
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
   contains
     procedure :: row_at
@@ -38,6 +40,7 @@ contains
     source%program_name = program_name
     source%simulation => simulation
     source%columns = kinematic_columns(simulation%model%mechanism, simulation%model%request%output)
+    call source%forces%begin(simulation%model, source%columns)
     if (simulation%with_energies) then
       call source%columns%append('E.kinetic', 'J', 'kinetic energy')
       call source%columns%append('E.potential', 'J', 'potential energy of gravity and springs')
@@ -68,7 +71,14 @@ contains
     call self%simulation%present(plan, state)
     call self%columns%fill(self%simulation%model%mechanism, plan, state, row)
     call self%columns%fill_poses(plan, state, row)
-    next = self%columns%motion
+    if (self%forces%wanted) then
+      call self%forces%find(self%simulation, plan, state, err)
+      if (allocated(err)) return
+      associate (found => self%forces%reactions)
+        call self%columns%fill_forces(found%needed, found%force, found%moment, row)
+      end associate
+    end if
+    next = self%columns%motion + self%columns%forces()
     associate (simulation => self%simulation)
       if (simulation%with_energies) then
         row(next + 1) = simulation%kinetic_energy

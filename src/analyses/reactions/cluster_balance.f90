@@ -1,0 +1,193 @@
+!> The equations of equilibrium of a cluster of closed chains, and their solution of least norm.
+!>
+!> The unknowns are the wrenches of all pairs, scaled: force, moment over the mechanism's size. Those of dependent coordinates do
+!> the work of the loads on these coordinates, so that only their part across the axis is unknown. Each link must be in
+!> balance: A r = b. With M = A^T restricted to what is unknown, the wrenches of least norm are r = M y, (M^T M) y = b: y are
+!> the displacements that the links of an elastic mechanism would take whose pairs are all equally stiff. M^T M has one block
+!> for each link and each pair, and is factorized by Cholesky's method; a correction from the balance of the links removes
+!> the error that squaring M makes.
+module mech9_cluster_balance
+  use mech9_kinds, only: wp
+  use mech9_rotation, only: cross
+  use mech9_block_cholesky, only: block_cholesky_type, new_block_cholesky
+  use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type
+  use mech9_joint_geometry, only: joint_geometry_type
+  implicit none
+  private
+  public :: cluster_balance_type, new_cluster_balance
+
+  !> The equations of one cluster in one position. Nodes are its links but the one on which it stands.
+  type :: cluster_balance_type
+    type(block_cholesky_type) :: factors          !< of M^T M
+    integer, allocatable :: block_of(:)           !< (pairs) block that joins both links; 0 where one is not a node
+    logical, allocatable :: turned(:)             !< (pairs) the block's rows are those of the reference link
+    logical, allocatable :: held(:)               !< (pairs) only the part across the axis is unknown
+    real(wp), allocatable :: axis(:, :)           !< (6,pairs) of length 1
+    real(wp), allocatable :: arm(:, :, :)         !< (3,2,pairs) from the places of moving and reference link, over the size
+    real(wp), allocatable :: y(:, :)              !< (6,nodes) scratch
+    real(wp), allocatable :: residual(:, :)       !< (6,nodes) scratch
+  contains
+    procedure :: set_position
+    procedure :: spread
+    procedure :: balance
+  end type cluster_balance_type
+
+contains
+
+  !> Room for the equations of a cluster.
+  pure function new_cluster_balance(reactions, cluster) result(self)
+    type(reaction_plan_type), intent(in) :: reactions   !< the plan of inverse dynamics
+    type(joined_cluster_type), intent(in) :: cluster    !< the cluster
+    type(cluster_balance_type) :: self
+    integer :: i, n
+
+    n = size(cluster%pairs)
+    self%factors = new_block_cholesky(6, size(cluster%links), cluster%nodes)
+    allocate (self%block_of(n), source=0)
+    allocate (self%turned(n), source=.false.)
+    self%held = reactions%pairs(cluster%pairs)%dependent
+    allocate (self%axis(6, n), self%arm(3, 2, n), self%y(6, size(cluster%links)), self%residual(6, size(cluster%links)), &
+              source=0.0_wp)
+    do i = 1, n
+      associate (a => cluster%nodes(1, i), b => cluster%nodes(2, i))
+        if (min(a, b) == 0 .or. a == b) cycle
+        self%block_of(i) = self%factors%place_of(a, b)
+        self%turned(i) = self%factors%position(b) > self%factors%position(a)
+      end associate
+    end do
+  end function new_cluster_balance
+
+  !> The equations of a position, factorized. `regular` is false where M^T M is singular but for round-off.
+  pure subroutine set_position(self, cluster, geometry, reactions, length, regular)
+    class(cluster_balance_type), intent(inout) :: self   !< gets the factors
+    type(joined_cluster_type), intent(in) :: cluster     !< the cluster
+    type(joint_geometry_type), intent(in) :: geometry    !< of the position
+    type(reaction_plan_type), intent(in) :: reactions    !< the plan of inverse dynamics
+    real(wp), intent(in) :: length                       !< the mechanism's size [m]
+    logical, intent(out) :: regular                      !< the factors can be used
+    !> Least square of the distance of a column of M from the others, as a part of its length: corrections converge above it.
+    real(wp), parameter :: least_square = 1.0e-12_wp
+    integer :: i, k, side
+
+    call self%factors%clear()
+    do i = 1, size(cluster%pairs)
+      k = cluster%pairs(i)
+      self%axis(:, i) = geometry%axis(:, k)
+      do side = 1, 2
+        self%arm(:, side, i) = (geometry%point(:, k) - geometry%place(:, reactions%pairs(k)%links(side)))/length
+      end do
+      call add_pair(self, cluster%nodes(:, i), i)
+    end do
+    call self%factors%factorize()
+    regular = self%factors%least_part > least_square
+  end subroutine set_position
+
+  !> Add the blocks of a pair to M^T M.
+  pure subroutine add_pair(self, nodes, i)
+    type(cluster_balance_type), intent(inout) :: self   !< the equations
+    integer, intent(in) :: nodes(2)                     !< of moving and reference link
+    integer, intent(in) :: i                            !< place of the pair in the cluster
+    real(wp) :: work_on(6, 2)
+    integer :: side
+
+    do side = 1, 2
+      work_on(1:3, side) = self%axis(1:3, i)
+      work_on(4:6, side) = self%axis(4:6, i) + cross(self%arm(:, side, i), self%axis(1:3, i))
+    end do
+    if (.not. self%held(i)) work_on = 0.0_wp
+    if (nodes(1) == nodes(2)) return
+    do side = 1, 2
+      if (nodes(side) == 0) cycle
+      associate (at => self%factors%position(nodes(side)))
+        call add_block(1.0_wp, self%arm(:, side, i), self%arm(:, side, i), work_on(:, side), work_on(:, side), &
+                       self%factors%diagonal(:, :, at))
+      end associate
+    end do
+    if (self%block_of(i) == 0) return
+    side = merge(2, 1, self%turned(i))
+    call add_block(-1.0_wp, self%arm(:, side, i), self%arm(:, 3 - side, i), work_on(:, side), work_on(:, 3 - side), &
+                   self%factors%blocks(:, :, self%block_of(i)))
+  end subroutine add_pair
+
+  !> Add T_a^T (1 - n n^T) T_b, where T carries a motion from the place of a link to the point of the pair, n is its axis, and
+  !> T^T n are given.
+  pure subroutine add_block(sign, a, b, on_a, on_b, block)
+    real(wp), intent(in) :: sign            !< factor
+    real(wp), intent(in) :: a(3)            !< arm of the link in whose rows the block is
+    real(wp), intent(in) :: b(3)            !< arm of the link in whose columns it is
+    real(wp), intent(in) :: on_a(6)         !< T_a^T n; zero where nothing is held
+    real(wp), intent(in) :: on_b(6)         !< T_b^T n; zero where nothing is held
+    real(wp), intent(inout) :: block(6, 6)  !< the block
+    real(wp) :: both
+    integer :: i, j
+
+    do j = 1, 6
+      do i = 1, 6
+        block(i, j) = block(i, j) - sign*on_a(i)*on_b(j)
+      end do
+    end do
+    both = 1.0_wp + a(1)*b(1) + a(2)*b(2) + a(3)*b(3)
+    do j = 1, 3
+      block(j, j) = block(j, j) + sign
+      block(3 + j, 3 + j) = block(3 + j, 3 + j) + sign*both
+      do i = 1, 3
+        block(3 + i, 3 + j) = block(3 + i, 3 + j) - sign*b(i)*a(j)
+      end do
+    end do
+    block(1, 5) = block(1, 5) + sign*b(3)
+    block(1, 6) = block(1, 6) - sign*b(2)
+    block(2, 4) = block(2, 4) - sign*b(3)
+    block(2, 6) = block(2, 6) + sign*b(1)
+    block(3, 4) = block(3, 4) + sign*b(2)
+    block(3, 5) = block(3, 5) - sign*b(1)
+    block(4, 2) = block(4, 2) - sign*a(3)
+    block(4, 3) = block(4, 3) + sign*a(2)
+    block(5, 1) = block(5, 1) + sign*a(3)
+    block(5, 3) = block(5, 3) - sign*a(1)
+    block(6, 1) = block(6, 1) - sign*a(2)
+    block(6, 2) = block(6, 2) + sign*a(1)
+  end subroutine add_block
+
+  !> Add M y to the wrenches, for displacements y of the links.
+  pure subroutine spread(self, cluster, y, wrenches)
+    class(cluster_balance_type), intent(in) :: self       !< the equations of a position
+    type(joined_cluster_type), intent(in) :: cluster      !< the cluster
+    real(wp), intent(in) :: y(:, :)                       !< (6,nodes) displacements, scaled
+    real(wp), intent(inout), contiguous :: wrenches(:, :) !< (6,pairs) scaled
+    real(wp) :: motion(6)
+    integer :: i, side
+
+    do i = 1, size(cluster%pairs)
+      motion = 0.0_wp
+      do side = 1, 2
+        if (cluster%nodes(side, i) == 0) cycle
+        associate (d => y(:, cluster%nodes(side, i)), sign => 3 - 2*side)
+          motion(1:3) = motion(1:3) + sign*(d(1:3) + cross(d(4:6), self%arm(:, side, i)))
+          motion(4:6) = motion(4:6) + sign*d(4:6)
+        end associate
+      end do
+      if (self%held(i)) motion = motion - dot_product(self%axis(:, i), motion)*self%axis(:, i)
+      wrenches(:, i) = wrenches(:, i) + motion
+    end do
+  end subroutine spread
+
+  !> The wrench about its place that each link receives from its pairs.
+  pure subroutine balance(self, cluster, wrenches, received)
+    class(cluster_balance_type), intent(in) :: self       !< the equations of a position
+    type(joined_cluster_type), intent(in) :: cluster      !< the cluster
+    real(wp), intent(in), contiguous :: wrenches(:, :)    !< (6,pairs) scaled
+    real(wp), intent(out), contiguous :: received(:, :)   !< (6,nodes) scaled
+    integer :: i, side
+
+    received = 0.0_wp
+    do i = 1, size(cluster%pairs)
+      do side = 1, 2
+        if (cluster%nodes(side, i) == 0) cycle
+        associate (sum => received(:, cluster%nodes(side, i)), sign => 3 - 2*side)
+          sum(1:3) = sum(1:3) + sign*wrenches(1:3, i)
+          sum(4:6) = sum(4:6) + sign*(wrenches(4:6, i) + cross(self%arm(:, side, i), wrenches(1:3, i)))
+        end associate
+      end do
+    end do
+  end subroutine balance
+end module mech9_cluster_balance

@@ -1,0 +1,125 @@
+!> The plan of inverse dynamics: everything about pairs, links and clusters that the wrenches of the pairs need and that does not
+!> change with the motion.
+!>
+!> The *wrench* of a pair is the force and the moment that its reference link passes to its moving link, about the origin of the
+!> pair's frame in the moving link. A cluster (mech9_clusters) that closed chains hold together is solved as a whole; links
+!> outside are taken one after the other, from the ends of open chains inwards.
+module mech9_reaction_plan
+  use mech9_kinds, only: wp
+  use mech9_pose, only: inverse, pose_type
+  use mech9_pair, only: pair_type, screw_factors_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_clusters, only: clusters_type, find_clusters
+  use mech9_plan, only: plan_type
+  implicit none
+  private
+  public :: reaction_plan_type, joined_pair_type, joined_cluster_type, make_reaction_plan
+
+  !> One pair, as inverse dynamics sees it.
+  type :: joined_pair_type
+    integer :: step = 0                 !< step of the plan
+    integer :: links(2) = 0             !< moving link, reference link
+    real(wp) :: direction = 1.0_wp      !< 1 if the step leads to the moving link, else -1
+    logical :: dependent = .true.       !< its coordinate is dependent: no drive holds it
+    type(pose_type) :: frame            !< pose of the pair's frame in the moving link; its z is the axis
+  end type joined_pair_type
+
+  !> A cluster of closed chains.
+  type :: joined_cluster_type
+    integer, allocatable :: pairs(:)     !< coordinates of its pairs
+    integer, allocatable :: links(:)     !< its links but the one on which it stands
+    integer, allocatable :: nodes(:, :)  !< (2,pairs) place of moving and reference link among these; 0: the one on which it stands
+  end type joined_cluster_type
+
+  !> The plan of inverse dynamics.
+  type :: reaction_plan_type
+    type(joined_pair_type), allocatable :: pairs(:)        !< (M)
+    type(joined_cluster_type), allocatable :: clusters(:)  !< of closed chains
+    integer, allocatable :: inwards(:)    !< steps that reach a link first, from the ends of chains towards link 1
+    logical, allocatable :: alone(:)      !< (M) the step is in no cluster of closed chains
+    integer, allocatable :: bodies(:)     !< numbers of the bodies that move and have inertia
+    integer, allocatable :: acting(:)     !< numbers of the loads that may move something
+    integer, allocatable :: loaded(:)     !< links on which loads act or depend, without link 1
+  end type reaction_plan_type
+
+contains
+
+  !> Make the plan of inverse dynamics. All blocks of the mechanism must be in `plan`.
+  subroutine make_reaction_plan(mechanism, plan, reactions)
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< its plan
+    type(reaction_plan_type), intent(out) :: reactions    !< the plan of inverse dynamics
+    type(clusters_type) :: clusters
+    logical :: loaded(plan%n_links)
+    integer :: i, s
+
+    allocate (reactions%pairs(plan%n_coordinates))
+    do i = 1, plan%n_coordinates
+      reactions%pairs(i) = joined_pair(mechanism%pairs(i)%pair, plan, i)
+    end do
+    clusters = find_clusters(plan)
+    reactions%alone = .not. clusters%closed
+    reactions%inwards = pack([(s, s=plan%n_coordinates, 1, -1)], &
+                             [(plan%frame_of(plan%steps(s)%link) == s, s=plan%n_coordinates, 1, -1)])
+    call join_clusters(plan, clusters, reactions)
+    reactions%bodies = pack([(i, i=1, size(mechanism%bodies))], mechanism%bodies%link /= 1)
+    reactions%acting = pack([(i, i=1, size(mechanism%loads))], &
+                            [(.not. mechanism%loads(i)%load%is_idle(), i=1, size(mechanism%loads))])
+    loaded = .false.
+    do i = 1, size(reactions%acting)
+      call mechanism%loads(reactions%acting(i))%load%mark_links(loaded)
+    end do
+    reactions%loaded = pack([(i, i=2, plan%n_links)], loaded(2:))
+  end subroutine make_reaction_plan
+
+  !> A pair as inverse dynamics sees it. The frame of a pair without a fixed axis is that of its moving link.
+  function joined_pair(pair, plan, coordinate) result(joined)
+    class(pair_type), intent(in) :: pair    !< the pair
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    integer, intent(in) :: coordinate       !< number of its coordinate
+    type(joined_pair_type) :: joined
+    type(screw_factors_type) :: factors
+    logical :: is_screw
+
+    joined%step = plan%step_of(coordinate)
+    joined%links = [pair%moving, pair%reference]
+    joined%direction = merge(-1.0_wp, 1.0_wp, plan%steps(joined%step)%reversed)
+    joined%dependent = plan%steps(joined%step)%dependent
+    call pair%as_screw(factors, is_screw)
+    if (is_screw) joined%frame = inverse(factors%after)
+  end function joined_pair
+
+  !> The clusters of closed chains, with their links and pairs.
+  subroutine join_clusters(plan, clusters, reactions)
+    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
+    type(clusters_type), intent(in) :: clusters            !< its clusters
+    type(reaction_plan_type), intent(inout) :: reactions   !< with its pairs; gets the clusters
+    integer :: node(plan%n_links), members(plan%n_coordinates), s, i, n, c, last
+
+    allocate (reactions%clusters(count([(clusters%closed(s) .and. clusters%of_step(s) == s, s=1, plan%n_coordinates)])))
+    c = 0
+    do s = 1, plan%n_coordinates
+      if (.not. clusters%closed(s) .or. clusters%of_step(s) /= s) cycle
+      c = c + 1
+      n = 0
+      last = 0
+      node = 0
+      do i = s, plan%n_coordinates
+        if (clusters%of_step(i) /= s) cycle
+        n = n + 1
+        members(n) = i
+        if (plan%frame_of(plan%steps(i)%link) /= i) cycle
+        last = last + 1
+        node(plan%steps(i)%link) = last
+      end do
+      associate (cluster => reactions%clusters(c), steps => members(:n))
+        cluster%pairs = plan%steps(steps)%coordinate
+        cluster%links = plan%steps(pack(steps, plan%frame_of(plan%steps(steps)%link) == steps))%link
+        allocate (cluster%nodes(2, n))
+        do i = 1, n
+          cluster%nodes(:, i) = node(reactions%pairs(cluster%pairs(i))%links)
+        end do
+      end associate
+    end do
+  end subroutine join_clusters
+end module mech9_reaction_plan

@@ -1,0 +1,235 @@
+!> Inverse dynamics: the wrenches of all pairs, and the generalized forces that the independent coordinates need, in a state with
+!> known positions, rates and accelerations.
+!>
+!> A wrench is what the reference link of a pair passes to its moving link: a force, and a moment about the origin of the
+!> pair's frame in the moving link. It includes the loads on the pair's coordinate and the force of a drive. Where closed chains
+!> leave wrenches undetermined, those of least norm over all pairs are given (mech9_cluster_balance).
+module mech9_reactions
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_failure, only: failure_unbalanced
+  use mech9_tolerances, only: rank_tolerance_for, balanced, balanced_singular
+  use mech9_rotation, only: cross
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_motion_view, only: motion_view_type
+  use mech9_force_sum, only: force_sum_type, new_force_sum
+  use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type
+  use mech9_required_wrenches, only: find_required
+  use mech9_joint_geometry, only: joint_geometry_type, new_joint_geometry, find_geometry
+  use mech9_cluster_balance, only: cluster_balance_type, new_cluster_balance
+  use mech9_singular_cluster, only: singular_cluster_type, decompose_cluster
+  implicit none
+  private
+  public :: reactions_type, new_reactions, find_reactions
+
+  !> Wrenches and needed forces in one state, and scratch. Components are along the axes of link 1.
+  type :: reactions_type
+    real(wp), allocatable :: force(:, :)          !< (3,M) of each pair [N]
+    real(wp), allocatable :: moment(:, :)         !< (3,M) of each pair, about the origin of its frame in the moving link [N m]
+    !> (M) generalized force that an independent coordinate needs beside the loads on it: of its drive, or zero where it moves
+    !> freely and the accelerations satisfy the equations of motion; zero for dependent coordinates [N m, N]
+    real(wp), allocatable :: needed(:)
+    type(joint_geometry_type) :: geometry         !< of the position
+    type(motion_view_type) :: view                !< the motion as loads read it
+    type(force_sum_type) :: sum                   !< of the loads
+    type(cluster_balance_type), allocatable :: balances(:)   !< of the clusters
+    real(wp), allocatable :: link_force(:, :)     !< (3,N) scratch: what links require, with open chains that hang on them [N]
+    real(wp), allocatable :: link_moment(:, :)    !< (3,N) scratch: about the links' places [N m]
+    real(wp), allocatable :: total_force(:, :)    !< (3,N) scratch: the same with all links beyond [N]
+    real(wp), allocatable :: total_moment(:, :)   !< (3,N) scratch [N m]
+    real(wp), allocatable :: wrenches(:, :)       !< (6,M) scratch: scaled, of the pairs of one cluster
+    real(wp), allocatable :: changes(:, :)        !< (6,M) scratch
+    real(wp), allocatable :: required(:, :)       !< (6,N) scratch: scaled, of the links of one cluster
+  end type reactions_type
+
+contains
+
+  !> Room for the wrenches of a mechanism; nothing is allocated afterwards, but in singular positions.
+  pure function new_reactions(plan, reactions) result(self)
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(reaction_plan_type), intent(in) :: reactions   !< its plan of inverse dynamics
+    type(reactions_type) :: self
+    integer :: c
+
+    associate (m => plan%n_coordinates, n => plan%n_links)
+      allocate (self%force(3, m), self%moment(3, m), self%needed(m), source=0.0_wp)
+      allocate (self%wrenches(6, m), self%changes(6, m), self%required(6, n), source=0.0_wp)
+      allocate (self%link_force(3, n), self%link_moment(3, n), self%total_force(3, n), self%total_moment(3, n), source=0.0_wp)
+      allocate (self%view%links(n))
+      allocate (self%view%q(m), self%view%dq(m), source=0.0_wp)
+      self%sum = new_force_sum(n, m)
+    end associate
+    self%geometry = new_joint_geometry(plan)
+    allocate (self%balances(size(reactions%clusters)))
+    do c = 1, size(reactions%clusters)
+      self%balances(c) = new_cluster_balance(reactions, reactions%clusters(c))
+    end do
+  end function new_reactions
+
+  !> The wrenches of all pairs, and the forces that independent coordinates need, in a state whose frames have their
+  !> accelerations. Fails where a load fails, and with exit_singular in singular positions in which the wrenches are infinite.
+  subroutine find_reactions(mechanism, plan, reactions, state, self, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< its plan, with all blocks
+    type(reaction_plan_type), intent(in) :: reactions   !< its plan of inverse dynamics
+    type(state_type), intent(in) :: state               !< positions, rates and accelerations of coordinates and frames
+    type(reactions_type), intent(inout) :: self         !< gets the wrenches
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    integer :: c
+
+    call find_geometry(plan, reactions, state, self%geometry)
+    call find_required(mechanism, plan, reactions, state, self%geometry%place, self%view, self%sum, self%link_force, &
+                       self%link_moment, err)
+    if (allocated(err)) return
+    call carry_inwards(plan, reactions, self)
+    do c = 1, size(reactions%clusters)
+      call solve_cluster(plan, reactions, reactions%clusters(c), self%balances(c), self, err)
+      if (allocated(err)) then
+        err%failure%t = state%t
+        return
+      end if
+    end do
+    call find_needed(plan, reactions, self)
+  end subroutine find_reactions
+
+  !> Take the links from the ends of chains inwards: each passes what it and all beyond it require on to the link on which it
+  !> stands. This is the wrench of a pair outside closed chains.
+  pure subroutine carry_inwards(plan, reactions, self)
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(reaction_plan_type), intent(in) :: reactions   !< the plan of inverse dynamics
+    type(reactions_type), intent(inout) :: self         !< with what each link requires; gets wrenches of open chains
+    real(wp) :: moment(3), arm(3)
+    integer :: i, k, s, link, onto
+
+    self%total_force = self%link_force
+    self%total_moment = self%link_moment
+    do i = 1, size(reactions%inwards)
+      s = reactions%inwards(i)
+      k = plan%steps(s)%coordinate
+      link = plan%steps(s)%link
+      onto = 1
+      if (plan%steps(s)%parent > 0) onto = plan%steps(plan%steps(s)%parent)%link
+      associate (place => self%geometry%place, force => self%total_force(:, link))
+        arm = place(:, link) - place(:, onto)
+        moment = self%total_moment(:, link) + cross(arm, force)
+        self%total_force(:, onto) = self%total_force(:, onto) + force
+        self%total_moment(:, onto) = self%total_moment(:, onto) + moment
+        if (.not. reactions%alone(s)) cycle
+        self%link_force(:, onto) = self%link_force(:, onto) + force
+        self%link_moment(:, onto) = self%link_moment(:, onto) + moment
+        arm = place(:, link) - self%geometry%point(:, k)
+        self%force(:, k) = reactions%pairs(k)%direction*force
+        self%moment(:, k) = reactions%pairs(k)%direction*(self%total_moment(:, link) + cross(arm, force))
+      end associate
+    end do
+  end subroutine carry_inwards
+
+  !> The wrenches of the pairs of a cluster.
+  subroutine solve_cluster(plan, reactions, cluster, balance, self, err)
+    type(plan_type), intent(in) :: plan                     !< the plan of the mechanism
+    type(reaction_plan_type), intent(in) :: reactions       !< the plan of inverse dynamics
+    type(joined_cluster_type), intent(in) :: cluster        !< the cluster
+    type(cluster_balance_type), intent(inout) :: balance    !< its equations
+    type(reactions_type), intent(inout) :: self             !< with what its links require; gets the wrenches
+    type(error_type), allocatable, intent(out) :: err       !< allocated if the wrenches are infinite
+    type(singular_cluster_type) :: singular
+    real(wp) :: largest
+    integer :: i, k, n, m
+    logical :: regular
+
+    n = size(cluster%links)
+    m = size(cluster%pairs)
+    call balance%set_position(cluster, self%geometry, reactions, plan%length, regular)
+    do i = 1, n
+      self%required(1:3, i) = self%link_force(:, cluster%links(i))
+      self%required(4:6, i) = self%link_moment(:, cluster%links(i))/plan%length
+    end do
+    call hold_loads(cluster, balance, self)
+    associate (wrenches => self%wrenches(:, :m), required => self%required(:, :n))
+      if (regular) call solve_regular(cluster, balance, required, wrenches, regular)
+      if (.not. regular) then
+        call hold_loads(cluster, balance, self)
+        call decompose_cluster(cluster, balance, rank_tolerance_for(plan%data_tolerance), singular)
+        call balance%balance(cluster, wrenches, balance%residual)
+        balance%residual = required - balance%residual
+        call singular%solve(balance%residual, self%changes(:, :m))
+        wrenches = wrenches + self%changes(:, :m)
+        call balance%balance(cluster, wrenches, balance%residual)
+        largest = max(maxval(abs(wrenches)), maxval(abs(required)))
+        if (maxval(abs(required - balance%residual)) > balanced_singular*largest) then
+          call raise(err, exit_singular, failure_unbalanced)
+          err%failure%coordinates = cluster%pairs
+          return
+        end if
+      end if
+      do i = 1, m
+        k = cluster%pairs(i)
+        self%force(:, k) = wrenches(1:3, i)
+        self%moment(:, k) = wrenches(4:6, i)*plan%length
+      end do
+    end associate
+  end subroutine solve_cluster
+
+  !> Begin with the wrenches that do the work of the loads on the dependent coordinates.
+  pure subroutine hold_loads(cluster, balance, self)
+    type(joined_cluster_type), intent(in) :: cluster       !< the cluster
+    type(cluster_balance_type), intent(in) :: balance      !< its equations
+    type(reactions_type), intent(inout) :: self            !< with the loads; gets the wrenches of the cluster
+    integer :: i, k
+
+    do i = 1, size(cluster%pairs)
+      k = cluster%pairs(i)
+      self%wrenches(:, i) = 0.0_wp
+      if (.not. (self%sum%any_generalized .and. balance%held(i))) cycle
+      if (self%geometry%length(k) > 0.0_wp) &
+        self%wrenches(:, i) = (self%sum%generalized(k)/self%geometry%length(k))*self%geometry%axis(:, k)
+    end do
+  end subroutine hold_loads
+
+  !> Complete the wrenches in a regular position. `converged` is false where corrections do not lead to balance.
+  pure subroutine solve_regular(cluster, balance, required, wrenches, converged)
+    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
+    type(cluster_balance_type), intent(inout) :: balance     !< its equations, factorized
+    real(wp), intent(in) :: required(:, :)                   !< (6,nodes) scaled
+    real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled: of the loads on dependent coordinates; complete
+    logical, intent(out) :: converged                        !< the links are in balance
+    integer, parameter :: most_corrections = 12
+    real(wp) :: error, before, largest
+    integer :: i
+
+    before = huge(before)
+    do i = 0, most_corrections
+      call balance%balance(cluster, wrenches, balance%residual)
+      balance%y = required - balance%residual
+      error = maxval(abs(balance%y))
+      largest = max(maxval(abs(wrenches)), maxval(abs(required)))
+      converged = error <= 32.0_wp*epsilon(error)*largest
+      ! the balance does not improve any more when it is round-off
+      if (converged .or. (i > 1 .and. .not. error < 0.5_wp*before)) exit
+      before = error
+      call balance%factors%solve(balance%y)
+      call balance%spread(cluster, balance%y, wrenches)
+    end do
+    converged = error <= balanced*largest
+  end subroutine solve_regular
+
+  !> The generalized forces that independent coordinates need beside the loads on them.
+  pure subroutine find_needed(plan, reactions, self)
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(reaction_plan_type), intent(in) :: reactions   !< the plan of inverse dynamics
+    type(reactions_type), intent(inout) :: self         !< with the wrenches; gets the forces
+    integer :: k
+
+    self%needed = 0.0_wp
+    do k = 1, plan%n_coordinates
+      if (reactions%pairs(k)%dependent) cycle
+      associate (axis => self%geometry%axis(:, k))
+        self%needed(k) = self%geometry%length(k)*(dot_product(axis(1:3), self%force(:, k)) &
+                                                  + dot_product(axis(4:6), self%moment(:, k))/plan%length)
+      end associate
+      if (self%sum%any_generalized) self%needed(k) = self%needed(k) - self%sum%generalized(k)
+    end do
+  end subroutine find_needed
+end module mech9_reactions

@@ -1,0 +1,75 @@
+!> The wrenches of a cluster in or beside a singular position, from the singular values of its equations of equilibrium.
+!>
+!> In a singular position the links can move while all independent coordinates stand still. The pairs cannot balance what
+!> the links require along such a motion, unless that is zero.
+module mech9_singular_cluster
+  use mech9_kinds, only: wp
+  use mech9_lapack, only: dgesvd
+  use mech9_reaction_plan, only: joined_cluster_type
+  use mech9_cluster_balance, only: cluster_balance_type
+  implicit none
+  private
+  public :: singular_cluster_type, decompose_cluster
+
+  !> Singular values and vectors of A, the equations of equilibrium.
+  type :: singular_cluster_type
+    integer :: rank = 0                      !< singular values that count
+    real(wp), allocatable :: values(:)       !< (6 nodes) not increasing
+    real(wp), allocatable :: forces(:, :)    !< (6 nodes,6 nodes) left vectors, by columns
+    real(wp), allocatable :: wrenches(:, :)  !< (6 nodes,6 pairs) right vectors, by rows
+  contains
+    procedure :: solve
+    procedure :: remove_determined
+  end type singular_cluster_type
+
+contains
+
+  !> Decompose the equations of a cluster. Singular values below a part of the largest count as zero.
+  subroutine decompose_cluster(cluster, balance, tolerance, singular)
+    type(joined_cluster_type), intent(in) :: cluster        !< the cluster
+    type(cluster_balance_type), intent(in) :: balance       !< its equations in a position
+    real(wp), intent(in) :: tolerance                       !< part of the largest singular value
+    type(singular_cluster_type), intent(out) :: singular    !< its singular values and vectors
+    real(wp), allocatable :: a(:, :), work(:), one(:, :), motion(:, :)
+    integer :: n, m, j, info
+
+    n = 6*size(cluster%links)
+    m = 6*size(cluster%pairs)
+    allocate (a(n, m), one(6, size(cluster%links)), motion(6, size(cluster%pairs)), work(5*(n + m)))
+    do j = 1, n
+      one = 0.0_wp
+      one(1 + mod(j - 1, 6), 1 + (j - 1)/6) = 1.0_wp
+      motion = 0.0_wp
+      call balance%spread(cluster, one, motion)
+      a(j, :) = reshape(motion, [m])
+    end do
+    allocate (singular%values(n), singular%forces(n, n), singular%wrenches(n, m))
+    call dgesvd('S', 'S', n, m, a, n, singular%values, singular%forces, n, singular%wrenches, n, work, size(work), info)
+    singular%rank = count(singular%values > tolerance*singular%values(1))
+    if (info /= 0) singular%rank = 0
+  end subroutine decompose_cluster
+
+  !> The wrenches of least norm that balance the links, as far as they can.
+  pure subroutine solve(self, required, wrenches)
+    class(singular_cluster_type), intent(in) :: self        !< singular values and vectors
+    real(wp), intent(in) :: required(:, :)                  !< (6,nodes) scaled
+    real(wp), intent(out), contiguous :: wrenches(:, :)     !< (6,pairs) scaled
+    real(wp) :: parts(self%rank)
+    integer :: i
+
+    do i = 1, self%rank
+      parts(i) = dot_product(self%forces(:, i), reshape(required, [size(required)]))/self%values(i)
+    end do
+    wrenches = reshape(matmul(parts, self%wrenches(:self%rank, :)), shape(wrenches))
+  end subroutine solve
+
+  !> Remove from wrenches the part that the balance of the links determines.
+  pure subroutine remove_determined(self, wrenches)
+    class(singular_cluster_type), intent(in) :: self        !< singular values and vectors
+    real(wp), intent(inout), contiguous :: wrenches(:, :)   !< (6,pairs) scaled
+    real(wp) :: parts(self%rank)
+
+    parts = matmul(self%wrenches(:self%rank, :), reshape(wrenches, [size(wrenches)]))
+    wrenches = wrenches - reshape(matmul(parts, self%wrenches(:self%rank, :)), shape(wrenches))
+  end subroutine remove_determined
+end module mech9_singular_cluster

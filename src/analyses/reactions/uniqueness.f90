@@ -1,0 +1,133 @@
+!> Which components of the wrenches equilibrium determines.
+!>
+!> A component is unique exactly where it is zero in all wrenches that balance nothing, do no work on any coordinate and need no
+!> drive: in the null space of the equations of equilibrium. A random wrench of this space shows it, since its components are
+!> zero only where those of the whole space are. Three of them leave no chance to an accident.
+module mech9_uniqueness
+  use mech9_kinds, only: wp
+  use mech9_tolerances, only: rank_tolerance_for
+  use mech9_random, only: random_type
+  use mech9_rotation, only: turn_back, combine
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_frame_motion, only: link_motion, place_all, spread_all_velocities
+  use mech9_generic_position, only: generic_position_type, find_generic_position
+  use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type
+  use mech9_joint_geometry, only: joint_geometry_type, new_joint_geometry, find_geometry
+  use mech9_cluster_balance, only: cluster_balance_type, new_cluster_balance
+  use mech9_singular_cluster, only: singular_cluster_type, decompose_cluster
+  implicit none
+  private
+  public :: find_unique
+
+  !> Number of random wrenches.
+  integer, parameter :: samples = 3
+
+contains
+
+  !> Which components fx, fy, fz, mx, my, mz of each pair's wrench are unique, in the axes of the pair's frame in its moving link:
+  !> in a generic position, or at the start where none is found.
+  subroutine find_unique(plan, reactions, start, unique)
+    type(plan_type), intent(in) :: plan                  !< the plan of the mechanism, with all blocks
+    type(reaction_plan_type), intent(in) :: reactions    !< its plan of inverse dynamics
+    type(state_type), intent(in) :: start                !< an assembled position
+    logical, allocatable, intent(out) :: unique(:, :)    !< (6,M)
+    type(generic_position_type) :: generic
+    type(joint_geometry_type) :: geometry
+    type(state_type) :: state
+    integer :: c
+    logical :: found
+
+    allocate (unique(6, plan%n_coordinates), source=.true.)
+    if (size(reactions%clusters) == 0) return
+    call find_generic_position(plan, plan%blocks, start, generic, found)
+    state = start
+    if (found) state = generic%state
+    geometry = new_joint_geometry(plan)
+    call find_geometry(plan, reactions, state, geometry)
+    do c = 1, size(reactions%clusters)
+      call judge_cluster(plan, reactions, reactions%clusters(c), state, geometry, unique)
+    end do
+  end subroutine find_unique
+
+  !> The unique components of the pairs of one cluster.
+  subroutine judge_cluster(plan, reactions, cluster, state, geometry, unique)
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(reaction_plan_type), intent(in) :: reactions     !< the plan of inverse dynamics
+    type(joined_cluster_type), intent(in) :: cluster      !< the cluster
+    type(state_type), intent(in) :: state                 !< the position
+    type(joint_geometry_type), intent(in) :: geometry     !< of the position
+    logical, intent(inout) :: unique(:, :)                !< (6,M) becomes false where a component is not unique
+    type(cluster_balance_type) :: balance
+    type(singular_cluster_type) :: singular
+    type(random_type) :: random
+    real(wp) :: wrenches(6, size(cluster%pairs)), tolerance
+    integer :: sample, i
+    logical :: regular
+
+    tolerance = rank_tolerance_for(plan%data_tolerance)
+    balance = new_cluster_balance(reactions, cluster)
+    call balance%set_position(cluster, geometry, reactions, plan%length, regular)
+    if (.not. regular) call decompose_cluster(cluster, balance, tolerance, singular)
+    do sample = 1, samples
+      call draw(balance, random, wrenches)
+      if (regular) then
+        call remove_determined(cluster, balance, wrenches)
+      else
+        call singular%remove_determined(wrenches)
+      end if
+      do i = 1, size(cluster%pairs)
+        call judge_pair(plan, reactions, cluster%pairs(i), state, wrenches(:, i), tolerance, unique(:, cluster%pairs(i)))
+      end do
+    end do
+  end subroutine judge_cluster
+
+  !> Random wrenches that do no work on dependent coordinates.
+  subroutine draw(balance, random, wrenches)
+    type(cluster_balance_type), intent(in) :: balance   !< the equations of the cluster
+    type(random_type), intent(inout) :: random          !< source of the numbers
+    real(wp), intent(out) :: wrenches(:, :)             !< (6,pairs) scaled
+    integer :: i, j
+
+    do i = 1, size(wrenches, 2)
+      do j = 1, 6
+        wrenches(j, i) = random%symmetric()
+      end do
+      if (balance%held(i)) wrenches(:, i) = wrenches(:, i) - dot_product(balance%axis(:, i), wrenches(:, i))*balance%axis(:, i)
+    end do
+  end subroutine draw
+
+  !> Remove from wrenches the part that the balance of the links determines.
+  pure subroutine remove_determined(cluster, balance, wrenches)
+    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
+    type(cluster_balance_type), intent(inout) :: balance     !< its equations, factorized
+    real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled
+    !> Each removal leaves a part of the round-off of the one before it.
+    integer, parameter :: removals = 4
+    integer :: i
+
+    do i = 1, removals
+      call balance%balance(cluster, wrenches, balance%residual)
+      balance%y = -balance%residual
+      call balance%factors%solve(balance%y)
+      call balance%spread(cluster, balance%y, wrenches)
+    end do
+  end subroutine remove_determined
+
+  !> Mark the components of a pair's wrench that are not zero, in the axes of its frame in the moving link.
+  pure subroutine judge_pair(plan, reactions, k, state, wrench, tolerance, unique)
+    type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
+    type(reaction_plan_type), intent(in) :: reactions    !< the plan of inverse dynamics
+    integer, intent(in) :: k                             !< coordinate of the pair
+    type(state_type), intent(in) :: state                !< the position
+    real(wp), intent(in) :: wrench(6)                    !< axes of link 1, scaled
+    real(wp), intent(in) :: tolerance                    !< smaller components are zero
+    logical, intent(inout) :: unique(6)                  !< becomes false where a component is not zero
+    real(wp) :: r(3, 3), p(3), omega(3), v(3)
+
+    call link_motion(plan, state, reactions%pairs(k)%links(1), r, p, omega, v)
+    r = combine(r, reactions%pairs(k)%frame%r)
+    unique(1:3) = unique(1:3) .and. abs(turn_back(r, wrench(1:3))) <= tolerance
+    unique(4:6) = unique(4:6) .and. abs(turn_back(r, wrench(4:6))) <= tolerance
+  end subroutine judge_pair
+end module mech9_uniqueness

@@ -1,0 +1,75 @@
+!> The forces that a run records: of drives and in pairs, from the present state of its simulation.
+module mech9_force_record
+  use mech9_error, only: error_type
+  use mech9_masks, only: numbers_of
+  use mech9_partition, only: driven_coordinate
+  use mech9_model, only: model_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_simulation, only: simulation_type
+  use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
+  use mech9_reactions, only: reactions_type, new_reactions, find_reactions
+  use mech9_uniqueness, only: find_unique
+  use mech9_columns, only: columns_type
+  implicit none
+  private
+  public :: force_record_type
+
+  type :: force_record_type
+    logical :: wanted = .false.              !< forces are recorded
+    logical, allocatable :: unique(:, :)     !< (6,M) components of wrenches that equilibrium determines, see mech9_uniqueness
+    type(reactions_type) :: reactions        !< of the present state
+    type(reaction_plan_type), private :: plan
+    integer, private :: events = -1          !< changes of coordinates of the simulation until the plan was made; -1: there is none
+  contains
+    procedure :: begin
+    procedure :: judge
+    procedure :: find
+  end type force_record_type
+
+contains
+
+  !> Add the columns of the forces that the request names.
+  subroutine begin(self, model, columns)
+    class(force_record_type), intent(out) :: self    !< the record
+    type(model_type), intent(in) :: model            !< the model
+    type(columns_type), intent(inout) :: columns     !< those of coordinates and points; gets those of forces
+    logical :: driven(size(model%mechanism%pairs))
+
+    associate (output => model%request%output)
+      self%wanted = output%with_forces()
+      if (.not. self%wanted) return
+      driven = output%drive_forces .and. model%problem%partition%kind == driven_coordinate
+      call columns%append_forces(model%mechanism, numbers_of(driven), numbers_of(output%reacting(size(driven))))
+    end associate
+  end subroutine begin
+
+  !> Find which components of the wrenches are unique, if any are recorded.
+  subroutine judge(self, model, plan, start)
+    class(force_record_type), intent(inout) :: self   !< the record; gets `unique`
+    type(model_type), intent(in) :: model             !< the model
+    type(plan_type), intent(in) :: plan               !< its plan, with all blocks
+    type(state_type), intent(in) :: start             !< its assembled position
+    type(reaction_plan_type) :: reactions
+
+    if (.not. model%request%output%reactions) return
+    call make_reaction_plan(model%mechanism, plan, reactions)
+    call find_unique(plan, reactions, start, self%unique)
+  end subroutine judge
+
+  !> The forces in the present state of a simulation. The plan of inverse dynamics is made anew after a change of coordinates.
+  subroutine find(self, simulation, plan, state, err)
+    class(force_record_type), intent(inout) :: self     !< the record; gets the forces
+    class(simulation_type), intent(in) :: simulation    !< the motion
+    type(plan_type), intent(in) :: plan                 !< its present plan
+    type(state_type), intent(in) :: state               !< its present state
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    if (self%events /= size(simulation%events)) then
+      call make_reaction_plan(simulation%model%mechanism, plan, self%plan)
+      self%reactions = new_reactions(plan, self%plan)
+      self%events = size(simulation%events)
+    end if
+    call find_reactions(simulation%model%mechanism, plan, self%plan, state, self%reactions, err)
+  end subroutine find
+end module mech9_force_record
