@@ -238,6 +238,11 @@ def driven_cases():
         ('dead_point', four_bar(ROCKER, drive(1, '40, 100'), end=3), (), SINGULAR,
          [f'the motion cannot go on beyond t = {digits((limit - 40) / 100)}',
           f' s: {chain} reaches a dead point at q1 = {digits(limit)}', ' and cannot follow farther']),
+        # flat after half a second: no finite force turns the second crank, on which the coupler leans
+        ('unbalanced', four_bar(FLAT, drive(1, '-30, 60'), turned(-30), BODY.replace('link=2', 'link=3'), '&gravity acceleration=0,-9.81,0 /\n',
+                                '&output reactions=.true. /\n'), (), SINGULAR,
+         ['the closed chains of coordinates 1, 2, 3, 4 are in a singular position at t = 0.5 s, in which no finite forces in their '
+          'pairs balance the links; choose times that leave it out, or record neither reactions nor drive_forces']),
         # it comes to its dead point with a rate and an acceleration of 0
         ('lost_branch', four_bar(ROCKER, drive(1, f'{limit - 60!r}, 180, -180, 60'), end=2), (), SINGULAR,
          ['the motion cannot go on beyond t = 0.999', f'{chain} reaches a singular position at q1 = 81.7867',

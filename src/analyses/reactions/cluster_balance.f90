@@ -24,12 +24,10 @@ module mech9_cluster_balance
     logical, allocatable :: held(:)               !< (pairs) only the part across the axis is unknown
     real(wp), allocatable :: axis(:, :)           !< (6,pairs) of length 1
     real(wp), allocatable :: arm(:, :, :)         !< (3,2,pairs) from the places of moving and reference link, over the size
-    real(wp), allocatable :: y(:, :)              !< (6,nodes) scratch
-    real(wp), allocatable :: residual(:, :)       !< (6,nodes) scratch
   contains
     procedure :: set_position
     procedure :: spread
-    procedure :: balance
+    procedure :: find_lacking
   end type cluster_balance_type
 
 contains
@@ -46,8 +44,7 @@ contains
     allocate (self%block_of(n), source=0)
     allocate (self%turned(n), source=.false.)
     self%held = reactions%pairs(cluster%pairs)%dependent
-    allocate (self%axis(6, n), self%arm(3, 2, n), self%y(6, size(cluster%links)), self%residual(6, size(cluster%links)), &
-              source=0.0_wp)
+    allocate (self%axis(6, n), self%arm(3, 2, n), source=0.0_wp)
     do i = 1, n
       associate (a => cluster%nodes(1, i), b => cluster%nodes(2, i))
         if (min(a, b) == 0 .or. a == b) cycle
@@ -171,23 +168,24 @@ contains
     end do
   end subroutine spread
 
-  !> The wrench about its place that each link receives from its pairs.
-  pure subroutine balance(self, cluster, wrenches, received)
+  !> The wrench about its place that each link requires beside those that it receives from its pairs.
+  pure subroutine find_lacking(self, cluster, required, wrenches, lacking)
     class(cluster_balance_type), intent(in) :: self       !< the equations of a position
     type(joined_cluster_type), intent(in) :: cluster      !< the cluster
+    real(wp), intent(in), contiguous :: required(:, :)    !< (6,nodes) scaled
     real(wp), intent(in), contiguous :: wrenches(:, :)    !< (6,pairs) scaled
-    real(wp), intent(out), contiguous :: received(:, :)   !< (6,nodes) scaled
+    real(wp), intent(out), contiguous :: lacking(:, :)    !< (6,nodes) scaled
     integer :: i, side
 
-    received = 0.0_wp
+    lacking = required
     do i = 1, size(cluster%pairs)
       do side = 1, 2
         if (cluster%nodes(side, i) == 0) cycle
-        associate (sum => received(:, cluster%nodes(side, i)), sign => 3 - 2*side)
+        associate (sum => lacking(:, cluster%nodes(side, i)), sign => 2*side - 3)
           sum(1:3) = sum(1:3) + sign*wrenches(1:3, i)
           sum(4:6) = sum(4:6) + sign*(wrenches(4:6, i) + cross(self%arm(:, side, i), wrenches(1:3, i)))
         end associate
       end do
     end do
-  end subroutine balance
+  end subroutine find_lacking
 end module mech9_cluster_balance

@@ -37,6 +37,7 @@ module mech9_reaction_plan
     type(joined_cluster_type), allocatable :: clusters(:)  !< of closed chains
     integer, allocatable :: inwards(:)    !< steps that reach a link first, from the ends of chains towards link 1
     logical, allocatable :: alone(:)      !< (M) the step is in no cluster of closed chains
+    logical, allocatable :: begins(:)     !< (M) the step leads from the link on which its cluster stands
     integer, allocatable :: bodies(:)     !< numbers of the bodies that move and have inertia
     integer, allocatable :: acting(:)     !< numbers of the loads that may move something
     integer, allocatable :: loaded(:)     !< links on which loads act or depend, without link 1
@@ -59,6 +60,7 @@ contains
     end do
     clusters = find_clusters(plan)
     reactions%alone = .not. clusters%closed
+    reactions%begins = plan%steps%parent == clusters%base
     reactions%inwards = pack([(s, s=plan%n_coordinates, 1, -1)], &
                              [(plan%frame_of(plan%steps(s)%link) == s, s=plan%n_coordinates, 1, -1)])
     call join_clusters(plan, clusters, reactions)

@@ -35,13 +35,14 @@ module mech9_reactions
     type(motion_view_type) :: view                !< the motion as loads read it
     type(force_sum_type) :: sum                   !< of the loads
     type(cluster_balance_type), allocatable :: balances(:)   !< of the clusters
-    real(wp), allocatable :: link_force(:, :)     !< (3,N) scratch: what links require, with open chains that hang on them [N]
+    real(wp), allocatable :: link_force(:, :)     !< (3,N) scratch: what links require, with clusters that stand on them [N]
     real(wp), allocatable :: link_moment(:, :)    !< (3,N) scratch: about the links' places [N m]
     real(wp), allocatable :: total_force(:, :)    !< (3,N) scratch: the same with all links beyond [N]
     real(wp), allocatable :: total_moment(:, :)   !< (3,N) scratch [N m]
     real(wp), allocatable :: wrenches(:, :)       !< (6,M) scratch: scaled, of the pairs of one cluster
     real(wp), allocatable :: changes(:, :)        !< (6,M) scratch
     real(wp), allocatable :: required(:, :)       !< (6,N) scratch: scaled, of the links of one cluster
+    real(wp), allocatable :: lacking(:, :)        !< (6,N) scratch: scaled, what they do not receive
   end type reactions_type
 
 contains
@@ -55,7 +56,7 @@ contains
 
     associate (m => plan%n_coordinates, n => plan%n_links)
       allocate (self%force(3, m), self%moment(3, m), self%needed(m), source=0.0_wp)
-      allocate (self%wrenches(6, m), self%changes(6, m), self%required(6, n), source=0.0_wp)
+      allocate (self%wrenches(6, m), self%changes(6, m), self%required(6, n), self%lacking(6, n), source=0.0_wp)
       allocate (self%link_force(3, n), self%link_moment(3, n), self%total_force(3, n), self%total_moment(3, n), source=0.0_wp)
       allocate (self%view%links(n))
       allocate (self%view%q(m), self%view%dq(m), source=0.0_wp)
@@ -116,12 +117,14 @@ contains
         moment = self%total_moment(:, link) + cross(arm, force)
         self%total_force(:, onto) = self%total_force(:, onto) + force
         self%total_moment(:, onto) = self%total_moment(:, onto) + moment
-        if (.not. reactions%alone(s)) cycle
+        if (.not. reactions%begins(s)) cycle
         self%link_force(:, onto) = self%link_force(:, onto) + force
         self%link_moment(:, onto) = self%link_moment(:, onto) + moment
+        if (.not. reactions%alone(s)) cycle
         arm = place(:, link) - self%geometry%point(:, k)
         self%force(:, k) = reactions%pairs(k)%direction*force
-        self%moment(:, k) = reactions%pairs(k)%direction*(self%total_moment(:, link) + cross(arm, force))
+        moment = self%total_moment(:, link) + cross(arm, force)
+        self%moment(:, k) = reactions%pairs(k)%direction*moment
       end associate
     end do
   end subroutine carry_inwards
@@ -147,20 +150,19 @@ contains
       self%required(4:6, i) = self%link_moment(:, cluster%links(i))/plan%length
     end do
     call hold_loads(cluster, balance, self)
-    associate (wrenches => self%wrenches(:, :m), required => self%required(:, :n))
-      if (regular) call solve_regular(cluster, balance, required, wrenches, regular)
+    associate (wrenches => self%wrenches(:, :m), required => self%required(:, :n), lacking => self%lacking(:, :n))
+      if (regular) call solve_regular(cluster, balance, required, wrenches, lacking, regular)
       if (.not. regular) then
         call hold_loads(cluster, balance, self)
         call decompose_cluster(cluster, balance, rank_tolerance_for(plan%data_tolerance), singular)
-        call balance%balance(cluster, wrenches, balance%residual)
-        balance%residual = required - balance%residual
-        call singular%solve(balance%residual, self%changes(:, :m))
+        call balance%find_lacking(cluster, required, wrenches, lacking)
+        call singular%solve(lacking, self%changes(:, :m))
         wrenches = wrenches + self%changes(:, :m)
-        call balance%balance(cluster, wrenches, balance%residual)
+        call balance%find_lacking(cluster, required, wrenches, lacking)
         largest = max(maxval(abs(wrenches)), maxval(abs(required)))
-        if (maxval(abs(required - balance%residual)) > balanced_singular*largest) then
+        if (maxval(abs(lacking)) > balanced_singular*largest) then
           call raise(err, exit_singular, failure_unbalanced)
-          err%failure%coordinates = cluster%pairs
+          err%failure%coordinates = pack([(k, k=1, plan%n_coordinates)], [(any(cluster%pairs == k), k=1, plan%n_coordinates)])
           return
         end if
       end if
@@ -189,11 +191,12 @@ contains
   end subroutine hold_loads
 
   !> Complete the wrenches in a regular position. `converged` is false where corrections do not lead to balance.
-  pure subroutine solve_regular(cluster, balance, required, wrenches, converged)
+  pure subroutine solve_regular(cluster, balance, required, wrenches, lacking, converged)
     type(joined_cluster_type), intent(in) :: cluster         !< the cluster
     type(cluster_balance_type), intent(inout) :: balance     !< its equations, factorized
-    real(wp), intent(in) :: required(:, :)                   !< (6,nodes) scaled
+    real(wp), intent(in), contiguous :: required(:, :)       !< (6,nodes) scaled
     real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled: of the loads on dependent coordinates; complete
+    real(wp), intent(inout), contiguous :: lacking(:, :)     !< (6,nodes) scratch
     logical, intent(out) :: converged                        !< the links are in balance
     integer, parameter :: most_corrections = 12
     real(wp) :: error, before, largest
@@ -201,16 +204,15 @@ contains
 
     before = huge(before)
     do i = 0, most_corrections
-      call balance%balance(cluster, wrenches, balance%residual)
-      balance%y = required - balance%residual
-      error = maxval(abs(balance%y))
+      call balance%find_lacking(cluster, required, wrenches, lacking)
+      error = maxval(abs(lacking))
       largest = max(maxval(abs(wrenches)), maxval(abs(required)))
       converged = error <= 32.0_wp*epsilon(error)*largest
       ! the balance does not improve any more when it is round-off
       if (converged .or. (i > 1 .and. .not. error < 0.5_wp*before)) exit
       before = error
-      call balance%factors%solve(balance%y)
-      call balance%spread(cluster, balance%y, wrenches)
+      call balance%factors%solve(lacking)
+      call balance%spread(cluster, lacking, wrenches)
     end do
     converged = error <= balanced*largest
   end subroutine solve_regular

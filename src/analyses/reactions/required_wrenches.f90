@@ -23,13 +23,13 @@ contains
     type(plan_type), intent(in) :: plan                   !< its plan
     type(reaction_plan_type), intent(in) :: reactions     !< the plan of inverse dynamics
     type(state_type), intent(in) :: state                 !< with the accelerations of the frames
-    real(wp), intent(in) :: places(:, :)                  !< (3,N) from the origin of frame 0 [m]
+    real(wp), intent(in), contiguous :: places(:, :)      !< (3,N) from the origin of frame 0 [m]
     type(motion_view_type), intent(inout) :: view         !< scratch: the motion as loads read it
     type(force_sum_type), intent(inout) :: sum            !< gets the sums of the loads
     real(wp), intent(out), contiguous :: force(:, :)      !< (3,N) axes of link 1 [N]
     real(wp), intent(out), contiguous :: moment(:, :)     !< (3,N) about `places`, axes of link 1 [N m]
     type(error_type), allocatable, intent(out) :: err     !< allocated if a load failed
-    real(wp) :: arm(3)
+    real(wp) :: arm(3), turning(3)
     integer :: i, k
 
     force = 0.0_wp
@@ -45,8 +45,9 @@ contains
       k = reactions%loaded(i)
       ! the sums are about the origins of the links' own systems
       arm = view%links(k)%p - plan%origin - places(:, k)
+      turning = sum%torque(:, k) + cross(arm, sum%force(:, k))
       force(:, k) = force(:, k) - sum%force(:, k)
-      moment(:, k) = moment(:, k) - sum%torque(:, k) - cross(arm, sum%force(:, k))
+      moment(:, k) = moment(:, k) - turning
     end do
   end subroutine find_required
 

@@ -1,4 +1,4 @@
-!> Which components of the wrenches equilibrium determines.
+!> The components of wrenches that equilibrium determines.
 !>
 !> A component is unique exactly where it is zero in all wrenches that balance nothing, do no work on any coordinate and need no
 !> drive: in the null space of the equations of equilibrium. A random wrench of this space shows it, since its components are
@@ -10,7 +10,7 @@ module mech9_uniqueness
   use mech9_rotation, only: turn_back, combine
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_frame_motion, only: link_motion, place_all, spread_all_velocities
+  use mech9_frame_motion, only: link_motion
   use mech9_generic_position, only: generic_position_type, find_generic_position
   use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type
   use mech9_joint_geometry, only: joint_geometry_type, new_joint_geometry, find_geometry
@@ -25,8 +25,8 @@ module mech9_uniqueness
 
 contains
 
-  !> Which components fx, fy, fz, mx, my, mz of each pair's wrench are unique, in the axes of the pair's frame in its moving link:
-  !> in a generic position, or at the start where none is found.
+  !> Find whether each component fx, fy, fz, mx, my, mz of each pair's wrench is unique, in the axes of the pair's frame in its
+  !> moving link: in a generic position, or at the start where none is found.
   subroutine find_unique(plan, reactions, start, unique)
     type(plan_type), intent(in) :: plan                  !< the plan of the mechanism, with all blocks
     type(reaction_plan_type), intent(in) :: reactions    !< its plan of inverse dynamics
@@ -104,13 +104,14 @@ contains
     real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled
     !> Each removal leaves a part of the round-off of the one before it.
     integer, parameter :: removals = 4
+    real(wp) :: lacking(6, size(cluster%links)), nothing(6, size(cluster%links))
     integer :: i
 
+    nothing = 0.0_wp
     do i = 1, removals
-      call balance%balance(cluster, wrenches, balance%residual)
-      balance%y = -balance%residual
-      call balance%factors%solve(balance%y)
-      call balance%spread(cluster, balance%y, wrenches)
+      call balance%find_lacking(cluster, nothing, wrenches, lacking)
+      call balance%factors%solve(lacking)
+      call balance%spread(cluster, lacking, wrenches)
     end do
   end subroutine remove_determined
 

@@ -1,0 +1,146 @@
+!> Inverse dynamics on random mechanisms of open links, closed chains, ladders and planar chains that stand on moving links, with
+!> all kinds of loads: at any accelerations, the forces that the independent coordinates need are those of Lagrange's equations,
+!> a ddq + h - Q, which come about without the forces in the pairs; and the pairs of each link balance it.
+program test_reactions
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_random, only: random_type
+  use mech9_rotation, only: cross
+  use mech9_model, only: model_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
+  use mech9_dynamics_plan, only: make_dynamics_plan
+  use mech9_lagrange_work, only: new_lagrange_work
+  use mech9_lagrange, only: find_equations, complete_accelerations
+  use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
+  use mech9_reactions, only: reactions_type, new_reactions, find_reactions
+  use mech9_uniqueness, only: find_unique
+  use mech9_mixed_structures, only: structure_type, random_structure, finished, below
+  use mech9_loaded_mechanisms, only: loaded_loop, five_bar, loaded_fig1, open_chain
+  use mech9_testing, only: tester_type
+  use mech9_counted_memory, only: calls
+  implicit none
+
+  type(tester_type) :: test
+
+  call known_mechanisms()
+  call random_mechanisms()
+  call test%finish()
+
+contains
+
+  subroutine known_mechanisms()
+    type(random_type) :: random
+    type(model_type) :: model
+
+    call open_chain(model)
+    call check(random, model, 'an open chain')
+    call five_bar(model)
+    call check(random, model, 'a five-bar')
+    call loaded_fig1(5, model)
+    call check(random, model, 'Fig. 1')
+    call loaded_loop(model)
+    call check(random, model, 'a spatial loop with all kinds of pairs')
+  end subroutine known_mechanisms
+
+  subroutine random_mechanisms()
+    type(random_type) :: random
+    type(structure_type) :: structure
+    type(model_type) :: model
+    integer :: trial
+
+    do trial = 1, 60
+      call random_structure(random, mod(trial, 2) == 0, 1 + below(random, 6), structure)
+      call finished(random, structure, model)
+      call check(random, model, 'a random mechanism')
+    end do
+  end subroutine random_mechanisms
+
+  !> Compare at random rates and accelerations.
+  subroutine check(random, model, why)
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    type(model_type), intent(in) :: model        !< the mechanism
+    character(len=*), intent(in) :: why          !< its name
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(dynamics_plan_type) :: dynamics
+    type(lagrange_work_type) :: work
+    type(reaction_plan_type) :: reaction_plan
+    type(reactions_type) :: reactions
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: needed(:), a(:, :)
+    logical, allocatable :: unique(:, :)
+    real(wp) :: scale
+    integer :: i, n, before
+
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
+    call test%no_error(err, why//': there is a plan')
+    if (allocated(err)) return
+    call make_dynamics_plan(model%mechanism, plan, dynamics)
+    work = new_lagrange_work(plan, dynamics)
+    n = size(plan%independent)
+    state%dq(plan%independent) = [(1.3_wp*random%symmetric(), i=1, n)]
+    call find_equations(model%mechanism, plan, dynamics, state, work, err)
+    call test%no_error(err, why//': the equations are found')
+    work%accelerations = [(3.0_wp*random%symmetric(), i=1, n)]
+    a = work%coefficients
+    do i = 1, n
+      a(i, i + 1:) = a(i + 1:, i)
+    end do
+    needed = matmul(a, work%accelerations) + work%velocity_terms - work%forces
+    if (dynamics%articulated) then
+      do i = 1, size(plan%blocks)
+        call dynamics%arithmetic%spread_jacobian(plan, dynamics, plan%blocks(i), state, .true., work%jacobian)
+      end do
+    end if
+    call complete_accelerations(plan, dynamics, work, state)
+    call make_reaction_plan(model%mechanism, plan, reaction_plan)
+    reactions = new_reactions(plan, reaction_plan)
+    call find_reactions(model%mechanism, plan, reaction_plan, state, reactions, err)
+    call test%no_error(err, why//': the forces are found')
+    if (allocated(err)) return
+    ! near singular positions of a random mechanism, forces in the pairs are larger than the generalized forces by the conditioning
+    scale = max(maxval(abs(needed)), maxval(abs(reactions%force)), maxval(abs(reactions%moment)))
+    call test%near(maxval(abs(reactions%needed(plan%independent) - needed))/scale, 0.0_wp, 1.0e-12_wp, &
+                   why//': independent coordinates need a ddq + h - Q')
+    call check_balance(model, plan, reaction_plan, reactions, scale, why)
+    call find_unique(plan, reaction_plan, state, unique)
+    call test%is_true(all(unique(:, pack([(i, i=1, plan%n_coordinates)], reaction_plan%alone(plan%step_of)))), &
+                      why//': all components of open chains are unique')
+    before = calls
+    call find_reactions(model%mechanism, plan, reaction_plan, state, reactions, err)
+    call find_reactions(model%mechanism, plan, reaction_plan, state, reactions, err)
+    call test%is_true(calls == before .and. before > 0, why//': nothing is allocated')
+  end subroutine check
+
+  !> Each link but link 1 receives from its pairs what it requires.
+  subroutine check_balance(model, plan, reaction_plan, reactions, scale, why)
+    type(model_type), intent(in) :: model                   !< the mechanism
+    type(plan_type), intent(in) :: plan                     !< its plan
+    type(reaction_plan_type), intent(in) :: reaction_plan   !< its plan of inverse dynamics
+    type(reactions_type), intent(in) :: reactions           !< the forces
+    real(wp), intent(in) :: scale                           !< the largest force [N, N m]
+    character(len=*), intent(in) :: why                     !< name of the mechanism
+    real(wp) :: force(3, plan%n_links), moment(3, plan%n_links), arm(3)
+    integer :: k, side, link, s
+
+    ! the requirements of links have those of the clusters that stand on them in them already
+    force = reactions%link_force
+    moment = reactions%link_moment
+    do k = 1, plan%n_coordinates
+      s = plan%step_of(k)
+      do side = 1, 2
+        if (reaction_plan%begins(s) .and. ((side == 2) .eqv. (reaction_plan%pairs(k)%direction > 0.0_wp))) cycle
+        link = reaction_plan%pairs(k)%links(side)
+        arm = reactions%geometry%point(:, k) - reactions%geometry%place(:, link)
+        force(:, link) = force(:, link) - (3 - 2*side)*reactions%force(:, k)
+        moment(:, link) = moment(:, link) - (3 - 2*side)*(reactions%moment(:, k) + cross(arm, reactions%force(:, k)))
+      end do
+    end do
+    call test%near(max(maxval(abs(force(:, 2:))), maxval(abs(moment(:, 2:))))/scale, 0.0_wp, 1.0e-12_wp, &
+                   why//': the links are in balance')
+    call test%is_true(size(model%mechanism%bodies) > 0, why//': there are masses')
+  end subroutine check_balance
+end program test_reactions
