@@ -283,6 +283,13 @@ module mech9_explanations
     explanation_type('output', 'energies', '', &
                   'The results hold the kinetic energy, the potential energy and their sum, which stays the same where '// &
                   'no load takes or gives energy.', 'no'), &
+    explanation_type('output', 'reactions', '', &
+                  'The results then hold the force and the moment that pass through each pair, for bearings and links that '// &
+                  'must bear them. Masses, gravity and loads count in mech9k, too.', 'yes'), &
+    explanation_type('output', 'reaction_pairs', '', &
+                  'The forces and moments of these pairs alone are recorded.', '1, 4'), &
+    explanation_type('output', 'drive_forces', '', &
+                  'The results then hold the force, or the torque, that each drive needs: what a motor must give.', 'yes'), &
     explanation_type('user', 'parameters', '', &
                   'Every user procedure of yours receives these numbers, so that they can be changed without linking it '// &
                   'again.', '0.1, 2.0')]
