@@ -15,7 +15,7 @@ module mech9_dynamic_report
   use mech9_integrator, only: integration_statistics_type
   use mech9_simulation, only: coordinate_change_type
   use mech9_free_simulation, only: free_simulation_type
-  use mech9_run_words, only: duration, each, begin_report, add_structure
+  use mech9_run_words, only: duration, each, begin_report, add_structure, add_uniqueness
   implicit none
   private
   public :: print_dynamic_report, save_dynamic_report, print_coefficients
@@ -171,7 +171,8 @@ contains
   end subroutine dynamic_facts
 
   !> Write the report as JSON, with structure, coefficients of motion and events.
-  subroutine save_dynamic_report(path, model, plan, table_path, diagnostics, outcome, simulation, err)
+  subroutine save_dynamic_report(path, model, plan, table_path, diagnostics, outcome, simulation, err, &
+                                   unique)
     character(len=*), intent(in) :: path                      !< of the report
     type(model_type), intent(in) :: model                     !< the model
     type(plan_type), intent(in) :: plan                       !< at the start
@@ -179,6 +180,7 @@ contains
     type(diagnostics_type), intent(in) :: diagnostics         !< messages and exit code of the run
     type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
     type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
+    logical, allocatable, intent(in) :: unique(:, :)   !< (6,M) unique components of wrenches; not allocated: none are recorded
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(json_type) :: json
     type(facts_type) :: facts
@@ -188,6 +190,7 @@ contains
     call facts%to_json(json)
     call add_coefficients(json, plan, simulation%coefficients)
     call add_events(json, simulation)
+    if (allocated(unique)) call add_uniqueness(json, model%request%output%reacting(plan%n_coordinates), unique)
     call add_structure(json, model, plan)
     call json%end_object()
     call json%save(path, err)

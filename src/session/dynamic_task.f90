@@ -155,7 +155,7 @@ contains
     call end_run(options, pictures, model, source, results, diagnostics)
     if (.not. reported) return
     call save_dynamic_report(options%argument('report'), model, plan, results%table_path, diagnostics, &
-                             outcome, simulation, err)
+                             outcome, simulation, err, source%forces%unique)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out
 end module mech9_dynamic_task

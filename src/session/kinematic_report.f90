@@ -12,7 +12,7 @@ module mech9_kinematic_report
   use mech9_driven_motion, only: driven_motion_type
   use mech9_block_names, only: words_of_block
   use mech9_recording, only: recording_outcome_type
-  use mech9_run_words, only: duration, each, begin_report, add_structure
+  use mech9_run_words, only: duration, each, begin_report, add_structure, add_uniqueness
   implicit none
   private
   public :: print_kinematic_report, save_kinematic_report, kinematic_facts
@@ -86,7 +86,8 @@ contains
   end subroutine kinematic_facts
 
   !> Write the report as JSON, with the structure.
-  subroutine save_kinematic_report(path, program_name, model, plan, table_path, diagnostics, outcome, driven, err)
+  subroutine save_kinematic_report(path, program_name, model, plan, table_path, diagnostics, outcome, driven, err, &
+                                   unique)
     character(len=*), intent(in) :: path                  !< of the report
     character(len=*), intent(in) :: program_name          !< mech9k or mech9d
     type(model_type), intent(in) :: model             !< the model
@@ -95,6 +96,7 @@ contains
     type(diagnostics_type), intent(in) :: diagnostics     !< messages and exit code of the run
     type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
     type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
+    logical, allocatable, intent(in) :: unique(:, :)   !< (6,M) unique components of wrenches; not allocated: none are recorded
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(json_type) :: json
     type(facts_type) :: facts
@@ -102,6 +104,7 @@ contains
     call begin_report(json, program_name, model, diagnostics, table_path)
     call kinematic_facts(plan, outcome, driven, facts)
     call facts%to_json(json)
+    if (allocated(unique)) call add_uniqueness(json, model%request%output%reacting(plan%n_coordinates), unique)
     call add_structure(json, model, plan)
     call json%end_object()
     call json%save(path, err)

@@ -153,7 +153,7 @@ contains
     call end_run(options, pictures, model, source, results, diagnostics)
     if (.not. reported) return
     call save_kinematic_report(options%argument('report'), program_name, model, simulation%plan, results%table_path, diagnostics, &
-                               outcome, simulation%driven, err)
+                               outcome, simulation%driven, err, source%forces%unique)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out
 end module mech9_kinematic_task

@@ -21,7 +21,7 @@ module mech9_task
   use mech9_geometry_text, only: print_dimensions
   use mech9_check_notes, only: print_notes
   use mech9_plan_text, only: print_plan
-  use mech9_force_text, only: print_uniqueness, print_forceless
+  use mech9_force_text, only: print_uniqueness, print_undetermined, print_forceless
   use mech9_force_record, only: force_record_type
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_hdf5_record, only: write_uniqueness
@@ -196,6 +196,8 @@ contains
     call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
     call results%print_words(error_unit, options%has('quiet'))
+    if (allocated(source%forces%unique) .and. .not. options%has('quiet')) &
+      call print_undetermined(error_unit, model%request%output%reacting(size(model%mechanism%pairs)), source%forces%unique)
     ! an interrupted program makes no pictures, which would take too long
     if (asked_to_end()) return
     if (allocated(source%film)) call draw(options, pictures, model, source%film, diagnostics)

@@ -16,18 +16,35 @@ def cross_matrix(v):
     return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]], float)
 
 
+def without_dh(groups):
+    """The groups with pairs by axes in place of those by Denavit-Hartenberg parameters, T = Rz(theta) Tz(d) Tx(a) Rx(alpha)."""
+    unit = np.pi / 180 if any(items.get('angle_unit') == ['deg'] for _, items in groups) else 1.0
+    changed = []
+    for group, items in groups:
+        if 'dh' in items:
+            a, alpha, d, theta = (float(v) for v in items['dh'])
+            c, s = np.cos(alpha * unit), np.sin(alpha * unit)
+            items = {**items, 'axis': [0.0, 0.0, 1.0], 'point': [0.0, 0.0, d], 'zero': [np.cos(theta * unit), np.sin(theta * unit), 0.0],
+                     'moving_axis': [0.0, s, c], 'moving_zero': [1.0, 0.0, 0.0], 'moving_point': [-a, 0.0, 0.0]}
+        changed.append((group, items))
+    return changed
+
+
 class Forces:
     """The equations of balance of a data file, as data_file.parse gives it; `independent` are numbers from 1."""
 
-    def __init__(self, groups, independent, length):
-        self.pairs = sorted((Pair(items) for group, items in groups if group == 'pair'), key=lambda p: p.coordinate)
+    def __init__(self, groups, independent):
+        self.unit = Mechanism(without_dh(groups)).unit
+        self.pairs = sorted((Pair(items) for group, items in without_dh(groups) if group == 'pair'), key=lambda p: p.coordinate)
         self.independent = [k - 1 for k in independent]
         self.bodies = [items for group, items in groups if group == 'body']
         self.loads = [items for group, items in groups if group == 'load']
         self.gravity = next((np.array(items['acceleration'], float) for group, items in groups if group == 'gravity'), np.zeros(3))
-        self.unit = Mechanism(groups).unit
         self.links = max(max(pair.links) for pair in self.pairs)
-        self.length = length
+        ends = [(link, np.asarray(point, float)) for pair in self.pairs
+                for link, point in zip(pair.links, (pair.fixed[1], pair.moving[1]))]
+        # moments count over the largest distance between two pairs of one link
+        self.length = max((np.linalg.norm(a - b) for link, a in ends for other, b in ends if link == other), default=0.0) or 1.0
 
     def poses(self, q):
         """Series of the pose of each link, for q (3 orders, M): value, rate, half the acceleration."""

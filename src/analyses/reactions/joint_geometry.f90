@@ -47,7 +47,7 @@ contains
         point = place
         if (pair%direction < 0.0_wp) call move_to_start(plan, state, s, v, point)
         screw(1:3) = pair%direction*(v + cross(w, point - place))
-        screw(4:6) = (pair%direction*plan%length)*w
+        screw(4:6) = (pair%direction*reactions%length)*w
         geometry%length(k) = norm2(screw)
         geometry%axis(:, k) = 0.0_wp
         if (geometry%length(k) > 0.0_wp) geometry%axis(:, k) = screw/geometry%length(k)

@@ -6,6 +6,7 @@
 !> outside are taken one after the other, from the ends of open chains inwards.
 module mech9_reaction_plan
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: negligible_distance
   use mech9_pose, only: inverse, pose_type
   use mech9_pair, only: pair_type, screw_factors_type
   use mech9_mechanism, only: mechanism_type
@@ -41,6 +42,7 @@ module mech9_reaction_plan
     integer, allocatable :: bodies(:)     !< numbers of the bodies that move and have inertia
     integer, allocatable :: acting(:)     !< numbers of the loads that may move something
     integer, allocatable :: loaded(:)     !< links on which loads act or depend, without link 1
+    real(wp) :: length = 1.0_wp           !< by which moments are divided to count beside forces [m]
   end type reaction_plan_type
 
 contains
@@ -64,6 +66,7 @@ contains
     reactions%inwards = pack([(s, s=plan%n_coordinates, 1, -1)], &
                              [(plan%frame_of(plan%steps(s)%link) == s, s=plan%n_coordinates, 1, -1)])
     call join_clusters(plan, clusters, reactions)
+    reactions%length = weighing_length(mechanism, plan)
     reactions%bodies = pack([(i, i=1, size(mechanism%bodies))], mechanism%bodies%link /= 1)
     reactions%acting = pack([(i, i=1, size(mechanism%loads))], &
                             [(.not. mechanism%loads(i)%load%is_idle(), i=1, size(mechanism%loads))])
@@ -90,6 +93,44 @@ contains
     call pair%as_screw(factors, is_screw)
     if (is_screw) joined%frame = inverse(factors%after)
   end function joined_pair
+
+  !> The length by which moments are divided: the largest distance between the points of two pairs on one link or, if that is zero,
+  !> of a point from the origin of its link, or 1 m. It does not depend on axes, as the size by which the plan weighs does.
+  pure real(wp) function weighing_length(mechanism, plan) result(length)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan             !< its plan
+    type(screw_factors_type) :: factors
+    type(pose_type) :: in_moving
+    real(wp) :: points(3, 2*plan%n_coordinates), reach
+    integer :: links(2*plan%n_coordinates), previous(2*plan%n_coordinates), last(plan%n_links), k, i
+    logical :: is_screw
+
+    do k = 1, plan%n_coordinates
+      associate (pair => mechanism%pairs(k)%pair)
+        links(2*k - 1:2*k) = [pair%reference, pair%moving]
+        call pair%as_screw(factors, is_screw)
+        if (.not. is_screw) factors = screw_factors_type()
+        in_moving = inverse(factors%after)
+        points(:, 2*k - 1) = factors%before%p
+        points(:, 2*k) = in_moving%p
+      end associate
+    end do
+    length = 0.0_wp
+    reach = 0.0_wp
+    last = 0
+    do k = 1, size(links)
+      reach = max(reach, norm2(points(:, k)))
+      previous(k) = last(links(k))
+      last(links(k)) = k
+      i = previous(k)
+      do while (i > 0)
+        length = max(length, norm2(points(:, k) - points(:, i)))
+        i = previous(i)
+      end do
+    end do
+    if (.not. length > negligible_distance*reach) length = reach
+    if (.not. length > 0.0_wp) length = 1.0_wp
+  end function weighing_length
 
   !> The clusters of closed chains, with their links and pairs.
   subroutine join_clusters(plan, clusters, reactions)

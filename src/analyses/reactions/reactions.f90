@@ -144,10 +144,10 @@ contains
 
     n = size(cluster%links)
     m = size(cluster%pairs)
-    call balance%set_position(cluster, self%geometry, reactions, plan%length, regular)
+    call balance%set_position(cluster, self%geometry, reactions, reactions%length, regular)
     do i = 1, n
       self%required(1:3, i) = self%link_force(:, cluster%links(i))
-      self%required(4:6, i) = self%link_moment(:, cluster%links(i))/plan%length
+      self%required(4:6, i) = self%link_moment(:, cluster%links(i))/reactions%length
     end do
     call hold_loads(cluster, balance, self)
     associate (wrenches => self%wrenches(:, :m), required => self%required(:, :n), lacking => self%lacking(:, :n))
@@ -169,7 +169,7 @@ contains
       do i = 1, m
         k = cluster%pairs(i)
         self%force(:, k) = wrenches(1:3, i)
-        self%moment(:, k) = wrenches(4:6, i)*plan%length
+        self%moment(:, k) = wrenches(4:6, i)*reactions%length
       end do
     end associate
   end subroutine solve_cluster
@@ -229,7 +229,7 @@ contains
       if (reactions%pairs(k)%dependent) cycle
       associate (axis => self%geometry%axis(:, k))
         self%needed(k) = self%geometry%length(k)*(dot_product(axis(1:3), self%force(:, k)) &
-                                                  + dot_product(axis(4:6), self%moment(:, k))/plan%length)
+                                                  + dot_product(axis(4:6), self%moment(:, k))/reactions%length)
       end associate
       if (self%sum%any_generalized) self%needed(k) = self%needed(k) - self%sum%generalized(k)
     end do

@@ -67,7 +67,7 @@ contains
 
     tolerance = rank_tolerance_for(plan%data_tolerance)
     balance = new_cluster_balance(reactions, cluster)
-    call balance%set_position(cluster, geometry, reactions, plan%length, regular)
+    call balance%set_position(cluster, geometry, reactions, reactions%length, regular)
     if (.not. regular) call decompose_cluster(cluster, balance, tolerance, singular)
     do sample = 1, samples
       call draw(balance, random, wrenches)

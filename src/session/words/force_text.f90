@@ -4,7 +4,7 @@ module mech9_force_text
   use mech9_mechanism, only: mechanism_type
   implicit none
   private
-  public :: print_uniqueness, print_forceless, component_names
+  public :: print_uniqueness, print_undetermined, print_forceless, component_names
 
   !> Components of a wrench, in the axes of the pair's frame in its moving link.
   character(len=2), parameter :: component_names(6) = ['fx', 'fy', 'fz', 'mx', 'my', 'mz']
@@ -35,6 +35,18 @@ contains
       write (unit, '(a)') '  R'//to_text(k)//':'//names
     end do
   end subroutine print_uniqueness
+
+  !> Print how many components equilibrium does not determine, if there are any.
+  subroutine print_undetermined(unit, recorded, unique)
+    integer, intent(in) :: unit              !< the output unit
+    logical, intent(in) :: recorded(:)       !< (M) pairs whose forces are recorded
+    logical, intent(in) :: unique(:, :)      !< (6,M) components that it determines
+    integer :: n
+
+    n = count(spread(recorded, 1, 6) .and. .not. unique)
+    if (n > 0) write (unit, '(a)') 'equilibrium does not determine '//to_text(n)//' of the '//to_text(6*count(recorded))// &
+      ' components of forces and moments in the pairs; --check names them, and those of least norm are given'
+  end subroutine print_undetermined
 
   !> Say that all forces are zero, where no link has mass and no load acts.
   subroutine print_forceless(unit, mechanism)

@@ -9,9 +9,10 @@ module mech9_run_words
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_version, only: version, revision, compiler
+  use mech9_force_text, only: component_names
   implicit none
   private
-  public :: duration, each, begin_report, add_structure, save_short_report
+  public :: duration, each, begin_report, add_structure, add_uniqueness, save_short_report
 
 contains
 
@@ -145,6 +146,28 @@ contains
     end do
     call json%end_array()
   end subroutine add_structure
+
+  !> Add the components of the recorded wrenches that equilibrium determines: [{"pair": 1, "unique": ["fx", ...]}, ...]
+  subroutine add_uniqueness(json, recorded, unique)
+    type(json_type), intent(inout) :: json  !< the report, inside its object
+    logical, intent(in) :: recorded(:)      !< (M) pairs whose wrenches are recorded
+    logical, intent(in) :: unique(:, :)     !< (6,M) components that it determines
+    integer :: i, k
+
+    call json%begin_array('reactions')
+    do k = 1, size(recorded)
+      if (.not. recorded(k)) cycle
+      call json%begin_object()
+      call json%add('pair', k)
+      call json%begin_array('unique')
+      do i = 1, 6
+        if (unique(i, k)) call json%add(component_names(i))
+      end do
+      call json%end_array()
+      call json%end_object()
+    end do
+    call json%end_array()
+  end subroutine add_uniqueness
 
   !> Add an array of whole numbers.
   subroutine add_integers(json, name, numbers)

@@ -1,0 +1,290 @@
+"""Forces of drives and in pairs: against equations of balance in absolute coordinates (dense_forces), against forms by hand, and by
+what must not change them.
+
+usage: reactions.py MECH9K MECH9D
+"""
+import json
+import os
+import sys
+import tempfile
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from data_file import parse, write
+from dense_forces import Forces
+from mech9_cases import TREE, Checks, read_table, run, text_of
+
+try:
+    import h5py
+except ImportError:
+    h5py = None
+
+COMPONENTS = ('fx', 'fy', 'fz', 'mx', 'my', 'mz')
+# Sums over the pairs of a link are round-off of the largest force; the program corrects them to some units in the last place, and
+# the table gives accelerations with an error of as many.
+BALANCE = 1e-11
+# Along directions in which links are held weakly, round-off of the sums is enlarged by the conditioning, up to some thousands.
+AGREEMENT = 1e-8
+
+
+def forces_of(program, text, *options):
+    """(table, report, unique components by pair or None) of a data file with all forces recorded."""
+    with tempfile.TemporaryDirectory() as folder:
+        names = {name: os.path.join(folder, name) for name in ('case.nml', 'rows.dat', 'rows.h5', 'report.json')}
+        with open(names['case.nml'], 'w', encoding='utf-8') as file:
+            file.write(text)
+        done = run(program, names['case.nml'], '--table', names['rows.dat'], '--hdf5', names['rows.h5'], '--report', names['report.json'],
+                   '--set', 'output.reactions=.true.', '--set', 'output.drive_forces=.true.', *options, folder=folder)
+        if done.returncode != 0:
+            raise RuntimeError(f'{program} ended with {done.returncode}:\n{done.stderr}')
+        with open(names['report.json'], encoding='utf-8') as file:
+            report = json.load(file)
+        unique = None
+        if h5py:
+            with h5py.File(names['rows.h5']) as file:
+                unique = file['reaction_unique'][:]
+        return read_table(text_of(names['rows.dat'])), report, unique
+
+
+def wrenches(table, row, pairs):
+    return np.array([[table[f'R{k + 1}.{c}'][row] for c in COMPONENTS] for k in range(pairs)])
+
+
+def compare(checks, program, groups, why, intervals=4):
+    """Hold the forces of a data file against dense equations; gives the least uniqueness pattern as a list of texts."""
+    groups = [(group, items) for group, items in groups if group != 'output']
+    table, report, unique = forces_of(program, write(groups), '--set', f'time.intervals={intervals}')
+    dense = Forces(groups, report['independent'])
+    pairs = len(dense.pairs)
+    units = [1.0 if pair.kind == 'prismatic' else float(dense.unit) for pair in dense.pairs]
+    scales = np.array([1] * 3 + [dense.length] * 3)
+    for row in range(len(table['t'])):
+        q = [[table[f'{name}{k + 1}'][row] * units[k] * factor for k in range(pairs)]
+             for name, factor in (('q', 1), ('dq', 1), ('ddq', 0.5))]
+        expected, drives, null = dense.solve(q)
+        found = wrenches(table, row, pairs)
+        # a pendulum that is released at its side feels no force there
+        largest = np.max(np.abs(expected / scales)) or 1.0
+        checks.true(np.max(np.abs(found - expected) / scales) <= AGREEMENT * largest, f'{why}: wrenches of least norm in row {row}',
+                    np.max(np.abs(found - expected) / scales) / largest)
+        checks.true(dense.imbalance(q, found) <= BALANCE * largest, f'{why}: every link is in balance in row {row}',
+                    dense.imbalance(q, found) / largest)
+        for k, force in zip(report['independent'], drives):
+            if f'F{k}' in table:
+                checks.true(abs(force - table[f'F{k}'][row]) <= AGREEMENT * largest * max(1, dense.length), f'{why}: force of drive {k}',
+                            (force, table[f'F{k}'][row]))
+        # the last position may be a special one, as the first
+        if unique is not None and row == 1:
+            checks.true((unique == (null < 1e-9)).all(), f'{why}: the unique components are those without a part in the null space',
+                        f'{unique}\n{(null < 1e-9).astype(int)}')
+    checks.true(any(table[f'R{k + 1}.{c}'].any() for k in range(pairs) for c in COMPONENTS), f'{why}: there are forces')
+    return None if unique is None else [''.join(c + ' ' for c, u in zip(COMPONENTS, row) if not u).strip() for row in unique]
+
+
+# --- mechanisms -------------------------------------------------------------------------------------------------------
+
+def example(name, file=None):
+    """The groups of an example's data file."""
+    text = text_of(os.path.join(TREE, 'examples', name, file or f'{name}.nml'))
+    return parse(text.replace('.true.', '1').replace('.false.', '0'))
+
+
+def with_masses(rng, groups):
+    """Bodies on all links, gravity across no axis, and some loads."""
+    links = max(max(items['links']) for group, items in groups if group == 'pair')
+    groups = [(group, items) for group, items in groups if group not in ('body', 'gravity', 'load')]
+    for link in range(2, links + 1):
+        groups.append(('body', {'link': [link], 'mass': [float(rng.uniform(0.5, 2))], 'centre': list(map(float, rng.uniform(-0.3, 0.3, 3))),
+                                'inertia': [0.3, 0.4, 0.5, 0.02, -0.03, 0.01]}))
+    groups.append(('gravity', {'acceleration': [1.0, -9.0, 3.0]}))
+    groups.append(('load', {'kind': ['force'], 'link': [links], 'position': [0.1, 0.2, 0.3], 'force': [3.0, -2.0, 1.0], 'frame': ['link']}))
+    groups.append(('load', {'kind': ['spring'], 'links': [1, 2], 'position': [0.5, 0.1, 0.2], 'second_position': [0.1, 0.4, -0.2],
+                            'stiffness': [20.0], 'free_length': [0.3], 'damping': [0.5]}))
+    for k in (1, max(items['coordinate'][0] for group, items in groups if group == 'pair')):
+        groups.append(('load', {'kind': ['coordinate'], 'coordinate': [k], 'stiffness': [2.0], 'damping': [0.7], 'force': [1.5]}))
+    return groups
+
+
+def gallery(checks, mech9k, mech9d):
+    """Every example with bodies, and those for mech9k with bodies of their own."""
+    for name, file in (('andrews', None), ('bricard', None), ('double_pendulum', None), ('flyball_governor', None), ('heavy_top', None),
+                       ('n_four_bar', 'n_four_bar_2.nml'), ('n_four_bar', 'n_four_bar_40.nml'), ('pendulum', None),
+                       ('pendulum_four_bar', None), ('slider_crank_sundials', 'slider_crank.nml')):
+        compare(checks, mech9d, example(name, file), name, intervals=2)
+    rng = np.random.default_rng(5)
+    for name in ('fig1', 'slider_crank', 'watt_parallel_motion', 'peaucellier', 'jansen_leg', 'whitworth', 'class_three_group', 'bennett',
+                 'sarrus', 'double_hooke', 'rsur', 'stewart_gough', 'palletising_arm'):
+        compare(checks, mech9k, with_masses(rng, example(name)), name, intervals=3)
+
+
+def revolute(k, links, point, axis='0,0,1'):
+    return f"&pair coordinate={k}, links={links}, kind='revolute', point={point}, axis={axis} /\n"
+
+
+def uniqueness(checks, mech9k, mech9d):
+    """Components that equilibrium does not determine, told beforehand by hand."""
+    if not h5py:
+        checks.left_out('the Python package h5py is not installed (Debian: python3-h5py)')
+        return
+    body = "&body link=2, mass=1, centre=0.1,0.2,0.3 /\n&gravity acceleration=1,-9.81,2 /\n"
+    # door on two hinges in one line: thrust is shared in a way that stiffness alone decides, moments across too, and so are all forces
+    door = ('&mechanism links=2, coordinates=2 /\n&structure cq=1 /\n' + revolute(1, '1,2', '0,0,0') + revolute(2, '1,2', '0,0,1')
+            + "&drive coordinate=1, kind='polynomial', coefficients=0,1 /\n" + body)
+    pattern = compare(checks, mech9k, parse(door), 'a door on two hinges')
+    checks.equal(pattern, ['fx fy fz mx my'] * 2, 'a door on two hinges: no force or moment across the axis is unique')
+    # a planar four-bar in space: all that is out of its plane
+    bars = ('&mechanism links=4, coordinates=4 /\n&structure cq=1 /\n' + revolute(1, '1,2', '0,0,0') + revolute(2, '2,3', '0.3,0.1,0')
+            + revolute(3, '3,4', '1.1,0.8,0') + revolute(4, '1,4', '1,0,0') + "&drive coordinate=1, kind='polynomial', coefficients=0,2 /\n")
+    pattern = compare(checks, mech9k, parse(bars + body), 'a four-bar')
+    checks.equal(pattern, ['fz mx my'] * 4, 'a planar four-bar: its twelve components out of the plane are not unique')
+    # a third crank that repeats the constraint of the others: forces along the rods too
+    cranks = ('&mechanism links=5, coordinates=6 /\n&structure cq=1 /\n'
+              + ''.join(revolute(2 * i + 1, f'1,{i + 2}', f'{i},0,0') + revolute(2 * i + 2, f'{i + 2},5', f'{i},1,0') for i in range(3))
+              + "&drive coordinate=1, kind='polynomial', coefficients=0.3,2 /\n"
+              + ''.join(f'&initial coordinate={k}, position={0.3 * (-1) ** (k + 1)} /\n' for k in range(2, 7)))
+    pattern = compare(checks, mech9k, parse(cranks + body), 'three parallel cranks')
+    # forces along the cranks, whose frames have x across them at the start; the frame of the coupler turns against them
+    checks.equal(pattern, ['fy fz mx my', 'fx fy fz mx my'] * 3, 'three parallel cranks: forces along the cranks are not unique')
+    # an open chain holds nothing in reserve
+    pattern = compare(checks, mech9d, example('double_pendulum'), 'a double pendulum', intervals=1)
+    checks.equal(pattern, ['', ''], 'a double pendulum: all components are unique')
+
+
+def by_hand(checks, mech9k, mech9d):
+    """A pendulum, and a slider-crank without friction."""
+    g, length, mass, start = 9.81, 0.8, 3.0, 0.5
+    pendulum = ('&mechanism links=2, coordinates=1 /\n&structure cq=1 /\n' + revolute(1, '1,2', '0,0,0')
+                + f'&initial coordinate=1, position={start}, velocity=0 /\n&body link=2, mass={mass}, centre=0,{-length},0 /\n'
+                + f'&gravity acceleration=0,{-g},0 /\n&time start=0, end=2, intervals=20 /\n&solver relative_tolerance=1e-12 /\n')
+    table, _, _ = forces_of(mech9d, pendulum)
+    pull = mass * g * (3 * np.cos(table['q1']) - 2 * np.cos(start))
+    # the tension of a pendulum that was released at rest, along its rod; the tolerances of the integration allow 1e-9 of it
+    checks.near(table['R1.fx'], -pull * np.sin(table['q1']), 1e-8, 'pendulum: the tension across', scale=pull.max())
+    checks.near(table['R1.fy'], pull * np.cos(table['q1']), 1e-8, 'pendulum: the tension upwards', scale=pull.max())
+    r, l, m, w = 0.1, 0.35, 2.5, 30.0
+    crank = (f'&mechanism links=4, coordinates=4 /\n&structure cq=1 /\n' + revolute(1, '1,2', '0,0,0') + revolute(2, '2,3', f'{r},0,0')
+             + revolute(3, '3,4', f'{r + l},0,0') + f"&pair coordinate=4, links=1,4, kind='prismatic', point={r + l},0,0, axis=1,0,0 /\n"
+             + f"&drive coordinate=1, kind='polynomial', coefficients=0.2,{w} /\n&body link=4, mass={m} /\n"
+             + "&load kind='force', link=4, force=-400,0,0 /\n&time start=0, end=0.4, intervals=40 /\n")
+    table, _, _ = forces_of(mech9k, crank)
+    a = table['q1']
+    sine = r / l * np.sin(a)
+    cosine = np.sqrt(1 - sine ** 2)
+    # x = r cos a + l cos b with l sin b = r sin a
+    rate = -r * np.sin(a) - r * np.cos(a) * sine / cosine
+    second = -r * np.cos(a) + r * np.sin(a) * sine / cosine - (r * np.cos(a)) ** 2 / l / cosine ** 3
+    push = m * second * w ** 2 + 400
+    side = push * sine / cosine
+    scale = np.abs(push).max()
+    checks.near(table['F1'], push * rate, 1e-11, 'slider-crank: the torque of the crank, by virtual work', scale=scale * r)
+    checks.near(table['R3.fx'], push, 1e-11, 'slider-crank: the force along the cylinder', scale=scale)
+    # the rod has no mass: its force is along it, and the wall takes the part across
+    checks.near(table['R4.fy'], side, 1e-11, 'slider-crank: the force of the wall', scale=scale)
+    checks.near(table['R1.fy'], -side, 1e-11, 'slider-crank: the force on the main bearing', scale=scale)
+
+
+def changes(checks, mech9k):
+    """Forces do not depend on the choice of independent coordinates, on the numbers of links, on which pair closes a chain, nor on the
+    plane or the rotation of the whole."""
+    rng = np.random.default_rng(8)
+    groups = with_masses(rng, example('fig1'))
+    first, report, unique = forces_of(mech9k, write(groups), '--set', 'time.intervals=3')
+    pairs = 7
+    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    turn = turn * np.linalg.det(turn)
+    rotated = []
+    for group, items in groups:
+        items = dict(items)
+        if group == 'pair':
+            axis = np.array(items['axis'])
+            zero = np.array(items.get('zero', [1.0, 0, 0] if abs(axis[0]) <= np.sqrt(0.5) else [0, 1.0, 0]))
+            items['axis'], items['zero'] = list(turn @ axis), list(turn @ zero)
+            for name in ('point', 'moving_point'):
+                if name in items:
+                    items[name] = list(turn @ np.array(items[name]))
+        for name in {'point': ('position',), 'body': ('centre',), 'gravity': ('acceleration',),
+                     'load': ('position', 'second_position', 'force', 'torque')}.get(group, ()):
+            if name in items and len(items[name]) == 3:
+                items[name] = list(turn @ np.array(items[name]))
+        if group == 'body':
+            xx, yy, zz, xy, xz, yz = items['inertia']
+            i = turn @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ turn.T
+            items['inertia'] = [i[0, 0], i[1, 1], i[2, 2], i[0, 1], i[0, 2], i[1, 2]]
+        rotated.append((group, {name: [float(v) if isinstance(v, np.floating) else v for v in value] for name, value in items.items()}))
+    second, _, other = forces_of(mech9k, write(rotated), '--set', 'time.intervals=3')
+    numbers = {1: 1, **{a: b for a, b in zip(range(2, 7), (5, 2, 6, 3, 4))}}
+    renumbered = []
+    for group, items in groups:
+        items = dict(items)
+        if group == 'structure':
+            items = {'cq': items['cq']}
+        for name in ('link', 'links'):
+            if name in items:
+                items[name] = [numbers[v] for v in items[name]]
+        renumbered.append((group, items))
+    third, _, _ = forces_of(mech9k, write([(group, {**items, **({'links': [6]} if group == 'mechanism' else {})})
+                                           for group, items in renumbered]), '--set', 'time.intervals=3')
+    for row in range(4):
+        one = wrenches(first, row, pairs)
+        largest = np.abs(one).max()
+        two, three = wrenches(second, row, pairs), wrenches(third, row, pairs)
+        back = np.concatenate([two[:, :3] @ turn, two[:, 3:] @ turn], axis=1)
+        checks.true(np.abs(back - one).max() <= 1e-10 * largest, f'rotated forces in row {row}', np.abs(back - one).max() / largest)
+        checks.true(np.abs(three - one).max() <= 1e-10 * largest, f'forces of renumbered links in row {row}', np.abs(three - one).max() / largest)
+        for table in (second, third):
+            checks.true(abs(table['F5'][row] - first['F5'][row]) <= 1e-10 * largest, f'the force of the drive in row {row}')
+    if unique is not None:
+        checks.true((unique == other).all(), 'rotation does not change which components are unique')
+
+
+def requests(checks, mech9k, mech9d):
+    """The columns that a request leads to, and the requests that are refused."""
+    text = text_of(os.path.join(TREE, 'examples', 'slider_crank', 'slider_crank.nml')).replace('&output', '&body link=4, mass=1 /\n&output')
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'case.nml')
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+
+        def ask(program, *settings):
+            arguments = [word for setting in settings for word in (('--set', setting) if '=' in setting else (setting,))]
+            return run(program, path, '--table', '-', *arguments, folder=folder)
+
+        done = ask(mech9k, 'output.reaction_pairs=4,2', 'output.derivatives=0', 'output.coordinates=4')
+        names = [line for line in done.stdout.splitlines() if not line.startswith('#')][0].split()
+        checks.equal(names[1:2] + names[8:20], ['q4'] + [f'R{k}.{c}' for k in (2, 4) for c in COMPONENTS],
+                     'pairs that are listed have columns, in ascending order, after those of points')
+        checks.true('F1' not in names and names[-1] == 'closure', 'forces of drives have none unless they are asked for', names)
+        full = read_table(ask(mech9k, 'output.reactions=.true.').stdout)
+        part = read_table(done.stdout)
+        checks.true(all(np.array_equal(full[f'R4.{c}'], part[f'R4.{c}']) for c in COMPONENTS),
+                    'forces do not depend on what else is recorded')
+        done = ask(mech9k, 'output.reaction_pairs=4,5')
+        checks.true(done.returncode == 3 and 'there is no pair 5; they are 1 to 4' in done.stderr, 'a pair that is not there', done.stderr)
+        done = ask(mech9k, 'output.reaction_pairs=4,4')
+        checks.true(done.returncode == 3 and 'pair 4 is there already' in done.stderr, 'a pair that is named twice', done.stderr)
+        done = run(mech9k, path, '--check', '--set', 'output.reactions=.true.', folder=folder)
+        checks.true('does not determine these components' in done.stdout and '  R1: fz mx my\n' in done.stdout and '  R4: ' in done.stdout,
+                    '--check tells the components that are not unique', done.stdout)
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text.replace('&body link=4, mass=1 /', ''))
+        done = ask(mech9k, 'output.reactions=.true.')
+        checks.true(done.returncode == 0 and 'no link has mass and no load acts' in done.stderr, 'forces of nothing are zero: it is said',
+                    done.stderr)
+        table = read_table(done.stdout)
+        checks.true(all(not table[f'R{k}.{c}'].any() for k in range(1, 5) for c in COMPONENTS), 'they are zero')
+
+
+def main():
+    mech9k, mech9d = map(os.path.abspath, sys.argv[1:3])
+    checks = Checks()
+    gallery(checks, mech9k, mech9d)
+    uniqueness(checks, mech9k, mech9d)
+    by_hand(checks, mech9k, mech9d)
+    changes(checks, mech9k)
+    requests(checks, mech9k, mech9d)
+    checks.finish()
+
+
+if __name__ == '__main__':
+    main()
