@@ -5,13 +5,15 @@ module mech9_rotation
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: identity, turn, turn_back, combine, cross, unit, about_axis, about_z, add_small_angle, rotation_vector, axial_vector, &
-    quaternion
+  public :: identity, turn, turn_back, combine, cross, unit, about_axis, about_z, add_small_angle, rotation_vector, &
+    rotation_between, axial_vector, quaternion
 
   !> The rotation by no angle.
   real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, &
                                                    0.0_wp, 1.0_wp, 0.0_wp, &
                                                    0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
+  !> Below this sine of an angle, three terms of its series are exact.
+  real(wp), parameter :: small_sine = 1.0e-4_wp
 
 contains
 
@@ -150,7 +152,7 @@ contains
     c = 0.5_wp*(r(1, 1) + r(2, 2) + r(3, 3) - 1.0_wp)
     if (c > 0.0_wp) then
       ! angle/sin(angle), by its series where the quotient would lose digits
-      if (s < 1.0e-4_wp) then
+      if (s < small_sine) then
         phi = w*(1.0_wp + s*s*(1.0_wp/6.0_wp + s*s*(3.0_wp/40.0_wp)))
       else
         phi = w*(atan2(s, c)/s)
@@ -166,6 +168,34 @@ contains
     if (dot_product(axis, w) < 0.0_wp) axis = -axis
     phi = angle*axis
   end function rotation_vector
+
+  !> Rotation vector, in the axes of A, that turns frame B onto frame C. For a small turn it is the sum of the axes' cross products
+  !> b x c, which is twice the sine along the axis; then the matrix of the turn is not formed.
+  pure function rotation_between(r_ab, r_ac) result(phi)
+    real(wp), intent(in) :: r_ab(3, 3)   !< turns components in B into components in A
+    real(wp), intent(in) :: r_ac(3, 3)   !< turns components in C into components in A
+    real(wp) :: phi(3)                   !< axis times angle, 0 to pi [rad]
+    real(wp) :: w(3), square, r_bc(3, 3)
+    integer :: i
+
+    w = 0.0_wp
+    do i = 1, 3
+      w(1) = w(1) + r_ab(2, i)*r_ac(3, i) - r_ab(3, i)*r_ac(2, i)
+      w(2) = w(2) + r_ab(3, i)*r_ac(1, i) - r_ab(1, i)*r_ac(3, i)
+      w(3) = w(3) + r_ab(1, i)*r_ac(2, i) - r_ab(2, i)*r_ac(1, i)
+    end do
+    square = 0.25_wp*(w(1)**2 + w(2)**2 + w(3)**2)
+    ! two axes that keep their direction within 60 degrees exclude a turn near 180 degrees
+    if (square < small_sine**2 .and. dot_product(r_ab(:, 1), r_ac(:, 1)) > 0.5_wp .and. &
+        dot_product(r_ab(:, 2), r_ac(:, 2)) > 0.5_wp) then
+      phi = 0.5_wp*w*(1.0_wp + square*(1.0_wp/6.0_wp + square*(3.0_wp/40.0_wp)))
+      return
+    end if
+    do i = 1, 3
+      r_bc(:, i) = turn_back(r_ab, r_ac(:, i))
+    end do
+    phi = turn(r_ab, rotation_vector(r_bc))
+  end function rotation_between
 
   !> Unit quaternion (w, x, y, z) of a rotation matrix, w >= 0. Its largest part is found first and divides the
   !> others, so that no digits are lost at any angle.

@@ -2,7 +2,8 @@
 program test_rotation
   use mech9_kinds, only: wp, pi
   use mech9_random, only: random_type
-  use mech9_rotation, only: identity, cross, unit, about_axis, about_z, rotation_vector, axial_vector, quaternion
+  use mech9_rotation, only: identity, cross, unit, about_axis, about_z, rotation_vector, rotation_between, axial_vector, &
+    quaternion
   use mech9_random_geometry, only: random_vector, random_unit, random_rotation, rotation_from_quaternion
   use mech9_testing, only: tester_type
   implicit none
@@ -17,6 +18,7 @@ program test_rotation
   call vector_of_small_rotation(test)
   call half_turns(test)
   call vector_of_any_rotation(test)
+  call vector_between_frames(test)
   call quaternion_of_any_rotation(test)
   call test%finish()
 
@@ -222,4 +224,30 @@ contains
                      'the opposite rotation has the opposite vector')
     end do
   end subroutine vector_of_any_rotation
+
+  !> The vector that turns one frame onto another is that of the turn between them, given in the axes in which both are known: for
+  !> small, common and half turns, among these half turns about diagonals, which leave two axes across themselves.
+  subroutine vector_between_frames(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(random_type) :: random
+    real(wp) :: r_ab(3, 3), turned(3, 3), e(3), phi(3), angle
+    integer :: i
+
+    do i = 1, 600
+      r_ab = random_rotation(random)
+      e = random_unit(random)
+      if (mod(i, 5) == 0) e = unit(real([mod(i/5, 2), 1, mod(i/10, 2)], wp))
+      angle = pi*abs(random%symmetric())
+      if (mod(i, 3) == 1) angle = 10.0_wp**(-8.0_wp*angle)
+      if (mod(i, 3) == 2) angle = pi - 1.0e-9_wp*angle*mod(i, 2)
+      turned = about_axis(e, angle)
+      phi = rotation_between(r_ab, matmul(r_ab, turned))
+      call test%near(norm2(phi), angle, 4.0_wp*round_off, 'the vector between two frames is as long as the angle between them')
+      call test%near(maxval(abs(cross(phi, matmul(r_ab, e)))), 0.0_wp, 8.0_wp*round_off, &
+                     'the vector between two frames lies along the axis of the turn between them')
+      if (angle < 3.0_wp) call test%near(maxval(abs(phi - angle*matmul(r_ab, e))), 0.0_wp, 8.0_wp*round_off, &
+                                         'the vector between two frames leads from the first to the second')
+    end do
+    call test%near(maxval(abs(rotation_between(r_ab, r_ab))), 0.0_wp, 0.0_wp, 'no turn leads from a frame to itself')
+  end subroutine vector_between_frames
 end program test_rotation

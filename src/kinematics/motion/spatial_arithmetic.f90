@@ -101,9 +101,10 @@ contains
     end do
   end subroutine compose_frames
 
-  !> Frames of steps along fixed axes from plain arrays, up to the first step that has none.
+  !> Frames of steps along fixed axes from plain arrays, up to the first step that has none. Each is made by a constant pose, then a
+  !> turn about z and a slide along z.
   pure subroutine place_screws(m, steps, s, last, q, turn, r, p, axis_w, axis_v)
-    integer, intent(in) :: m                    !< number of steps
+    integer, intent(in) :: m                    !< number of steps of the plan
     type(step_type), intent(in) :: steps(m)     !< steps of the plan
     integer, intent(inout) :: s                 !< first step; then the first one that was not placed
     integer, intent(in) :: last                 !< last step
@@ -113,46 +114,26 @@ contains
     real(wp), intent(inout) :: p(3, 0:m)        !< origins of the frames [m]
     real(wp), intent(inout) :: axis_w(3, m)     !< angular velocity per unit rate
     real(wp), intent(inout) :: axis_v(3, m)     !< velocity of the origin per unit rate
+    real(wp) :: x(3), y(3), z(3), offset(3)
     integer :: i
 
     do while (s <= last)
       if (.not. steps(s)%is_screw) return
       i = steps(s)%parent
-      call place_screw(steps(s), q(steps(s)%coordinate), turn(1, s), turn(2, s), r(:, :, i), p(:, i), &
-                       r(:, :, s), p(:, s), axis_w(:, s), axis_v(:, s))
+      ! axes and origin in the parent frame, which are turned by one product each
+      z = steps(s)%before%r(:, 3)
+      x = turn(1, s)*steps(s)%before%r(:, 1) + turn(2, s)*steps(s)%before%r(:, 2)
+      y = turn(1, s)*steps(s)%before%r(:, 2) - turn(2, s)*steps(s)%before%r(:, 1)
+      offset = steps(s)%before%p + steps(s)%slide*(q(steps(s)%coordinate) + steps(s)%offset)*z
+      r(:, 1, s) = r(:, 1, i)*x(1) + r(:, 2, i)*x(2) + r(:, 3, i)*x(3)
+      r(:, 2, s) = r(:, 1, i)*y(1) + r(:, 2, i)*y(2) + r(:, 3, i)*y(3)
+      r(:, 3, s) = r(:, 1, i)*z(1) + r(:, 2, i)*z(2) + r(:, 3, i)*z(3)
+      p(:, s) = p(:, i) + r(:, 1, i)*offset(1) + r(:, 2, i)*offset(2) + r(:, 3, i)*offset(3)
+      axis_w(:, s) = steps(s)%turn*r(:, 3, s)
+      axis_v(:, s) = steps(s)%slide*r(:, 3, s)
       s = s + 1
     end do
   end subroutine place_screws
-
-  !> The frame of one step along a fixed axis: a constant pose, then a turn about z and a slide along z.
-  pure subroutine place_screw(step, q, c, s, r_parent, p_parent, r, p, axis_w, axis_v)
-    type(step_type), intent(in) :: step      !< the step
-    real(wp), intent(in) :: q                !< its coordinate [rad, m]
-    real(wp), intent(in) :: c                !< cosine of its angle
-    real(wp), intent(in) :: s                !< sine of its angle
-    real(wp), intent(in) :: r_parent(3, 3)   !< rotation of the parent frame, in the axes of frame 0
-    real(wp), intent(in) :: p_parent(3)      !< origin of the parent frame, from that of frame 0 [m]
-    real(wp), intent(out) :: r(3, 3)         !< rotation of the new frame, in the axes of frame 0
-    real(wp), intent(out) :: p(3)            !< origin of the new frame, from that of frame 0 [m]
-    real(wp), intent(out) :: axis_w(3)       !< angular velocity per unit rate, in the axes of frame 0
-    real(wp), intent(out) :: axis_v(3)       !< velocity of the new origin per unit rate, in the axes of frame 0
-    real(wp) :: advance, ex(3), ey(3), ez(3)
-    integer :: i
-
-    advance = step%slide*(q + step%offset)
-    do i = 1, 3
-      ex(i) = r_parent(i, 1)*step%before%r(1, 1) + r_parent(i, 2)*step%before%r(2, 1) + r_parent(i, 3)*step%before%r(3, 1)
-      ey(i) = r_parent(i, 1)*step%before%r(1, 2) + r_parent(i, 2)*step%before%r(2, 2) + r_parent(i, 3)*step%before%r(3, 2)
-      ez(i) = r_parent(i, 1)*step%before%r(1, 3) + r_parent(i, 2)*step%before%r(2, 3) + r_parent(i, 3)*step%before%r(3, 3)
-      p(i) = p_parent(i) + r_parent(i, 1)*step%before%p(1) + r_parent(i, 2)*step%before%p(2) &
-             + r_parent(i, 3)*step%before%p(3) + advance*ez(i)
-    end do
-    r(:, 1) = c*ex + s*ey
-    r(:, 2) = c*ey - s*ex
-    r(:, 3) = ez
-    axis_w = step%turn*ez
-    axis_v = step%slide*ez
-  end subroutine place_screw
 
   !> The frame of one step through a pair that has no fixed axis.
   subroutine place_user(plan, s, state, err)

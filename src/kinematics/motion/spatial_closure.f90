@@ -6,7 +6,7 @@
 !> independent components.
 module mech9_spatial_closure
   use mech9_kinds, only: wp
-  use mech9_rotation, only: turn, turn_back, combine, cross, rotation_vector
+  use mech9_rotation, only: turn, turn_back, combine, cross, rotation_between
   use mech9_plan, only: plan_type, step_type, closure_type, loop_type, constraint_type
   use mech9_state, only: state_type
   implicit none
@@ -267,17 +267,13 @@ contains
     real(wp), intent(out) :: w(3)   !< rotation vector from the target pose to the closing frame, in the axes of frame 0 [rad]
     real(wp), intent(out) :: v(3)   !< from the target pose's origin to that of the closing frame, in the axes of frame 0 [m]
     real(wp), intent(out) :: place(3)           !< the closing frame's origin, from that of frame 0 [m]
-    real(wp) :: r_target(3, 3), r_error(3, 3)
-    integer :: i
+    real(wp) :: r_target(3, 3)
 
     associate (g => closure%target)
       r_target = combine(state%r(:, :, g), closure%in_target%r)
       place = state%p(:, closure%closing)
       v = place - state%p(:, g) - turn(state%r(:, :, g), closure%in_target%p)
-      do i = 1, 3
-        r_error(:, i) = turn_back(r_target, state%r(:, i, closure%closing))
-      end do
-      w = turn(r_target, rotation_vector(r_error))
+      w = rotation_between(r_target, state%r(:, :, closure%closing))
     end associate
   end subroutine error_screw
 
