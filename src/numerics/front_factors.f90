@@ -8,7 +8,7 @@
 module mech9_front_factors
   use mech9_kinds, only: wp
   use mech9_front_plan, only: front_plan_type
-  use mech9_front_kernels, only: gather, eliminate, add_squares, pass_rows, reflect, substitute, take_covariance, &
+  use mech9_front_kernels, only: gather, eliminate, add_squares, add_differences, pass_rows, reflect, substitute, take_covariance, &
     invert, fill_covariance
   implicit none
   private
@@ -37,6 +37,7 @@ module mech9_front_factors
   contains
     procedure :: factorize
     procedure :: find_distances
+    procedure :: distance
     procedure :: solve
     procedure :: least_singular_value
   end type front_factors_type
@@ -142,6 +143,24 @@ contains
     self%nearest = self%plan%columns(self%plan%fronts(f)%column + i - self%plan%fronts(f)%pivot)
     self%least = 1.0_wp/sqrt(most)
   end subroutine find_distances
+
+  !> Root of the sum of squares of the differences between two matrices that have the plan.
+  pure real(wp) function distance(self, a, b)
+    class(front_factors_type), intent(in) :: self   !< with the plan
+    real(wp), intent(in) :: a(self%plan%m, self%plan%n)   !< the first matrix, zero outside the groups of the plan
+    real(wp), intent(in) :: b(self%plan%m, self%plan%n)   !< the second one
+    real(wp) :: total
+    integer :: f
+
+    total = 0.0_wp
+    do f = 1, size(self%plan%fronts)
+      associate (front => self%plan%fronts(f), plan => self%plan)
+        if (front%own > 0) call add_differences(front%own, plan%rows(front%row + 1:), front%columns, &
+                                                plan%columns(front%column + 1:), plan%m, plan%n, a, b, total)
+      end associate
+    end do
+    distance = sqrt(total)
+  end function distance
 
   !> x for which |a x - b| is least.
   pure subroutine solve(self, b, x, remainder)

@@ -5,7 +5,8 @@ module mech9_front_kernels
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: gather, eliminate, add_squares, pass_rows, reflect, substitute, take_covariance, invert, fill_covariance
+  public :: gather, eliminate, add_squares, add_differences, pass_rows, reflect, substitute, take_covariance, invert, &
+    fill_covariance
 
 contains
 
@@ -22,16 +23,13 @@ contains
     real(wp), intent(inout) :: a(m, n)                   !< gets the first rows of the front
     integer :: i, j
 
-    if (own == 6) then
-      if (rows(6) == rows(1) + 5) then
-        ! the rows of one spatial closure
-        do j = 1, n
-          do i = 1, 6
-            a(i, j) = matrix(rows(1) + i - 1, columns(j))
-          end do
+    if (is_spatial_closure(own, rows)) then
+      do j = 1, n
+        do i = 1, 6
+          a(i, j) = matrix(rows(1) + i - 1, columns(j))
         end do
-        return
-      end if
+      end do
+      return
     end if
     do j = 1, n
       do i = 1, own
@@ -39,6 +37,15 @@ contains
       end do
     end do
   end subroutine gather
+
+  !> Whether the own rows of a front are the six rows of one spatial closure, one behind the other.
+  pure logical function is_spatial_closure(own, rows)
+    integer, intent(in) :: own         !< number of own rows
+    integer, intent(in) :: rows(own)   !< their numbers in the matrix
+
+    is_spatial_closure = .false.
+    if (own == 6) is_spatial_closure = rows(6) == rows(1) + 5
+  end function is_spatial_closure
 
   !> Eliminate the pivots of a front by reflections.
   pure subroutine eliminate(m, p, n, a, scales, reciprocals, sign_of_det)
@@ -110,14 +117,56 @@ contains
     real(wp) :: s
     integer :: i, j
 
-    do j = 1, n
+    do j = 1, p
       s = squares(columns(j))
-      do i = 1, min(j, p)
+      do i = 1, j
         s = s + a(i, j)**2
       end do
       squares(columns(j)) = s
     end do
+    do j = p + 1, n
+      if (p == 5) then
+        s = a(1, j)**2 + a(2, j)**2 + a(3, j)**2 + a(4, j)**2 + a(5, j)**2
+      else
+        s = sum(a(:p, j)**2)
+      end if
+      squares(columns(j)) = squares(columns(j)) + s
+    end do
   end subroutine add_squares
+
+  !> Add the squares of the differences between two matrices in the own rows of a front.
+  pure subroutine add_differences(own, rows, n, columns, m_matrix, n_matrix, a, b, total)
+    integer, intent(in) :: own                      !< number of own rows
+    integer, intent(in) :: rows(own)                !< their numbers in the matrix
+    integer, intent(in) :: n                        !< columns of the front
+    integer, intent(in) :: columns(n)               !< their numbers in the matrix
+    integer, intent(in) :: m_matrix                 !< rows of the matrix
+    integer, intent(in) :: n_matrix                 !< columns of the matrix
+    real(wp), intent(in) :: a(m_matrix, n_matrix)   !< the first matrix
+    real(wp), intent(in) :: b(m_matrix, n_matrix)   !< the second one
+    real(wp), intent(inout) :: total                !< the sum of squares
+    real(wp) :: sums(2)
+    integer :: i, j, k
+
+    sums = 0.0_wp
+    if (is_spatial_closure(own, rows)) then
+      do j = 1, n
+        k = columns(j)
+        do i = rows(1), rows(1) + 4, 2
+          sums(1) = sums(1) + (a(i, k) - b(i, k))**2
+          sums(2) = sums(2) + (a(i + 1, k) - b(i + 1, k))**2
+        end do
+      end do
+      total = total + sums(1) + sums(2)
+      return
+    end if
+    do j = 1, n
+      k = columns(j)
+      do i = 1, own
+        total = total + (a(rows(i), k) - b(rows(i), k))**2
+      end do
+    end do
+  end subroutine add_differences
 
   !> Pass the rows that remain on to the parent, where they are zero in the columns that the front does not have.
   pure subroutine pass_rows(m, p, n, a, places, m_parent, n_parent, before, parent)

@@ -4,13 +4,13 @@
 !> which are faster than a call of LAPACK there; larger ones by LAPACK. Three well determined equations in three unknowns
 !> are solved by cofactors, which are faster still; their QR factors are found only where more than a solution is
 !> wanted. Sparse matrices that are clearly regular are factorized by fronts (mech9_front_factors), without exchange of
-!> columns; their factors with column pivoting are found only where the pivots between the largest and the least are wanted.
-!> Nothing is allocated after `create`.
+!> columns; those with column pivoting are found only where other pivots are wanted. Nothing is allocated after `create`.
 module mech9_least_squares
   use mech9_kinds, only: wp
   use mech9_lapack, only: dgeqp3, dormqr
   use mech9_householder, only: householder, reflect, back_substitute
   use mech9_cofactors, only: invert_by_cofactors
+  use mech9_matrix_norms, only: distance_in_full
   use mech9_front_plan, only: front_plan_type
   use mech9_front_factors, only: front_factors_type, new_front_factors
   implicit none
@@ -54,6 +54,7 @@ module mech9_least_squares
     procedure :: least_pivot
     procedure :: least_singular_value
     procedure :: determinant_sign
+    procedure :: distance
   end type least_squares_type
 
 contains
@@ -195,7 +196,6 @@ contains
     class(least_squares_type), intent(inout) :: self   !< the matrix, factorized by fronts
     real(wp), intent(in), optional :: tolerance        !< part of the largest pivot, below which a column is not used
     real(wp), intent(in), optional :: round_off        !< nearly dependent columns may be left out
-
     real(wp) :: least
 
     least = 0.0_wp
@@ -254,6 +254,19 @@ contains
       if (.not. self%lengths(rank + 1) > tolerance*self%lengths(1)) return
     end do
   end function rank_within
+
+  !> Root of the sum of squares of the differences between two matrices of the problem's shape and sparsity.
+  pure real(wp) function distance(self, a, b)
+    class(least_squares_type), intent(in) :: self   !< the least squares problem
+    real(wp), intent(in) :: a(self%m, self%n)       !< the first matrix
+    real(wp), intent(in) :: b(self%m, self%n)       !< the second one
+
+    if (self%fronts%plan%used) then
+      distance = self%fronts%distance(a, b)
+    else
+      distance = distance_in_full(self%m*self%n, a, b)
+    end if
+  end function distance
 
   !> Length of the largest pivot: about the largest singular value; 0 where there is none.
   real(wp) function largest_pivot(self)

@@ -168,6 +168,8 @@ contains
                           new_front_plan(structure%n, structure%sizes, structure%lists, structure%members))
     call full%create(size(a, 1), size(a, 2))
     b = reshape(random_matrix(random, size(b), 1), [size(b)])
+    call test%near(by_fronts%distance(a, 3.0_wp*a), full%distance(a, 3.0_wp*a), 1.0e-14_wp, &
+                   name//': two matrices are as far apart as full ones')
     call by_fronts%factorize(a)
     call full%factorize(a)
     side = b

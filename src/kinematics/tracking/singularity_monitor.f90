@@ -6,6 +6,7 @@ module mech9_singularity_monitor
   use mech9_kinds, only: wp
   use mech9_tolerances, only: harmless_change, near_singular, trusted_change, unbounded_excess
   use mech9_balance, only: balance
+  use mech9_matrix_norms, only: matrix_length
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type, factorize_block
@@ -77,7 +78,7 @@ contains
       worst = unbounded_excess
       return
     end if
-    change = distance(size(monitor%jacobian), work%jacobian, monitor%jacobian)/(harmless_change*monitor%trial_pivot)
+    change = work%equations%distance(work%jacobian, monitor%jacobian)/(harmless_change*monitor%trial_pivot)
     ! the sharper bound costs a solution for each column: it is found only where it may allow longer steps
     if (change > 0.5_wp) change = min(change, relative_change(work, monitor)/trusted_change)
     worst = max(worst, change)
@@ -95,40 +96,6 @@ contains
 
     difference = a - b
   end subroutine subtract
-
-  !> Root of the sum of squares of a matrix.
-  pure real(wp) function length(n, a)
-    integer, intent(in) :: n       !< number of elements
-    real(wp), intent(in) :: a(n)   !< the matrix, element by element
-    integer :: i
-
-    length = 0.0_wp
-    do i = 1, n
-      length = length + a(i)**2
-    end do
-    length = sqrt(length)
-  end function length
-
-  !> Root of the sum of squares of the differences between two matrices.
-  pure real(wp) function distance(n, a, b)
-    integer, intent(in) :: n   !< number of elements
-    real(wp), intent(in) :: a(n)   !< the first matrix, element by element
-    real(wp), intent(in) :: b(n)   !< the second one
-    real(wp) :: sums(4)
-    integer :: i, k
-
-    ! four sums, so that none waits for the one before it
-    sums = 0.0_wp
-    do i = 1, n - 3, 4
-      do k = 1, 4
-        sums(k) = sums(k) + (a(i + k - 1) - b(i + k - 1))**2
-      end do
-    end do
-    do i = n - mod(n, 4) + 1, n
-      sums(1) = sums(1) + (a(i) - b(i))**2
-    end do
-    distance = sqrt((sums(1) + sums(2)) + (sums(3) + sums(4)))
-  end function distance
 
   !> Copy a matrix.
   pure subroutine copy(n, from, to)
@@ -154,7 +121,7 @@ contains
       call work%equations%solve(work%right, monitor%change(:, j))
     end do
     call balance(n, monitor%change)
-    change = length(n*n, monitor%change)
+    change = matrix_length(n*n, monitor%change)
   end function relative_change
 
   !> The step is accepted: the Jacobians at its end are those at the start of the next one.
