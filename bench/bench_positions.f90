@@ -112,7 +112,7 @@ contains
     real(wp) :: begin, positions(3, model%request%time%intervals)
     integer :: i
 
-    call start_driven_motion(model%problem%drives, plan, start, model%request%time%start, driven, err, with_accelerations=.false.)
+    call start_driven_motion(model%problem%drives, plan, start, model%request%time%start, driven, err, derivatives=0)
     call stop_at(err, model%mechanism%title)
     begin = seconds()
     do i = 1, model%request%time%intervals

@@ -79,7 +79,7 @@ contains
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
 
     call start_driven_motion(self%model%problem%drives, self%plan, self%assembled, t, self%driven, err, &
-                             self%requested%derivatives > 1)
+                             self%requested%derivatives)
   end subroutine begin
 
   !> The position at time t, on the same branch.

@@ -7,8 +7,9 @@ module mech9_tolerances
   private
   public :: rank_tolerance, rank_tolerance_for, inexact_dimensions, contradicting_rates, screw_tolerance, least_rate, &
     singular_conditioning, zero_rate, lower_pivot, clearly_less, round_off_of_rates, negligible_distance, &
-    planar_round_off, closed_to_round_off, last_correction, small_turn, unchanged_position, newton_radius, &
-    regular_correction, closed_singular, allowed_gap, largest_closure, least_part_of_carrying, same_assembly, &
+    planar_round_off, closed_to_round_off, last_correction, small_turn, unchanged_position, unchanged_factors, &
+    unchanged_prediction, newton_radius, regular_correction, closed_singular, allowed_gap, largest_closure, &
+    least_part_of_carrying, same_assembly, &
     least_movement, returned_to_start, apparent_motion, closed_after_motion, small_gap, small_part, &
     deciding_conditioning, settled_unknowns, first_displacement, finite_movement, ineffective_dimensions, &
     first_order_gap, unexplained_gap, longest_drive, longest_move, trusted_correction, trusted_rate_change, &
@@ -66,6 +67,11 @@ module mech9_tolerances
   real(wp), parameter :: small_turn = 1.0e-5_wp
   !> A correction by less than this is round-off of poses and Jacobians, which stay as they are.
   real(wp), parameter :: unchanged_position = 8.0_wp*epsilon(1.0_wp)
+  !> A correction by less than this changes solutions with the factors of a Jacobian by no more than their own round-off in chains
+  !> of some dozens of steps; the factors stay.
+  real(wp), parameter :: unchanged_factors = 32.0_wp*epsilon(1.0_wp)
+  !> The same for rates from which only the next position is predicted: twelve digits are more than the prediction has.
+  real(wp), parameter :: unchanged_prediction = 1.0e-12_wp
   !> Newton's method takes over from residuals below this.
   real(wp), parameter :: newton_radius = 1.0e-8_wp
   !> A larger correction of Newton's method from there shows a singular position.

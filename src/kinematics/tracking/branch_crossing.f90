@@ -53,7 +53,7 @@ contains
     crossing%exists = .false.
     do trial = 1, most_trials
       probe = stepper
-      probe%with_accelerations = .true.
+      probe%derivatives = 2
       if (trial > 1) call step_until(drives, plan, probe, t - half, crossing%exists, err)
       if (allocated(err)) return
       if (trial == 1 .or. crossing%exists) call try_crossing(drives, plan, probe, t, half, crossing, err)

@@ -7,7 +7,7 @@
 module mech9_branch_stepping
   use mech9_kinds, only: wp, long
   use mech9_tolerances, only: creeping_move, creeping_step, least_step, longest_drive, longest_move, small_correction, &
-    trusted_contraction, trusted_correction, trusted_rate_change
+    trusted_contraction, trusted_correction, trusted_rate_change, unchanged_factors, unchanged_prediction
   use mech9_error, only: error_type
   use mech9_masks, only: numbers_of
   use mech9_drive, only: drive_slot_type
@@ -37,7 +37,7 @@ module mech9_branch_stepping
     real(wp), allocatable :: per_unit(:)          !< (M) reciprocals of the coordinates' units
     integer, allocatable :: drives(:)             !< numbers of the drives that move closed chains
     integer :: last_block = huge(1)               !< the blocks after this one are left as they are
-    logical :: with_accelerations = .true.        !< find accelerations at every position, not only near singular ones
+    integer :: derivatives = 2                    !< order of the highest derivative in time that is found at every position
     logical :: accelerations_found = .false.      !< those in the state belong to its position
     real(wp) :: reach = huge(1.0_wp)              !< length of a step that will probably be accepted [s]
     real(wp) :: goal = 0.0_wp                     !< time towards which the last step went [s]
@@ -146,7 +146,7 @@ contains
         stepper%state%t = stepper%predictor%t + 0.5_wp*remaining
       if (h >= abs(remaining)) stepper%state%t = t
       h = abs(stepper%state%t - stepper%predictor%t)
-      complete = stepper%with_accelerations .or. any(is_near(stepper%monitors))
+      complete = stepper%derivatives > 1 .or. any(is_near(stepper%monitors))
       call try_step(drives, plan, stepper, complete, worst, refused_by, no_drive, err)
       if (no_drive) return
       if (worst <= 1.0_wp) then
@@ -221,10 +221,14 @@ contains
     logical, intent(out) :: no_drive            !< the step failed because a drive has no value
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(newton_outcome_type) :: newton
+    real(wp) :: unchanged
     integer :: b
 
     refused_by = 0
     worst = 0.0_wp
+    unchanged = unchanged_factors
+    ! only the prediction of the next position depends on these rates
+    if (.not. complete .and. stepper%derivatives == 0) unchanged = unchanged_prediction
     call set_inputs(drives, stepper%state%t, stepper%state%q, stepper%state%dq, stepper%state%ddq, err)
     no_drive = allocated(err)
     if (no_drive) return
@@ -235,7 +239,7 @@ contains
       associate (block => plan%blocks(b), work => stepper%work(b))
         call predict(block, stepper%predictor, stepper%state)
         ! Newton's method goes on to round-off, because beside a singular position a small residual means a large error
-        call close_block(plan, block, stepper%state, work, newton, err, 1)
+        call close_block(plan, block, stepper%state, work, newton, err, 1, unchanged)
         stepper%iterations = stepper%iterations + newton%iterations
         stepper%correction = max(stepper%correction, newton%correction)
         ! a pair may have no pose at the end of a step that is too long

@@ -40,21 +40,21 @@ module mech9_driven_motion
 
 contains
 
-  !> Begin at an assembled position, with rates and accelerations there. Later outputs need no accelerations.
-  subroutine start_driven_motion(drives, plan, assembled, t, driven, err, with_accelerations)
+  !> Begin at an assembled position, with rates and accelerations there. Later outputs may need fewer derivatives.
+  subroutine start_driven_motion(drives, plan, assembled, t, driven, err, derivatives)
     type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: assembled   !< an assembled position
     real(wp), intent(in) :: t   !< time of the start [s]
     type(driven_motion_type), intent(out) :: driven   !< the driven motion
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    logical, intent(in), optional :: with_accelerations   !< find accelerations at every position; true unless given
+    integer, intent(in), optional :: derivatives   !< order of the highest derivative found at every position; 2 unless given
     integer :: b
     logical :: starts_singular
 
     starts_singular = .false.
     driven%branch_stepper_type = new_branch_stepper(drives, plan, assembled)
-    if (present(with_accelerations)) driven%with_accelerations = with_accelerations
+    if (present(derivatives)) driven%derivatives = derivatives
     driven%slides = has_slides(plan%blocks, plan)
     driven%state%t = t
     call set_inputs(drives, t, driven%state%q, driven%state%dq, driven%state%ddq, err)
@@ -238,17 +238,16 @@ contains
   pure subroutine leave_crossing(driven)
     type(driven_motion_type), intent(inout) :: driven   !< the driven motion
     real(wp) :: largest
-    integer :: b
-    logical :: with_accelerations
+    integer :: b, derivatives
 
     do b = 1, size(driven%monitors)
       largest = driven%monitors(b)%largest_pivot
       driven%crossing%stepper_beyond%monitors(b)%largest_pivot = max(largest, &
         driven%crossing%stepper_beyond%monitors(b)%largest_pivot)
     end do
-    with_accelerations = driven%with_accelerations
+    derivatives = driven%derivatives
     driven%branch_stepper_type = driven%crossing%stepper_beyond
-    driven%with_accelerations = with_accelerations
+    driven%derivatives = derivatives
     driven%crossing%exists = .false.
     driven%crossings = driven%crossings + 1
     ! the crossing is still near, but it is behind

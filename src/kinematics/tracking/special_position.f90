@@ -61,7 +61,7 @@ contains
     usual = max(usual, speed)
     if (.not. speed > 0.0_wp) return            ! at rest nothing tells the direction of the motion
     probe = stepper
-    probe%with_accelerations = .true.
+    probe%derivatives = 2
     probe%last_block = b
     do i = 1, most_steps
       if (.not. speed > 0.0_wp) return
