@@ -185,7 +185,7 @@ contains
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     integer :: k
 
-    call make_plan(mechanism, partition, state%q, new_plan, new_state, err, requested=requested, length=plan%length)
+    call make_plan(mechanism, partition, state%q, new_plan, new_state, err, requested=requested, known=plan)
     if (allocated(err)) then
       if (err%code == exit_structure .or. err%code == exit_assembly) err%code = exit_singular
       return

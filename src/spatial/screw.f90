@@ -53,18 +53,21 @@ contains
   !> Orthonormal basis of the smallest space of screws that holds the given ones and is closed under
   !> the bracket. The motion stays in it at all positions of the joints. Its dimension is 3 for planar and spherical chains,
   !> 1 to 3 for translations, 2 for cylindrical chains, 4 for planar chains with a translation across the plane, else 6.
-  subroutine generated_algebra(screws, tolerance, basis, rank)
+  subroutine generated_algebra(screws, tolerance, basis, rank, most)
     real(wp), intent(in) :: screws(:, :)   !< (6, n), lengths scaled to order one
     real(wp), intent(in) :: tolerance      !< part of the largest singular value below which one does not count
     real(wp), intent(out) :: basis(6, 6)   !< the first `rank` columns count
     integer, intent(out) :: rank           !< dimension of the space
+    integer, intent(in), optional :: most  !< the dimension at most; 6 unless given
     real(wp) :: extended(6, 21)
-    integer :: i, j, n, before
+    integer :: i, j, n, before, enough
 
+    enough = 6
+    if (present(most)) enough = most
     call orthonormal_basis(screws, tolerance, basis, rank)
     do
       before = rank
-      if (rank == 6) return
+      if (rank >= enough) return
       n = rank
       extended(:, 1:n) = basis(:, 1:n)
       do j = 2, before

@@ -25,13 +25,15 @@ module mech9_loop_rank
 
 contains
 
-  !> Set `offers` of all closures, whose ranks and loops must be known.
-  subroutine find_offers(plan, guess)
+  !> Find the number of independent equations of closures, whose ranks and loops must be known.
+  subroutine find_offers(plan, guess, known)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: guess(:)   !< (M) guesses of all coordinates [rad, m]
+    logical, intent(in) :: known(:)   !< (closures) the number is known already
     integer :: c, n
 
     do c = 1, size(plan%closures)
+      if (known(c)) cycle
       n = size(plan%closures(c)%loop%steps)
       plan%closures(c)%independent_equations = min(plan%closures(c)%rank, n)
       if (plan%closures(c)%rank <= never_overconstrained .or. n > longest_loop) cycle

@@ -19,16 +19,22 @@ module mech9_loop_space
 
 contains
 
-  !> Find rank and rows of all closures. The screws are taken at random coordinates near the guesses: the space that they
+  !> Find rank and rows of the closures. The screws are taken at random coordinates near the guesses: the space that they
   !> generate does not depend on the position, and the loops need not be closed.
-  subroutine find_loop_spaces(plan, guess, err)
+  subroutine find_loop_spaces(plan, guess, ranked, complete, err)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     real(wp), intent(in) :: guess(:)   !< (M) guesses of the coordinates [rad, m]
+    logical, intent(in) :: ranked(:)   !< (closures) the rank is known already
+    logical, intent(in) :: complete(:)   !< (closures) the rows are known, too
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(state_type) :: state
     type(random_type) :: random
     integer :: c, k
 
+    do c = 1, size(plan%closures)
+      plan%constraints(c)%item%equations = plan%closures(c)%rank
+    end do
+    if (all(complete)) return
     state = new_state(plan)
     do k = 1, plan%n_coordinates
       state%q(k) = guess(k)
@@ -38,15 +44,17 @@ contains
     call plan%arithmetics(1)%kind%place(plan, 1, plan%n_coordinates, state, err)
     if (allocated(err)) return
     do c = 1, size(plan%closures)
-      call find_space(plan, state, plan%closures(c))
+      if (complete(c)) cycle
+      call find_space(plan, state, merge(plan%closures(c)%rank, 6, ranked(c)), plan%closures(c))
       plan%constraints(c)%item%equations = plan%closures(c)%rank
     end do
   end subroutine find_loop_spaces
 
   !> Find rank and rows of one closure from the screws of its loop.
-  subroutine find_space(plan, state, closure)
+  subroutine find_space(plan, state, most, closure)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
+    integer, intent(in) :: most   !< the rank where it is known, else 6
     type(closure_type), intent(inout) :: closure   !< the closure; gets its rank and rows
     real(wp) :: screws(6, 2*size(closure%loop%steps))
     integer :: i, n, s
@@ -71,7 +79,7 @@ contains
         n = n - 1
       end if
     end do
-    call generated_algebra(screws(:, :n), within, closure%rows, closure%rank)
+    call generated_algebra(screws(:, :n), within, closure%rows, closure%rank, most)
     if (closure%rank == 6) closure%rows = 0.0_wp
   end subroutine find_space
 end module mech9_loop_space

@@ -18,6 +18,7 @@ module mech9_planning
   use mech9_frame_motion, only: place_all
   use mech9_planar_layout, only: lay_out_in_plane
   use mech9_planar_blocks, only: lay_out_planes
+  use mech9_known_loops, only: take_known_loops
   use mech9_loop_space, only: find_loop_spaces
   use mech9_loop_rank, only: find_offers
   use mech9_tree_paths, only: split_loops
@@ -42,7 +43,7 @@ contains
   !> Make the plan of a mechanism and its assembled start, the positions of all coordinates for the given independent ones.
   !> Fails with exit_structure if the independent coordinates do not determine the dependent ones, and with exit_assembly if
   !> the chains do not close.
-  subroutine make_plan(mechanism, partition, start, plan, state, err, in_space, requested, length)
+  subroutine make_plan(mechanism, partition, start, plan, state, err, in_space, requested, known)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates, and the order of computation
     real(wp), intent(in) :: start(:)        !< (M) values of the independent coordinates, guesses of the others [rad, m]
@@ -51,17 +52,24 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     logical, intent(in), optional :: in_space   !< use spatial arithmetic even where planar arithmetic is possible
     type(requested_type), intent(in), optional :: requested   !< requested quantities; blocks that do not serve them are left out
-    real(wp), intent(in), optional :: length   !< the mechanism's size, where it is known from an earlier plan [m]
+    type(plan_type), intent(in), optional :: known   !< the plan in other independent coordinates, for size and properties of loops
     type(generic_position_type) :: generic
+    logical, allocatable :: ranked(:), complete(:)
     logical :: spatial
 
-    call lay_out_frames(mechanism, partition, start, plan, length)
+    if (present(known)) then
+      call lay_out_frames(mechanism, partition, start, plan, known%length)
+    else
+      call lay_out_frames(mechanism, partition, start, plan)
+    end if
     call set_in_space(plan)
     state = new_state(plan)
     state%q = start
-    call find_loop_spaces(plan, start, err)
+    allocate (ranked(size(plan%closures)), complete(size(plan%closures)), source=.false.)
+    if (present(known)) call take_known_loops(known, plan, ranked, complete)
+    call find_loop_spaces(plan, start, ranked, complete, err)
     if (allocated(err)) return
-    call find_offers(plan, start)
+    call find_offers(plan, start, ranked)
     call propose_blocks(plan, state, err)
     if (allocated(err)) return
     call set_in_space(plan)
