@@ -149,13 +149,16 @@ contains
     if (present(long_name)) self%long_names(self%count)%text = long_name
   end subroutine append
 
-  !> Make room for a few more texts.
+  !> Make room for as many texts again.
   pure subroutine grow(texts)
-    type(string_type), allocatable, intent(inout) :: texts(:)  !< texts, with eight more places afterwards
+    type(string_type), allocatable, intent(inout) :: texts(:)  !< texts, with more places afterwards
     type(string_type), allocatable :: grown(:)
+    integer :: i
 
-    allocate (grown(size(texts) + 8))
-    grown(:size(texts)) = texts
+    allocate (grown(2*size(texts) + 8))
+    do i = 1, size(texts)
+      call move_alloc(texts(i)%text, grown(i)%text)
+    end do
     call move_alloc(grown, texts)
   end subroutine grow
 
