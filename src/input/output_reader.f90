@@ -34,6 +34,7 @@ contains
     output%reaction_pairs = get_integers(group, 'reaction_pairs')
     output%reactions = get_logical(group, 'reactions') .or. size(output%reaction_pairs) > 0
     output%drive_forces = get_logical(group, 'drive_forces')
+    output%force_arrows = get_logical(group, 'force_arrows')
     if (output%compression > 9) &
       call diagnostics%add(span_of(group, 'compression', 1), 'compression goes from 0 (none) to 9 (the smallest file)')
     if (output%derivatives > 2) call diagnostics%add(span_of(group, 'derivatives', 1), 'derivatives is 0 (positions), '// &

@@ -39,10 +39,12 @@ module mech9_request
     logical :: reactions = .false.               !< the wrenches of pairs have columns
     integer, allocatable :: reaction_pairs(:)    !< coordinates of these pairs; none listed: all
     logical :: drive_forces = .false.            !< the forces of drives have columns
+    logical :: force_arrows = .false.            !< pictures show the forces in pairs as arrows
   contains
     procedure :: recorded
     procedure :: reacting
     procedure :: with_forces
+    procedure :: drawn_forces
   end type output_settings_type
 
   !> The results of a problem that the user wants.
@@ -80,12 +82,22 @@ contains
     reacting(self%reaction_pairs) = .true.
   end function reacting
 
-  !> Whether forces are recorded, which depend on the motion of all links.
+  !> Whether forces are recorded or drawn, which depend on the motion of all links.
   pure logical function with_forces(self)
     class(output_settings_type), intent(in) :: self   !< the output settings
 
-    with_forces = self%reactions .or. self%drive_forces
+    with_forces = self%reactions .or. self%drive_forces .or. self%force_arrows
   end function with_forces
+
+  !> Whether the force in each pair is drawn.
+  pure function drawn_forces(self, n_coordinates)
+    class(output_settings_type), intent(in) :: self   !< the output settings
+    integer, intent(in) :: n_coordinates              !< M
+    logical :: drawn_forces(n_coordinates)
+
+    drawn_forces = self%force_arrows
+    if (self%force_arrows .and. self%reactions) drawn_forces = self%reacting(n_coordinates)
+  end function drawn_forces
 
   !> Time of output i; the last one is exactly the end.
   pure real(wp) function time(self, i)

@@ -7,6 +7,7 @@ module mech9_task
   use mech9_kept_rows, only: kept_rows_type
   use mech9_model, only: model_type
   use mech9_result_units, only: unit_of
+  use mech9_masks, only: numbers_of
   use mech9_film, only: film_type, new_film
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -173,9 +174,13 @@ contains
 
     call announce(options, model, plan, requested)
     if (model%request%output%with_forces() .and. .not. options%has('quiet')) call print_forceless(error_unit, model%mechanism)
-    if (pictures%any_wanted()) &
+    if (pictures%any_wanted() .and. model%request%output%force_arrows) then
+      source%film = new_film(model%mechanism, model%problem%partition%independent(), model%request%time%intervals + 1, &
+                             source%columns, numbers_of(model%request%output%drawn_forces(size(model%mechanism%pairs))))
+    else if (pictures%any_wanted()) then
       source%film = new_film(model%mechanism, model%problem%partition%independent(), model%request%time%intervals + 1, &
                              source%columns)
+    end if
     call results%open(options, model, diagnostics%sources(1)%text, source%program_name, source%columns, err)
     ready = .not. allocated(err)
     if (.not. ready) call diagnostics%add_error(err)

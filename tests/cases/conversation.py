@@ -309,7 +309,7 @@ def short_answers(talks):
              ('kind [polynomial]', 'har'), ('mean (deg) [0]', ''), ('amplitude (deg): ', '?'), ('For example: 30 (', '20'),
              ('angular_frequency (deg/s)', '360'), ('phase (deg) [0]', '?'), ('For example: 90 (begins at', ''),
              ('guesses', ''), ('point 1, name', 'none'), ('start', ''), ('end', ''), ('intervals', '10'),
-             ('drive_forces which of them', 'energies'), ("'energies' is none of these names", ''), ('table [', '')]
+             ('force_arrows which of them', 'energies'), ("'energies' is none of these names", ''), ('table [', '')]
     text = text_saved(talks, talks.mech9k, steps, 'short answers')
     for part in ("angle_unit='deg'", "links=1, 4, kind='prismatic', axis=-1, 0, 0 /", "kind='revolute', axis=0, 0, 1, zero=-1, 0, 0",
                  "links=3, 4, kind='revolute', point=.4, 0, 0, axis=0, 0, 1 /", "kind='harmonic'"):

@@ -238,6 +238,53 @@ def changes(checks, mech9k):
         checks.true((unique == other).all(), 'rotation does not change which components are unique')
 
 
+def energies(checks, mech9k):
+    """A drive's work over a whole turn of a machine without friction is zero. Sums of evenly spaced values integrate a periodic
+    function with the accuracy of its highest harmonics."""
+    groups = [(group, items) for group, items in example('slider_crank')
+              if group != 'output'] + [('body', {'link': [2], 'mass': [2.0], 'centre': [0.1, 0.02, 0]}),
+                                       ('body', {'link': [3], 'mass': [1.0], 'centre': [0.4, 0.1, 0], 'inertia': [0.1, 0.1, 0.2, 0, 0, 0]}),
+                                       ('body', {'link': [4], 'mass': [3.0]}), ('gravity', {'acceleration': [2.0, -9.81, 0]}),
+                                       ('load', {'kind': ['coordinate'], 'coordinate': [4], 'stiffness': [50.0], 'rest': [1.0]}),
+                                       ('load', {'kind': ['spring'], 'links': [1, 3], 'position': [0.2, 1.5, 0], 'second_position': [0.5, 0, 0],
+                                                 'stiffness': [30.0], 'free_length': [0.4]})]
+    table, _, _ = forces_of(mech9k, write(groups))
+    torque = table['F1'][:-1]
+    checks.true(abs(torque.sum()) <= 1e-11 * np.abs(torque).sum(), 'the work of a drive over a whole turn is zero', torque.sum())
+
+
+def choices(checks, mech9d):
+    """The forces at the start of a free motion do not depend on which coordinate is independent."""
+    found = []
+    for k in (1, 2, 4):
+        text = ('&mechanism links=4, coordinates=4 /\n' + revolute(1, '1,2', '0,0,0') + revolute(2, '2,3', '0.3,0.4,0')
+                + revolute(3, '3,4', '1.1,0.8,0') + revolute(4, '1,4', '1,0,0') + f'&structure cq={k} /\n'
+                + f'&initial coordinate={k}, position=0, velocity=0 /\n&body link=3, mass=2, centre=0.5,0.7,0.2, inertia=1,1,1,0,0,0 /\n'
+                + '&gravity acceleration=1,-9.81,2 /\n&time start=0, end=1, intervals=1 /\n')
+        table, _, _ = forces_of(mech9d, text)
+        found.append(wrenches(table, 0, 4))
+    for other in found[1:]:
+        checks.true(np.abs(other - found[0]).max() <= 1e-11 * np.abs(found[0]).max(), 'forces do not depend on the independent coordinate',
+                    np.abs(other - found[0]).max())
+
+
+def arrows(checks, mech9k):
+    """Drawings and films with an arrow for each force."""
+    text = text_of(os.path.join(TREE, 'examples', 'slider_crank', 'slider_crank.nml')).replace('&output', '&body link=4, mass=1 /\n&output')
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'case.nml')
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        for pairs, count in ((), 4), (('--set', 'output.reaction_pairs=1,4'), 2):
+            for option, picture in (('--sketch', 'drawn.svg'), ('--animate', 'film.svg'), ('--animate', 'film.html')):
+                done = run(mech9k, path, '--no-write', '--set', 'output.force_arrows=.true.', *pairs, option, picture, folder=folder)
+                if checks.true(done.returncode == 0, f'{picture} with arrows of forces', done.stderr):
+                    drawn = text_of(os.path.join(folder, picture))
+                    checks.equal(drawn.count('class="force'), count, f'{picture} has an arrow for each pair')
+        done = run(mech9k, path, '--no-write', '--sketch', 'without.svg', folder=folder)
+        checks.true('class="force' not in text_of(os.path.join(folder, 'without.svg')), 'no arrows unless they are asked for')
+
+
 def requests(checks, mech9k, mech9d):
     """The columns that a request leads to, and the requests that are refused."""
     text = text_of(os.path.join(TREE, 'examples', 'slider_crank', 'slider_crank.nml')).replace('&output', '&body link=4, mass=1 /\n&output')
@@ -282,6 +329,9 @@ def main():
     uniqueness(checks, mech9k, mech9d)
     by_hand(checks, mech9k, mech9d)
     changes(checks, mech9k)
+    energies(checks, mech9k)
+    choices(checks, mech9d)
+    arrows(checks, mech9k)
     requests(checks, mech9k, mech9d)
     checks.finish()
 

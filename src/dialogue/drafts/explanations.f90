@@ -290,6 +290,8 @@ module mech9_explanations
                   'The forces and moments of these pairs alone are recorded.', '1, 4'), &
     explanation_type('output', 'drive_forces', '', &
                   'The results then hold the force, or the torque, that each drive needs: what a motor must give.', 'yes'), &
+    explanation_type('output', 'force_arrows', '', &
+                  'Drawing and film then show the forces in the pairs as arrows; the longest arrow is the largest force.', 'yes'), &
     explanation_type('user', 'parameters', '', &
                   'Every user procedure of yours receives these numbers, so that they can be changed without linking it '// &
                   'again.', '0.1, 2.0')]

@@ -35,6 +35,8 @@ module mech9_film
     type(string_type), allocatable :: units(:)   !< units of the columns
     real(wp), allocatable :: values(:, :)        !< (columns,frames) values of the columns
     real(wp), allocatable :: paths(:, :, :)      !< (3,points,path points) places of the points [m]
+    integer, allocatable :: force_pairs(:)       !< pairs whose forces are drawn, by their coordinates
+    real(wp), allocatable :: forces(:, :, :)     !< (3,pairs,frames) these forces; not allocated where none are drawn [N]
     integer, private :: n_outputs = 0            !< number of outputs so far
     integer, private :: expected = 1             !< expected number of outputs
     integer, private :: frame_stride = 1, path_stride = 1
@@ -51,11 +53,12 @@ module mech9_film
 contains
 
   !> A new film with room for the frames of a run, and for the values of its columns if these are given.
-  pure function new_film(mechanism, independent, outputs, columns) result(film)
+  pure function new_film(mechanism, independent, outputs, columns, force_pairs) result(film)
     type(mechanism_type), intent(in) :: mechanism        !< the mechanism
     logical, intent(in) :: independent(:)                !< (M) the coordinate is independent
     integer, intent(in) :: outputs                       !< expected number of outputs
     type(columns_type), intent(in), optional :: columns  !< columns of the rows that are taken, the time first
+    integer, intent(in), optional :: force_pairs(:)      !< pairs whose forces are drawn; none unless given
     type(film_type) :: film
     integer :: n, frames, points
 
@@ -75,23 +78,28 @@ contains
       film%units = columns%units(2:columns%count)
     end if
     allocate (film%values(size(film%names), frames), source=0.0_wp)
+    if (present(force_pairs)) then
+      film%force_pairs = force_pairs
+      allocate (film%forces(3, size(force_pairs), frames), source=0.0_wp)
+    end if
     allocate (film%r(3, 3, n, frames), film%p(3, n, frames), source=0.0_wp)
     allocate (film%paths(3, size(mechanism%points), points), film%latest(3, size(mechanism%points), 3), source=0.0_wp)
   end function new_film
 
   !> The next output of the run is kept if its turn has come or if it is the last one.
-  pure subroutine take(self, mechanism, plan, state, row)
+  pure subroutine take(self, mechanism, plan, state, row, force)
     class(film_type), intent(inout) :: self        !< poses and values at the outputs of the run
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     type(state_type), intent(in) :: state          !< positions known
     real(wp), intent(in) :: row(:)                 !< the columns at this output, as far as the film has room for them
+    real(wp), intent(in), optional :: force(:, :)  !< (3,M) forces in the pairs, where they are drawn [N]
     logical :: last
 
     last = self%n_outputs + 1 == self%expected
     if (mod(self%n_outputs, self%path_stride) == 0 .or. last) call take_points(self, mechanism, plan, state)
     if (self%n_frames < size(self%times) .and. (mod(self%n_outputs, self%frame_stride) == 0 .or. last)) &
-      call take_frame(self, plan, state, row)
+      call take_frame(self, plan, state, row, force)
     self%n_outputs = self%n_outputs + 1
   end subroutine take
 
@@ -149,17 +157,19 @@ contains
   end subroutine curve_to
 
   !> The present position and the values of the columns are kept as a frame.
-  pure subroutine take_frame(self, plan, state, row)
+  pure subroutine take_frame(self, plan, state, row, force)
     class(film_type), intent(inout) :: self  !< poses and values at the outputs of the run
     type(plan_type), intent(in) :: plan      !< the plan of the mechanism
     type(state_type), intent(in) :: state    !< position and motion of the mechanism
     real(wp), intent(in) :: row(:)           !< (columns) values of the columns at this output, the time first
+    real(wp), intent(in), optional :: force(:, :)  !< (3,M) forces in the pairs [N]
     real(wp) :: omega(3), v(3)
     integer :: i
 
     self%n_frames = self%n_frames + 1
     self%times(self%n_frames) = state%t
     self%values(:, self%n_frames) = row(2:size(self%names) + 1)
+    if (present(force) .and. allocated(self%forces)) self%forces(:, :, self%n_frames) = force(:, self%force_pairs)
     do i = 1, plan%n_links
       call link_motion(plan, state, i, self%r(:, :, i, self%n_frames), self%p(:, i, self%n_frames), omega, v)
     end do

@@ -5,7 +5,8 @@
 module mech9_picture_style
   use mech9_kinds, only: wp, pi
   use mech9_xml_text, only: decimal
-  use mech9_scene, only: in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_leader, in_damper, as_coil, as_cup
+  use mech9_scene, only: in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_leader, in_damper, as_coil, as_cup, &
+    in_force
   implicit none
   private
   public :: style_type, styles, dark_colours, light_colours, colour_of, ink, style_sheet, mark_svg, coil_corners, cup_corners
@@ -46,7 +47,8 @@ module mech9_picture_style
     style_type('cam', '', 0.5_wp, .true.), &
     style_type('stand'), style_type('ring'), style_type('ball'), style_type('dot'), style_type('centre'), &
     style_type('free'), style_type('name'), style_type('number'), style_type('coordinate'), &
-    style_type('input'), style_type('leader'), style_type('damper', ink, 1.4_wp), style_type('coil'), style_type('cup')]
+    style_type('input'), style_type('leader'), style_type('damper', ink, 1.4_wp), style_type('coil'), style_type('cup'), &
+    style_type('force', '#c00000', 2.2_wp)]
 
   !> The width of an edge [px].
   real(wp), parameter, public :: edge = 1.2_wp
@@ -79,6 +81,7 @@ contains
       css = css//rule_of(styles(i), symbol)//nl
     end do
     css = css//rule_of(styles(in_damper), symbol)//nl
+    css = css//rule_of(styles(in_force), symbol)//nl
     css = css//'.mech9 .plate.sheet path{fill-opacity:.85}.mech9 .end path{fill:#f2f2f2}'//nl
     do i = 1, size(dark_colours)
       css = css//colour_rules('.l'//achar(48 + i), dark_colours(i), light_colours(i))//nl

@@ -9,7 +9,7 @@ module mech9_scene
   public :: open_path, closed_path, facing_path, segments, spring, mark, label
   public :: in_trace, in_curve, in_guide, in_ground, in_hatch, in_plate, in_block, in_tube, in_pin, in_pin_end, in_spring, &
             in_thread, in_cross, in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
-            as_coordinate, as_input, as_leader, in_damper, as_coil, as_cup, in_pairs
+            as_coordinate, as_input, as_leader, in_damper, as_coil, as_cup, in_force, in_pairs
 
   !> The shape of an item. A facing path is a flat outline that is drawn only if its front, round which it runs
   !> counterclockwise, is turned to the viewer. Segments join each node of an odd number to the next one.
@@ -20,7 +20,7 @@ module mech9_scene
                         in_tube = 8, in_pin = 9, in_pin_end = 10, in_spring = 11, in_thread = 12, in_cross = 13, in_cam = 14, &
                         as_stand = 15, as_ring = 16, as_ball = 17, as_dot = 18, as_centre = 19, as_free = 20, &
                         as_name = 21, as_number = 22, as_coordinate = 23, as_input = 24, as_leader = 25, &
-                        in_damper = 26, as_coil = 27, as_cup = 28
+                        in_damper = 26, as_coil = 27, as_cup = 28, in_force = 29
 
   !> One thing to draw.
   type :: item_type

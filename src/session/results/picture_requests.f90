@@ -6,6 +6,7 @@ module mech9_picture_requests
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_force_arrows, only: take_arrows, add_force_arrows
   use mech9_film, only: film_type, new_film
   use mech9_view, only: view_type, read_view
   use mech9_skeleton, only: skeleton_type, make_skeleton
@@ -144,19 +145,25 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(projection_type) :: projection
     type(scene_type) :: scene
+    type(film_type) :: shown
     logical :: page
 
     page = moving .and. kind_of(path) == 'html'
     call fit_projection(model%mechanism, film, skeleton, view, page .and. .not. planar, projection)
     call make_scene(model%mechanism, film, skeleton, projection, planar, self%with_masses, scene)
+    shown = film
+    if (allocated(film%forces)) then
+      call take_arrows(model%mechanism, film, skeleton%size, projection, shown)
+      call add_force_arrows(model%mechanism, shown, scene)
+    end if
     if (.not. moving) then
-      call save_sketch(path, model%mechanism%title, scene, film, projection, 1, err)
+      call save_sketch(path, model%mechanism%title, scene, shown, projection, 1, err)
     else if (page) then
-      call save_html_film(path, model%mechanism%title, scene, film, projection, planar, err)
+      call save_html_film(path, model%mechanism%title, scene, shown, projection, planar, err)
     else if (kind_of(path) == 'gif') then
-      call save_gif_film(path, model%mechanism%title, scene, film, projection, err)
+      call save_gif_film(path, model%mechanism%title, scene, shown, projection, err)
     else
-      call save_svg_film(path, model%mechanism%title, scene, film, projection, err)
+      call save_svg_film(path, model%mechanism%title, scene, shown, projection, err)
     end if
   end subroutine save_one
 

@@ -94,7 +94,12 @@ contains
       end if
       if (simulation%with_error) row(next + 1) = simulation%error
     end associate
-    if (allocated(self%film)) call self%film%take(self%simulation%model%mechanism, plan, state, row)
+    if (.not. allocated(self%film)) return
+    if (self%forces%wanted) then
+      call self%film%take(self%simulation%model%mechanism, plan, state, row, self%forces%reactions%force)
+    else
+      call self%film%take(self%simulation%model%mechanism, plan, state, row)
+    end if
   end subroutine row_at
 
   !> Whether the user has interrupted the program.
