@@ -6,7 +6,10 @@ module mech9_block_cholesky
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: block_cholesky_type, new_block_cholesky
+  public :: block_cholesky_type, new_block_cholesky, clearly_positive
+
+  !> Least `least_part` with which corrections by the residual converge: each leaves an error of round-off over it.
+  real(wp), parameter :: clearly_positive = 1.0e-12_wp
 
   !> A matrix, then its factors. Blocks below the diagonal are stored by columns, in the order of elimination.
   type :: block_cholesky_type

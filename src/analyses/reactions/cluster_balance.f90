@@ -9,7 +9,7 @@
 module mech9_cluster_balance
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross
-  use mech9_block_cholesky, only: block_cholesky_type, new_block_cholesky
+  use mech9_block_cholesky, only: block_cholesky_type, new_block_cholesky, clearly_positive
   use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type
   use mech9_joint_geometry, only: joint_geometry_type
   implicit none
@@ -62,8 +62,6 @@ contains
     type(reaction_plan_type), intent(in) :: reactions    !< the plan of inverse dynamics
     real(wp), intent(in) :: length                       !< the mechanism's size [m]
     logical, intent(out) :: regular                      !< the factors can be used
-    !> Least square of the distance of a column of M from the others, as a part of its length: corrections converge above it.
-    real(wp), parameter :: least_square = 1.0e-12_wp
     integer :: i, k, side
 
     call self%factors%clear()
@@ -76,7 +74,7 @@ contains
       call add_pair(self, cluster%nodes(:, i), i)
     end do
     call self%factors%factorize()
-    regular = self%factors%least_part > least_square
+    regular = self%factors%least_part > clearly_positive
   end subroutine set_position
 
   !> Add the blocks of a pair to M^T M.

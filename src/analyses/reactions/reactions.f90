@@ -8,8 +8,9 @@ module mech9_reactions
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_failure, only: failure_unbalanced
-  use mech9_tolerances, only: rank_tolerance_for, balanced, balanced_singular
-  use mech9_rotation, only: cross
+  use mech9_tolerances, only: rank_tolerance_for, balanced, balanced_singular, planar_round_off
+  use mech9_block_cholesky, only: clearly_positive
+  use mech9_rotation, only: cross, turn_back
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -19,6 +20,7 @@ module mech9_reactions
   use mech9_required_wrenches, only: find_required
   use mech9_joint_geometry, only: joint_geometry_type, new_joint_geometry, find_geometry
   use mech9_cluster_balance, only: cluster_balance_type, new_cluster_balance
+  use mech9_planar_balance, only: planar_balance_type, new_planar_balance
   use mech9_singular_cluster, only: singular_cluster_type, decompose_cluster
   implicit none
   private
@@ -35,6 +37,7 @@ module mech9_reactions
     type(motion_view_type) :: view                !< the motion as loads read it
     type(force_sum_type) :: sum                   !< of the loads
     type(cluster_balance_type), allocatable :: balances(:)   !< of the clusters
+    type(planar_balance_type), allocatable :: in_plane(:)    !< of the clusters of a planar mechanism
     real(wp), allocatable :: link_force(:, :)     !< (3,N) scratch: what links require, with clusters that stand on them [N]
     real(wp), allocatable :: link_moment(:, :)    !< (3,N) scratch: about the links' places [N m]
     real(wp), allocatable :: total_force(:, :)    !< (3,N) scratch: the same with all links beyond [N]
@@ -63,9 +66,10 @@ contains
       self%sum = new_force_sum(n, m)
     end associate
     self%geometry = new_joint_geometry(plan)
-    allocate (self%balances(size(reactions%clusters)))
+    allocate (self%balances(size(reactions%clusters)), self%in_plane(merge(size(reactions%clusters), 0, plan%planar%used)))
     do c = 1, size(reactions%clusters)
       self%balances(c) = new_cluster_balance(reactions, reactions%clusters(c))
+      if (plan%planar%used) self%in_plane(c) = new_planar_balance(reactions%clusters(c))
     end do
   end function new_reactions
 
@@ -79,6 +83,7 @@ contains
     type(reactions_type), intent(inout) :: self         !< gets the wrenches
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: c
+    logical :: done
 
     call find_geometry(plan, reactions, state, self%geometry)
     call find_required(mechanism, plan, reactions, state, self%geometry%place, self%view, self%sum, self%link_force, &
@@ -86,6 +91,10 @@ contains
     if (allocated(err)) return
     call carry_inwards(plan, reactions, self)
     do c = 1, size(reactions%clusters)
+      done = .false.
+      if (plan%planar%used) call solve_in_plane(plan, reactions, reactions%clusters(c), self%balances(c)%held, self%in_plane(c), &
+                                                self, done)
+      if (done) cycle
       call solve_cluster(plan, reactions, reactions%clusters(c), self%balances(c), self, err)
       if (allocated(err)) then
         err%failure%t = state%t
@@ -128,6 +137,78 @@ contains
       end associate
     end do
   end subroutine carry_inwards
+
+  !> The wrenches of the pairs of a planar cluster across whose plane nothing acts. `done` is false where something does, and
+  !> beside singular positions.
+  pure subroutine solve_in_plane(plan, reactions, cluster, held, balance, self, done)
+    type(plan_type), intent(in) :: plan                     !< the plan of the mechanism
+    type(reaction_plan_type), intent(in) :: reactions       !< the plan of inverse dynamics
+    type(joined_cluster_type), intent(in) :: cluster        !< the cluster
+    logical, intent(in) :: held(:)                          !< (pairs) the coordinate is dependent
+    type(planar_balance_type), intent(inout) :: balance     !< its equations in the plane
+    type(reactions_type), intent(inout) :: self             !< with what its links require; gets the wrenches
+    logical, intent(out) :: done                            !< the wrenches are found
+    real(wp) :: error
+    integer :: i, k
+
+    call lay_in_plane(plan%planar%axes, reactions, cluster, held, self, balance, done)
+    if (.not. done) return
+    call balance%factorize(cluster, held)
+    done = balance%factors%least_part > clearly_positive
+    if (done) call balance%solve(cluster, held, error)
+    if (done) done = error <= balanced
+    if (.not. done) return
+    associate (axes => plan%planar%axes)
+      do i = 1, size(cluster%pairs)
+        k = cluster%pairs(i)
+        self%force(:, k) = balance%wrenches(1, i)*axes(:, 1) + balance%wrenches(2, i)*axes(:, 2)
+        self%moment(:, k) = (reactions%length*balance%wrenches(3, i))*axes(:, 3)
+      end do
+    end associate
+  end subroutine solve_in_plane
+
+  !> The axes, arms and requirements of a cluster in the axes of its plane. `flat` is false where some of them are across it, by
+  !> more than round-off.
+  pure subroutine lay_in_plane(axes, reactions, cluster, held, self, balance, flat)
+    real(wp), intent(in) :: axes(3, 3)                      !< of the plane; the third is its normal
+    type(reaction_plan_type), intent(in) :: reactions       !< the plan of inverse dynamics
+    type(joined_cluster_type), intent(in) :: cluster        !< the cluster
+    logical, intent(in) :: held(:)                          !< (pairs) the coordinate is dependent
+    type(reactions_type), intent(in) :: self                !< with geometry, requirements and loads
+    type(planar_balance_type), intent(inout) :: balance     !< gets axes, arms, requirements, and the wrenches of loads
+    logical, intent(out) :: flat                            !< nothing is across the plane
+    real(wp) :: d(3), f(3), m(3), across, largest
+    integer :: i, k, side
+
+    across = 0.0_wp
+    largest = 0.0_wp
+    do i = 1, size(cluster%links)
+      f = turn_back(axes, self%link_force(:, cluster%links(i)))
+      m = turn_back(axes, self%link_moment(:, cluster%links(i)))/reactions%length
+      balance%required(:, i) = [f(1), f(2), m(3)]
+      across = max(across, abs(f(3)), abs(m(1)), abs(m(2)))
+      largest = max(largest, abs(f(1)), abs(f(2)), abs(m(3)))
+    end do
+    flat = across <= planar_round_off*largest
+    do i = 1, size(cluster%pairs)
+      if (.not. flat) return
+      k = cluster%pairs(i)
+      f = turn_back(axes, self%geometry%axis(1:3, k))
+      m = turn_back(axes, self%geometry%axis(4:6, k))
+      balance%axis(:, i) = [f(1), f(2), m(3)]
+      across = max(abs(f(3)), abs(m(1)), abs(m(2)))
+      do side = 1, 2
+        d = self%geometry%point(:, k) - self%geometry%place(:, reactions%pairs(k)%links(side))
+        d = turn_back(axes, d)/reactions%length
+        balance%arm(:, side, i) = d(1:2)
+        across = max(across, abs(d(3)))
+      end do
+      flat = across <= planar_round_off
+      balance%wrenches(:, i) = 0.0_wp
+      if (held(i) .and. self%sum%any_generalized) &
+        balance%wrenches(:, i) = (self%sum%generalized(k)/self%geometry%length(k))*balance%axis(:, i)
+    end do
+  end subroutine lay_in_plane
 
   !> The wrenches of the pairs of a cluster.
   subroutine solve_cluster(plan, reactions, cluster, balance, self, err)
