@@ -52,7 +52,7 @@ contains
     integer :: trial
 
     do trial = 1, 60
-      call random_structure(random, mod(trial, 2) == 0, 1 + below(random, 6), structure)
+      call random_structure(random, mod(trial, 2) == 0, 2 + below(random, 5), structure)
       call finished(random, structure, model)
       call check(random, model, 'a random mechanism')
     end do
