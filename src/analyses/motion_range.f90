@@ -2,8 +2,8 @@
 module mech9_motion_range
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
-  use mech9_drive, only: drive_slot_type
-  use mech9_polynomial_drive, only: polynomial_drive_type
+  use mech9_law, only: drive_slot_type
+  use mech9_polynomial_law, only: polynomial_law_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_special_position, only: dead_point
@@ -107,7 +107,7 @@ contains
     integer, intent(in) :: coordinate   !< number of the coordinate that moves
     real(wp), intent(in) :: direction   !< +1 for the upper end, -1 for the lower one
     type(drive_slot_type), allocatable, intent(out) :: drives(:)   !< of all independent coordinates
-    type(polynomial_drive_type) :: drive
+    type(polynomial_law_type) :: drive
     integer :: i, k
 
     allocate (drives(size(plan%independent)))

@@ -6,13 +6,16 @@
 !> earlier blocks from which the loop starts, give the right-hand sides for B = dq/dq_i, for which no frame of the block is moved.
 module mech9_planar_block
   use mech9_kinds, only: wp
-  use mech9_plan, only: plan_type
+  use mech9_plan, only: plan_type, block_type
+  use mech9_state, only: state_type
   use mech9_planar_plan, only: planar_step_type
+  use mech9_planar_motion, only: planar_accelerations
   use mech9_planar_formulas, only: step_column, step_velocity, step_acceleration
   use mech9_planar_lagrange, only: carry_columns
   implicit none
   private
-  public :: planar_block_type, loop_part_type, list_loops, fill_columns, add_earlier, take_rates, move_frames
+  public :: planar_block_type, loop_part_type, list_loops, fill_columns, add_earlier, take_rates, move_frames, &
+    move_with_drives
 
   !> A step in a loop, or a frame of an earlier block from which the loop starts.
   type :: loop_part_type
@@ -239,4 +242,17 @@ contains
         call carry_columns(n_b, entries(s), entries(s + 1) - 1, parent_entry, steps(s), slide(:, s), x, y, b, columns)
     end do
   end subroutine move_frames
+
+  !> Accelerations of the frames of a block with driven coordinates, with no accelerations of its unknowns.
+  pure subroutine move_with_drives(plan, block, state)
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+    type(block_type), intent(in) :: block      !< the block
+    type(state_type), intent(inout) :: state   !< with poses, rates and driven accelerations; gets accelerations of the frames
+    integer :: i
+
+    do i = 1, size(block%unknowns)
+      state%ddq(block%coordinates(i)) = 0.0_wp
+    end do
+    call planar_accelerations(plan%planar, block%first_step, block%last_step, state%dq, state%ddq, state%planar)
+  end subroutine move_with_drives
 end module mech9_planar_block

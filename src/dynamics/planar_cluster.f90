@@ -12,10 +12,11 @@ contains
 
   !> Eliminate the accelerations of a cluster; its base gets the inertia and the wrench that are left. `found` is false where A is
   !> not positive definite beyond round-off.
-  pure subroutine eliminate_cluster(n, held, n_frames, frames, base, m, n_entries, first, local, s, f, inertia, wrench, amount, &
-                                    factors, column, rest, rigid, found)
+  pure subroutine eliminate_cluster(n, n_held, held, n_frames, frames, base, m, n_entries, first, local, s, f, inertia, &
+                                    wrench, amount, factors, column, rest, rigid, found)
     integer, intent(in) :: n                       !< number of independent coordinates of the cluster
-    integer, intent(in) :: held(:)                 !< those of them that are driven
+    integer, intent(in) :: n_held                  !< number of those of them that are driven
+    integer, intent(in) :: held(n_held)            !< these
     integer, intent(in) :: n_frames                !< number of its frames that carry anything
     integer, intent(in) :: frames(n_frames)        !< these frames
     integer, intent(in) :: base                    !< frame on which the cluster stands; nothing passes to frame 0
@@ -62,7 +63,7 @@ contains
       if (base == 0) cycle
       call add_to_parent(x, y, inertia(:, k), wrench(:, k), amount(:, k), inertia(:, base), wrench(:, base), amount(:, base))
     end do
-    if (size(held) > 0) call hold_columns(n, held, 3, factors, column, rest, rigid)
+    if (n_held > 0) call hold_columns(n, held, 3, factors, column, rest, rigid)
     call divide_columns(m, n, 3, factors, column, rest, rigid, found)
     if (base == 0 .or. .not. found) return
     do j = 1, n

@@ -10,7 +10,8 @@ module mech9_planar_dynamics
   use mech9_block_solver, only: block_work_type
   use mech9_planar_lagrange, only: planar_body_type, planar_body, spread_columns, add_bodies => add_inertia, &
     planar_wrench, add_force => add_link_force, planar_kinetic_energy
-  use mech9_planar_block, only: planar_block_type, list_loops, fill_columns, add_earlier, take_rates, move_frames
+  use mech9_planar_block, only: planar_block_type, list_loops, fill_columns, add_earlier, take_rates, move_frames, &
+    move_with_drives
   use mech9_planar_articulated, only: new_planar_work, set_bodies, go_inward, go_outward, &
     pass_inward, pass_outward
   use mech9_cluster_bodies, only: find_rest, find_accelerations
@@ -146,12 +147,7 @@ contains
     call move_frames(m, n_b, plan%planar%steps, block%first_step, block%last_step, dynamics%first, &
                      dynamics%parent_entry, dynamics%carries_columns, jacobian%b, state%dq, state%planar%pose, &
                      state%planar%slide, jacobian%flat, state%planar%velocity, state%planar%acceleration)
-    if (flat%driven) then
-      do i = 1, size(block%unknowns)
-        state%ddq(block%coordinates(i)) = 0.0_wp
-      end do
-      call planar_accelerations(plan%planar, block%first_step, block%last_step, state%dq, state%ddq, state%planar)
-    end if
+    if (flat%driven) call move_with_drives(plan, block, state)
     call planar_bias_rates(plan%planar, block%first_closure, block%last_closure, state%planar, work%right)
     call work%equations%solve(work%right, work%change)
     do i = 1, n
@@ -250,9 +246,10 @@ contains
             cluster%rest = 0.0_wp
             if (work%sum%any_generalized) call find_rest(stage%steps, stage%coordinates, dynamics%first, &
                                                          dynamics%local, work%jacobian%b, work%sum%generalized, cluster%rest)
-            call eliminate_cluster(size(stage%places), stage%held, size(stage%frames), stage%frames, stage%base, m, n_entries, &
-                                   dynamics%first, dynamics%local, columns, motion%pose, own%inertia, own%wrench, own%amount, &
-                                   cluster%factors, cluster%column, cluster%rest, cluster%rigid, found)
+            call eliminate_cluster(size(stage%places), size(stage%held), stage%held, size(stage%frames), stage%frames, &
+                                   stage%base, m, n_entries, dynamics%first, dynamics%local, columns, motion%pose, &
+                                   own%inertia, own%wrench, own%amount, cluster%factors, cluster%column, cluster%rest, &
+                                   cluster%rigid, found)
           else if (stage%driven) then
             call pass_inward(stage%first_step, stage%last_step, m, steps, motion%pose, own%inertia, own%wrench, own%amount)
           else

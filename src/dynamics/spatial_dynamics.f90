@@ -201,9 +201,10 @@ contains
             cluster%rest = 0.0_wp
             if (work%sum%any_generalized) call find_rest(stage%steps, stage%coordinates, dynamics%first, dynamics%local, &
                                                          jacobian%b, work%sum%generalized, cluster%rest)
-            call eliminate_cluster(size(stage%places), stage%held, size(stage%frames), stage%frames, stage%base, m, n_entries, &
-                                   dynamics%first, dynamics%local, jacobian%w, jacobian%v, state%p, own%inertia, own%wrench, &
-                                   own%amount, cluster%factors, cluster%column, cluster%rest, cluster%rigid, found)
+            call eliminate_cluster(size(stage%places), size(stage%held), stage%held, size(stage%frames), stage%frames, &
+                                   stage%base, m, n_entries, dynamics%first, dynamics%local, jacobian%w, jacobian%v, state%p, &
+                                   own%inertia, own%wrench, own%amount, cluster%factors, cluster%column, cluster%rest, &
+                                   cluster%rigid, found)
           else if (stage%driven) then
             call pass_inward(stage%first_step, stage%last_step, m, chains%parent, state%p, own%inertia, own%wrench, own%amount)
           else

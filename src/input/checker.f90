@@ -15,7 +15,7 @@ module mech9_checker
   private
   public :: check_document
 
-  integer, parameter :: kind_length = 16  !< length of the longest kind of a group
+  integer, parameter :: kind_length = 36  !< length of the longest kind of a group with its law
 
 contains
 
@@ -118,22 +118,33 @@ contains
     is_matrix = group%name == 'structure' .and. item%name == 'c'
   end function is_matrix
 
-  !> The kind that a group gives; empty where it gives none, or an unknown one.
+  !> The kind that a group gives, and after a blank its law, as in law:harmonic; empty where it gives none, or an unknown one.
   pure function kind_of(group) result(kind)
     type(group_type), intent(in) :: group  !< the group of the data file
-    character(len=kind_length) :: kind
+    character(len=kind_length) :: kind, law
+
+    kind = word_in(group, 'kind')
+    law = word_in(group, 'law')
+    if (law /= '') kind = trim(kind)//' law:'//law
+  end function kind_of
+
+  !> The word that a group gives under a name, in lower case; empty where it gives none, or an unknown one.
+  pure function word_in(group, name) result(word)
+    type(group_type), intent(in) :: group  !< the group of the data file
+    character(len=*), intent(in) :: name   !< a name with a list of words
+    character(len=kind_length) :: word
     integer, allocatable :: rows(:)
     integer :: i
 
-    kind = ''
-    rows = find_item_rows(group%name, 'kind')
+    word = ''
+    rows = find_item_rows(group%name, name)
     if (size(rows) == 0) return
     do i = 1, size(group%items)
-      if (group%items(i)%name /= 'kind' .or. size(group%items(i)%values) /= 1) cycle
+      if (group%items(i)%name /= name .or. size(group%items(i)%values) /= 1) cycle
       if (group%items(i)%values(1)%kind /= value_text) cycle
-      if (known_word(group%items(i)%values(1)%text, item_table(rows(1)))) kind = lower(trim(group%items(i)%values(1)%text))
+      if (known_word(group%items(i)%values(1)%text, item_table(rows(1)))) word = lower(trim(group%items(i)%values(1)%text))
     end do
-  end function kind_of
+  end function word_in
 
   !> Check each item of a group against the row of its name.
   pure subroutine check_items(group, kind, diagnostics)
@@ -151,13 +162,26 @@ contains
           call report_unknown_name(group, item, diagnostics)
         else if (row > 0) then
           call check_item(item, item_table(row), diagnostics)
+        else if (index(item_table(rows(1))%kinds, 'law:') == 1 .and. index(kind, 'law:') == 0) then
+          call diagnostics%add(item%span, ''''//item%name//''' needs law='''//trim(item_table(rows(1))%kinds(5:))//'''')
         else if (kind /= '') then
           call diagnostics%add(item%span, ''''//item%name//''' does not belong to '//trim(group%name)// &
-                               's of kind '''//trim(kind)//'''')
+                               's of kind '''//trim(in_words(kind))//'''')
         end if
       end associate
     end do
   end subroutine check_items
+
+  !> A kind with its law, for a message: coordinate' with law='harmonic.
+  pure function in_words(kind) result(words)
+    character(len=*), intent(in) :: kind   !< as kind_of gives it
+    character(len=len(kind) + 20) :: words
+    integer :: i
+
+    words = kind
+    i = index(kind, ' law:')
+    if (i > 0) words = kind(:i - 1)//''' with law='''//kind(i + 5:)
+  end function in_words
 
   !> Report a name that is not in the group, with the nearest known name or the group to which it belongs.
   pure subroutine report_unknown_name(group, item, diagnostics)

@@ -233,6 +233,10 @@ contains
     character(len=:), allocatable :: text
 
     text = trim(row%help)
-    if (row%kinds /= '') text = '('//word_list(trim(row%kinds))//') '//text
+    if (index(row%kinds, 'law:') == 1) then
+      text = '(law '//trim(row%kinds(5:))//') '//text
+    else if (row%kinds /= '') then
+      text = '('//word_list(trim(row%kinds))//') '//text
+    end if
   end function meaning_text
 end module mech9_data_help

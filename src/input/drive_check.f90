@@ -4,7 +4,7 @@ module mech9_drive_check
   use mech9_error, only: error_type
   use mech9_text, only: to_text
   use mech9_model, only: model_type
-  use mech9_drive, only: drive_type
+  use mech9_law, only: law_type
   use mech9_result_units, only: unit_of
   use mech9_independent_choice, only: find_choice
   use mech9_partition, only: partition_type
@@ -129,7 +129,7 @@ contains
     type(group_type), intent(in) :: group                 !< the group &initial
     character(len=*), intent(in) :: name                  !< 'position' or 'velocity'
     type(model_type), intent(in) :: model                 !< all that was read
-    class(drive_type), intent(in) :: drive                !< of the same coordinate
+    class(law_type), intent(in) :: drive                !< of the same coordinate
     real(wp), intent(in) :: given                         !< initial value [rad, m; per s]
     real(wp), intent(in) :: driven                        !< value of the drive at the start [rad, m; per s]
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong

@@ -1,4 +1,4 @@
-!> Drives from the groups &drive of a checked document.
+!> Drives from the groups &drive of a checked document, and laws of time for other groups.
 module mech9_drive_reader
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -7,19 +7,24 @@ module mech9_drive_reader
   use mech9_explanation, only: explain
   use mech9_partition, only: partition_type, driven_coordinate
   use mech9_pair, only: pair_slot_type
-  use mech9_drive, only: drive_slot_type
-  use mech9_polynomial_drive, only: polynomial_drive_type
-  use mech9_harmonic_drive, only: harmonic_drive_type
-  use mech9_table_drive, only: table_drive_type
+  use mech9_law, only: law_type, drive_slot_type
+  use mech9_polynomial_law, only: polynomial_law_type
+  use mech9_harmonic_law, only: harmonic_law_type
+  use mech9_table_law, only: table_law_type
+  use mech9_cam_curves, only: curve_number
+  use mech9_segments_law, only: segments_law_type
   use mech9_procedure_drive, only: procedure_drive_type, make_procedure_drive
   use mech9_source, only: span_type
   use mech9_document, only: document_type, group_type, item_type
-  use mech9_lookup, only: groups_named, get_integer, get_real, get_reals, get_text, span_of
+  use mech9_lookup, only: groups_named, get_integer, get_real, get_reals, get_text, count_values, get_word, has_name, span_of
   use mech9_table_file, only: read_table_file
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_drives, files_of_drives, unit_of_coordinate
+  public :: read_drives, read_law, files_of_drives, unit_of_coordinate
+
+  !> A period is that of the segments where it differs by no more than this part.
+  real(wp), parameter :: same_period = 1.0e-9_wp
 
 contains
 
@@ -97,36 +102,52 @@ contains
     real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
     type(drive_slot_type), intent(out) :: slot            !< gets the drive; stays empty where an error was reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-    type(polynomial_drive_type) :: polynomial
     type(procedure_drive_type) :: user_drive
     type(error_type), allocatable :: err
 
-    select case (get_text(group, 'kind'))
-    case ('polynomial')
-      polynomial%coefficients = unit*get_reals(group, 'coefficients')
-      allocate (slot%drive, source=polynomial)
-    case ('harmonic')
-      allocate (slot%drive, source=harmonic_drive_type(mean=unit*get_real(group, 'mean'), &
-                                                       amplitude=unit*get_real(group, 'amplitude'), &
-                                                       angular_frequency=angle_unit*get_real(group, 'angular_frequency'), &
-                                                       phase=angle_unit*get_real(group, 'phase')))
-    case ('table')
-      call read_table_drive(document, group, unit, slot, diagnostics)
-    case ('user')
+    if (get_text(group, 'kind') == 'user') then
       call make_procedure_drive(get_integer(group, 'coordinate'), start, parameters, user_drive, err)
       if (.not. allocated(err)) allocate (slot%drive, source=user_drive)
-    end select
-    if (allocated(err)) call diagnostics%add(span_of(group, 'kind', 1), err%message, err%code)
+      if (allocated(err)) call diagnostics%add(span_of(group, 'kind', 1), err%message, err%code)
+    else
+      call read_law(document, group, get_text(group, 'kind'), angle_unit, unit, slot%drive, diagnostics)
+    end if
   end subroutine read_drive
 
-  !> A drive through the points of a file.
-  subroutine read_table_drive(document, group, unit, slot, diagnostics)
+  !> A law of time by the names of a group; it stays unallocated where an error was reported, and for a constant.
+  subroutine read_law(document, group, name, angle_unit, unit, law, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(group_type), intent(in) :: group                 !< the group of the data file
-    real(wp), intent(in) :: unit                          !< unit of the coordinate in the file [rad or m]
-    type(drive_slot_type), intent(inout) :: slot          !< gets the drive; stays empty where an error was reported
+    character(len=*), intent(in) :: name                  !< of the law
+    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    real(wp), intent(in) :: unit                          !< unit of the law's values in the file [rad, m or 1]
+    class(law_type), allocatable, intent(out) :: law      !< the law
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-    type(table_drive_type) :: drive
+    type(polynomial_law_type) :: polynomial
+
+    select case (name)
+    case ('polynomial')
+      polynomial%coefficients = unit*get_reals(group, 'coefficients')
+      allocate (law, source=polynomial)
+    case ('harmonic')
+      allocate (law, source=harmonic_law_type(mean=unit*get_real(group, 'mean'), amplitude=unit*get_real(group, 'amplitude'), &
+                                              angular_frequency=angle_unit*get_real(group, 'angular_frequency'), &
+                                              phase=angle_unit*get_real(group, 'phase')))
+    case ('table')
+      call read_table(document, group, unit, law, diagnostics)
+    case ('segments')
+      call read_segments(group, unit, law, diagnostics)
+    end select
+  end subroutine read_law
+
+  !> A law through the points of a file.
+  subroutine read_table(document, group, unit, law, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    real(wp), intent(in) :: unit                          !< unit of the law's values in the file [rad, m or 1]
+    class(law_type), allocatable, intent(inout) :: law    !< gets the law; stays unallocated where an error was reported
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(table_law_type) :: table
     type(error_type), allocatable :: err
     real(wp), allocatable :: t(:), q(:)
     type(span_type) :: span
@@ -135,16 +156,71 @@ contains
     span = span_of(group, 'file', 1)
     call read_table_file(beside(document%source%name, get_text(group, 'file')), span, t, q, ok, diagnostics)
     if (.not. ok) return
-    call build_spline(t, unit*q, drive%spline, err)
+    call build_spline(t, unit*q, table%spline, err)
     if (allocated(err)) then
       call explain(err)
       call diagnostics%add(span, err%message, err%code)
     else
-      allocate (slot%drive, source=drive)
+      allocate (law, source=table)
     end if
-  end subroutine read_table_drive
+  end subroutine read_table
 
-  !> The files that drives are read from, in a document that may be unchecked yet.
+  !> A law in segments.
+  subroutine read_segments(group, unit, law, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    real(wp), intent(in) :: unit                          !< unit of the law's values in the file [rad, m or 1]
+    class(law_type), allocatable, intent(inout) :: law    !< gets the law; stays unallocated where an error was reported
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(segments_law_type) :: segments
+    integer :: i, known, n
+
+    known = diagnostics%known()
+    segments%times = get_reals(group, 'times')
+    segments%values = unit*get_reals(group, 'values')
+    n = size(segments%times) - 1
+    do i = 1, n
+      if (.not. segments%times(i + 1) > segments%times(i)) call diagnostics%add(span_of(group, 'times', i + 1), &
+        'times must increase, and '//to_text(segments%times(i + 1))//' does not come after '//to_text(segments%times(i)))
+    end do
+    if (size(segments%values) /= n + 1) &
+      call diagnostics%add(span_of(group, 'values'), 'there are '//to_text(size(segments%values))//' values for '// &
+                           to_text(n + 1)//' times; give one for each time')
+    if (count_values(group, 'laws') /= n .and. count_values(group, 'laws') /= 1) &
+      call diagnostics%add(span_of(group, 'laws'), 'there are '//to_text(count_values(group, 'laws'))//' laws for '// &
+                           to_text(n)//' segments; give one for each segment, or one for all')
+    if (has_name(group, 'period')) call check_period(group, segments%times, diagnostics)
+    if (diagnostics%known() > known) return
+    segments%repeats = has_name(group, 'period')
+    allocate (segments%curves(n))
+    do i = 1, n
+      segments%curves(i) = curve_number(get_word(group, 'laws', min(i, count_values(group, 'laws'))))
+      if (segments%curves(i) == curve_number('dwell') .and. abs(segments%values(i + 1) - segments%values(i)) > 0.0_wp) &
+        call diagnostics%add(span_of(group, 'values', i + 1), 'segment '//to_text(i)//' dwells, but its values differ: '// &
+                             to_text(segments%values(i)/unit)//' and '//to_text(segments%values(i + 1)/unit))
+    end do
+    if (diagnostics%known() == known) allocate (law, source=segments)
+  end subroutine read_segments
+
+  !> Report a period that leaves a gap between the last segment and the first one, or cuts segments off.
+  subroutine check_period(group, times, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    real(wp), intent(in) :: times(:)                      !< ends of the segments [s]
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    real(wp) :: period, span
+
+    period = get_real(group, 'period')
+    span = times(size(times)) - times(1)
+    if (abs(period - span) <= same_period*span) return
+    if (period > span) then
+      call diagnostics%add(span_of(group, 'period', 1), 'the segments last '//to_text(span)//' s, which leaves a gap in a '// &
+                           'period of '//to_text(period)//' s; add a segment, for instance a dwell')
+    else
+      call diagnostics%add(span_of(group, 'period', 1), 'the segments last '//to_text(span)//' s, longer than a period of '// &
+                           to_text(period)//' s')
+    end if
+  end subroutine check_period
+
+  !> The files that drives and laws of loads are read from, in a document that may be unchecked yet.
   pure subroutine files_of_drives(document, paths)
     type(document_type), intent(in) :: document              !< the data file as groups and items
     type(string_type), allocatable, intent(out) :: paths(:)  !< path of each file, from the working directory
@@ -156,7 +232,7 @@ contains
     n = 0
     do i = 1, size(paths)
       associate (group => document%groups(i))
-        if (group%name /= 'drive' .or. .not. allocated(group%items)) cycle
+        if ((group%name /= 'drive' .and. group%name /= 'load') .or. .not. allocated(group%items)) cycle
         call take_file(document%source%name, group%items, paths, n)
       end associate
     end do
@@ -166,7 +242,7 @@ contains
   !> Append the file that a drive names; if it names several, the last one counts.
   pure subroutine take_file(data_file, items, paths, n)
     character(len=*), intent(in) :: data_file     !< path of the data file
-    type(item_type), intent(in) :: items(:)       !< items of the group &drive
+    type(item_type), intent(in) :: items(:)       !< items of the group
     type(string_type), intent(inout) :: paths(:)  !< the paths so far; the first n are in use
     integer, intent(inout) :: n                   !< how many paths are in use
     integer :: i

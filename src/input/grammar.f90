@@ -30,8 +30,8 @@ module mech9_grammar
     logical :: needed             !< must be given wherever its kind allows it
     character(len=22) :: default  !< the default as it would be written; in parentheses where it is a rule
     character(len=9) :: range     !< the range of values: empty, >0, >=0, >=1, or >0 and <1
-    character(len=72) :: words    !< the texts allowed, with blanks between; empty: any
-    character(len=40) :: kinds    !< the kinds of the group it belongs to; empty: all
+    character(len=108) :: words   !< the texts allowed, with blanks between; empty: any
+    character(len=40) :: kinds    !< the kinds of the group it belongs to, or the laws of time, as in law:harmonic; empty: all
     character(len=120) :: help
     character(len=44) :: example  !< a value as it would be written
     logical :: seldom = .false.   !< the conversation asks for it only on request
@@ -41,6 +41,8 @@ module mech9_grammar
   integer, parameter :: unlimited = huge(1)
   logical, parameter :: needed = .true., optional = .false.
   character(len=*), parameter :: screws = 'revolute prismatic helical'
+  character(len=*), parameter :: motion_laws = 'dwell constant-velocity harmonic cycloidal polynomial345 polynomial4567 '// &
+                                               'modified-sine modified-trapezoidal'
 
   type(group_row_type), parameter :: group_table(*) = [ &
     group_row_type('mechanism', .false., '', 'both', 'title, numbers of links and coordinates, unit of angles'), &
@@ -128,7 +130,7 @@ module mech9_grammar
                   'its position in the frame of the link', '1.0, 0.3, 0'), &
     item_row_type('drive', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
                   'number of the independent coordinate', '5'), &
-    item_row_type('drive', 'kind', 'text', 1, 1, '', needed, '', '', 'polynomial harmonic table user', '', &
+    item_row_type('drive', 'kind', 'text', 1, 1, '', needed, '', '', 'polynomial harmonic table segments user', '', &
                   'the form of the function', '''polynomial'''), &
     item_row_type('drive', 'coefficients', 'real', 1, unlimited, 'q, q/s, ...', needed, '', '', '', 'polynomial', &
                   'c0, c1, c2, ... of q = c0 + c1 t + c2 t^2 + ...', '0.5, 2.0'), &
@@ -142,7 +144,15 @@ module mech9_grammar
                   'angle of the sine at t = 0; 0 starts at the mean, with q increasing where the amplitude is positive', '1.57'), &
     item_row_type('drive', 'file', 'text', 1, 1, 's, q', needed, '', '', '', 'table', &
                   'a text file with t and q in each line, in the folder of the data file; a smooth curve joins the points', &
-                  '''motion.dat''')]
+                  '''motion.dat'''), &
+    item_row_type('drive', 'times', 'real', 2, unlimited, 's', needed, '', '', '', 'segments', &
+                  'the times at which segments begin and end, increasing', '0, 0.5, 1'), &
+    item_row_type('drive', 'values', 'real', 2, unlimited, 'q', needed, '', '', '', 'segments', &
+                  'the coordinate at these times', '0, 0.02, 0.02'), &
+    item_row_type('drive', 'laws', 'text', 1, unlimited, '', needed, '', '', motion_laws, 'segments', &
+                  'the motion law of each segment, or one for all', '''cycloidal'''), &
+    item_row_type('drive', 'period', 'real', 1, 1, 's', optional, '(no repetition)', '>0', '', 'segments', &
+                  'the segments repeat after this time, which is that from the first to the last of times', '1')]
 
   type(item_row_type), parameter :: body_items(*) = [ &
     item_row_type('body', 'link', 'integer', 1, 1, '', needed, '', '>=1', '', '', 'the link it belongs to', '3'), &
@@ -188,7 +198,31 @@ module mech9_grammar
     item_row_type('load', 'damping', 'real', 1, 1, 'N s/m', optional, '0', '>=0', '', 'spring', &
                   'force per rate of its length', '1.5'), &
     item_row_type('load', 'damping', 'real', 1, 1, 'N s/m, N m s', optional, '0', '', '', 'coordinate', &
-                  'torque or force per dq/dt; per rad/s for angles, also with angle_unit=''deg''', '1.5')]
+                  'torque or force per dq/dt; per rad/s for angles, also with angle_unit=''deg''', '1.5'), &
+    item_row_type('load', 'law', 'text', 1, 1, '', optional, '''constant''', '', 'constant polynomial harmonic table segments', &
+                  'force torque spring coordinate', 'the load is multiplied by this law of time, with the names of &drive', &
+                  '''harmonic''', seldom=.true.), &
+    item_row_type('load', 'coefficients', 'real', 1, unlimited, '1, 1/s, ...', needed, '', '', '', 'law:polynomial', &
+                  'c0, c1, c2, ... of the factor c0 + c1 t + c2 t^2 + ...', '0, 0.5'), &
+    item_row_type('load', 'mean', 'real', 1, 1, '', optional, '0', '', '', 'law:harmonic', &
+                  'the mean in the factor mean + amplitude sin(angular_frequency t + phase)', '1'), &
+    item_row_type('load', 'amplitude', 'real', 1, 1, '', needed, '', '', '', 'law:harmonic', &
+                  'largest distance of the factor from the mean', '1'), &
+    item_row_type('load', 'angular_frequency', 'real', 1, 1, 'angle/s', needed, '', '', '', 'law:harmonic', &
+                  'growth of the angle of the sine per second', '6.28'), &
+    item_row_type('load', 'phase', 'real', 1, 1, 'angle', optional, '0', '', '', 'law:harmonic', &
+                  'angle of the sine at t = 0', '1.57'), &
+    item_row_type('load', 'file', 'text', 1, 1, 's, 1', needed, '', '', '', 'law:table', &
+                  'a text file with t and the factor in each line, beside the data file; a smooth curve joins the points', &
+                  '''force.dat'''), &
+    item_row_type('load', 'times', 'real', 2, unlimited, 's', needed, '', '', '', 'law:segments', &
+                  'the times at which segments begin and end, increasing', '0, 0.5, 1'), &
+    item_row_type('load', 'values', 'real', 2, unlimited, '', needed, '', '', '', 'law:segments', &
+                  'the factor at these times', '0, 1, 1'), &
+    item_row_type('load', 'laws', 'text', 1, unlimited, '', needed, '', '', motion_laws, 'law:segments', &
+                  'the motion law of each segment, or one for all', '''cycloidal'''), &
+    item_row_type('load', 'period', 'real', 1, 1, 's', optional, '(no repetition)', '>0', '', 'law:segments', &
+                  'the segments repeat after this time, which is that from the first to the last of times', '1')]
 
   type(item_row_type), parameter :: run_items(*) = [ &
     item_row_type('time', 'start', 'real', 1, 1, 's', optional, '0', '', '', '', 'time of the first result', '0'), &
@@ -315,10 +349,15 @@ contains
   !> Whether a name belongs to groups of this kind; where no kind is known, to groups of any kind.
   pure logical function takes_kind(row, kind)
     type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
-    character(len=*), intent(in) :: kind    !< kind of the group; empty: unknown
+    character(len=*), intent(in) :: kind    !< kind of the group, and after a blank its law, as in law:harmonic; empty: unknown
+    integer :: blank
 
     takes_kind = row%kinds == ''
-    if (kind /= '' .and. .not. takes_kind) takes_kind = index(' '//row%kinds//' ', ' '//trim(kind)//' ') > 0
+    if (kind == '' .or. takes_kind) return
+    blank = index(trim(kind)//' ', ' ')
+    takes_kind = index(' '//row%kinds//' ', ' '//kind(:blank - 1)//' ') > 0
+    if (blank > len_trim(kind) .or. takes_kind) return
+    takes_kind = index(' '//row%kinds//' ', kind(blank:len_trim(kind))//' ') > 0
   end function takes_kind
 
   !> The words of a list with blanks between.

@@ -9,7 +9,8 @@ module mech9_load_reader
   use mech9_coordinate_load, only: coordinate_load_type
   use mech9_procedure_load, only: procedure_load_type
   use mech9_document, only: document_type, group_type
-  use mech9_lookup, only: groups_named, get_integer, get_integers, get_real, get_reals, get_text, span_of
+  use mech9_lookup, only: groups_named, has_name, get_integer, get_integers, get_real, get_reals, get_text, span_of
+  use mech9_drive_reader, only: read_law
   use mech9_motion_reader, only: check_link
   use mech9_diagnostics, only: diagnostics_type
   implicit none
@@ -48,12 +49,15 @@ contains
           allocate (loads(i)%load, source=procedure_load_type(parameters=parameters))
         end select
         loads(i)%load%place = diagnostics%place(group%span)
+        if (get_text(group, 'kind') == 'user' .or. .not. has_name(group, 'law')) cycle
+        call read_law(document, group, get_text(group, 'law'), angle_unit, 1.0_wp, loads(i)%load%law, diagnostics)
+        if (allocated(loads(i)%load%law)) loads(i)%load%law%place = diagnostics%place(group%span)
       end associate
     end do
   end subroutine read_loads
 
   !> A force or torque on a link.
-  pure function force_load(group) result(load)
+  function force_load(group) result(load)
     type(group_type), intent(in) :: group  !< the group of the data file
     type(force_load_type) :: load
 
@@ -68,7 +72,7 @@ contains
   end function force_load
 
   !> A spring and damper between two points.
-  pure function spring_load(group) result(load)
+  function spring_load(group) result(load)
     type(group_type), intent(in) :: group  !< the group of the data file
     type(spring_load_type) :: load
 
@@ -81,7 +85,7 @@ contains
   end function spring_load
 
   !> A load on a coordinate. Only the position of rest is an angle in the unit of the file; stiffness and damping are per rad.
-  pure function coordinate_load(group, pairs, angle_unit) result(load)
+  function coordinate_load(group, pairs, angle_unit) result(load)
     type(group_type), intent(in) :: group         !< the group of the data file
     type(pair_slot_type), intent(in) :: pairs(:)  !< (M) pairs by coordinate; a slot is empty where its group has an error
     real(wp), intent(in) :: angle_unit            !< unit of angles in the file [rad]

@@ -11,7 +11,7 @@ module mech9_lookup
   implicit none
   private
   public :: groups_named, group_or_empty, has_group, has_unsound, has_name, find_item, span_of
-  public :: get_integer, get_integers, get_real, get_reals, get_logical, get_text
+  public :: get_integer, get_integers, get_real, get_reals, get_logical, get_text, count_values, get_word
 
 contains
 
@@ -200,6 +200,27 @@ contains
     end if
   end function get_text
 
+  !> How many values a group gives under a name; 0 where it gives none.
+  pure integer function count_values(group, name)
+    type(group_type), intent(in) :: group  !< the group of the data file
+    character(len=*), intent(in) :: name   !< name of the item, in lower case
+    integer :: i
+
+    count_values = 0
+    i = find_item(group, name)
+    if (i > 0) count_values = size(group%items(i)%values)
+  end function count_values
+
+  !> One of the words that a group gives under a name, in lower case.
+  pure function get_word(group, name, number) result(word)
+    type(group_type), intent(in) :: group  !< the group of the data file
+    character(len=*), intent(in) :: name   !< name of the item, in lower case
+    integer, intent(in) :: number          !< of the value
+    character(len=20) :: word
+
+    word = lower(group%items(find_item(group, name))%values(number)%text)
+  end function get_word
+
   !> The numbers of the grammar's default; none where the default is a rule in parentheses.
   pure function default_numbers(group, name) result(numbers)
     type(group_type), intent(in) :: group  !< the group of the data file
@@ -230,6 +251,8 @@ contains
     kind = ''
     i = find_item(group, 'kind')
     if (i > 0 .and. name /= 'kind') kind = lower(trim(group%items(i)%values(1)%text))
+    i = find_item(group, 'law')
+    if (i > 0 .and. name /= 'kind') kind = kind//' law:'//lower(trim(group%items(i)%values(1)%text))
     row = item_row_for_kind(group%name, name, kind)
   end function row_of
 end module mech9_lookup

@@ -56,8 +56,12 @@ contains
     type(force_sum_type), intent(inout) :: sum          !< forces so far; the load is added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
+    real(wp) :: factor
+
+    call self%find_factor(state%t, factor, err)
+    if (allocated(err)) return
     associate (k => self%coordinate)
-      call sum%add_generalized(k, self%force - self%stiffness*(state%q(k) - self%rest) - self%damping*state%dq(k))
+      call sum%add_generalized(k, factor*(self%force - self%stiffness*(state%q(k) - self%rest) - self%damping*state%dq(k)))
     end associate
   end subroutine apply
 
@@ -69,8 +73,12 @@ contains
     type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
+    real(wp) :: factor
+
+    call self%find_factor(state%t, factor, err)
+    if (allocated(err)) return
     associate (k => self%coordinate)
-      call changes%add_generalized(k, -self%stiffness*change%q(k) - self%damping*change%dq(k))
+      call changes%add_generalized(k, -factor*(self%stiffness*change%q(k) + self%damping*change%dq(k)))
     end associate
   end subroutine vary
 
@@ -79,6 +87,7 @@ contains
     class(coordinate_load_type), intent(in) :: self   !< the coordinate load
     type(motion_view_type), intent(in) :: state       !< present motion of links and coordinates
 
-    potential = 0.5_wp*self%stiffness*(state%q(self%coordinate) - self%rest)**2
+    potential = 0.0_wp
+    if (.not. allocated(self%law)) potential = 0.5_wp*self%stiffness*(state%q(self%coordinate) - self%rest)**2
   end function potential
 end module mech9_coordinate_load

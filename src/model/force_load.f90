@@ -1,4 +1,4 @@
-!> A constant force at a point of a link, or a constant torque.
+!> A force at a point of a link, or a torque, constant but for a law of time.
 module mech9_force_load
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -49,12 +49,16 @@ contains
     type(force_sum_type), intent(inout) :: sum          !< forces so far; the load is added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
+    real(wp) :: factor
+
+    call self%find_factor(state%t, factor, err)
+    if (allocated(err)) return
     if (self%turns_with_link) then
-      call sum%add_force(state, self%link, self%position, state%links(self%link)%fixed_components(self%force))
-      call sum%add_torque(self%link, state%links(self%link)%fixed_components(self%torque))
+      call sum%add_force(state, self%link, self%position, state%links(self%link)%fixed_components(factor*self%force))
+      call sum%add_torque(self%link, state%links(self%link)%fixed_components(factor*self%torque))
     else
-      if (any(abs(self%force) > 0.0_wp)) call sum%add_force(state, self%link, self%position, self%force)
-      call sum%add_torque(self%link, self%torque)
+      if (any(abs(self%force) > 0.0_wp)) call sum%add_force(state, self%link, self%position, factor*self%force)
+      call sum%add_torque(self%link, factor*self%torque)
     end if
   end subroutine apply
 
@@ -66,13 +70,17 @@ contains
     type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
+    real(wp) :: factor
+
+    call self%find_factor(state%t, factor, err)
+    if (allocated(err)) return
     associate (link => state%links(self%link), of_link => change%links(self%link))
       if (self%turns_with_link) then
-        call change%add_force(state, self%link, self%position, link%fixed_components(self%force), &
-                              of_link%of_arm(link, self%force), changes)
-        call changes%add_torque(self%link, of_link%of_arm(link, self%torque))
+        call change%add_force(state, self%link, self%position, link%fixed_components(factor*self%force), &
+                              of_link%of_arm(link, factor*self%force), changes)
+        call changes%add_torque(self%link, of_link%of_arm(link, factor*self%torque))
       else
-        call change%add_force(state, self%link, self%position, self%force, [0.0_wp, 0.0_wp, 0.0_wp], changes)
+        call change%add_force(state, self%link, self%position, factor*self%force, [0.0_wp, 0.0_wp, 0.0_wp], changes)
       end if
     end associate
   end subroutine vary

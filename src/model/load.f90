@@ -4,6 +4,7 @@ module mech9_load
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_type
   use mech9_differentiation, only: half_width, step_count, trial_step, derivatives_from_stencil
+  use mech9_law, only: law_type
   use mech9_motion_view, only: motion_view_type
   use mech9_motion_change, only: motion_change_type
   use mech9_force_sum, only: force_sum_type, new_force_sum
@@ -14,10 +15,12 @@ module mech9_load
   !> A load of any kind.
   type, abstract :: load_type
     type(place_type) :: place       !< place of its group in the data file
+    class(law_type), allocatable :: law   !< its forces are multiplied by this law of time, where there is one
   contains
     procedure(mark_interface), deferred :: mark_links
     procedure :: mark_coordinates
     procedure :: is_idle
+    procedure :: find_factor
     procedure(apply_interface), deferred :: apply
     procedure(potential_interface), deferred :: potential
     procedure :: vary
@@ -45,7 +48,7 @@ module mech9_load
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine apply_interface
 
-    !> Potential energy [J]: the energy of springs; zero for all loads whose work counts as put in.
+    !> Potential energy [J]: the energy of springs; zero for all loads whose work counts as put in, those with a law among them.
     pure real(wp) function potential_interface(self, state)
       import :: load_type, motion_view_type, wp
       class(load_type), intent(in) :: self          !< the load
@@ -60,6 +63,18 @@ contains
     class(load_type), intent(in) :: self   !< the load
     logical, intent(inout) :: needed(:)    !< (M) becomes true for these coordinates; others stay
   end subroutine mark_coordinates
+
+  !> The factor of the load at a time: 1 without a law. Fails where the law has no value.
+  subroutine find_factor(self, t, factor, err)
+    class(load_type), intent(in) :: self                !< the load
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(out) :: factor                     !< by which its forces are multiplied
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: rate, acceleration
+
+    factor = 1.0_wp
+    if (allocated(self%law)) call self%law%evaluate(t, factor, rate, acceleration, err)
+  end subroutine find_factor
 
   !> Whether the load never moves anything, because it is zero or acts on link 1 alone. This procedure, for kinds that do
   !> not tell, answers that it may.

@@ -2,7 +2,7 @@
 module mech9_problem
   use mech9_kinds, only: wp
   use mech9_partition, only: partition_type
-  use mech9_drive, only: drive_slot_type
+  use mech9_law, only: drive_slot_type
   implicit none
   private
   public :: problem_type, initial_type

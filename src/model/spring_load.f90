@@ -93,10 +93,12 @@ contains
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
     type(force_sum_type), intent(inout) :: sum          !< forces so far; the load is added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp) :: force(3)
+    real(wp) :: force(3), factor
 
-    call self%pull(self%span(state), self%span_rate(state), force, err)
+    call self%find_factor(state%t, factor, err)
+    if (.not. allocated(err)) call self%pull(self%span(state), self%span_rate(state), force, err)
     if (allocated(err)) return
+    force = factor*force
     call sum%add_force(state, self%links(1), self%positions(:, 1), force)
     call sum%add_force(state, self%links(2), self%positions(:, 2), -force)
   end subroutine apply
@@ -108,17 +110,19 @@ contains
     type(motion_change_type), intent(in) :: change      !< derivative of the motion by the parameter
     type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp) :: d(3), rate(3), d_change(3), rate_change(3), force(3), force_change(3)
+    real(wp) :: d(3), rate(3), d_change(3), rate_change(3), force(3), force_change(3), factor
 
     d = self%span(state)
     rate = self%span_rate(state)
-    call self%pull(d, rate, force, err)
+    call self%find_factor(state%t, factor, err)
+    if (.not. allocated(err)) call self%pull(d, rate, force, err)
     if (allocated(err)) return
+    force = factor*force
     associate (i => self%links(1), k => self%links(2), at => self%positions)
       d_change = change%links(k)%of_position(state%links(k), at(:, 2)) - change%links(i)%of_position(state%links(i), at(:, 1))
       rate_change = change%links(k)%of_velocity(state%links(k), at(:, 2)) &
                     - change%links(i)%of_velocity(state%links(i), at(:, 1))
-      force_change = change_of_pull(self, d, rate, d_change, rate_change)
+      force_change = factor*change_of_pull(self, d, rate, d_change, rate_change)
       call change%add_force(state, i, at(:, 1), force, force_change, changes)
       call change%add_force(state, k, at(:, 2), -force, -force_change, changes)
     end associate
@@ -153,6 +157,7 @@ contains
     class(spring_load_type), intent(in) :: self   !< the spring load
     type(motion_view_type), intent(in) :: state   !< present motion of links and coordinates
 
-    potential = 0.5_wp*self%stiffness*(norm2(self%span(state)) - self%free_length)**2
+    potential = 0.0_wp
+    if (.not. allocated(self%law)) potential = 0.5_wp*self%stiffness*(norm2(self%span(state)) - self%free_length)**2
   end function potential
 end module mech9_spring_load

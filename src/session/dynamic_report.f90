@@ -9,6 +9,7 @@ module mech9_dynamic_report
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
+  use mech9_law_notes, only: print_jumps
   use mech9_recording, only: recording_outcome_type
   use mech9_integration_methods, only: integration_methods
   use mech9_block_solver, only: work_count_type
@@ -50,6 +51,7 @@ contains
     do i = 1, size(simulation%events)
       write (unit, '(a)') 't = '//to_text(simulation%events(i)%t, 8)//' s: '//event_words(simulation%events, i)
     end do
+    call print_jumps(unit, simulation%model)
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
   end subroutine print_dynamic_report
 

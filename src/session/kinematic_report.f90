@@ -11,6 +11,7 @@ module mech9_kinematic_report
   use mech9_block_solver, only: work_count_type, work_of
   use mech9_driven_motion, only: driven_motion_type
   use mech9_block_names, only: words_of_block
+  use mech9_law_notes, only: print_jumps
   use mech9_recording, only: recording_outcome_type
   use mech9_run_words, only: duration, each, begin_report, add_structure, add_uniqueness
   implicit none
@@ -46,6 +47,7 @@ contains
     end do
     if (calls > 0) write (unit, '(a)') 'user pairs in plain values: '//to_text(calls)// &
       ' calls or more for each evaluation; in Taylor arithmetic it would be one a pair'
+    call print_jumps(unit, model)
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
   end subroutine print_kinematic_report
 

@@ -141,7 +141,11 @@ contains
           if (.not. allocated(err)) call self%step(t, err)
           if (allocated(err)) return
         end do
-        if (.not. abs(t - motion%t) > 0.0_wp) exit
+        if (.not. abs(t - motion%t) > 0.0_wp) then
+          if (motion%system%is_at_joint(t)) call motion%pass_joint(err)
+          if (allocated(err)) return
+          exit
+        end if
         call self%look_between(t, found)
         if (found) exit
         self%steps_onto = .true.
@@ -209,10 +213,11 @@ contains
     real(wp), intent(in) :: t                            !< time to go to [s]
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(error_type), allocatable :: failure
-    real(wp) :: farthest
+    real(wp) :: target, farthest
     logical :: changed, is_regular
 
-    call self%change_angles(err)
+    if (self%motion%system%is_at_joint(self%motion%t)) call self%motion%pass_joint(err)
+    if (.not. allocated(err)) call self%change_angles(err)
     if (allocated(err)) return
     associate (motion => self%motion)
       is_regular = motion%conditioning_here > doubtful_conditioning
@@ -223,11 +228,16 @@ contains
         is_regular = motion%conditioning_here > doubtful_conditioning
       end if
       motion%system%refuse_below = merge(refused_conditioning, 0.0_wp, is_regular)
+      target = t
       farthest = t
       if (motion%conditioning_here > regular_conditioning .and. .not. self%steps_onto .and. &
         (self%end - t)*(t - motion%t) > 0.0_wp) &
         farthest = self%end
-      call motion%integrator%step(t, motion%t, motion%y, failure, farthest)
+      if (motion%system%has_joints) then
+        target = nearer(target, motion%system%joint_ahead, motion%t)
+        farthest = nearer(farthest, motion%system%joint_ahead, motion%t)
+      end if
+      call motion%integrator%step(target, motion%t, motion%y, failure, farthest)
       if (.not. allocated(failure)) then
         motion%conditioning_here = motion%system%conditioning()
         call motion%dense_output%add(motion%system, motion%t, motion%y)
@@ -242,6 +252,16 @@ contains
     call name_cause(self%motion%system, self%motion%t, self%motion%y, self%coefficients, failure)
     call move_alloc(failure, err)
   end subroutine step
+
+  !> The nearer one of two times ahead.
+  pure real(wp) function nearer(a, b, t)
+    real(wp), intent(in) :: a   !< a time [s]
+    real(wp), intent(in) :: b   !< another time [s]
+    real(wp), intent(in) :: t   !< the present time [s]
+
+    nearer = a
+    if (abs(b - t) < abs(a - t)) nearer = b
+  end function nearer
 
   !> Go on in better conditioned independent coordinates, if there are any; that is an event.
   subroutine change_coordinates(self, changed, err)

@@ -42,6 +42,7 @@ module mech9_integrated_motion
     procedure :: show_angles
     procedure :: insert
     procedure :: step_back
+    procedure :: pass_joint
     procedure :: statistics
     procedure :: work_done
     procedure :: iterations
@@ -206,6 +207,23 @@ contains
     call self%dense_output%begin()
     call self%dense_output%add(self%system, self%t, self%y)
   end subroutine step_back
+
+  !> Pass a joint of the laws of time, at the end of the last step.
+  subroutine pass_joint(self, err)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(expectation_type) :: nothing
+
+    call self%system%pass_joint(self%t, self%y, err)
+    if (allocated(err)) return
+    call self%system%resume(nothing)
+    call self%system%move_to(self%t, self%y, err)
+    if (.not. allocated(err)) call self%integrator%restart(self%t, self%y, err)
+    if (allocated(err)) return
+    self%conditioning_here = self%system%conditioning()
+    call self%dense_output%begin()
+    call self%dense_output%add(self%system, self%t, self%y)
+  end subroutine pass_joint
 
   !> Counts of all integrators of the motion together.
   function statistics(self) result(all)

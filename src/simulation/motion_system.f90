@@ -9,6 +9,9 @@ module mech9_motion_system
   use mech9_tolerances, only: trusted_between_steps, trusted_closing, third_derivative_step
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_failure, only: failure_singular_step, failure_unclosed_step, failure_drive_jumps
+  use mech9_cholesky, only: cholesky_factorize, cholesky_solve
+  use mech9_law, only: law_type, from_inside
+  use mech9_driven_equations, only: hold
   use mech9_partition, only: partition_type
   use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
@@ -41,6 +44,9 @@ module mech9_motion_system
     !> Trials with a worse conditioned block are refused: a step must not cross a singular position unseen.
     real(wp) :: refuse_below = 0.0_wp
     logical, private :: just_settled = .false.
+    logical :: has_joints = .false.                  !< a law of time has joints, where its derivatives may jump
+    real(wp) :: joint_behind = 0.0_wp                !< laws are smooth from this time, which was passed last [s]
+    real(wp) :: joint_ahead = 0.0_wp                 !< to this one, which comes next [s]
   contains
     procedure :: size_of_vector
     procedure :: vector
@@ -53,6 +59,8 @@ module mech9_motion_system
     procedure :: present
     procedure :: conditioning
     procedure :: signs
+    procedure :: is_at_joint
+    procedure :: pass_joint
   end type motion_system_type
 
 contains
@@ -74,6 +82,7 @@ contains
     call make_dynamics_plan(model%mechanism, plan, system%dynamics)
     system%work = new_lagrange_work(plan, system%dynamics)
     system%state = start
+    call find_joints(system, start%t)
     ! reports show the coefficients of the start; articulated bodies do without
     if (system%dynamics%articulated) &
       call find_equations(model%mechanism, plan, system%dynamics, system%state, system%work, err)
@@ -124,8 +133,120 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call unpack_state(self%plan, t, y, self%state)
-    call set_inputs(self%model%problem%drives, t, self%state%q, self%state%dq, self%state%ddq, err)
+    if (self%has_joints) self%state%t = between_joints(self, t)
+    call set_inputs(self%model%problem%drives, self%state%t, self%state%q, self%state%dq, self%state%ddq, err)
   end subroutine take_vector
+
+  !> Find the joints of the laws of drives and loads around a time, at which the smooth interval begins.
+  subroutine find_joints(self, t)
+    class(motion_system_type), intent(inout) :: self    !< the motion system; gets the interval
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp) :: direction
+    integer :: i
+
+    associate (drives => self%model%problem%drives, loads => self%model%mechanism%loads)
+      direction = sign(1.0_wp, self%model%request%time%end - self%model%request%time%start)
+      self%joint_behind = t
+      self%joint_ahead = sign(huge(t), direction)
+      self%has_joints = .false.
+      do i = 1, size(drives)
+        call take_law(drives(i)%drive)
+      end do
+      do i = 1, size(loads)
+        if (allocated(loads(i)%load%law)) call take_law(loads(i)%load%law)
+      end do
+    end associate
+  contains
+    !> Take the next joint of a law into account.
+    subroutine take_law(law)
+      class(law_type), intent(in) :: law   !< the law
+      real(wp) :: joint
+
+      joint = law%next_joint(t, direction)
+      self%has_joints = self%has_joints .or. abs(joint) < huge(t) .or. abs(law%next_joint(t, -direction)) < huge(t)
+      if ((self%joint_ahead - joint)*direction > 0.0_wp) self%joint_ahead = joint
+    end subroutine take_law
+  end subroutine find_joints
+
+  !> A time at which laws have the derivatives of the smooth interval: at its ends a little more than round-off inside.
+  pure real(wp) function between_joints(self, t)
+    class(motion_system_type), intent(in) :: self   !< the motion system
+    real(wp), intent(in) :: t                       !< time within the interval [s]
+    real(wp) :: direction, first, last
+
+    direction = sign(1.0_wp, self%joint_ahead - self%joint_behind)
+    first = from_inside(self%joint_behind, direction)
+    last = self%joint_ahead
+    if (abs(last) < huge(last)) last = from_inside(last, -direction)
+    between_joints = t
+    if ((t - first)*direction < 0.0_wp) between_joints = first
+    if ((last - t)*direction < 0.0_wp) between_joints = last
+  end function between_joints
+
+  !> Whether the end of the smooth interval is reached.
+  pure logical function is_at_joint(self, t)
+    class(motion_system_type), intent(in) :: self   !< the motion system
+    real(wp), intent(in) :: t                       !< time [s]
+
+    is_at_joint = self%has_joints .and. abs(t - self%joint_ahead) <= 64.0_wp*spacing(t)
+  end function is_at_joint
+
+  !> Pass a joint of the laws. Where rates of driven coordinates jump, those of the free ones change by the impulse of the drives:
+  !> a_ff (change of dq_f) = -a_fd (change of dq_d).
+  subroutine pass_joint(self, t, y, err)
+    class(motion_system_type), intent(inout) :: self    !< the motion system, afterwards in the interval behind the joint
+    real(wp), intent(in) :: t                           !< time of the joint [s]
+    real(wp), intent(inout) :: y(:)                     !< the vector there; the rates may change
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp), dimension(self%plan%n_coordinates) :: jump
+    integer :: i
+
+    call take_vector(self, t, y, err)
+    if (allocated(err)) return
+    jump = -self%state%dq
+    call find_joints(self, t)
+    call take_vector(self, t, y, err)
+    if (allocated(err)) return
+    where (self%plan%driven)
+      jump = jump + self%state%dq
+    elsewhere
+      jump = 0.0_wp
+    end where
+    if (maxval(abs(jump)) > 0.0_wp) call take_impulse(self, jump(self%plan%independent), y, err)
+    if (allocated(err)) return
+    do i = 1, size(self%model%problem%drives)
+      associate (k => self%model%problem%drives(i)%drive%coordinate)
+        y(k) = self%state%q(k)
+      end associate
+    end do
+  end subroutine pass_joint
+
+  !> Change the free rates by the impulse of drives whose rates jump.
+  subroutine take_impulse(self, jump, y, err)
+    class(motion_system_type), intent(inout) :: self    !< the motion system, with the state behind the joint
+    real(wp), intent(in) :: jump(:)                     !< changes of the independent rates, zero for free ones
+    real(wp), intent(inout) :: y(:)                     !< the vector; gets the free rates behind the joint
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: a(size(jump), size(jump)), right(size(jump))
+    integer :: failed_at, i, n
+
+    n = size(jump)
+    call place_all(self%plan, self%state, err)
+    if (.not. allocated(err)) &
+      call find_equations(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, err)
+    if (allocated(err)) return
+    a = self%work%coefficients
+    do i = 1, n
+      right(i) = -dot_product(a(i, :i), jump(:i)) - dot_product(a(i + 1:, i), jump(i + 1:))
+    end do
+    call hold(n, self%dynamics%held, a, right)
+    call cholesky_factorize(n, a, failed_at)
+    if (failed_at > 0) return
+    call cholesky_solve(n, a, right)
+    do i = 1, size(self%plan%free)
+      y(self%plan%n_coordinates + i) = y(self%plan%n_coordinates + i) + right(self%plan%free_places(i))
+    end do
+  end subroutine take_impulse
 
   !> Fail where a drive is elsewhere than its rates have led since the last step: it jumps.
   subroutine check_drives(self, y, err)

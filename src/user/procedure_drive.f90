@@ -6,7 +6,7 @@ module mech9_procedure_drive
   use mech9_text, only: to_text
   use mech9_taylor, only: taylor, variable
   use mech9_differentiation, only: half_width, step_count, trial_step, derivatives_from_stencil
-  use mech9_drive, only: drive_type
+  use mech9_law, only: law_type
   use mech9_not_linked, only: not_linked
   use mech9_user_drive, only: user_drive
   use mech9_user_drive_values, only: user_drive_values
@@ -15,7 +15,7 @@ module mech9_procedure_drive
   public :: procedure_drive_type, make_procedure_drive
 
   !> A drive by a user's procedure.
-  type, extends(drive_type) :: procedure_drive_type
+  type, extends(law_type) :: procedure_drive_type
     real(wp), allocatable :: parameters(:)   !< numbers for the user's procedure
     logical :: plain_values = .false.        !< the form in plain reals is linked, not the one in Taylor arithmetic
   contains

@@ -45,7 +45,7 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(interview_type) :: interview
     character(len=6), parameter :: programs(2) = ['mech9k', 'mech9d']
-    character(len=10), parameter :: drives(4) = [character(len=10) :: 'polynomial', 'harmonic', 'table', 'user']
+    character(len=10), parameter :: drives(5) = [character(len=10) :: 'polynomial', 'harmonic', 'table', 'segments', 'user']
     logical :: asked(size(item_table))
     integer :: program, way, drive, row
 
@@ -96,6 +96,8 @@ contains
     do i = 1, size(loads)
       call draft%give('load', i, 'kind', ''''//trim(loads(i))//'''')
     end do
+    ! drives and loads have the same laws of time
+    if (drive /= 'user') call draft%give('load', 1, 'law', ''''//drive//'''')
     call draft%give('point', 1, 'name', '''P''')
     call draft%give('body', 1, 'link', '2')
     call interview%start(program_name, draft)

@@ -4,7 +4,7 @@ module mech9_mixed_mechanisms
   use mech9_random, only: random_type
   use mech9_random_geometry, only: random_rotation
   use mech9_model, only: model_type
-  use mech9_polynomial_drive, only: polynomial_drive_type
+  use mech9_polynomial_law, only: polynomial_law_type
   use mech9_mechanism_families, only: axis_type, planar_axes, spatial_axes, home_mechanism
   implicit none
   private
@@ -66,7 +66,7 @@ contains
   subroutine mixed_mechanism(axes, model)
     type(axis_type), intent(in) :: axes(:)     !< of each pair in the home position
     type(model_type), intent(out) :: model     !< the model
-    type(polynomial_drive_type) :: polynomial
+    type(polynomial_law_type) :: polynomial
     integer :: i
 
     call home_mechanism(25, mixed_links(), axes, mixed_inputs, model)

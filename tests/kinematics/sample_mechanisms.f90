@@ -6,7 +6,7 @@ module mech9_sample_mechanisms
   use mech9_finding, only: finding_type
   use mech9_partition, only: new_partition
   use mech9_screw_pair, only: screw_pair_type, revolute_pair, prismatic_pair
-  use mech9_polynomial_drive, only: polynomial_drive_type
+  use mech9_polynomial_law, only: polynomial_law_type
   use mech9_model, only: model_type
   implicit none
   private
@@ -87,7 +87,7 @@ contains
     type(model_type), intent(inout) :: model           !< the model
     integer, intent(in) :: k                           !< the coordinate
     real(wp), intent(in) :: coefficients(:)            !< of 1, t, t^2, ...
-    type(polynomial_drive_type) :: polynomial
+    type(polynomial_law_type) :: polynomial
 
     polynomial%coordinate = k
     polynomial%coefficients = coefficients

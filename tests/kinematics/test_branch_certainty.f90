@@ -10,7 +10,7 @@ program test_branch_certainty
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_driven_motion, only: driven_motion_type, advance
-  use mech9_harmonic_drive, only: harmonic_drive_type
+  use mech9_harmonic_law, only: harmonic_law_type
   use mech9_sample_mechanisms, only: drive, four_bar, fig1
   use mech9_planar_mechanisms, only: two_circles, slider_crank, watt_six_bar, four_bar_type, random_crank, &
     four_bar_angle, four_bar_guess
@@ -152,7 +152,7 @@ contains
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
-    type(harmonic_drive_type) :: swing
+    type(harmonic_law_type) :: swing
     real(wp) :: start(7), q(7)
     integer :: n, j
 

@@ -7,7 +7,7 @@ program test_random_motion
   use mech9_error, only: error_type, exit_singular
   use mech9_random, only: random_type
   use mech9_model, only: model_type
-  use mech9_harmonic_drive, only: harmonic_drive_type
+  use mech9_harmonic_law, only: harmonic_law_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
@@ -65,7 +65,7 @@ contains
     type(state_type) :: start
     type(driven_motion_type) :: few, many
     type(error_type), allocatable :: err, few_err, many_err
-    type(harmonic_drive_type) :: swing
+    type(harmonic_law_type) :: swing
     integer :: i
 
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, start, err)

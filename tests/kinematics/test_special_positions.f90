@@ -7,7 +7,7 @@ program test_special_positions
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_driven_motion, only: driven_motion_type, advance
-  use mech9_harmonic_drive, only: harmonic_drive_type
+  use mech9_harmonic_law, only: harmonic_law_type
   use mech9_sample_mechanisms, only: drive, four_bar
   use mech9_planar_mechanisms, only: slider_crank, watt_six_bar, four_bar_type, four_bar_guess, four_bar_limit
   use mech9_followed_motions, only: begin_motion, angle_between, at_crossing
@@ -256,7 +256,7 @@ contains
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
-    type(harmonic_drive_type) :: swing
+    type(harmonic_law_type) :: swing
     real(wp) :: limit, guess(4)
     integer :: j
 

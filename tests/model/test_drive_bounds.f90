@@ -5,17 +5,19 @@ program test_drive_bounds
   use mech9_error, only: error_type
   use mech9_random, only: random_type
   use mech9_spline, only: build_spline
-  use mech9_drive, only: drive_type
-  use mech9_polynomial_drive, only: polynomial_drive_type
-  use mech9_harmonic_drive, only: harmonic_drive_type
-  use mech9_table_drive, only: table_drive_type
+  use mech9_law, only: law_type
+  use mech9_polynomial_law, only: polynomial_law_type
+  use mech9_harmonic_law, only: harmonic_law_type
+  use mech9_table_law, only: table_law_type
+  use mech9_segments_law, only: segments_law_type
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
   type(random_type) :: random
-  type(polynomial_drive_type) :: polynomial
-  type(harmonic_drive_type) :: harmonic
-  type(table_drive_type) :: table
+  type(polynomial_law_type) :: polynomial
+  type(harmonic_law_type) :: harmonic
+  type(table_law_type) :: table
+  type(segments_law_type) :: segments
   type(error_type), allocatable :: err
   real(wp) :: x(12), y(12)
   integer :: i, j
@@ -23,7 +25,7 @@ program test_drive_bounds
   do i = 1, 40
     polynomial%coefficients = [(3.0_wp*random%symmetric(), j=0, mod(i, 8))]
     call check(polynomial, 'a polynomial')
-    harmonic = harmonic_drive_type(amplitude=random%symmetric(), angular_frequency=20.0_wp*random%symmetric(), phase=1.0_wp)
+    harmonic = harmonic_law_type(amplitude=random%symmetric(), angular_frequency=20.0_wp*random%symmetric(), phase=1.0_wp)
     call check(harmonic, 'a harmonic')
     do j = 1, size(x)
       x(j) = -3.0_wp + 0.5_wp*j + 0.2_wp*random%symmetric()
@@ -32,6 +34,14 @@ program test_drive_bounds
     call build_spline(x, y, table%spline, err)
     call test%no_error(err, 'a drive by a table is defined')
     call check(table, 'a table')
+    segments%times = [(-3.0_wp + 0.5_wp*j + 0.2_wp*random%symmetric(), j=1, size(x))]
+    segments%values = y
+    segments%curves = [(2 + mod(i + j, 7), j=2, size(x))]
+    segments%repeats = mod(i, 2) == 0
+    call check(segments, 'segments')
+    segments%times = segments%times*0.2_wp + 0.1_wp
+    segments%repeats = .true.
+    call check(segments, 'segments that repeat')
   end do
   ! more terms than are worked out one by one
   do i = 1, 10
@@ -56,7 +66,7 @@ contains
 
   !> Against the rates at many times between.
   subroutine check(drive, name)
-    class(drive_type), intent(in) :: drive   !< the drive
+    class(law_type), intent(in) :: drive   !< the drive
     character(len=*), intent(in) :: name     !< of its kind, for the report of a failure
     real(wp) :: t, h, q, dq, ddq, bound, fastest
     type(error_type), allocatable :: err

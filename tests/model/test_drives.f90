@@ -5,10 +5,10 @@ program test_drives
   use mech9_random, only: random_type
   use mech9_differentiation, only: half_width, derivatives_from_stencil
   use mech9_spline, only: build_spline
-  use mech9_drive, only: drive_type
-  use mech9_polynomial_drive, only: polynomial_drive_type
-  use mech9_harmonic_drive, only: harmonic_drive_type
-  use mech9_table_drive, only: table_drive_type
+  use mech9_law, only: law_type
+  use mech9_polynomial_law, only: polynomial_law_type
+  use mech9_harmonic_law, only: harmonic_law_type
+  use mech9_table_law, only: table_law_type
   use mech9_request, only: time_grid_type
   use mech9_testing, only: tester_type
   implicit none
@@ -28,7 +28,7 @@ contains
 
   real(wp) function value_at(test, drive, t)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    class(drive_type), intent(in) :: drive     !< the drive
+    class(law_type), intent(in) :: drive     !< the drive
     real(wp), intent(in) :: t                  !< time [s]
     type(error_type), allocatable :: err
     real(wp) :: dq, ddq
@@ -41,7 +41,7 @@ contains
   !> of the values, of order one, times 2/h and 8/h^2.
   subroutine check_derivatives(test, drive, t, why)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    class(drive_type), intent(in) :: drive     !< the drive
+    class(law_type), intent(in) :: drive     !< the drive
     real(wp), intent(in) :: t                  !< time [s]
     character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     real(wp), parameter :: h = 1.0_wp/32.0_wp
@@ -63,7 +63,7 @@ contains
   subroutine polynomials(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
-    type(polynomial_drive_type) :: drive
+    type(polynomial_law_type) :: drive
     type(error_type), allocatable :: err
     real(wp) :: t, q, dq, ddq
     integer :: n, i
@@ -88,7 +88,7 @@ contains
   subroutine harmonics(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
-    type(harmonic_drive_type) :: drive
+    type(harmonic_law_type) :: drive
     type(error_type), allocatable :: err
     real(wp) :: t, q, dq, ddq
     integer :: i
@@ -116,8 +116,8 @@ contains
   subroutine table_of_cubic(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
-    type(table_drive_type) :: table
-    type(polynomial_drive_type) :: cubic
+    type(table_law_type) :: table
+    type(polynomial_law_type) :: cubic
     type(error_type), allocatable :: err
     real(wp) :: t(12), q(12), from_table(3), from_cubic(3), x
     integer :: i
@@ -142,7 +142,7 @@ contains
   !> Within one piece a table is a cubic, whose derivatives differences find exactly.
   subroutine table_of_sine(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    type(table_drive_type) :: table
+    type(table_law_type) :: table
     type(error_type), allocatable :: err
     real(wp) :: t(11)
     integer :: i
@@ -158,7 +158,7 @@ contains
 
   subroutine ends_of_table(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    type(table_drive_type) :: table
+    type(table_law_type) :: table
     type(error_type), allocatable :: err
     real(wp) :: t(5), q, dq, ddq
 

@@ -10,7 +10,7 @@ import sys
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from mech9_cases import TREE, Checks, text_of
 
-FLOORS = ['base', 'system', 'numerics', 'spatial', 'structure', 'model', 'user',
+FLOORS = ['base', 'system', 'numerics', 'spatial', 'structure', 'model/laws', 'model', 'user',
           'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
           'ode', 'dynamics', 'dynamics/variations', 'simulation', 'analyses/reactions', 'analyses', 'wording', 'input', 'output', 'pictures/plots', 'pictures/scene', 'pictures/films',
           'terminal', 'session/command', 'session/words', 'facade', 'session/results', 'session', 'dialogue/drafts', 'dialogue',

@@ -3,7 +3,7 @@
 module simulation_doubles
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_drive, only: drive_type
+  use mech9_law, only: law_type
   use mech9_simulation, only: interruption_type
   use mech9_driven_simulation, only: driven_simulation_type
   implicit none
@@ -25,7 +25,7 @@ module simulation_doubles
   end type open_chains_type
 
   !> A drive with a constant rate, and a jump of its position.
-  type, extends(drive_type) :: jumping_drive_type
+  type, extends(law_type) :: jumping_drive_type
     real(wp) :: rate = 0.0_wp            !< [rad/s, m/s]
     real(wp) :: t = 0.0_wp               !< of the jump [s]
     real(wp) :: height = 0.0_wp          !< of the jump [rad, m]

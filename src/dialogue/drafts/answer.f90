@@ -40,7 +40,13 @@ contains
       return
     end if
     written = full_form(row, line)
-    if (row%type == 'text' .and. scan(line, '''"') /= 1) written = quoted(written)
+    if (row%type == 'text' .and. scan(line, '''"') /= 1) then
+      if (row%high > 1) then
+        written = quoted_words(written)
+      else
+        written = quoted(written)
+      end if
+    end if
     if (row%type == 'logical') written = switch_text(line)
     call read_values(row, written, text, problem)
   end subroutine read_answer
@@ -112,6 +118,22 @@ contains
 
     text = ''''//with_escapes(line, '''', [''''''])//''''
   end function quoted
+
+  !> Words with commas between them, each in quotes.
+  pure function quoted_words(line) result(text)
+    character(len=*), intent(in) :: line  !< the words without quotes around them
+    character(len=:), allocatable :: text
+    integer :: first, comma
+
+    text = ''
+    first = 1
+    do while (first <= len(line))
+      comma = index(line(first:)//',', ',') + first - 1
+      if (text /= '') text = text//', '
+      text = text//quoted(trim(adjustl(line(first:comma - 1))))
+      first = comma + 1
+    end do
+  end function quoted_words
 
   !> A switch as a data file writes it; an answer other than yes or no stays as it is.
   pure function switch_text(line) result(text)

@@ -12,7 +12,7 @@ module mech9_explanations
   type :: explanation_type
     character(len=9) :: group
     character(len=18) :: name
-    character(len=26) :: kinds                 !< kinds as in the grammar, which tell rows of one name apart
+    character(len=32) :: kinds                 !< kinds as in the grammar, which tell rows of one name apart
     character(len=275) :: text                 !< whole sentences
     character(len=84) :: example               !< a value as it is typed, for angles in rad, and its meaning in parentheses
     character(len=84) :: degrees = ''          !< the same for an angle in degrees; empty: as in rad
@@ -129,8 +129,8 @@ module mech9_explanations
                   'This is the number of the independent coordinate that moves as the drive says.', '5'), &
     explanation_type('drive', 'kind', '', &
                   'A polynomial drive is a power series of time, such as a constant speed; a harmonic drive swings as a '// &
-                  'sine; a table drive is a smooth curve through the points of a file; a user drive is a procedure of '// &
-                  'your own.', 'polynomial'), &
+                  'sine; a table drive is a smooth curve through a file''s points; a segments drive has the motion laws of '// &
+                  'cams; a user drive is your procedure.', 'polynomial'), &
     explanation_type('drive', 'coefficients', 'polynomial', &
                   'The coordinate is q = c0 + c1 t + c2 t^2 + ..., with the time t in seconds. Give c0, its value at t = '// &
                   '0, then c1, its rate at t = 0, then c2, half its acceleration, and as many more as you need.', &
@@ -156,7 +156,18 @@ module mech9_explanations
                   'Name a text file that has a time and the value of the coordinate in each line, beside the data file. '// &
                   'A smooth curve is laid through them; there must be at least four, from the first to the last time of '// &
                   'the run.', 'motion.dat (with lines such as: 0.25 0.7854)', 'motion.dat (with lines such as: 0.25 45)', &
-                  'motion.dat (with lines such as: 0.25 0.1)')]
+                  'motion.dat (with lines such as: 0.25 0.1)'), &
+    explanation_type('drive', 'times', 'segments', &
+                  'Segments begin and end at these times in seconds, which increase: three times make two segments. They '// &
+                  'cover the times of the run, unless they repeat.', '0, 0.5, 1'), &
+    explanation_type('drive', 'values', 'segments', &
+                  'Give the coordinate at each of the times, as many numbers as there are times.', '0, 1, 1', '0, 90, 90', &
+                  '0, 0.02, 0.02'), &
+    explanation_type('drive', 'laws', 'segments', &
+                  'Each segment goes from its first value to its last by a motion law of cam design, and by dwell where both '// &
+                  'values are the same. One law serves for all segments.', 'cycloidal, dwell (two segments)'), &
+    explanation_type('drive', 'period', 'segments', &
+                  'With a period the segments repeat. It is the time from the first to the last of the times.', '1')]
 
   type(explanation_type), parameter :: body_texts(*) = [ &
     explanation_type('body', 'link', '', &
@@ -227,7 +238,34 @@ module mech9_explanations
     explanation_type('load', 'damping', 'coordinate', &
                   'The load is -stiffness (q - rest) - damping dq/dt + force. The damping of an angle is per rad/s, '// &
                   'whatever angle_unit says.', '0.1 (0.1 N m for each rad/s)', '0.1 (0.1 N m for each rad/s)', &
-                  '1.5 (1.5 N for each m/s)')]
+                  '1.5 (1.5 N for each m/s)'), &
+    explanation_type('load', 'law', 'force torque spring coordinate', &
+                  'The load is multiplied by a number that depends on time as a drive does: constant, polynomial, harmonic, '// &
+                  'table or segments.', 'harmonic'), &
+    explanation_type('load', 'coefficients', 'law:polynomial', &
+                  'The factor is c0 + c1 t + c2 t^2 + ..., with the time t in seconds.', '0, 0.5 (grows by a half each second)'), &
+    explanation_type('load', 'mean', 'law:harmonic', &
+                  'The factor is mean + amplitude sin(angular_frequency t + phase).', '1'), &
+    explanation_type('load', 'amplitude', 'law:harmonic', &
+                  'The factor is mean + amplitude sin(angular_frequency t + phase).', '0.5'), &
+    explanation_type('load', 'angular_frequency', 'law:harmonic', &
+                  'The factor is mean + amplitude sin(angular_frequency t + phase).', &
+                  '6.2832 (one swing to and fro each second)', '360 (one swing to and fro each second)'), &
+    explanation_type('load', 'phase', 'law:harmonic', &
+                  'The factor is mean + amplitude sin(angular_frequency t + phase).', &
+                  '1.5708 (begins at mean + amplitude)', '90 (begins at mean + amplitude)'), &
+    explanation_type('load', 'file', 'law:table', &
+                  'Name a text file that has a time and the factor in each line, beside the data file.', 'force.dat'), &
+    explanation_type('load', 'times', 'law:segments', &
+                  'Segments begin and end at these times in seconds, which increase: three times make two segments. They '// &
+                  'cover the times of the run, unless they repeat.', '0, 0.5, 1'), &
+    explanation_type('load', 'values', 'law:segments', &
+                  'Give the factor at each of the times, as many numbers as there are times.', '0, 1, 1'), &
+    explanation_type('load', 'laws', 'law:segments', &
+                  'Each segment goes from its first value to its last by a motion law of cam design, and by dwell where both '// &
+                  'values are the same. One law serves for all segments.', 'cycloidal, dwell (two segments)'), &
+    explanation_type('load', 'period', 'law:segments', &
+                  'With a period the segments repeat. It is the time from the first to the last of the times.', '1')]
 
   type(explanation_type), parameter :: run_texts(*) = [ &
     explanation_type('time', 'start', '', &

@@ -46,7 +46,7 @@ contains
     end do
   end function new_outline
 
-  !> The kind of a group, in lower case; empty if it has none.
+  !> The kind of a group, in lower case, and after a blank its law, as in law:harmonic; empty if it has none.
   pure function kind_in(draft, group) result(kind)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     integer, intent(in) :: group           !< index of the group in the draft
@@ -57,6 +57,9 @@ contains
     associate (entries => draft%groups(group)%entries)
       do i = 1, size(entries)
         if (entries(i)%name == 'kind') kind = lower(unquoted(entries(i)%text))
+      end do
+      do i = 1, size(entries)
+        if (entries(i)%name == 'law') kind = kind//' law:'//lower(unquoted(entries(i)%text))
       end do
     end associate
   end function kind_in

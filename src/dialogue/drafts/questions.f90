@@ -77,8 +77,9 @@ contains
     if (group == 'initial') then
       if (outline%program_name == 'mech9k' .or. .not. all(outline%independent)) &
         call append(questions, count, question_type(kind=ask_guesses, topic=topic, group_row=group_row))
-    else if (any(item_table(rows)%seldom) .and. group /= 'mechanism') then
-      ! a conversation does not begin with rarely used names; those of the mechanism can be changed by their names
+    else if (any(item_table(rows)%seldom) .and. group /= 'mechanism' .and. (group /= 'load' .or. draft%count_of(group) > 0)) then
+      ! a conversation does not begin with rarely used names; those of the mechanism can be changed by their names, and laws of
+      ! loads are for loads that are there
       call append(questions, count, question_type(kind=ask_seldom, topic=topic, group_row=group_row))
     end if
     do place = 1, merge(draft%count_of(group), 1, group_table(group_row)%repeats)

@@ -9,7 +9,7 @@ module mech9_branch_crossing
   use mech9_tolerances, only: near_singular, shorter_crossing, trusted_crossing, trusted_crossing_rates
   use mech9_error, only: error_type
   use mech9_hermite, only: hermite_type, build_hermite
-  use mech9_drive, only: drive_slot_type
+  use mech9_law, only: drive_slot_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type, newton_outcome_type, close_block, solve_rates, solve_accelerations, apply_change

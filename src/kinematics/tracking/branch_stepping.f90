@@ -10,7 +10,7 @@ module mech9_branch_stepping
     trusted_contraction, trusted_correction, trusted_rate_change, unchanged_factors, unchanged_prediction
   use mech9_error, only: error_type
   use mech9_masks, only: numbers_of
-  use mech9_drive, only: drive_slot_type
+  use mech9_law, only: drive_slot_type
   use mech9_plan, only: plan_type, block_type
   use mech9_tree_paths, only: mark_path
   use mech9_state, only: state_type

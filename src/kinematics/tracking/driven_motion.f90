@@ -5,7 +5,7 @@ module mech9_driven_motion
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_failure, only: failure_start_at_dead_point, failure_start_on_branches, failure_start_unclear, &
     failure_start_locked, failure_start_not_left, failure_escape, failure_dead_point, failure_lost_branch
-  use mech9_drive, only: drive_slot_type
+  use mech9_law, only: drive_slot_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: solve_rates, solve_accelerations

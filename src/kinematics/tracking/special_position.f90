@@ -10,7 +10,7 @@ module mech9_special_position
   use mech9_tolerances, only: clear_pivot, crossing_growth, crossing_pivot, dead_growth, escape_law, escaped_slide, &
     escaping_speed, far_slide, last_pivot, longest_growth, probe_move, stuck_pivot
   use mech9_error, only: error_type
-  use mech9_drive, only: drive_slot_type
+  use mech9_law, only: drive_slot_type
   use mech9_plan, only: plan_type, block_type
   use mech9_predictor, only: acceleration_of
   use mech9_branch_stepping, only: branch_stepper_type, step_towards

@@ -9,7 +9,7 @@ module mech9_special_start
   use mech9_error, only: error_type
   use mech9_lapack, only: dgesvd
   use mech9_hermite, only: build_hermite
-  use mech9_drive, only: drive_slot_type
+  use mech9_law, only: drive_slot_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type

@@ -8,6 +8,7 @@ module mech9_check_notes
   use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
   use mech9_result_units, only: unit_of
+  use mech9_law_notes, only: print_jumps
   use mech9_link_dimensions, only: link_dimension_type, link_dimensions
   implicit none
   private
@@ -46,6 +47,7 @@ contains
       call model%problem%drives(i)%drive%evaluate(model%request%time%start, q, dq, ddq, err)
       if (.not. allocated(err)) call note_angle(unit, model%mechanism, k, 'the drive', q, dq)
     end do
+    call print_jumps(unit, model)
   end subroutine print_notes
 
   !> Note an angle or a rate that seems to be in the other unit.

@@ -1,27 +1,27 @@
-!> A drive through the points of a table by a cubic spline with continuous second derivative.
-module mech9_table_drive
+!> A law through the points of a table by a cubic spline with continuous second derivative.
+module mech9_table_law
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
   use mech9_text, only: to_text
   use mech9_spline, only: spline_type
-  use mech9_drive, only: drive_type
+  use mech9_law, only: law_type
   implicit none
   private
-  public :: table_drive_type
+  public :: table_law_type
 
-  !> A drive by a table, as a spline.
-  type, extends(drive_type) :: table_drive_type
+  !> A law by a table, as a spline.
+  type, extends(law_type) :: table_law_type
     type(spline_type) :: spline   !< the coordinate [rad, m] over time [s]
   contains
     procedure :: evaluate
     procedure :: greatest_rate
-  end type table_drive_type
+  end type table_law_type
 
 contains
 
   !> The spline and its derivatives. Fails outside the times of the table.
   subroutine evaluate(self, t, q, dq, ddq, err)
-    class(table_drive_type), intent(in) :: self         !< the table drive
+    class(table_law_type), intent(in) :: self         !< the table law
     real(wp), intent(in) :: t                           !< time [s]
     real(wp), intent(out) :: q                          !< the coordinate [rad, m]
     real(wp), intent(out) :: dq                         !< its rate [rad/s, m/s]
@@ -32,7 +32,7 @@ contains
     associate (first => self%spline%x(1), last => self%spline%x(size(self%spline%x)))
       slack = 1.0e-12_wp*(last - first)   ! output times are sums and may miss the end by round-off
       if (t < first - slack .or. t > last + slack) then
-        call raise(err, exit_data, 'the table of the drive of coordinate '//to_text(self%coordinate)// &
+        call raise(err, exit_data, 'the table of the '//trim(self%owner())// &
                    ' covers t = '//to_text(first)//' to '//to_text(last)//', and t = '//to_text(t)// &
                    ' is asked for; lengthen the table or shorten &time', self%place)
         return
@@ -43,11 +43,11 @@ contains
 
   !> The bound is that of the spline between the two times.
   function greatest_rate(self, t, h) result(rate)
-    class(table_drive_type), intent(in) :: self   !< the table drive
+    class(table_law_type), intent(in) :: self   !< the table law
     real(wp), intent(in) :: t                     !< beginning of the interval [s]
     real(wp), intent(in) :: h                     !< length of the interval [s]; may be negative
     real(wp) :: rate
 
     rate = self%spline%steepest(min(t, t + h), max(t, t + h))
   end function greatest_rate
-end module mech9_table_drive
+end module mech9_table_law

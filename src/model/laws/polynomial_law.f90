@@ -1,30 +1,30 @@
-!> A drive with the function q = c0 + c1 t + c2 t^2 + ...
-module mech9_polynomial_drive
+!> A law with the function q = c0 + c1 t + c2 t^2 + ...
+module mech9_polynomial_law
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
   use mech9_text, only: to_text
-  use mech9_drive, only: drive_type
+  use mech9_law, only: law_type
   implicit none
   private
-  public :: polynomial_drive_type
+  public :: polynomial_law_type
 
   !> Terms of the Taylor series about a time are computed one by one up to this power.
   integer, parameter :: highest = 12
 
-  !> A polynomial drive by its coefficients.
-  type, extends(drive_type) :: polynomial_drive_type
+  !> A polynomial law by its coefficients.
+  type, extends(law_type) :: polynomial_law_type
     real(wp), allocatable :: coefficients(:)   !< c0, c1, ... [rad or m, per s^i]
   contains
     procedure :: evaluate
     procedure :: greatest_rate
-  end type polynomial_drive_type
+  end type polynomial_law_type
 
 contains
 
   !> Horner's rule gives the value and its derivatives at once.
   subroutine evaluate(self, t, q, dq, ddq, err)
-    class(polynomial_drive_type), intent(in) :: self    !< the polynomial drive
+    class(polynomial_law_type), intent(in) :: self    !< the polynomial law
     real(wp), intent(in) :: t                           !< time [s]
     real(wp), intent(out) :: q                          !< the coordinate [rad, m]
     real(wp), intent(out) :: dq                         !< its rate [rad/s, m/s]
@@ -42,9 +42,8 @@ contains
     end do
     ddq = 2.0_wp*ddq
     if (.not. (ieee_is_finite(q) .and. ieee_is_finite(dq) .and. ieee_is_finite(ddq))) &
-      call raise(err, exit_data, 'the polynomial that drives coordinate '//to_text(self%coordinate)// &
-                 ' or a derivative of it is beyond all numbers at t = '//to_text(t, 12)//' s; correct its coefficients', &
-                 self%place)
+      call raise(err, exit_data, 'the polynomial of the '//trim(self%owner())//' or a derivative of it is beyond all '// &
+                 'numbers at t = '//to_text(t, 12)//' s; correct its coefficients', self%place)
   end subroutine evaluate
 
   !> The bound is the sum of the sizes of the terms of the Taylor series of the rate at t, k |q^(k)|/k! |h|^(k-1) for k up
@@ -52,7 +51,7 @@ contains
   !> coefficients. It is never too small, exact for a constant rate, and close for small h. The work is linear in the
   !> number of coefficients.
   function greatest_rate(self, t, h) result(rate)
-    class(polynomial_drive_type), intent(in) :: self   !< the polynomial drive
+    class(polynomial_law_type), intent(in) :: self   !< the polynomial law
     real(wp), intent(in) :: t   !< beginning of the interval [s]
     real(wp), intent(in) :: h   !< length of the interval [s]; may be negative
     real(wp) :: rate                 !< [rad/s or m/s]
@@ -95,4 +94,4 @@ contains
       terms(0) = terms(0)*t + c
     end do
   end subroutine find_terms
-end module mech9_polynomial_drive
+end module mech9_polynomial_law

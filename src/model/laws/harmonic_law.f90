@@ -1,14 +1,14 @@
-!> A drive with the function q = mean + amplitude sin(angular_frequency t + phase).
-module mech9_harmonic_drive
+!> A law with the function q = mean + amplitude sin(angular_frequency t + phase).
+module mech9_harmonic_law
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_drive, only: drive_type
+  use mech9_law, only: law_type
   implicit none
   private
-  public :: harmonic_drive_type
+  public :: harmonic_law_type
 
-  !> A harmonic drive by its four numbers.
-  type, extends(drive_type) :: harmonic_drive_type
+  !> A harmonic law by its four numbers.
+  type, extends(law_type) :: harmonic_law_type
     real(wp) :: mean = 0.0_wp                !< [rad or m]
     real(wp) :: amplitude = 0.0_wp           !< [rad or m]
     real(wp) :: angular_frequency = 0.0_wp   !< [rad/s]
@@ -16,13 +16,13 @@ module mech9_harmonic_drive
   contains
     procedure :: evaluate
     procedure :: greatest_rate
-  end type harmonic_drive_type
+  end type harmonic_law_type
 
 contains
 
   !> The harmonic and its derivatives; it has values at all times.
   subroutine evaluate(self, t, q, dq, ddq, err)
-    class(harmonic_drive_type), intent(in) :: self      !< the harmonic drive
+    class(harmonic_law_type), intent(in) :: self      !< the harmonic law
     real(wp), intent(in) :: t                           !< time [s]
     real(wp), intent(out) :: q                          !< the coordinate [rad, m]
     real(wp), intent(out) :: dq                         !< its rate [rad/s, m/s]
@@ -39,11 +39,11 @@ contains
 
   !> The greatest rate of the whole period.
   function greatest_rate(self, t, h) result(rate)
-    class(harmonic_drive_type), intent(in) :: self   !< the harmonic drive
+    class(harmonic_law_type), intent(in) :: self   !< the harmonic law
     real(wp), intent(in) :: t                        !< beginning of the interval [s]; unused
     real(wp), intent(in) :: h                        !< length of the interval [s]; unused
     real(wp) :: rate
 
     rate = abs(self%amplitude*self%angular_frequency)
   end function greatest_rate
-end module mech9_harmonic_drive
+end module mech9_harmonic_law

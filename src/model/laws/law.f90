@@ -1,0 +1,93 @@
+!> A law of time: an independent coordinate as a given function of time, or the factor by which a load is multiplied.
+module mech9_law
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, place_type
+  use mech9_text, only: to_text
+  implicit none
+  private
+  public :: law_type, drive_slot_type, law_slot_type, from_inside
+
+  !> A given function of time.
+  type, abstract :: law_type
+    integer :: coordinate = 0   !< number of the coordinate it drives; 0 for the law of a load
+    type(place_type) :: place   !< place of its group in the data file
+  contains
+    procedure(evaluate_interface), deferred :: evaluate
+    procedure :: greatest_rate
+    procedure :: next_joint
+    procedure :: owner
+  end type law_type
+
+  !> One of several drives of different kinds.
+  type :: drive_slot_type
+    class(law_type), allocatable :: drive
+  end type drive_slot_type
+
+  !> One of several laws of different kinds.
+  type :: law_slot_type
+    class(law_type), allocatable :: law
+  end type law_slot_type
+
+  abstract interface
+    !> q(t) and its first two derivatives in time; those beyond the time where a law is not smooth. Fails where the law has no
+    !> value.
+    subroutine evaluate_interface(self, t, q, dq, ddq, err)
+      import :: law_type, error_type, wp
+      class(law_type), intent(in) :: self                 !< the law
+      real(wp), intent(in) :: t                           !< time [s]
+      real(wp), intent(out) :: q                          !< the coordinate [rad, m]
+      real(wp), intent(out) :: dq                         !< its rate [rad/s, m/s]
+      real(wp), intent(out) :: ddq                        !< its acceleration [rad/s^2, m/s^2]
+      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    end subroutine evaluate_interface
+  end interface
+
+contains
+
+  !> A bound of |dq/dt| between t and t + h, so that no movement between two times is overlooked. Laws
+  !> whose formula is known give a proven bound. This procedure, for all others, evaluates the law at unevenly spaced
+  !> times of the interval and adds a margin by the acceleration. Times at which the law has no value do not count.
+  function greatest_rate(self, t, h) result(rate)
+    class(law_type), intent(in) :: self     !< the law
+    real(wp), intent(in) :: t               !< beginning of the interval [s]
+    real(wp), intent(in) :: h               !< length of the interval [s]; may be negative
+    real(wp) :: rate
+    real(wp), parameter :: between(4) = [0.0_wp, 0.29_wp, 0.62_wp, 1.0_wp]
+    type(error_type), allocatable :: err
+    real(wp) :: q, dq, ddq
+    integer :: i
+
+    rate = 0.0_wp
+    do i = 1, size(between)
+      call self%evaluate(t + between(i)*h, q, dq, ddq, err)
+      if (.not. allocated(err)) rate = max(rate, abs(dq) + 0.25_wp*abs(h*ddq))
+    end do
+  end function greatest_rate
+
+  !> The next time at which pieces of the law join, where its derivatives may jump; beyond all times where there is none. This
+  !> procedure, for smooth laws and those whose formula is not known, tells of none.
+  pure real(wp) function next_joint(self, t, direction)
+    class(law_type), intent(in) :: self     !< the law
+    real(wp), intent(in) :: t               !< time; a joint there does not count [s]
+    real(wp), intent(in) :: direction       !< +1 for later times, -1 for earlier ones
+
+    next_joint = sign(huge(t), direction)
+  end function next_joint
+
+  !> The owner of the law in messages.
+  pure function owner(self)
+    class(law_type), intent(in) :: self     !< the law
+    character(len=40) :: owner
+
+    owner = 'load'
+    if (self%coordinate > 0) owner = 'drive of coordinate '//to_text(self%coordinate)
+  end function owner
+
+  !> A time at or near a joint, moved into the piece on one side of it by a little more than round-off.
+  pure real(wp) function from_inside(t, direction)
+    real(wp), intent(in) :: t           !< time [s]
+    real(wp), intent(in) :: direction   !< +1 for the piece after it, -1 for the one before it
+
+    from_inside = t + sign(16.0_wp*max(spacing(t), spacing(1.0e-6_wp)), direction)
+  end function from_inside
+end module mech9_law

@@ -1,0 +1,135 @@
+!> A law in segments, each with a motion law of cam design; it may repeat.
+!>
+!> A drive that repeats and ends at another value than it begins with advances by the difference in each period, as that of an
+!> indexing table does. The law of a load returns to its first value.
+module mech9_segments_law
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_data
+  use mech9_text, only: to_text
+  use mech9_law, only: law_type
+  use mech9_cam_curves, only: cam_curve, steepest_slope_of
+  implicit none
+  private
+  public :: segments_law_type
+
+  !> n segments between n + 1 times.
+  type, extends(law_type) :: segments_law_type
+    real(wp), allocatable :: times(:)     !< (n+1) ends of the segments, increasing [s]
+    real(wp), allocatable :: values(:)    !< (n+1) the coordinate there [rad, m]
+    integer, allocatable :: curves(:)     !< (n) numbers of the motion laws
+    logical :: repeats = .false.          !< after the last time it begins again
+  contains
+    procedure :: evaluate
+    procedure :: greatest_rate
+    procedure :: next_joint
+    procedure, private :: rounds_before
+  end type segments_law_type
+
+contains
+
+  !> The law and its derivatives, at a joint those of the segment after it. Fails outside its times unless it repeats.
+  subroutine evaluate(self, t, q, dq, ddq, err)
+    class(segments_law_type), intent(in) :: self        !< the law
+    real(wp), intent(in) :: t                           !< time [s]
+    real(wp), intent(out) :: q                          !< the coordinate [rad, m]
+    real(wp), intent(out) :: dq                         !< its rate [rad/s, m/s]
+    real(wp), intent(out) :: ddq                        !< its acceleration [rad/s^2, m/s^2]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: x, span, rise, s, ds, dds, rounds
+    integer :: i, n
+
+    n = size(self%curves)
+    rounds = self%rounds_before(t)
+    x = t - rounds*(self%times(n + 1) - self%times(1))
+    ! output times are sums and may miss the ends by round-off
+    if (x < self%times(1) - slack(self, t) .or. x > self%times(n + 1) + slack(self, t)) then
+      call raise(err, exit_data, 'the segments of the '//trim(self%owner())//' cover t = '//to_text(self%times(1))//' to '// &
+                 to_text(self%times(n + 1))//', and t = '//to_text(t)//' is asked for; add segments, give period=, or shorten '// &
+                 '&time', self%place)
+      return
+    end if
+    i = segment_of(self, x)
+    span = self%times(i + 1) - self%times(i)
+    rise = self%values(i + 1) - self%values(i)
+    call cam_curve(self%curves(i), max(0.0_wp, min(1.0_wp, (x - self%times(i))/span)), s, ds, dds)
+    q = self%values(i) + rise*s
+    if (self%coordinate > 0) q = q + rounds*(self%values(n + 1) - self%values(1))
+    dq = rise*ds/span
+    ddq = rise*dds/span**2
+  end subroutine evaluate
+
+  !> Number of whole periods before a time; 0 where nothing repeats.
+  pure real(wp) function rounds_before(self, t)
+    class(segments_law_type), intent(in) :: self   !< the law
+    real(wp), intent(in) :: t                      !< time [s]
+
+    rounds_before = 0.0_wp
+    if (self%repeats) rounds_before = &
+      real(floor((t - self%times(1))/(self%times(size(self%times)) - self%times(1)), selected_int_kind(15)), wp)
+  end function rounds_before
+
+  !> Round-off in a time, in which it may miss an end.
+  pure real(wp) function slack(self, t)
+    type(segments_law_type), intent(in) :: self   !< the law
+    real(wp), intent(in) :: t                     !< time [s]
+
+    slack = 1.0e-12_wp*(self%times(size(self%times)) - self%times(1)) + 64.0_wp*spacing(t)
+  end function slack
+
+  !> Number of the segment at a time of the first period.
+  pure integer function segment_of(self, x) result(i)
+    type(segments_law_type), intent(in) :: self   !< the law
+    real(wp), intent(in) :: x                     !< time in the first period [s]
+
+    do i = size(self%curves), 2, -1
+      if (x >= self%times(i)) return
+    end do
+  end function segment_of
+
+  !> The bound is the greatest rate of all segments between the two times.
+  function greatest_rate(self, t, h) result(rate)
+    class(segments_law_type), intent(in) :: self   !< the law
+    real(wp), intent(in) :: t                      !< beginning of the interval [s]
+    real(wp), intent(in) :: h                      !< length of the interval [s]; may be negative
+    real(wp) :: rate
+    real(wp) :: period, from, to
+    integer :: i
+
+    period = self%times(size(self%times)) - self%times(1)
+    from = min(t, t + h) - self%rounds_before(min(t, t + h))*period
+    to = from + abs(h)
+    rate = 0.0_wp
+    do i = 1, size(self%curves)
+      if (.not. (overlaps(0.0_wp) .or. self%repeats .and. (overlaps(period) .or. abs(h) > period))) cycle
+      rate = max(rate, abs(self%values(i + 1) - self%values(i))*steepest_slope_of(self%curves(i)) &
+                 /(self%times(i + 1) - self%times(i)))
+    end do
+  contains
+    !> Whether a segment, later by some time, lies between the times.
+    pure logical function overlaps(later)
+      real(wp), intent(in) :: later   !< [s]
+
+      overlaps = self%times(i) + later <= to .and. self%times(i + 1) + later >= from
+    end function overlaps
+  end function greatest_rate
+
+  !> The next end of a segment.
+  pure real(wp) function next_joint(self, t, direction)
+    class(segments_law_type), intent(in) :: self   !< the law
+    real(wp), intent(in) :: t                      !< time; a joint there does not count [s]
+    real(wp), intent(in) :: direction              !< +1 for later times, -1 for earlier ones
+    real(wp) :: period, joint, least
+    integer :: i, round
+
+    next_joint = sign(huge(t), direction)
+    period = self%times(size(self%times)) - self%times(1)
+    least = 4.0_wp*slack(self, t)
+    do round = -1, 1
+      if (round /= 0 .and. .not. self%repeats) cycle
+      do i = 1, size(self%times)
+        joint = self%times(i) + (self%rounds_before(t) + round)*period
+        if ((joint - t)*direction > least .and. (next_joint - joint)*direction > 0.0_wp) next_joint = joint
+      end do
+    end do
+  end function next_joint
+end module mech9_segments_law
