@@ -2,6 +2,9 @@
 nothing is integrated; driven coordinates stay driven where others are exchanged; dead points, contradictions and drives of
 dependent coordinates are told with place, time and remedy.
 
+Compares the program with itself in part: driven chains in both programs, and one motion in several independent coordinates; all else is
+closed forms.
+
 usage: driven_dynamics.py MECH9K MECH9D
 """
 import math

@@ -183,6 +183,13 @@ def check_impulse(checks, folder, mech9d):
     checks.near(energy[2:], energy[1], 1e-9, 'the energy on a steady slide', scale=1)
     done = run(mech9d, path, '--no-write', folder=folder)
     checks.true('note: the rate of the drive of coordinate 1 jumps at t = 0.5 s' in done.stderr, 'the jump is told', done.stderr)
+    for law, jumps in (('harmonic', 'note: the acceleration of the drive of coordinate 1 jumps at t = 0.5, 1 s'), ('cycloidal', None)):
+        drive = segments([0, 0.5, 1, 1.5], [0, 0, 2.0, 2.0], ['dwell', law, 'dwell'])
+        path = write(folder, PENDULUM + f'&drive coordinate=1, {drive} /\n&time start=0, end=1.5, intervals=3 /\n')
+        for options in (('--no-write',), ('--check',)):
+            done = run(mech9d, path, *options, folder=folder)
+            checks.true(jumps in done.stdout + done.stderr if jumps else 'jumps' not in done.stdout + done.stderr,
+                        f'jumps of {law} segments are told', done.stdout + done.stderr)
 
 
 def check_loads(checks, folder, mech9d):

@@ -11,7 +11,7 @@ module mech9_law_notes
 
   !> Times that a note shows, and joints that are looked at, at most.
   integer, parameter :: most_times = 6, most_joints = 1000
-  !> A change is a jump where it exceeds this part of the largest rate or acceleration beside joints.
+  !> A change is a jump where it exceeds this part of the greatest rate, or of the largest acceleration beside joints.
   real(wp), parameter :: least_jump = 1.0e-6_wp
 
 contains
@@ -39,7 +39,9 @@ contains
     integer :: n
 
     direction = sign(1.0_wp, end - start)
-    largest = 0.0_wp
+    ! rates that differ by round-off do not jump
+    largest(1) = drive%greatest_rate(start, end - start)
+    largest(2) = largest(1)/max(abs(end - start), tiny(start))
     n = 0
     do while (n < most_joints)
       times(n + 1) = drive%next_joint(merge(start, times(max(n, 1)), n == 0), direction)
@@ -49,7 +51,7 @@ contains
       if (allocated(err) .or. allocated(failure)) exit
       n = n + 1
       changes(:, n) = abs(behind(2:) - before(2:))
-      largest = max(largest, abs(before(2:)), abs(behind(2:)))
+      largest(2) = max(largest(2), abs(before(3)), abs(behind(3)))
     end do
     call print_times(unit, drive, 'rate', pack(times(:n), changes(1, :n) > least_jump*largest(1)))
     call print_times(unit, drive, 'acceleration', pack(times(:n), changes(2, :n) > least_jump*largest(2) .and. &
