@@ -91,9 +91,9 @@ contains
     if (allocated(err)) return
     call carry_inwards(plan, reactions, self)
     do c = 1, size(reactions%clusters)
-      done = .false.
-      if (plan%planar%used) call solve_in_plane(plan, reactions, reactions%clusters(c), self%balances(c)%held, self%in_plane(c), &
-                                                self, done)
+      call leave_unloaded(reactions%clusters(c), self, done)
+      if (plan%planar%used .and. .not. done) &
+        call solve_in_plane(plan, reactions, reactions%clusters(c), self%balances(c)%held, self%in_plane(c), self, done)
       if (done) cycle
       call solve_cluster(plan, reactions, reactions%clusters(c), self%balances(c), self, err)
       if (allocated(err)) then
@@ -137,6 +137,25 @@ contains
       end associate
     end do
   end subroutine carry_inwards
+
+  !> The wrenches of a cluster whose links require nothing are zero; `done` tells whether this is so.
+  pure subroutine leave_unloaded(cluster, self, done)
+    type(joined_cluster_type), intent(in) :: cluster   !< the cluster
+    type(reactions_type), intent(inout) :: self        !< with what its links require; gets the wrenches
+    logical, intent(out) :: done                       !< nothing is required
+    integer :: i, k
+
+    done = .not. self%sum%any_generalized
+    do i = 1, size(cluster%links)
+      k = cluster%links(i)
+      if (done) done = .not. (any(abs(self%link_force(:, k)) > 0.0_wp) .or. any(abs(self%link_moment(:, k)) > 0.0_wp))
+    end do
+    if (.not. done) return
+    do i = 1, size(cluster%pairs)
+      self%force(:, cluster%pairs(i)) = 0.0_wp
+      self%moment(:, cluster%pairs(i)) = 0.0_wp
+    end do
+  end subroutine leave_unloaded
 
   !> The wrenches of the pairs of a planar cluster across whose plane nothing acts. `done` is false where something does, and
   !> beside singular positions.
