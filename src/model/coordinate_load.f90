@@ -58,7 +58,8 @@ contains
 
     real(wp) :: factor
 
-    call self%find_factor(state%t, factor, err)
+    factor = 1.0_wp
+    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
     if (allocated(err)) return
     associate (k => self%coordinate)
       call sum%add_generalized(k, factor*(self%force - self%stiffness*(state%q(k) - self%rest) - self%damping*state%dq(k)))
@@ -75,7 +76,8 @@ contains
 
     real(wp) :: factor
 
-    call self%find_factor(state%t, factor, err)
+    factor = 1.0_wp
+    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
     if (allocated(err)) return
     associate (k => self%coordinate)
       call changes%add_generalized(k, -factor*(self%stiffness*change%q(k) + self%damping*change%dq(k)))

@@ -51,7 +51,8 @@ contains
 
     real(wp) :: factor
 
-    call self%find_factor(state%t, factor, err)
+    factor = 1.0_wp
+    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
     if (allocated(err)) return
     if (self%turns_with_link) then
       call sum%add_force(state, self%link, self%position, state%links(self%link)%fixed_components(factor*self%force))
@@ -72,7 +73,8 @@ contains
 
     real(wp) :: factor
 
-    call self%find_factor(state%t, factor, err)
+    factor = 1.0_wp
+    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
     if (allocated(err)) return
     associate (link => state%links(self%link), of_link => change%links(self%link))
       if (self%turns_with_link) then

@@ -95,7 +95,8 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: force(3), factor
 
-    call self%find_factor(state%t, factor, err)
+    factor = 1.0_wp
+    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
     if (.not. allocated(err)) call self%pull(self%span(state), self%span_rate(state), force, err)
     if (allocated(err)) return
     force = factor*force
@@ -114,7 +115,8 @@ contains
 
     d = self%span(state)
     rate = self%span_rate(state)
-    call self%find_factor(state%t, factor, err)
+    factor = 1.0_wp
+    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
     if (.not. allocated(err)) call self%pull(d, rate, force, err)
     if (allocated(err)) return
     force = factor*force
