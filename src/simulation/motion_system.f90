@@ -357,6 +357,7 @@ contains
     call close_chains(self, trusted_between_steps, failed, err)
     if (allocated(err) .or. failed > 0) return
     call self%present(err)
+    self%state%t = t
     ok = .not. allocated(err)
   end subroutine close_near
 
@@ -370,6 +371,7 @@ contains
     call take_vector(self, t, y, err)
     if (.not. allocated(err)) call place_all(self%plan, self%state, err)
     if (.not. allocated(err)) call self%present(err)
+    self%state%t = t
   end subroutine move_to
 
   !> The third derivatives of the independent coordinates at the present state, to about 1e-10, by a central difference of the

@@ -162,6 +162,8 @@ def check_joints(checks, folder, mech9d):
         expected[round(end * 10)] = y
     for method in ('auto', 'adams', 'bdf', 'merson'):
         table = table_of(mech9d, write(folder, text + TIGHT.replace(' /', f", method='{method}' /")))
+        checks.equal([f'{t:.17g}' for t in table['t'][:4]], [f'{1.6 * i / 16:.17g}' for i in range(4)], 'the times of rows at joints')
+        checks.equal(table['t'][-1], 1.6, 'the time of the last row')
         for row, y in expected.items():
             # multistep methods err by up to a hundred tolerances in each of some thousand steps
             tolerance = 1e-9 if method in ('auto', 'merson') else 1e-7
