@@ -3,7 +3,7 @@ module mech9_lapack
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: ilaver, dgtsv, dgesvd, dormqr, dgeqp3
+  public :: ilaver, dgtsv, dgesvd, zgesvd, dormqr, dgeqp3, dsyev, dgeev
 
   interface
     !> The version of the library.
@@ -76,5 +76,58 @@ module mech9_lapack
       real(wp), intent(out) :: work(*)       !< scratch
       integer, intent(out) :: info           !< 0: all is well
     end subroutine dgeqp3
+
+    !> Eigenvalues and eigenvectors of a symmetric matrix.
+    subroutine dsyev(jobz, uplo, n, a, lda, w, work, lwork, info)
+      import :: wp
+      character, intent(in) :: jobz          !< 'V': eigenvectors are wanted; 'N': not
+      character, intent(in) :: uplo          !< 'L': the lower triangle is given; 'U': the upper one
+      integer, intent(in) :: n               !< order of the matrix
+      integer, intent(in) :: lda             !< rows of `a` in memory
+      integer, intent(in) :: lwork           !< size of `work`
+      real(wp), intent(inout) :: a(lda, *)   !< (n,n) the matrix; its eigenvectors in columns afterwards
+      real(wp), intent(out) :: w(*)          !< (n) eigenvalues, not decreasing
+      real(wp), intent(out) :: work(*)       !< scratch
+      integer, intent(out) :: info           !< 0: all is well
+    end subroutine dsyev
+
+    !> Eigenvalues and eigenvectors of any real matrix, which is balanced first.
+    subroutine dgeev(jobvl, jobvr, n, a, lda, wr, wi, vl, ldvl, vr, ldvr, work, lwork, info)
+      import :: wp
+      character, intent(in) :: jobvl         !< 'V': left eigenvectors are wanted; 'N': not
+      character, intent(in) :: jobvr         !< 'V': right eigenvectors are wanted; 'N': not
+      integer, intent(in) :: n               !< order of the matrix
+      integer, intent(in) :: lda             !< rows of `a` in memory
+      integer, intent(in) :: ldvl            !< rows of `vl` in memory
+      integer, intent(in) :: ldvr            !< rows of `vr` in memory
+      integer, intent(in) :: lwork           !< size of `work`
+      real(wp), intent(inout) :: a(lda, *)   !< (n,n) the matrix; overwritten
+      real(wp), intent(out) :: wr(*)         !< (n) real parts of the eigenvalues
+      real(wp), intent(out) :: wi(*)         !< (n) imaginary parts, the positive one of a pair first
+      real(wp), intent(out) :: vl(ldvl, *)   !< left eigenvectors in columns
+      real(wp), intent(out) :: vr(ldvr, *)   !< right eigenvectors in columns
+      real(wp), intent(out) :: work(*)       !< scratch
+      integer, intent(out) :: info           !< 0: all is well
+    end subroutine dgeev
+
+    !> Singular values and vectors of a complex matrix.
+    subroutine zgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, rwork, info)
+      import :: wp
+      character, intent(in) :: jobu             !< 'A', 'S', 'O' or 'N': which left singular vectors are wanted
+      character, intent(in) :: jobvt            !< 'A', 'S', 'O' or 'N': which right singular vectors are wanted
+      integer, intent(in) :: m                  !< number of rows
+      integer, intent(in) :: n                  !< number of columns
+      integer, intent(in) :: lda                !< rows of `a` in memory
+      integer, intent(in) :: ldu                !< rows of `u` in memory
+      integer, intent(in) :: ldvt               !< rows of `vt` in memory
+      integer, intent(in) :: lwork              !< size of `work`
+      complex(wp), intent(inout) :: a(lda, *)   !< (m,n) the matrix; overwritten
+      real(wp), intent(out) :: s(*)             !< singular values, not increasing
+      complex(wp), intent(out) :: u(ldu, *)     !< left singular vectors in columns
+      complex(wp), intent(out) :: vt(ldvt, *)   !< conjugates of the right singular vectors in rows
+      complex(wp), intent(out) :: work(*)       !< scratch
+      real(wp), intent(out) :: rwork(*)         !< (5 min(m,n)) scratch
+      integer, intent(out) :: info              !< 0: all is well
+    end subroutine zgesvd
   end interface
 end module mech9_lapack
