@@ -10,6 +10,7 @@ module mech9_dynamic_task
   use mech9_kept_rows, only: kept_rows_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_equilibrium_task, only: asks_for_equilibrium, find_rest
   use mech9_task, only: task_type, answers_only, print_check, print_given, begin_run, end_run
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_facts, only: facts_type
@@ -73,6 +74,10 @@ contains
     type(free_simulation_type), target :: simulation
     type(error_type), allocatable :: err
 
+    if (asks_for_equilibrium(options)) then
+      call find_rest(options, model, diagnostics, reported)
+      return
+    end if
     if (is_all_driven(model)) then
       call work_driven(self%program_name, .true., options, model, diagnostics, reported, kept)
       return

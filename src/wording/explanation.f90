@@ -15,7 +15,7 @@ module mech9_explanation
     failure_points_order, failure_no_spline, failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, &
     failure_chain_off_plane, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
     failure_interrupted, failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
-    failure_driven_dead_point, failure_unbalanced
+    failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_choice_words, only: explain_choice, longest_list
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
@@ -52,6 +52,7 @@ contains
     call explain_settings(failure, text)
     call explain_step(failure, text)
     call explain_points(failure, text)
+    call explain_equilibrium(failure, text)
     call explain_no_plane(failure, text)
   end subroutine explain_failure
 
@@ -288,6 +289,29 @@ contains
              'enlarges it enough: it may be chaotic. End before this time, or ask for a larger accuracy'
     end select
   end subroutine explain_simulation
+
+  !> A search for an equilibrium that finds none: the forces that are left, by coordinate.
+  pure subroutine explain_equilibrium(failure, text)
+    type(failure_type), intent(in) :: failure             !< any kind
+    character(len=:), allocatable, intent(inout) :: text  !< the message
+    character(len=:), allocatable :: forces
+    integer :: i
+
+    if (failure%kind /= failure_no_equilibrium) return
+    forces = ''
+    do i = 1, size(failure%coordinates)
+      if (i > 1) forces = forces//', '
+      if (i > longest_list) then
+        forces = forces//'...'
+        exit
+      end if
+      forces = forces//to_text(-failure%values(i, 1), 4)//' on coordinate '//to_text(failure%coordinates(i))// &
+               ' at '//to_text(failure%values(i, 2), 6)
+    end do
+    text = 'no position of equilibrium was found from the initial position; where the search ended, the loads still push '// &
+           'with (N m, N): '//forces//'. Give another initial position, or --starts N for many, or look whether the loads '// &
+           'can be balanced at all'
+  end subroutine explain_equilibrium
 
   !> Points through which no spline can be laid.
   pure subroutine explain_points(failure, text)

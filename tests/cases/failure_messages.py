@@ -290,6 +290,10 @@ def free_cases():
          ['the motion comes to gimbal lock at t = 0 s: there coordinates 1, 3 can move together without moving any mass, so that '
           'the forces do not determine their accelerations. Turn about the axes in another order, or give the links between them '
           'inertia']),
+        ('no_equilibrium', '&mechanism links=2, coordinates=1 /\n' + structure(1) + revolute(1, (1, 2)) + BODY + initial(1, 0.5)
+         + "&load kind='coordinate', coordinate=1, force=3 /\n", ('--equilibrium', '--no-write'), ASSEMBLY,
+         ['no position of equilibrium was found from the initial position; where the search ended, the loads still push with '
+          '(N m, N): 3 on coordinate 1 at ']),
         ('no_initial_position', four_bar(ROCKER, BODY), (), DATA,
          ['case.nml:3:1: the independent coordinate 1 of this pair has no initial position; give &initial coordinate=1, '
           'position=..., velocity=... /']),

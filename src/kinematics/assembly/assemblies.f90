@@ -11,7 +11,7 @@ module mech9_assemblies
   use mech9_assembly, only: assemble_block, assembly_outcome_type
   implicit none
   private
-  public :: assembly_list_type, find_assemblies, close_from_random_starts
+  public :: assembly_list_type, find_assemblies, close_from_random_starts, close_from
 
 
   !> Assemblies, in the order in which they were found.

@@ -26,6 +26,7 @@ module mech9_command_line
     procedure :: number
     procedure :: converses
     procedure :: answer
+    procedure :: table_of_answer
   end type command_line_type
 
 contains
@@ -347,7 +348,12 @@ contains
       call raise(err, exit_usage, '--quiet and --verbose contradict each other')
     else if (options%has('no-write') .and. (options%has('table') .or. options%has('hdf5') .or. options%has('plot'))) then
       call raise(err, exit_usage, '--no-write contradicts --table, --hdf5 and --plot')
-    else if (options%has('animate') .and. options%answer() /= '') then
+    else if (options%has('mode') .neqv. (options%has('modes') .and. options%has('animate'))) then
+      call judge_mode(options, err)
+    else if (options%has('modes') .and. options%has('equilibrium')) then
+      call raise(err, exit_usage, '--equilibrium and --modes write different tables; give one of them, --modes finds the '// &
+                 'equilibrium, too')
+    else if (options%has('animate') .and. options%answer() /= '' .and. options%answer() /= 'modes') then
       call raise(err, exit_usage, '--animate shows a run, and --'//options%answer()//' makes none; leave one of them out')
     else if (options%converses()) then
       call judge_conversation(program_name, options, err)
@@ -358,7 +364,8 @@ contains
   pure function answer(self) result(name)
     class(command_line_type), intent(in) :: self  !< the command line
     character(len=:), allocatable :: name
-    character(len=*), parameter :: answers(*) = [character(len=9) :: 'structure', 'check', 'plan', 'branches', 'range', 'graph']
+    character(len=*), parameter :: answers(*) = [character(len=11) :: 'structure', 'check', 'plan', 'branches', 'range', 'graph', &
+                                                            'equilibrium', 'modes', 'linear']
     integer :: i
 
     name = ''
@@ -366,6 +373,29 @@ contains
       if (self%has(trim(answers(i)))) name = trim(answers(i))
     end do
   end function answer
+
+  !> The table of an equilibrium or of modes: the file that is named, or standard output where no other result is asked for;
+  !> empty for none.
+  pure function table_of_answer(self) result(path)
+    class(command_line_type), intent(in) :: self  !< the command line
+    character(len=:), allocatable :: path
+
+    path = self%argument('table')
+    if (path /= '' .or. self%has('hdf5') .or. self%has('animate') .or. self%has('no-write')) return
+    if (self%has('equilibrium') .or. self%has('modes')) path = '-'
+  end function table_of_answer
+
+  !> Fail because of --modes with --animate and without --mode, or the other way round.
+  pure subroutine judge_mode(options, err)
+    type(command_line_type), intent(in) :: options     !< the command line
+    type(error_type), allocatable, intent(out) :: err  !< the failure
+
+    if (options%has('mode')) then
+      call raise(err, exit_usage, '--mode tells which mode --modes --animate FILE shows; give all three')
+    else
+      call raise(err, exit_usage, '--modes --animate shows one mode; tell which by --mode K')
+    end if
+  end subroutine judge_mode
 
   !> Whether the program holds a conversation instead of working on a data file.
   pure logical function converses(self)
@@ -380,7 +410,8 @@ contains
     type(command_line_type), intent(in) :: options     !< the data file and the options
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     character(len=:), allocatable :: missing
-    character(len=9), parameter :: generic(6) = [character(len=9) :: 'check', 'structure', 'plan', 'branches', 'range', 'set']
+    character(len=*), parameter :: generic(*) = [character(len=11) :: 'check', 'structure', 'plan', 'branches', 'range', &
+                                                 'equilibrium', 'modes', 'linear', 'set']
     integer :: i
 
     do i = 1, size(generic)

@@ -32,7 +32,15 @@ module mech9_options
     option_type('branches', no_argument, '', any_text, .false., both, &
                 'list the assemblies found for the start from many random guesses'), &
     option_type('starts', needed_argument, 'N', whole_number, .false., both, &
-                'number of guesses that --branches tries; 100 if not given'), &
+                'number of guesses for --branches (100), or --equilibrium (none)'), &
+    option_type('equilibrium', no_argument, '', any_text, .false., 'mech9d', &
+                'find where the mechanism rests near its initial position, or falls to'), &
+    option_type('modes', no_argument, '', any_text, .false., 'mech9d', &
+                'find frequencies, dampings and shapes of its small vibrations there'), &
+    option_type('mode', needed_argument, 'K', whole_number, .false., 'mech9d', &
+                'the mode of --modes that --animate shows'), &
+    option_type('linear', needed_argument, 'FILE.h5', any_text, .false., 'mech9d', &
+                'write the linearised equations of motion there as matrices'), &
     option_type('range', no_argument, '', any_text, .false., 'mech9k', &
                 'print how far each independent coordinate can go from the start'), &
     option_type('graph', needed_argument, 'FILE', any_text, .false., both, &

@@ -3,6 +3,7 @@ module mech9_hdf5_record
   use mech9_text, only: to_text, string_type
   use mech9_lapack, only: ilaver
   use mech9_model, only: model_type
+  use mech9_result_units, only: unit_name
   use mech9_columns, only: columns_type
   use mech9_force_record, only: force_record_type
   use mech9_hdf5_file, only: hdf5_file_type, hdf5_version
@@ -10,7 +11,7 @@ module mech9_hdf5_record
   use mech9_version, only: version, revision, compiler, sundials_version
   implicit none
   private
-  public :: write_provenance, write_structure, write_uniqueness
+  public :: write_provenance, write_structure, write_uniqueness, write_coordinates
 
   !> Most links with which the coincidence matrix is written; for more links it would be larger than the results.
   integer, parameter :: largest_matrix = 1000
@@ -56,6 +57,22 @@ contains
     text = date(1:4)//'-'//date(5:6)//'-'//date(7:8)//'T'//time(1:2)//':'//time(3:4)//':'//time(5:6)// &
            zone(1:3)//':'//zone(4:5)
   end function present_time
+
+  !> Write the numbers and units of all coordinates, for files without rows over time.
+  subroutine write_coordinates(file, model)
+    type(hdf5_file_type), intent(inout) :: file     !< the open file
+    type(model_type), intent(in) :: model           !< the model
+    type(string_type) :: units(size(model%mechanism%pairs))
+    integer :: k
+
+    do k = 1, size(units)
+      units(k)%text = trim(unit_name(model%mechanism, k))
+    end do
+    call file%put('coordinate', [(k, k=1, size(units))], 'number of the coordinate and of its pair')
+    call file%make_scale('coordinate')
+    call file%put('coordinate_unit', units, 'unit of each coordinate')
+    call file%attach_scales('coordinate_unit', ['/coordinate'])
+  end subroutine write_coordinates
 
   !> Write the first and the second set of structural data.
   subroutine write_structure(file, model)

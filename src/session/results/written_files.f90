@@ -126,12 +126,33 @@ contains
       if (options%has(trim(printed(i)))) call append(files, '--'//trim(printed(i)), standard_output_path)
     end do
     if (options%has('structure')) return
+    if (options%has('equilibrium') .or. options%has('modes') .or. options%has('linear')) then
+      call list_of_equilibrium(options, files)
+      return
+    end if
     call append(files, '--sketch', options%argument('sketch'))
     if (.not. options%has('graph')) return
     graph = options%argument('graph')
     call append(files, '--graph', graph)
     if (text_of_graph(graph) /= graph) call append(files, 'the text of --graph', text_of_graph(graph))
   end subroutine list_answers
+
+  !> Add the files of --equilibrium, --modes and --linear.
+  pure subroutine list_of_equilibrium(options, files)
+    type(command_line_type), intent(in) :: options                    !< the command line
+    type(written_file_type), allocatable, intent(inout) :: files(:)   !< gets the files
+
+    if (options%has('table')) then
+      call append(files, '--table', options%argument('table'))
+    else
+      call append(files, 'the table', options%table_of_answer())
+    end if
+    call append(files, '--hdf5', options%argument('hdf5'))
+    if (options%has('hdf5')) call append(files, 'the beginning of the HDF5 file', path_of_part(options%argument('hdf5')))
+    call append(files, '--linear', options%argument('linear'))
+    if (options%has('linear')) call append(files, 'the beginning of --linear', path_of_part(options%argument('linear')))
+    call append(files, '--animate', options%argument('animate'))
+  end subroutine list_of_equilibrium
 
   !> Append a file; none where the path is empty.
   pure subroutine append(files, what, path)

@@ -1,0 +1,264 @@
+!> Positions of equilibrium of a mechanism, with their linearised equations of motion and modes.
+module mech9_equilibria
+  use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type, raise, exit_assembly, exit_data
+  use mech9_random, only: random_type
+  use mech9_eigenmodes, only: eigenmodes_type, find_eigenmodes
+  use mech9_mechanism, only: mechanism_type
+  use mech9_partition, only: partition_type
+  use mech9_plan, only: plan_type, step_type
+  use mech9_state, only: state_type
+  use mech9_assemblies, only: close_from
+  use mech9_frame_motion, only: place_all
+  use mech9_failure, only: failure_no_inertia
+  use mech9_linearisation, only: find_matrix, by_rate, by_acceleration
+  use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, is_balanced, find_stiffness, &
+    return_to_coordinates, copy_resting
+  use mech9_equilibrium_search, only: settle, find_any
+  implicit none
+  private
+  public :: equilibrium_type, find_equilibrium, find_equilibria
+
+  !> A position of equilibrium. Matrices are in SI units, of the coordinates `resting%free`.
+  type :: equilibrium_type
+    type(resting_type) :: resting               !< the mechanism in this position
+    real(wp), allocatable :: inertia(:, :)      !< M [kg m^2, kg m, kg]
+    real(wp), allocatable :: damping(:, :)      !< C [N m s/rad, N s/m]
+    real(wp), allocatable :: stiffness(:, :)    !< K [N m/rad, N/m]
+    type(eigenmodes_type) :: modes              !< of M x'' + C x' + K x = 0; shapes in SI units
+    logical :: is_stable = .false.              !< no root grows beyond round-off
+    integer :: found = 1                        !< number of starts that led to it
+  end type equilibrium_type
+
+  !> Conditioning at which the coordinates of the data file are taken again for the matrices.
+  real(wp), parameter :: fair_conditioning = 1.0e-4_wp
+  !> Stiffness and damping below this part of the sum of their terms are round-off.
+  real(wp), parameter :: round_off = 1.0e-11_wp
+  !> Equilibria whose coordinates differ by less are the same, in units of the coordinates.
+  real(wp), parameter :: same_position = 1.0e-5_wp
+  !> Random positions tried for each start, because chains do not close everywhere.
+  integer, parameter :: most_trials = 10
+
+contains
+
+  !> The equilibrium to which an assembled position leads. Fails with exit_assembly where there is none, with exit_data where a free
+  !> coordinate has no inertia, and where a load fails.
+  subroutine find_equilibrium(mechanism, partition, plan, assembled, found, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(partition_type), intent(in) :: partition       !< driven, free and dependent coordinates
+    type(plan_type), intent(in) :: plan                 !< its plan, in space
+    type(state_type), intent(in) :: assembled           !< closed, with rates and accelerations of the driven coordinates
+    type(equilibrium_type), intent(out) :: found        !< the equilibrium
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    call put_to_rest(mechanism, partition, plan, assembled, found%resting, err)
+    if (.not. allocated(err)) call settle(mechanism, found%resting, err)
+    if (.not. allocated(err)) call linearise(mechanism, partition, found, err)
+  end subroutine find_equilibrium
+
+  !> All equilibria to which an assembled position and random ones lead, sorted by their coordinates. The random positions are
+  !> the same in every run. Fails as find_equilibrium does, but with exit_assembly only where none is found.
+  subroutine find_equilibria(mechanism, partition, plan, assembled, n_starts, list, err)
+    type(mechanism_type), intent(in) :: mechanism                     !< the mechanism
+    type(partition_type), intent(in) :: partition                     !< driven, free and dependent coordinates
+    type(plan_type), intent(in) :: plan                               !< its plan, in space
+    type(state_type), intent(in) :: assembled                         !< closed, with the motion of the driven coordinates
+    integer, intent(in) :: n_starts                                   !< number of random positions
+    type(equilibrium_type), allocatable, intent(out) :: list(:)       !< the equilibria
+    type(error_type), allocatable, intent(out) :: err                 !< allocated if it failed
+    type(equilibrium_type) :: found
+    type(resting_type) :: resting
+    type(random_type) :: random
+    type(error_type), allocatable :: failure, at_lock
+    integer :: i
+    logical :: reached
+
+    allocate (list(0))
+    call find_equilibrium(mechanism, partition, plan, assembled, found, failure)
+    if (allocated(failure)) then
+      if (failure%code /= exit_assembly) call move_alloc(failure, err)
+      if (allocated(err)) return
+    else
+      call add_new(found, list)
+    end if
+    do i = 1, n_starts
+      call start_anywhere(mechanism, partition, plan, assembled, random, resting, reached)
+      if (.not. reached) cycle
+      call find_any(mechanism, resting, reached, err)
+      if (allocated(err)) return
+      if (.not. reached) cycle
+      call reduce_turns(mechanism, assembled, resting)
+      call copy_resting(resting, found%resting)
+      call linearise(mechanism, partition, found, at_lock)
+      ! without inertia, the forces say nothing about a coordinate: angles of a ball joint in gimbal lock
+      if (.not. allocated(at_lock)) call add_new(found, list)
+    end do
+    if (size(list) == 0) call move_alloc(failure, err)
+    call sort(list)
+  end subroutine find_equilibria
+
+  !> A mechanism at rest in a random position. `reached` is false where the chains do not close.
+  subroutine start_anywhere(mechanism, partition, plan, assembled, random, resting, reached)
+    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
+    type(partition_type), intent(in) :: partition     !< driven, free and dependent coordinates
+    type(plan_type), intent(in) :: plan               !< its plan, in space
+    type(state_type), intent(in) :: assembled         !< closed, with the motion of the driven coordinates
+    type(random_type), intent(inout) :: random        !< source of random numbers
+    type(resting_type), intent(out) :: resting        !< the mechanism in that position
+    logical, intent(out) :: reached                   !< the chains close
+    type(state_type) :: position
+    type(error_type), allocatable :: err
+    integer :: trial, i, k
+
+    reached = .false.
+    call put_to_rest(mechanism, partition, plan, assembled, resting, err)
+    if (allocated(err)) return
+    do trial = 1, most_trials
+      position = assembled
+      do i = 1, size(resting%free)
+        k = resting%free(i)
+        position%q(k) = position%q(k) + merge(pi, 1.0_wp, turns(plan%steps(plan%step_of(k))))*plan%unit_of(k)*random%symmetric()
+      end do
+      call place_all(plan, position, err)
+      if (.not. allocated(err)) call close_from(plan, plan%blocks, pi, random, position, reached)
+      if (reached) exit
+    end do
+    if (.not. reached) return
+    call stand_at(mechanism, position, resting, err)
+    reached = .not. allocated(err)
+  end subroutine start_anywhere
+
+  !> Take whole turns off each angle that differs from that of a position by more than half a turn, if the equilibrium does not
+  !> depend on them. Half a turn is taken forwards.
+  subroutine reduce_turns(mechanism, assembled, resting)
+    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
+    type(state_type), intent(in) :: assembled         !< the position
+    type(resting_type), intent(inout) :: resting      !< in equilibrium
+    type(resting_type) :: other
+    type(state_type) :: position
+    type(error_type), allocatable :: err
+    real(wp) :: turned
+    integer :: k
+
+    call copy_resting(resting, other)
+    do k = 1, size(resting%state%q)
+      if (.not. turns(resting%plan%steps(resting%plan%step_of(k)))) cycle
+      turned = 2.0_wp*pi*ceiling((resting%state%q(k) - assembled%q(k) - same_position)/(2.0_wp*pi) - 0.5_wp)
+      if (.not. abs(turned) > 0.0_wp) cycle
+      position = resting%state
+      position%q(k) = position%q(k) - turned
+      call place_all(other%plan, position, err)
+      if (.not. allocated(err)) call stand_at(mechanism, position, other, err)
+      if (allocated(err)) return
+      if (is_balanced(other)) call copy_resting(other, resting)
+    end do
+  end subroutine reduce_turns
+
+  !> Linearise the equations of motion in an equilibrium and find their modes.
+  subroutine linearise(mechanism, partition, found, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(partition_type), intent(in) :: partition       !< with the coordinates of the data file
+    type(equilibrium_type), intent(inout) :: found      !< with its position; gets all else
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp), allocatable, dimension(:, :) :: m, c, per_unit
+    real(wp) :: m_magnitude, c_magnitude
+    integer :: i, n
+
+    call return_to_coordinates(mechanism, partition, fair_conditioning, found%resting, err)
+    if (allocated(err)) return
+    call find_stiffness(mechanism, found%resting, err)
+    if (allocated(err)) return
+    associate (resting => found%resting)
+      n = size(resting%free)
+      allocate (m(n, n), c(n, n))
+      call find_matrix(mechanism, resting%plan, resting%state, by_rate, resting%free, resting%linearisation, c, c_magnitude, err)
+      if (allocated(err)) return
+      call find_matrix(mechanism, resting%plan, resting%state, by_acceleration, resting%free, resting%linearisation, m, &
+                       m_magnitude, err)
+      if (allocated(err)) return
+      call find_eigenmodes(m, c, resting%stiffness, round_off*c_magnitude, round_off*resting%stiffness_magnitude, found%modes)
+      if (found%modes%without_inertia > 0) then
+        call raise(err, exit_data, failure_no_inertia)
+        err%failure%coordinates = [resting%free(found%modes%without_inertia)]
+        return
+      end if
+      found%is_stable = .not. found%modes%growth > 0.0_wp
+      allocate (per_unit(n, n))
+      do i = 1, n
+        per_unit(:, i) = 1.0_wp/(resting%plan%unit_of(resting%free)*resting%plan%unit_of(resting%free(i)))
+        found%modes%shapes(i, :) = found%modes%shapes(i, :)*resting%plan%unit_of(resting%free(i))
+      end do
+      found%inertia = per_unit*0.5_wp*(m + transpose(m))
+      found%damping = per_unit*c
+      found%stiffness = per_unit*resting%stiffness
+    end associate
+  end subroutine linearise
+
+  !> Add an equilibrium to a list, unless it is in it; then its finds are counted.
+  subroutine add_new(found, list)
+    type(equilibrium_type), intent(in) :: found                         !< the equilibrium
+    type(equilibrium_type), allocatable, intent(inout) :: list(:)       !< equilibria found so far
+    type(equilibrium_type), allocatable :: longer(:)
+    integer :: i
+
+    do i = 1, size(list)
+      if (any(abs(list(i)%resting%state%q - found%resting%state%q) > same_position*found%resting%plan%unit_of)) cycle
+      list(i)%found = list(i)%found + 1
+      return
+    end do
+    allocate (longer(size(list) + 1))
+    do i = 1, size(list)
+      call copy_equilibrium(list(i), longer(i))
+    end do
+    call copy_equilibrium(found, longer(size(longer)))
+    longer(size(longer))%found = 1
+    call move_alloc(longer, list)
+  end subroutine add_new
+
+  !> Copy an equilibrium.
+  subroutine copy_equilibrium(from, to)
+    type(equilibrium_type), intent(in) :: from      !< the equilibrium
+    type(equilibrium_type), intent(inout) :: to     !< the same afterwards
+
+    to = from
+  end subroutine copy_equilibrium
+
+  !> Sort equilibria by their first coordinates, where these are the same by the second ones, and so on.
+  subroutine sort(list)
+    type(equilibrium_type), intent(inout) :: list(:)   !< to be sorted
+    type(equilibrium_type) :: one
+    integer :: i, j
+
+    do i = 2, size(list)
+      call copy_equilibrium(list(i), one)
+      j = i - 1
+      do while (j > 0)
+        if (.not. comes_before(one, list(j))) exit
+        call copy_equilibrium(list(j), list(j + 1))
+        j = j - 1
+      end do
+      call copy_equilibrium(one, list(j + 1))
+    end do
+  end subroutine sort
+
+  !> Whether an equilibrium comes before another one.
+  pure logical function comes_before(a, b)
+    type(equilibrium_type), intent(in) :: a   !< an equilibrium
+    type(equilibrium_type), intent(in) :: b   !< another one
+    integer :: k
+
+    comes_before = .false.
+    do k = 1, size(a%resting%state%q)
+      if (abs(a%resting%state%q(k) - b%resting%state%q(k)) <= same_position*a%resting%plan%unit_of(k)) cycle
+      comes_before = a%resting%state%q(k) < b%resting%state%q(k)
+      return
+    end do
+  end function comes_before
+
+  !> Whether a full turn of a step's coordinate gives the same position.
+  pure logical function turns(step)
+    type(step_type), intent(in) :: step   !< the step
+
+    turns = step%is_screw .and. abs(step%turn) > 0.0_wp .and. .not. abs(step%slide) > 0.0_wp
+  end function turns
+end module mech9_equilibria

@@ -1,0 +1,151 @@
+!> The linearised equations of motion in the form x' = A x + B u, y = C x + D u.
+!>
+!> The state x holds the deviations of the free coordinates from equilibrium, then their rates. Inputs u are additional
+!> generalized forces on the free coordinates; outputs y are deviations of coordinates, points, and their derivatives in time.
+module mech9_state_space
+  use mech9_kinds, only: wp
+  use mech9_cholesky, only: cholesky_factorize, cholesky_solve
+  use mech9_rotation, only: turn, cross
+  use mech9_pose, only: transformed
+  use mech9_mechanism, only: mechanism_type
+  use mech9_motion_variation, only: vary_motion
+  use mech9_equilibria, only: equilibrium_type
+  implicit none
+  private
+  public :: state_space_type, find_state_space
+
+  !> The matrices, in the units of the results.
+  type :: state_space_type
+    real(wp), allocatable :: a(:, :)   !< (2n,2n) [1/s], in the units of the states
+    real(wp), allocatable :: b(:, :)   !< (2n,n) states per N m or N
+    real(wp), allocatable :: c(:, :)   !< (outputs,2n) outputs per state
+    real(wp), allocatable :: d(:, :)   !< (outputs,n) outputs per N m or N
+  end type state_space_type
+
+contains
+
+  !> Find the matrices. Outputs are q, dq and ddq of the recorded coordinates, then position, velocity and acceleration of each
+  !> point, up to the highest recorded derivative.
+  subroutine find_state_space(mechanism, recorded, derivatives, equilibrium, space)
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    integer, intent(in) :: recorded(:)                     !< numbers of the recorded coordinates
+    integer, intent(in) :: derivatives                     !< highest derivative that is recorded, 0 to 2
+    type(equilibrium_type), intent(inout) :: equilibrium   !< linearised; its last variation changes
+    type(state_space_type), intent(out) :: space           !< the matrices
+    real(wp), allocatable, dimension(:, :) :: by_position, by_rate, by_acceleration, accelerate
+    real(wp) :: unit
+    integer :: n, outputs, i
+
+    n = size(equilibrium%resting%free)
+    outputs = (derivatives + 1)*(size(recorded) + 3*size(mechanism%points))
+    allocate (by_position(outputs, n), by_rate(outputs, n), by_acceleration(outputs, n), accelerate(n, 3*n))
+    do i = 1, n
+      call outputs_of(mechanism, recorded, derivatives, equilibrium, i, 0, by_position(:, i))
+      call outputs_of(mechanism, recorded, derivatives, equilibrium, i, 1, by_rate(:, i))
+      call outputs_of(mechanism, recorded, derivatives, equilibrium, i, 2, by_acceleration(:, i))
+    end do
+    call find_accelerations(equilibrium, accelerate)
+    allocate (space%a(2*n, 2*n), space%b(2*n, n), space%c(outputs, 2*n), space%d(outputs, n), source=0.0_wp)
+    do i = 1, n
+      space%a(i, n + i) = 1.0_wp
+    end do
+    space%a(n + 1:, :) = accelerate(:, :2*n)
+    space%b(n + 1:, :) = accelerate(:, 2*n + 1:)
+    space%c(:, :n) = by_position
+    space%c(:, n + 1:) = by_rate
+    space%c = space%c + matmul(by_acceleration, accelerate(:, :2*n))
+    space%d = matmul(by_acceleration, accelerate(:, 2*n + 1:))
+    do i = 1, n
+      unit = equilibrium%resting%plan%result_unit(equilibrium%resting%free(i))
+      space%c(:, i) = space%c(:, i)*unit
+      space%c(:, n + i) = space%c(:, n + i)*unit
+      space%a(:, i) = space%a(:, i)*unit
+      space%a(:, n + i) = space%a(:, n + i)*unit
+      space%a(i, :) = space%a(i, :)/unit
+      space%a(n + i, :) = space%a(n + i, :)/unit
+      space%b(n + i, :) = space%b(n + i, :)/unit
+    end do
+  end subroutine find_state_space
+
+  !> Accelerations of the free coordinates per position, rate and force: M^-1 (-K, -C, 1).
+  subroutine find_accelerations(equilibrium, accelerate)
+    type(equilibrium_type), intent(in) :: equilibrium   !< linearised
+    real(wp), intent(out) :: accelerate(:, :)           !< (n,3n) in SI units
+    real(wp) :: factors(size(accelerate, 1), size(accelerate, 1))
+    integer :: n, i, failed_at
+
+    n = size(accelerate, 1)
+    accelerate(:, :n) = -equilibrium%stiffness
+    accelerate(:, n + 1:2*n) = -equilibrium%damping
+    accelerate(:, 2*n + 1:) = 0.0_wp
+    do i = 1, n
+      accelerate(i, 2*n + i) = 1.0_wp
+    end do
+    factors = equilibrium%inertia
+    call cholesky_factorize(n, factors, failed_at)
+    do i = 1, 3*n
+      call cholesky_solve(n, factors, accelerate(:, i))
+    end do
+  end subroutine find_accelerations
+
+  !> Derivatives of the outputs by one free coordinate, its rate or its acceleration, in the units of the results per SI unit.
+  subroutine outputs_of(mechanism, recorded, derivatives, equilibrium, i, order, outputs)
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    integer, intent(in) :: recorded(:)                     !< numbers of the recorded coordinates
+    integer, intent(in) :: derivatives                     !< highest derivative that is recorded
+    type(equilibrium_type), intent(inout) :: equilibrium   !< its last variation changes
+    integer, intent(in) :: i                               !< number of the free coordinate among them
+    integer, intent(in) :: order                           !< of the derivative in time that is the parameter
+    real(wp), intent(out) :: outputs(:)                    !< in their order
+    real(wp) :: changes(3, 0:2), three(size(recorded), 0:2)
+    integer :: k, used, d
+
+    associate (resting => equilibrium%resting, variation => equilibrium%resting%linearisation%variation)
+      call variation%clear()
+      select case (order)
+      case (0)
+        variation%q(resting%free(i)) = 1.0_wp
+      case (1)
+        variation%dq(resting%free(i)) = 1.0_wp
+      case default
+        variation%ddq(resting%free(i)) = 1.0_wp
+      end select
+      call vary_motion(resting%plan, resting%state, resting%linearisation%motion, variation)
+      three(:, 0) = variation%q(recorded)/resting%plan%result_unit(recorded)
+      three(:, 1) = variation%dq(recorded)/resting%plan%result_unit(recorded)
+      three(:, 2) = variation%ddq(recorded)/resting%plan%result_unit(recorded)
+    end associate
+    used = (derivatives + 1)*size(recorded)
+    outputs(:used) = reshape(three(:, :derivatives), [used])
+    do k = 1, size(mechanism%points)
+      call vary_point(equilibrium, mechanism%points(k)%link, mechanism%points(k)%position, changes)
+      do d = 0, derivatives
+        outputs(used + 1:used + 3) = changes(:, d)
+        used = used + 3
+      end do
+    end do
+  end subroutine outputs_of
+
+  !> Derivatives of position, velocity and acceleration of a point of a link.
+  pure subroutine vary_point(equilibrium, link, place, changes)
+    type(equilibrium_type), intent(in) :: equilibrium   !< with the variation
+    integer, intent(in) :: link                         !< number of the link
+    real(wp), intent(in) :: place(3)                    !< of the point, in the link's own system [m]
+    real(wp), intent(out) :: changes(3, 0:2)            !< [m, m/s, m/s^2]
+    real(wp) :: arm(3), arm_change(3), slip(3), slip_change(3)
+    integer :: f
+
+    associate (plan => equilibrium%resting%plan, state => equilibrium%resting%state, &
+               variation => equilibrium%resting%linearisation%variation)
+      f = plan%frame_of(link)
+      arm = turn(state%r(:, :, f), transformed(plan%link_in_frame(link), place))
+      arm_change = cross(variation%turn(:, f), arm)
+      slip = cross(state%omega(:, f), arm)
+      slip_change = cross(variation%omega(:, f), arm) + cross(state%omega(:, f), arm_change)
+      changes(:, 0) = variation%shift(:, f) + arm_change
+      changes(:, 1) = variation%v(:, f) + slip_change
+      changes(:, 2) = variation%a(:, f) + cross(variation%alpha(:, f), arm) + cross(state%alpha(:, f), arm_change) &
+                      + cross(variation%omega(:, f), slip) + cross(state%omega(:, f), slip_change)
+    end associate
+  end subroutine vary_point
+end module mech9_state_space

@@ -1,0 +1,336 @@
+!> The work of mech9d for --equilibrium, --modes and --linear: positions of equilibrium and vibrations about them.
+module mech9_equilibrium_task
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type, raise, exit_usage, exit_data
+  use mech9_text, only: to_text
+  use mech9_json, only: json_type
+  use mech9_command_line, only: command_line_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_model, only: model_type
+  use mech9_partition, only: free_coordinate, driven_coordinate
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_explained_assembly, only: assemble_free_start
+  use mech9_equilibria, only: equilibrium_type, find_equilibrium, find_equilibria
+  use mech9_mode_shapes, only: position_in_vibration
+  use mech9_film, only: film_type, new_film
+  use mech9_columns, only: columns_type
+  use mech9_table, only: table_type
+  use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_hdf5_record, only: write_provenance, write_structure, write_coordinates
+  use mech9_picture_requests, only: picture_requests_type, read_picture_requests
+  use mech9_equilibrium_rows, only: columns_of_equilibria, rows_of_equilibria, columns_of_modes, rows_of_modes, put_rows, &
+    put_energy_shares
+  use mech9_linear_file, only: put_linear_system
+  use mech9_run_words, only: begin_report
+  use mech9_version, only: version
+  implicit none
+  private
+  public :: asks_for_equilibrium, find_rest
+
+  !> Pictures of one period, and the amplitude of the largest free coordinate in them [rad, lengths of the mechanism].
+  integer, parameter :: pictures_of_period = 49
+  real(wp), parameter :: shown_amplitude = 0.2_wp
+
+contains
+
+  !> Whether the options ask for an equilibrium in place of a run.
+  pure logical function asks_for_equilibrium(options)
+    type(command_line_type), intent(in) :: options   !< the command line
+
+    asks_for_equilibrium = options%has('equilibrium') .or. options%has('modes') .or. options%has('linear')
+  end function asks_for_equilibrium
+
+  !> Find the equilibria, and write what is asked of them.
+  subroutine find_rest(options, model, diagnostics, reported)
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(model_type), intent(in) :: model                   !< the model
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
+    logical, intent(out) :: reported                        !< the report is written
+    type(equilibrium_type), allocatable :: list(:)
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(picture_requests_type) :: pictures
+    type(error_type), allocatable :: err
+
+    reported = .false.
+    allocate (list(0))
+    if (options%has('animate')) call read_picture_requests(options, model, 'mech9d', pictures, err)
+    if (.not. allocated(err)) call assemble_in_space(model, plan, start, err)
+    if (.not. allocated(err)) call search(options, model, plan, start, list, err)
+    if (.not. allocated(err)) then
+      if (.not. options%has('quiet')) call print_findings(error_unit, options, list)
+      call write_results(options, model, list, diagnostics%sources(1)%text, err)
+    end if
+    if (.not. allocated(err) .and. options%has('mode')) call show_mode(options, model, pictures, list(1), err)
+    if (allocated(err)) call diagnostics%add_error(err)
+    if (.not. options%has('report')) return
+    call save_report(options, model, list, diagnostics, err)
+    reported = .not. allocated(err)
+    if (allocated(err)) call diagnostics%add_error(err)
+  end subroutine find_rest
+
+  !> Plan and closed position at the start, in space, with the motion of the driven coordinates.
+  subroutine assemble_in_space(model, plan, start, err)
+    type(model_type), intent(in) :: model               !< the model
+    type(plan_type), intent(out) :: plan                !< the plan of the mechanism
+    type(state_type), intent(out) :: start              !< the closed position
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(plan_type) :: own_plan
+    type(state_type) :: own_start
+    integer :: i, k
+
+    if (.not. any(model%problem%partition%kind == free_coordinate)) then
+      call raise(err, exit_data, 'every independent coordinate is driven, so that none can come to rest; leave out a &drive')
+      return
+    end if
+    call assemble_free_start(model, own_plan, own_start, err)
+    if (allocated(err)) return
+    call make_plan(model%mechanism, model%problem%partition, own_start%q, plan, start, err, in_space=.true.)
+    if (allocated(err)) return
+    start%t = model%request%time%start
+    do i = 1, size(model%problem%drives)
+      k = model%problem%drives(i)%drive%coordinate
+      if (model%problem%partition%kind(k) /= driven_coordinate) cycle
+      call model%problem%drives(i)%drive%evaluate(start%t, start%q(k), start%dq(k), start%ddq(k), err)
+      if (allocated(err)) return
+    end do
+  end subroutine assemble_in_space
+
+  !> Find one equilibrium, or those of many starts.
+  subroutine search(options, model, plan, start, list, err)
+    type(command_line_type), intent(in) :: options                        !< the command line
+    type(model_type), intent(in) :: model                                 !< the model
+    type(plan_type), intent(in) :: plan                                   !< its plan, in space
+    type(state_type), intent(in) :: start                                 !< the closed position at the start
+    type(equilibrium_type), allocatable, intent(inout) :: list(:)         !< gets the equilibria
+    type(error_type), allocatable, intent(out) :: err                     !< allocated if there is none
+    type(equilibrium_type), allocatable :: one(:)
+
+    if (options%has('starts') .and. options%has('equilibrium')) then
+      call find_equilibria(model%mechanism, model%problem%partition, plan, start, options%number('starts', 1), one, err)
+    else
+      allocate (one(1))
+      call find_equilibrium(model%mechanism, model%problem%partition, plan, start, one(1), err)
+    end if
+    if (.not. allocated(err)) call move_alloc(one, list)
+    if (allocated(err) .or. .not. options%has('mode')) return
+    if (options%number('mode', 1) > list(1)%modes%count) &
+      call raise(err, exit_usage, 'there is no mode '//options%argument('mode')//'; the modes are 1 to '// &
+                 to_text(list(1)%modes%count))
+  end subroutine search
+
+  !> Say what was found, in a line.
+  subroutine print_findings(unit, options, list)
+    integer, intent(in) :: unit                      !< Fortran unit to write to
+    type(command_line_type), intent(in) :: options   !< the command line
+    type(equilibrium_type), intent(in) :: list(:)    !< the equilibria
+    integer :: i
+
+    if (size(list) == 1) then
+      write (unit, '(a)') words_about(list(1))
+    else
+      write (unit, '(a)') to_text(size(list))//' positions of equilibrium from the initial position and '// &
+        options%argument('starts')//' random ones, '//to_text(count([(list(i)%is_stable, i=1, size(list))]))//' of them stable'
+    end if
+  end subroutine print_findings
+
+  !> An equilibrium in words.
+  function words_about(found) result(words)
+    type(equilibrium_type), intent(in) :: found   !< the equilibrium
+    character(len=:), allocatable :: words
+
+    if (.not. found%is_stable) then
+      words = 'an unstable equilibrium: a deviation grows by the factor e in '//to_text(1.0_wp/found%modes%growth, 4)//' s'
+    else if (any(abs(found%modes%roots(:found%modes%count)) <= 0.0_wp)) then
+      words = 'a stable equilibrium; neighbouring positions are as good in '// &
+              to_text(count(abs(found%modes%roots(:found%modes%count)) <= 0.0_wp))//' direction(s)'
+    else
+      words = 'a stable equilibrium; its lowest frequency is '// &
+              to_text(minval(abs(aimag(found%modes%roots(:found%modes%count))))/(2.0_wp*pi), 6)//' Hz'
+    end if
+  end function words_about
+
+  !> Write table, HDF5 file, and file of matrices.
+  subroutine write_results(options, model, list, data_text, err)
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(model_type), intent(in) :: model                   !< the model
+    type(equilibrium_type), intent(inout) :: list(:)        !< the equilibria; the first one has the modes
+    character(len=*), intent(in) :: data_text               !< text of the data file
+    type(error_type), allocatable, intent(out) :: err       !< allocated if a file cannot be written
+    type(columns_type) :: columns
+    real(wp), allocatable :: rows(:, :)
+
+    if (options%has('modes')) then
+      columns = columns_of_modes(model%mechanism)
+      call rows_of_modes(list(1), rows)
+    else
+      columns = columns_of_equilibria(model)
+      call rows_of_equilibria(model, columns, list, rows, err)
+    end if
+    if (allocated(err)) return
+    call write_table(options, model, columns, rows, err)
+    if (.not. allocated(err) .and. options%has('hdf5')) call write_hdf5(options, model, list, columns, rows, data_text, err)
+    if (.not. allocated(err) .and. options%has('linear')) call write_linear(options, model, list(1), data_text, err)
+  end subroutine write_results
+
+  !> Write the table: to the file that is named, or to standard output where no other result is asked for.
+  subroutine write_table(options, model, columns, rows, err)
+    type(command_line_type), intent(in) :: options      !< the command line
+    type(model_type), intent(in) :: model               !< the model
+    type(columns_type), intent(in) :: columns           !< names and units
+    real(wp), intent(in) :: rows(:, :)                  !< (columns, rows)
+    type(error_type), allocatable, intent(out) :: err   !< allocated if the file cannot be written
+    type(error_type), allocatable :: at_close
+    type(table_type) :: table
+    character(len=:), allocatable :: path
+
+    path = options%table_of_answer()
+    if (path == '') return
+    call table%open(path, model%mechanism%title, 'mech9d '//version, columns%names(:columns%count), &
+                    columns%units(:columns%count), err)
+    if (allocated(err)) return
+    call table%write_rows(rows, err)
+    call table%close(at_close)
+    if (.not. allocated(err)) call move_alloc(at_close, err)
+  end subroutine write_table
+
+  !> Write the rows as an HDF5 file.
+  subroutine write_hdf5(options, model, list, columns, rows, data_text, err)
+    type(command_line_type), intent(in) :: options      !< the command line
+    type(model_type), intent(in) :: model               !< the model
+    type(equilibrium_type), intent(in) :: list(:)       !< the equilibria; the first one has the modes
+    type(columns_type), intent(in) :: columns           !< names and units
+    real(wp), intent(in) :: rows(:, :)                  !< (columns, rows)
+    character(len=*), intent(in) :: data_text           !< text of the data file
+    type(error_type), allocatable, intent(out) :: err   !< allocated if the file cannot be written
+    type(hdf5_file_type) :: file
+
+    call begin_file(options%argument('hdf5'), options, model, data_text, file, err)
+    if (allocated(err)) return
+    if (options%has('modes')) then
+      call put_rows(file, columns, rows, 6, size(model%mechanism%pairs), ['_re', '_im'])
+      call put_energy_shares(file, list(1))
+    else
+      call put_rows(file, columns, rows, 2, size(model%mechanism%pairs), [''])
+    end if
+    call end_file(file, err)
+  end subroutine write_hdf5
+
+  !> Write the matrices of the linearised equations of motion.
+  subroutine write_linear(options, model, equilibrium, data_text, err)
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(model_type), intent(in) :: model                   !< the model
+    type(equilibrium_type), intent(inout) :: equilibrium    !< linearised
+    character(len=*), intent(in) :: data_text               !< text of the data file
+    type(error_type), allocatable, intent(out) :: err       !< allocated if the file cannot be written
+    type(hdf5_file_type) :: file
+
+    call begin_file(options%argument('linear'), options, model, data_text, file, err)
+    if (allocated(err)) return
+    call put_linear_system(file, model, equilibrium)
+    call end_file(file, err)
+  end subroutine write_linear
+
+  !> Create an HDF5 file with the origin of its numbers, the structure and the coordinates.
+  subroutine begin_file(path, options, model, data_text, file, err)
+    character(len=*), intent(in) :: path                !< of the file
+    type(command_line_type), intent(in) :: options      !< the command line
+    type(model_type), intent(in) :: model               !< the model
+    character(len=*), intent(in) :: data_text           !< text of the data file
+    type(hdf5_file_type), intent(inout) :: file         !< the open file
+    type(error_type), allocatable, intent(out) :: err   !< allocated if the file cannot be written
+
+    call file%create(path, err)
+    if (allocated(err)) return
+    call write_coordinates(file, model)
+    call write_provenance(file, 'mech9d', options, model, data_text)
+    call write_structure(file, model)
+  end subroutine begin_file
+
+  !> Write all to the file and close it.
+  subroutine end_file(file, err)
+    type(hdf5_file_type), intent(inout) :: file         !< the open file
+    type(error_type), allocatable, intent(out) :: err   !< the first failure of the file
+
+    call file%flush()
+    call file%close()
+    if (allocated(file%failure)) err = file%failure
+  end subroutine end_file
+
+  !> Draw one mode as a moving picture.
+  subroutine show_mode(options, model, pictures, equilibrium, err)
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(model_type), intent(in) :: model                   !< the model
+    type(picture_requests_type), intent(in) :: pictures     !< the moving picture
+    type(equilibrium_type), intent(in) :: equilibrium       !< with its modes
+    type(error_type), allocatable, intent(out) :: err       !< allocated if the picture cannot be made
+    type(picture_requests_type) :: animation
+    type(film_type) :: film
+    type(state_type) :: position
+    real(wp) :: phase, period
+    integer :: i, mode
+    logical :: found
+
+    mode = options%number('mode', 1)
+    period = 1.0_wp
+    if (abs(aimag(equilibrium%modes%roots(mode))) > 0.0_wp) period = 2.0_wp*pi/abs(aimag(equilibrium%modes%roots(mode)))
+    film = new_film(model%mechanism, model%problem%partition%independent(), pictures_of_period)
+    do i = 1, pictures_of_period
+      phase = 2.0_wp*pi*(i - 1)/(pictures_of_period - 1)
+      call position_in_vibration(model%mechanism, equilibrium, mode, shown_amplitude, phase, position, found, err)
+      if (allocated(err)) return
+      if (.not. found) cycle
+      position%t = period*(i - 1)/(pictures_of_period - 1)
+      call film%take(model%mechanism, equilibrium%resting%plan, position, [position%t])
+    end do
+    animation = pictures
+    animation%sketch = ''
+    call animation%save(model, film, err)
+    if (.not. allocated(err) .and. .not. options%has('quiet')) call animation%print_words(error_unit)
+  end subroutine show_mode
+
+  !> Write the report as JSON.
+  subroutine save_report(options, model, list, diagnostics, err)
+    type(command_line_type), intent(in) :: options       !< the command line
+    type(model_type), intent(in) :: model                !< the model
+    type(equilibrium_type), intent(in) :: list(:)        !< the equilibria; none after an error
+    type(diagnostics_type), intent(in) :: diagnostics    !< the errors
+    type(error_type), allocatable, intent(out) :: err    !< allocated if the file cannot be written
+    type(json_type) :: json
+    integer :: i
+
+    call begin_report(json, 'mech9d', model, diagnostics, options%table_of_answer())
+    call json%begin_array('equilibria')
+    do i = 1, size(list)
+      call json%begin_object()
+      call json%add('q', list(i)%resting%state%q/list(i)%resting%plan%result_unit)
+      call json%add('stable', list(i)%is_stable)
+      call json%add('growth', list(i)%modes%growth)
+      call json%add('starts', list(i)%found)
+      call json%end_object()
+    end do
+    call json%end_array()
+    if (options%has('modes') .and. size(list) > 0) call add_modes(json, list(1))
+    call json%end_object()
+    call json%save(options%argument('report'), err)
+  end subroutine save_report
+
+  !> Add the eigenvalues of the modes.
+  subroutine add_modes(json, equilibrium)
+    type(json_type), intent(inout) :: json              !< the report, inside its object
+    type(equilibrium_type), intent(in) :: equilibrium   !< with its modes
+    integer :: i
+
+    call json%begin_array('modes')
+    do i = 1, equilibrium%modes%count
+      call json%begin_object()
+      call json%add('eigenvalue', [real(equilibrium%modes%roots(i), wp), aimag(equilibrium%modes%roots(i))])
+      call json%add('frequency', abs(aimag(equilibrium%modes%roots(i)))/(2.0_wp*pi))
+      call json%end_object()
+    end do
+    call json%end_array()
+  end subroutine add_modes
+end module mech9_equilibrium_task

@@ -1,0 +1,179 @@
+!> Equilibria and modes as columns and rows of tables, and as data sets.
+module mech9_equilibrium_rows
+  use mech9_kinds, only: wp, pi
+  use mech9_text, only: to_text
+  use mech9_error, only: error_type
+  use mech9_masks, only: numbers_of
+  use mech9_partition, only: driven_coordinate
+  use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
+  use mech9_state, only: state_type
+  use mech9_frame_motion, only: spread_all_accelerations
+  use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
+  use mech9_reactions, only: reactions_type, new_reactions, find_reactions
+  use mech9_result_units, only: unit_of, unit_name
+  use mech9_columns, only: columns_type
+  use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_equilibria, only: equilibrium_type
+  use mech9_mode_shapes, only: shape_of_mode, energy_shares
+  implicit none
+  private
+  public :: columns_of_equilibria, rows_of_equilibria, columns_of_modes, rows_of_modes, put_rows, put_energy_shares
+
+contains
+
+  !> The columns of a table of equilibria, with the forces that the data file asks for.
+  function columns_of_equilibria(model) result(columns)
+    type(model_type), intent(in) :: model   !< the model
+    type(columns_type) :: columns
+    logical :: driven(size(model%mechanism%pairs))
+    integer :: k
+
+    allocate (columns%names(0), columns%units(0), columns%long_names(0))
+    call columns%append('equilibrium', '', 'number of the position of equilibrium')
+    do k = 1, size(driven)
+      call columns%append('q'//to_text(k), trim(unit_name(model%mechanism, k)))
+    end do
+    columns%motion = columns%count
+    if (model%request%output%with_forces()) then
+      driven = model%request%output%drive_forces .and. model%problem%partition%kind == driven_coordinate
+      call columns%append_forces(model%mechanism, numbers_of(driven), numbers_of(model%request%output%reacting(size(driven))))
+    end if
+    call columns%append('stable', '', '1 where no small deviation grows, else 0')
+    call columns%append('growth', '1/s', 'largest real part of the eigenvalues of the linearised equations of motion')
+  end function columns_of_equilibria
+
+  !> The rows of a table of equilibria. Fails where forces are asked for and a load fails, or they are infinite.
+  subroutine rows_of_equilibria(model, columns, list, rows, err)
+    type(model_type), intent(in) :: model                   !< the model
+    type(columns_type), intent(in) :: columns               !< of the table
+    type(equilibrium_type), intent(in) :: list(:)           !< the equilibria
+    real(wp), allocatable, intent(out) :: rows(:, :)        !< (columns, rows)
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    integer :: i, k, m
+
+    m = size(model%mechanism%pairs)
+    allocate (rows(columns%count, size(list)))
+    do i = 1, size(list)
+      rows(1, i) = i
+      do k = 1, m
+        rows(1 + k, i) = list(i)%resting%state%q(k)/unit_of(model%mechanism, k)
+      end do
+      if (columns%forces() > 0) call fill_forces(model, columns, list(i), rows(:, i), err)
+      if (allocated(err)) return
+      rows(columns%count - 1, i) = merge(1.0_wp, 0.0_wp, list(i)%is_stable)
+      rows(columns%count, i) = list(i)%modes%growth
+    end do
+  end subroutine rows_of_equilibria
+
+  !> Fill the columns of forces: those of drives, and those in pairs.
+  subroutine fill_forces(model, columns, equilibrium, row, err)
+    type(model_type), intent(in) :: model                   !< the model
+    type(columns_type), intent(in) :: columns               !< of the table
+    type(equilibrium_type), intent(in) :: equilibrium       !< the equilibrium
+    real(wp), intent(inout) :: row(:)                       !< gets the forces
+    type(error_type), allocatable, intent(out) :: err       !< allocated if a load failed, or forces are infinite
+    type(reaction_plan_type) :: reaction_plan
+    type(reactions_type) :: reactions
+    type(state_type) :: state
+
+    associate (plan => equilibrium%resting%plan)
+      state = equilibrium%resting%state
+      call spread_all_accelerations(plan, state)
+      call make_reaction_plan(model%mechanism, plan, reaction_plan)
+      reactions = new_reactions(plan, reaction_plan)
+      call find_reactions(model%mechanism, plan, reaction_plan, state, reactions, err)
+      if (.not. allocated(err)) call columns%fill_forces(reactions%needed, reactions%force, reactions%moment, row)
+    end associate
+  end subroutine fill_forces
+
+  !> The columns of a table of modes.
+  function columns_of_modes(mechanism) result(columns)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(columns_type) :: columns
+    integer :: k
+
+    allocate (columns%names(0), columns%units(0), columns%long_names(0))
+    call columns%append('mode', '', 'number of the mode')
+    call columns%append('eigenvalue.re', '1/s', 'real part of the eigenvalue: growth')
+    call columns%append('eigenvalue.im', '1/s', 'imaginary part of the eigenvalue: angular frequency')
+    call columns%append('frequency', 'Hz', 'frequency of the vibration')
+    call columns%append('damping', '', 'damping as a part of the critical one')
+    do k = 1, size(mechanism%pairs)
+      call columns%append('q'//to_text(k)//'.re', trim(unit_name(mechanism, k)), 'amplitude in phase')
+      call columns%append('q'//to_text(k)//'.im', trim(unit_name(mechanism, k)), 'amplitude a quarter of a period before')
+    end do
+  end function columns_of_modes
+
+  !> The rows of a table of modes.
+  subroutine rows_of_modes(equilibrium, rows)
+    type(equilibrium_type), intent(inout) :: equilibrium   !< with its modes
+    real(wp), allocatable, intent(out) :: rows(:, :)       !< (columns, rows)
+    complex(wp) :: shape(equilibrium%resting%plan%n_coordinates), root
+    integer :: i
+
+    allocate (rows(5 + 2*size(shape), equilibrium%modes%count))
+    do i = 1, equilibrium%modes%count
+      root = equilibrium%modes%roots(i)
+      rows(1, i) = i
+      rows(2, i) = real(root, wp)
+      rows(3, i) = aimag(root)
+      rows(4, i) = abs(aimag(root))/(2.0_wp*pi)
+      rows(5, i) = 0.0_wp
+      if (abs(root) > 0.0_wp) rows(5, i) = -real(root, wp)/abs(root)
+      call shape_of_mode(equilibrium, i, shape)
+      rows(6::2, i) = real(shape, wp)
+      rows(7::2, i) = aimag(shape)
+    end do
+    ! no negative zeros in tables
+    rows = rows + 0.0_wp
+  end subroutine rows_of_modes
+
+  !> Put rows into a file: the first column is the scale of the others, and columns of coordinates become one data set.
+  subroutine put_rows(file, columns, rows, first, n_coordinates, suffixes)
+    type(hdf5_file_type), intent(inout) :: file       !< the open file
+    type(columns_type), intent(in) :: columns         !< of the rows
+    real(wp), intent(in) :: rows(:, :)                !< (columns, rows)
+    integer, intent(in) :: first                      !< the first column of a coordinate
+    integer, intent(in) :: n_coordinates              !< M
+    character(len=*), intent(in) :: suffixes(:)       !< of the data sets of coordinates, in the order of the columns
+    real(wp) :: together(n_coordinates, size(rows, 2))
+    character(len=:), allocatable :: scale, name
+    character(len=12) :: scales(2)
+    integer :: i, at
+
+    scale = columns%names(1)%text
+    call file%put(scale, nint(rows(1, :)), columns%long_names(1)%text)
+    call file%make_scale(scale)
+    do i = 2, columns%count
+      if (i >= first .and. i < first + n_coordinates*size(suffixes)) cycle
+      name = columns%names(i)%text
+      at = index(name, '.')
+      if (at > 0) name(at:at) = '_'
+      call file%put(name, rows(i, :), columns%long_names(i)%text, columns%units(i)%text)
+      call file%attach_scales(name, ['/'//scale])
+    end do
+    do i = 1, size(suffixes)
+      name = 'q'//trim(suffixes(i))
+      together = rows(first + i - 1:first + n_coordinates*size(suffixes) - 1:size(suffixes), :)
+      call file%put(name, together, 'coordinates of the pairs; coordinate_unit tells the unit of each')
+      scales(1) = '/'//scale
+      scales(2) = '/coordinate'
+      call file%attach_scales(name, scales)
+    end do
+  end subroutine put_rows
+
+  !> Put the shares of the kinetic energy into a file of modes.
+  subroutine put_energy_shares(file, equilibrium)
+    type(hdf5_file_type), intent(inout) :: file         !< the open file, with the scales
+    type(equilibrium_type), intent(in) :: equilibrium   !< with its modes
+    real(wp) :: shares(equilibrium%resting%plan%n_coordinates, equilibrium%modes%count)
+    integer :: i
+
+    do i = 1, size(shares, 2)
+      call energy_shares(equilibrium, i, shares(:, i))
+    end do
+    call file%put('kinetic_share', shares, 'share of each free coordinate in the kinetic energy of the mode')
+    call file%attach_scales('kinetic_share', ['/mode      ', '/coordinate'])
+  end subroutine put_energy_shares
+end module mech9_equilibrium_rows

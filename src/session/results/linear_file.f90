@@ -1,0 +1,95 @@
+!> The HDF5 file of --linear: the linearised equations of motion in both forms.
+module mech9_linear_file
+  use mech9_kinds, only: wp
+  use mech9_text, only: string_type, to_text
+  use mech9_model, only: model_type
+  use mech9_result_units, only: unit_name
+  use mech9_columns, only: columns_type, kinematic_columns
+  use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_equilibria, only: equilibrium_type
+  use mech9_state_space, only: state_space_type, find_state_space
+  implicit none
+  private
+  public :: put_linear_system
+
+contains
+
+  !> Put M, C, K and A, B, C, D into an open file. A matrix has its rows along the first dimension.
+  subroutine put_linear_system(file, model, equilibrium)
+    type(hdf5_file_type), intent(inout) :: file            !< the open file
+    type(model_type), intent(in) :: model                  !< the model
+    type(equilibrium_type), intent(inout) :: equilibrium   !< linearised
+    type(columns_type) :: columns
+    type(state_space_type) :: space
+
+    columns = kinematic_columns(model%mechanism, model%request%output)
+    associate (free => equilibrium%resting%free)
+      call file%put('free', free, 'number of each free coordinate')
+      call file%make_scale('free')
+      call file%put('equilibrium', equilibrium%resting%state%q, 'coordinates in equilibrium, rad and m')
+      call put_square(file, 'second_order/M', equilibrium%inertia, 'inertia: M x'''' + C x'' + K x = u, in SI units')
+      call put_square(file, 'second_order/C', equilibrium%damping, 'damping, with gyroscopic terms, in SI units')
+      call put_square(file, 'second_order/K', equilibrium%stiffness, 'stiffness, in SI units')
+      call find_state_space(model%mechanism, columns%coordinates, columns%derivatives, equilibrium, space)
+      call put_names(file, model, free, columns)
+    end associate
+    call file%put('state_space/A', transpose(space%a), 'x'' = A x + B u')
+    call file%attach_scales('state_space/A', ['/state_space/state', '/state_space/state'])
+    call file%put('state_space/B', transpose(space%b), 'x'' = A x + B u')
+    call file%attach_scales('state_space/B', ['/state_space/state', '/state_space/input'])
+    call file%put('state_space/C', transpose(space%c), 'y = C x + D u')
+    call file%attach_scales('state_space/C', ['/state_space/output', '/state_space/state '])
+    call file%put('state_space/D', transpose(space%d), 'y = C x + D u')
+    call file%attach_scales('state_space/D', ['/state_space/output', '/state_space/input '])
+  end subroutine put_linear_system
+
+  !> Put a matrix of the free coordinates.
+  subroutine put_square(file, name, matrix, long_name)
+    type(hdf5_file_type), intent(inout) :: file      !< the open file
+    character(len=*), intent(in) :: name             !< path of the data set
+    real(wp), intent(in) :: matrix(:, :)             !< (n,n)
+    character(len=*), intent(in) :: long_name        !< its meaning
+
+    call file%put(name, transpose(matrix), long_name)
+    call file%attach_scales(name, ['/free', '/free'])
+  end subroutine put_square
+
+  !> Put the names of states, inputs and outputs as scales, and their units.
+  subroutine put_names(file, model, free, columns)
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    type(model_type), intent(in) :: model         !< the model
+    integer, intent(in) :: free(:)                !< numbers of the free coordinates
+    type(columns_type), intent(in) :: columns     !< recorded ones, the time first
+    type(string_type) :: states(2*size(free)), state_units(2*size(free)), inputs(size(free)), input_units(size(free))
+    integer :: i, n
+
+    n = size(free)
+    do i = 1, n
+      states(i)%text = 'q'//to_text(free(i))
+      states(n + i)%text = 'dq'//to_text(free(i))
+      state_units(i)%text = trim(unit_name(model%mechanism, free(i)))
+      state_units(n + i)%text = state_units(i)%text//'/s'
+      inputs(i)%text = 'Q'//to_text(free(i))
+      input_units(i)%text = 'N'
+      if (model%mechanism%pairs(free(i))%pair%angular) input_units(i)%text = 'N m'
+    end do
+    call put_scale(file, 'state', states, state_units, 'deviations from equilibrium, and their rates')
+    call put_scale(file, 'input', inputs, input_units, 'additional forces on the free coordinates')
+    call put_scale(file, 'output', columns%names(2:columns%motion), columns%units(2:columns%motion), &
+                   'deviations of the recorded columns')
+  end subroutine put_names
+
+  !> Put one scale of the state space and its units.
+  subroutine put_scale(file, name, texts, units, long_name)
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    character(len=*), intent(in) :: name          !< of the scale
+    type(string_type), intent(in) :: texts(:)     !< names along the dimension
+    type(string_type), intent(in) :: units(:)     !< their units
+    character(len=*), intent(in) :: long_name     !< its meaning
+
+    call file%put('state_space/'//name, texts, long_name)
+    call file%make_scale('state_space/'//name)
+    call file%put('state_space/'//name//'_unit', units, 'unit of each')
+    call file%attach_scales('state_space/'//name//'_unit', ['/state_space/'//name])
+  end subroutine put_scale
+end module mech9_linear_file

@@ -1,0 +1,345 @@
+"""Positions of equilibrium, vibrations about them, and their linearised equations of motion, against closed forms.
+
+Pendulums, masses on springs, bars in slots, a bead on a rotating hoop, balanced beams; the same mechanism in other independent
+coordinates and units (which compares the program with itself), and vibrations measured in motions.
+
+usage: equilibrium.py MECH9D
+"""
+import os
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+from mech9_cases import Checks, read_table, run, text_of
+
+G = 9.81
+USAGE, DATA, ASSEMBLY = 2, 3, 5
+GRAVITY = f'&gravity acceleration=0,{-G},0 /\n'
+# Eigenvalues come from matrices exact to round-off; those of unbalanced problems lose some hundred units more.
+EXACT = 1e-12
+
+
+def mechanism(links, coordinates, independent, *groups):
+    return (f'&mechanism links={links}, coordinates={coordinates} /\n&structure cq={",".join(map(str, independent))} /\n'
+            + ''.join(group + '\n' for group in groups))
+
+
+def pair(k, links, kind='revolute', point='0,0,0', axis='0,0,1', more=''):
+    return f"&pair coordinate={k}, links={links}, kind='{kind}', point={point}, axis={axis}{more} /"
+
+
+def body(link, mass, centre, inertia=0.0):
+    return f'&body link={link}, mass={mass!r}, centre={centre}, inertia={inertia!r},{inertia!r},{inertia!r},0,0,0 /'
+
+
+def initial(k, position):
+    return f'&initial coordinate={k}, position={position!r} /'
+
+
+class Case:
+    """Runs the program on data files in a folder of its own."""
+
+    def __init__(self, program, folder):
+        self.program, self.folder = program, folder
+
+    def __call__(self, data, *options):
+        with open(os.path.join(self.folder, 'case.nml'), 'w', encoding='utf-8') as file:
+            file.write(data)
+        return run(self.program, 'case.nml', '--quiet', *options, folder=self.folder)
+
+    def table(self, data, *options):
+        result = self(data, *options)
+        if result.returncode != 0:
+            raise SystemExit(f'{options} fails: {result.stderr}')
+        return read_table(result.stdout)
+
+    def roots(self, data):
+        """Eigenvalues of the modes, those with positive imaginary part and real ones."""
+        table = self.table(data, '--modes')
+        return table['eigenvalue.re'] + 1j * table['eigenvalue.im']
+
+
+def near_roots(checks, roots, expected, tolerance, why):
+    """Eigenvalues against the right ones, both parts over the largest magnitude."""
+    expected = np.asarray(expected, complex)
+    if checks.equal(len(roots), len(expected), f'{why}: as many modes'):
+        checks.near([roots.real, roots.imag], [expected.real, expected.imag], tolerance, why, scale=max(abs(expected)))
+
+
+def pendulum(position=0.5, extra=''):
+    return mechanism(2, 1, [1], pair(1, '1,2'), body(2, 2.0, '0,-0.5,0', 0.1), GRAVITY, initial(1, position), extra)
+
+
+def check_pendulum(checks, case):
+    omega = np.sqrt(2.0 * G * 0.5 / (0.1 + 2.0 * 0.25))
+    modes = case.table(pendulum(), '--modes')
+    checks.near(modes['frequency'], [omega / (2 * np.pi)], EXACT, 'a compound pendulum vibrates with sqrt(m g a/I)')
+    checks.near([modes['eigenvalue.re'][0], modes['damping'][0]], [0, 0], 0.0, 'and without damping exactly so')
+    checks.near(modes['q1.re'], [1], 0.0, 'its shape is 1')
+    up = case.table(pendulum(3.0), '--equilibrium')
+    checks.near([up['q1'][0], up['growth'][0]], [np.pi, omega], EXACT, 'near its top it stays there, and falls at that rate')
+    checks.equal(up['stable'][0], 0.0, 'which is not stable')
+    for start in (np.pi / 2, 2.0, -2.5, 1.0, 0.0):
+        down = case.table(pendulum(start), '--equilibrium')
+        checks.near([down['q1'][0], down['stable'][0], down['growth'][0]], [0, 1, 0], EXACT, f'from {start:.2f} it falls to its rest')
+    both = case.table(pendulum(), '--equilibrium', '--starts', '20')
+    checks.near(both['q1'], [0, np.pi], EXACT, 'random starts find both equilibria, each once')
+    checks.near(both['stable'], [1, 0], 0.0, 'and tell which is stable')
+    roots = case.roots(pendulum(3.1))
+    checks.near(roots.real, [omega, -omega], EXACT, 'a growth and a decay are two modes')
+    degrees = pendulum(30.0).replace('links=2,', "links=2, angle_unit='deg',", 1)
+    near_roots(checks, case.roots(degrees), [1j * omega], EXACT, 'degrees change nothing')
+
+
+def check_damped_mass(checks, case):
+    mass, stiffness = 2.0, 50.0
+    for damping in (0.0, 3.0, 20.0, 30.0):
+        data = mechanism(2, 1, [1], pair(1, '1,2', 'prismatic', axis='0,1,0'), body(2, mass, '0,0,0'), GRAVITY, initial(1, 0.3),
+                         f"&load kind='coordinate', coordinate=1, stiffness={stiffness}, damping={damping} /")
+        rest = case.table(data, '--equilibrium')
+        checks.near(rest['q1'], [-mass * G / stiffness], EXACT, 'a mass on a spring sinks by m g/k')
+        expected = np.roots([mass, damping, stiffness])
+        expected = np.sort_complex(expected[expected.imag >= 0])
+        roots = np.sort_complex(case.roots(data))
+        checks.equal(len(roots), len(expected), f'damping {damping}: a pair of roots, or two real ones')
+        # the double root of critical damping is known to the root of round-off
+        checks.near(np.array([roots.real, roots.imag]), np.array([expected.real, expected.imag]),
+                    1e-7 if damping == 20.0 else EXACT, f'damping {damping}: the roots of m s^2 + c s + k', scale=5.0)
+    modes = case.table(data.replace('damping=30.0', 'damping=4.0'), '--modes')
+    checks.near(modes['damping'], [4.0 / (2 * np.sqrt(mass * stiffness))], EXACT, 'damping is a part of the critical one')
+    free = case.roots(mechanism(2, 1, [1], pair(1, '1,2', 'prismatic', axis='1,0,0'), body(2, mass, '0,0,0'), initial(1, 0.3),
+                                "&load kind='coordinate', coordinate=1, damping=3 /"))
+    checks.near(free.real, [0, -1.5], EXACT, 'without a spring one root is zero and the other -c/m')
+
+
+def double_pendulum(q1=0.2, q2=-0.1):
+    return mechanism(3, 2, [1, 2], pair(1, '1,2'), pair(2, '2,3', point='0,-1,0'), body(2, 1.0, '0,-1,0'), body(3, 1.0, '0,-2,0'),
+                     GRAVITY, initial(1, q1), initial(2, q2))
+
+
+def check_double_pendulum(checks, case):
+    modes = case.table(double_pendulum(), '--modes')
+    omega = np.sqrt(G * np.array([2 - np.sqrt(2), 2 + np.sqrt(2)]))
+    checks.near(modes['eigenvalue.im'], omega, EXACT, 'equal double pendulum: sqrt((2 -+ sqrt 2) g/l)')
+    # absolute angles are in the ratio 1 : +- sqrt 2, q2 is their difference
+    checks.near(modes['q2.re'] / modes['q1.re'], [np.sqrt(2) - 1, -np.sqrt(2) - 1], EXACT, 'and its shapes')
+    checks.near(np.maximum(abs(modes['q1.re']), abs(modes['q2.re'])), [1, 1], 0.0, 'whose largest numbers are 1')
+    all_four = case.table(double_pendulum(), '--equilibrium', '--starts', '40')
+    checks.equal(len(all_four['q1']), 4, 'a double pendulum has four equilibria')
+    checks.near(np.sum(all_four['stable']), 1, 0.0, 'one of them is stable')
+    # a small vibration in the first mode, released from rest, follows cos(omega t)
+    small = 1e-4
+    start = double_pendulum(small * modes['q1.re'][0], small * modes['q2.re'][0])
+    motion = case.table(start + '&time end=5, intervals=100 /\n&solver relative_tolerance=1e-12, absolute_tolerance=1e-16 /\n')
+    checks.near(motion['q2'] / small, modes['q2.re'][0] * np.cos(omega[0] * motion['t']), 1e-6, 'a motion vibrates like its mode')
+
+
+def bar_in_slots(independent, start):
+    """A bar whose ends slide along x and y (pairs 1 and 4); it turns by pair 2 against the first slider."""
+    length = 1.2
+    return mechanism(4, 4, [independent], pair(1, '1,2', 'prismatic', axis='1,0,0'), pair(2, '2,3'),
+                     pair(3, '3,4', point=f'0,{length},0'),
+                     pair(4, '1,4', 'prismatic', point=f'0,{length},0', axis='0,1,0'),
+                     body(3, 3.0, f'0,{length / 2},0', 0.2), GRAVITY,
+                     *[initial(k, value) for k, value in enumerate(start, 1)])
+
+
+def check_bar_in_slots(checks, case):
+    length = 1.2
+    omega = np.sqrt(3.0 * G * length / 2 / (3.0 * length**2 / 4 + 0.2))
+    # the bar hangs down: q2 = pi; the upper slider goes down from its place at q = 0, 1.2 above the origin
+    angle = 2.5
+    start = [length * np.sin(angle), angle, -angle, length * np.cos(angle) - length]
+    for independent in (1, 2, 3, 4):
+        rest = case.table(bar_in_slots(independent, start), '--equilibrium')
+        checks.near([rest['q2'][0], rest['q4'][0]], [np.pi, -2 * length], 1e-10,
+                    f'a bar in two slots hangs down, also where q{independent} is at its dead point')
+        # a flat minimum in q4 is known in q2 to the root of round-off if q4 is kept
+        near_roots(checks, case.roots(bar_in_slots(independent, start)), [1j * omega], 1e-9, f'it vibrates the same by q{independent}')
+
+
+def four_bar(independent, scale=1.0, q=(-0.2, 1.8, -0.1, 1.45)):
+    """A four-bar with springs and dampers; lengths and gravity in another scale leave its eigenvalues as they are."""
+    def point(x, y):
+        return f'{x * scale!r},{y * scale!r},0'
+    return mechanism(4, 4, [independent], pair(1, '1,2'), pair(2, '2,3', point=point(0.4, 0)),
+                     pair(3, '3,4', point=point(1.4, 0), more=f', moving_point={point(2.0, 0.9)}'),
+                     pair(4, '1,4', point=point(1.2, 0), more=f', moving_point={point(1.2, 0)}'),
+                     body(2, 1.0, point(0.2, 0.05), 0.02 * scale**2), body(3, 2.0, point(0.9, 0.2), 0.1 * scale**2),
+                     body(4, 1.5, point(1.6, 0.4), 0.06 * scale**2),
+                     f'&gravity acceleration=0,{-G * scale!r},0 /',
+                     f"&load kind='spring', links=1,3, position={point(0.3, 1.8)}, second_position={point(1.0, 0.3)}, stiffness=30, "
+                     f'free_length={0.5 * scale!r}, damping=2 /',
+                     f"&load kind='coordinate', coordinate=3, stiffness={4.0 * scale**2!r}, rest=0.4, damping={0.3 * scale**2!r} /",
+                     f"&load kind='force', link=4, position={point(1.5, 0.6)}, force={4 * scale!r},{2 * scale!r},0, frame='link' /",
+                     *[initial(k, value) for k, value in enumerate(q, 1)])
+
+
+def check_four_bar(checks, case):
+    reference = case.roots(four_bar(1))
+    checks.true(np.all(abs(reference) > 0.1), 'the four-bar vibrates')
+    place = case.table(four_bar(1), '--equilibrium')
+    for independent in (2, 3, 4):
+        start = [place[f'q{k}'][0] + (0.02 if k == independent else 0.0) for k in range(1, 5)]
+        data = four_bar(independent, q=start)
+        checks.near(case.table(data, '--equilibrium')['q1'], place['q1'], 1e-9, 'the rest does not depend on cq')
+        roots = case.roots(data)
+        near_roots(checks, roots, reference, 1e-9, 'nor do the eigenvalues')
+    for scale in (1e-3, 1e3):
+        roots = case.roots(four_bar(1, scale))
+        near_roots(checks, roots, reference, 1e-9, f'nor on the size, {scale}')
+
+
+def check_limit(checks, case):
+    """A torque on a crank that cannot turn round: it rests at its limit, where the crank is at its dead point."""
+    data = mechanism(4, 4, [1], pair(1, '1,2'), pair(2, '2,3', point='0.7,0,0', more=', moving_point=0,0,0'),
+                     pair(3, '3,4', point='0.9,0,0', more=', moving_point=0.4,0,0'), pair(4, '1,4', point='1.2,0,0',
+                                                                                      more=', moving_point=0,0,0'),
+                     body(2, 1.0, '0.3,0,0'), body(3, 1.0, '0.4,0,0'), initial(1, 0.7), initial(2, -1.0), initial(4, 2.0),
+                     "&load kind='coordinate', coordinate=1, force=5 /")
+    limit = np.arccos((1.2**2 + 0.7**2 - 1.3**2) / (2 * 1.2 * 0.7))
+    rest = case.table(data, '--equilibrium')
+    # the position is known to round-off in the other coordinates, q1 to the square of it
+    checks.near([rest['q1'][0], rest['stable'][0]], [limit, 1], EXACT, 'a crank that is pushed rests at its limit')
+
+
+def hoop(speed, start):
+    """A bead on a hoop of radius 0.5 that turns about the vertical y: driven pair 1; pair 2 turns the bead about z of the hoop."""
+    return mechanism(3, 2, [1, 2], pair(1, '1,2', axis='0,1,0'), pair(2, '2,3'), body(3, 0.7, '0,-0.5,0'), GRAVITY,
+                     f"&drive coordinate=1, kind='polynomial', coefficients=0.3,{speed!r} /", initial(2, start))
+
+
+def check_hoop(checks, case):
+    critical = np.sqrt(G / 0.5)
+    slow, fast = 0.7 * critical, 1.6 * critical
+    near_roots(checks, case.roots(hoop(slow, 0.2)), [1j * np.sqrt(critical**2 - slow**2)], EXACT,
+                'a bead on a hoop that turns slowly vibrates about the bottom, slower than at rest')
+    angle = np.arccos((critical / fast)**2)
+    up = case.table(hoop(fast, 0.8), '--equilibrium')
+    checks.near([up['q2'][0], up['stable'][0]], [angle, 1], EXACT, 'on a fast hoop it rests beside the bottom')
+    near_roots(checks, case.roots(hoop(fast, 0.8)), [1j * fast * np.sin(angle)], EXACT, 'and vibrates with Omega sin q')
+    all_of_them = case.table(hoop(fast, 0.8), '--equilibrium', '--starts', '30')
+    checks.near(all_of_them['q2'], [-angle, 0, angle, np.pi], 1e-11, 'four relative equilibria')
+    checks.near(all_of_them['growth'], [0, np.sqrt(fast**2 - critical**2), 0, np.sqrt(fast**2 + critical**2)], 1e-11,
+                'the bottom has become unstable')
+
+
+def check_forces(checks, case):
+    speed = 1.6 * np.sqrt(G / 0.5)
+    table = case.table(hoop(speed, 0.8) + '&output drive_forces=.true., reactions=.true. /\n', '--equilibrium')
+    names = list(table)
+    checks.equal(names[:4] + names[-2:], ['equilibrium', 'q1', 'q2', 'F1', 'stable', 'growth'], 'columns of forces stand after q')
+    radius = 0.5 * np.sin(np.arccos(G / 0.5 / speed**2))
+    checks.near([table['F1'][0], table['R2.fy'][0], np.hypot(table['R2.fx'][0], table['R2.fz'][0])],
+                [0, 0.7 * G, 0.7 * speed**2 * radius], 1e-11, 'the hoop carries the weight and the centripetal force')
+
+
+def balanced_beam(start):
+    """Mass 2 at 0.6 m on a beam, and a spring without free length from 0.8 m above the pivot to 0.5 m on the beam."""
+    stiffness = 2.0 * G * 0.6 / (0.8 * 0.5)
+    return mechanism(2, 1, [1], pair(1, '1,2'), body(2, 2.0, '0.6,0,0', 0.05), GRAVITY, initial(1, start),
+                     f"&load kind='spring', links=1,2, position=0,0.8,0, second_position=0.5,0,0, stiffness={stiffness!r} /")
+
+
+def check_balanced_beam(checks, case):
+    for start in (0.0, 0.3, 1.1, -2.0):
+        rest = case.table(balanced_beam(start), '--equilibrium')
+        checks.near([rest['q1'][0], rest['stable'][0], rest['growth'][0]], [start, 1, 0], 1e-15, 'a balanced beam stays where it is')
+        modes = case.table(balanced_beam(start), '--modes')
+        checks.equal(len(modes['mode']), 1, 'it has one mode')
+        checks.near([modes['frequency'][0], modes['damping'][0]], [0, 0], 0.0, 'of frequency zero')
+
+
+def check_free_body(checks, case):
+    """Two masses on a rail, joined by a spring: one mode is the motion of both."""
+    data = mechanism(3, 2, [1, 2], pair(1, '1,2', 'prismatic', axis='1,0,0'), pair(2, '2,3', 'prismatic', axis='1,0,0'),
+                     body(2, 1.0, '0,0,0'), body(3, 3.0, '0,0,0'), initial(1, 0.3), initial(2, 0.4),
+                     "&load kind='coordinate', coordinate=2, stiffness=12, rest=1, damping=0.5 /")
+    rest = case.table(data, '--equilibrium')
+    checks.near(rest['q2'], [1], EXACT, 'the spring relaxes')
+    roots = case.roots(data)
+    reduced = 0.75
+    pair_of_roots = np.roots([reduced, 0.5, 12])
+    near_roots(checks, roots, [0, pair_of_roots[0].real + 1j * abs(pair_of_roots[0].imag)], EXACT,
+               'a double root zero is one mode, beside the vibration')
+
+
+def check_linear(checks, case):
+    data = four_bar(1) + "&point name='P', link=3, position=0.5,0.2,0 /\n"
+    result = case(data, '--linear', 'linear.h5')
+    checks.equal((result.returncode, result.stdout), (0, ''), '--linear writes a file and no table')
+    try:
+        import h5py
+    except ImportError:
+        checks.left_out('no h5py')
+        return
+    with h5py.File(os.path.join(case.folder, 'linear.h5')) as file:
+        matrices = {name: file['state_space'][name][()] for name in 'ABCD'}
+        second = {name: file['second_order'][name][()] for name in 'MCK'}
+        outputs = [name.decode() for name in file['state_space/output'][()]]
+    roots = case.roots(four_bar(1))
+    found = np.linalg.eigvals(matrices['A'])
+    checks.near(sorted(found.imag)[-1], roots[0].imag, 1e-9, 'the eigenvalues of A are those of the modes')
+    accelerate = np.linalg.solve(second['M'], np.hstack([-second['K'], -second['C']]))
+    checks.near(matrices['A'][1:], accelerate, 1e-12, 'A holds M^-1 K and M^-1 C')
+    row = {name: matrices['C'][i] for i, name in enumerate(outputs)}
+    checks.near([row['q1'], row['dq1'], row['ddq1']], [[1, 0], [0, 1], matrices['A'][1]], 1e-12, 'outputs of the free coordinate')
+    checks.near([row['P.vx'][1], row['dq3'][1]], [row['P.x'][0], row['q3'][0]], 1e-12, 'rates follow like positions')
+    checks.near([matrices['D'][outputs.index('P.ax')][0]], [row['P.x'][0] * matrices['B'][1, 0]], 1e-12, 'and accelerations')
+
+
+def check_files(checks, case):
+    result = case(pendulum(), '--modes', '--hdf5', 'modes.h5', '--report', 'modes.json', '--table', 'modes.dat')
+    checks.equal((result.returncode, result.stdout), (0, ''), 'results go to the files that are named')
+    checks.near(read_table(text_of(os.path.join(case.folder, 'modes.dat')))['mode'], [1], 0.0, 'the table')
+    checks.true('"eigenvalue"' in text_of(os.path.join(case.folder, 'modes.json')), 'the report tells the eigenvalues')
+    result = case(pendulum(), '--modes', '--mode', '1', '--animate', 'mode.svg')
+    checks.equal(result.returncode, 0, 'a mode is shown')
+    checks.true('<svg' in text_of(os.path.join(case.folder, 'mode.svg')), 'as a moving picture')
+    result = case(pendulum(), '--equilibrium', '--starts', '5', '--hdf5', 'rest.h5')
+    checks.equal(result.returncode, 0, 'equilibria are written as HDF5')
+    try:
+        import h5py
+    except ImportError:
+        checks.left_out('no h5py')
+        return
+    with h5py.File(os.path.join(case.folder, 'rest.h5')) as file:
+        checks.near(file['q'][()], [[0], [np.pi]], EXACT, 'HDF5: q(equilibrium, coordinate)')
+        checks.near(file['stable'][()], [1, 0], 0.0, 'HDF5: stable')
+    with h5py.File(os.path.join(case.folder, 'modes.h5')) as file:
+        checks.near([file['kinetic_share'][0, 0], file['q_re'][0, 0]], [1, 1], EXACT, 'HDF5: shares of the energy, shapes')
+
+
+def check_failures(checks, case):
+    heavy = pendulum(extra="&load kind='coordinate', coordinate=1, force=15 /")
+    result = case(heavy, '--equilibrium', '--report', 'none.json')
+    checks.equal(result.returncode, ASSEMBLY, 'a torque beyond m g a has no equilibrium')
+    checks.true('on coordinate 1' in result.stderr, 'the forces that are left are told by coordinate', result.stderr)
+    checks.true('"exit_code": 5' in text_of(os.path.join(case.folder, 'none.json')), 'and the report has the code')
+    slide = mechanism(2, 1, [1], pair(1, '1,2', 'prismatic', axis='0,1,0'), body(2, 2.0, '0,0,0'), GRAVITY, initial(1, 0.0))
+    result = case(slide, '--modes')
+    checks.equal(result.returncode, ASSEMBLY, 'a weight on a slide has none')
+    checks.true('-19.62' in result.stderr, 'its weight is left', result.stderr)
+    for options, words in ((('--modes', '--equilibrium'), 'different tables'), (('--mode', '1'), 'give all three'),
+                           (('--modes', '--animate', 'a.svg'), '--mode K')):
+        result = case(pendulum(), *options)
+        checks.equal(result.returncode, USAGE, f'{options} is refused')
+        checks.true(words in result.stderr, f'{options}: with its remedy', result.stderr)
+    result = case(pendulum(), '--modes', '--mode', '7', '--animate', 'a.svg')
+    checks.equal(result.returncode, USAGE, 'a mode that is not there is refused')
+
+
+def main():
+    checks = Checks()
+    with tempfile.TemporaryDirectory() as folder:
+        case = Case(sys.argv[1], folder)
+        for check in (check_pendulum, check_damped_mass, check_double_pendulum, check_bar_in_slots, check_four_bar, check_limit,
+                      check_hoop, check_forces, check_balanced_beam, check_free_body, check_linear, check_files, check_failures):
+            check(checks, case)
+    checks.finish()
+
+
+if __name__ == '__main__':
+    main()
