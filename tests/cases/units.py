@@ -47,7 +47,7 @@ def scaled(groups, s):
               'spring': {'position': 1, 'second_position': 1, 'free_length': 1},
               'force': {'position': 1, 'force': 1}, 'torque': {'torque': 2}}
     along = {'initial': {'position': 1, 'velocity': 1},
-             'drive': {'coefficients': 1, 'mean': 1, 'amplitude': 1},
+             'drive': {'coefficients': 1, 'mean': 1, 'amplitude': 1, 'values': 1},
              'coordinate': {'rest': 1, 'force': 1}}
     for group, items in groups:
         kind = items['kind'][0] if group == 'load' else group
@@ -68,7 +68,8 @@ def in_degrees(groups):
     """The groups with angles in degrees, by the rules of the data file: forces and stiffnesses stay those per rad."""
     slides = {pair['coordinate'][0] for group, pair in groups if group == 'pair' and pair['kind'] == ['prismatic']}
     always = {'drive': ['angular_frequency', 'phase']}
-    of_turns = {'initial': ['position', 'velocity'], 'drive': ['coefficients', 'mean', 'amplitude'], 'coordinate': ['rest']}
+    of_turns = {'initial': ['position', 'velocity'], 'drive': ['coefficients', 'mean', 'amplitude', 'values'],
+                'coordinate': ['rest']}
     for group, items in groups:
         kind = items['kind'][0] if group == 'load' else group
         names = list(always.get(kind, []))
@@ -97,6 +98,11 @@ def power_of(column, slides):
     coordinate = re.fullmatch(r'd{0,2}q(\d+)', column)
     if coordinate:
         return 1 if int(coordinate.group(1)) in slides else 0
+    drive = re.fullmatch(r'F(\d+)', column)
+    if drive:
+        return 1 if int(drive.group(1)) in slides else 2
+    if re.fullmatch(r'R\d+\.m[xyz]', column):
+        return 2
     return 1 if '.' in column else 0
 
 
@@ -158,7 +164,7 @@ class Units:
     def file(self, program, path, *options):
         """A data file in three units of length, and in degrees."""
         with open(path, encoding='utf-8') as file:
-            text = file.read()
+            text = re.sub(r"file='", f"file='{os.path.dirname(path)}/", file.read())
         runs = []
         for s in (1.0, *UNITS):
             groups = data_file.parse(text)

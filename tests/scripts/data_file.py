@@ -2,7 +2,7 @@
 
 It knows what the data files of the tests use and no more: groups &name ... /, items name = values and
 name(i,:) = values, text in single quotes, comments after '!'. A list of (group, {name: values}); names
-are in lower case, values are lists of float, int or str.
+are in lower case, values are lists of float, int, bool or str.
 """
 import re
 
@@ -26,6 +26,8 @@ def strip_comments(text):
 def value_of(word):
     if word.startswith("'"):
         return word[1:-1].replace("''", "'")
+    if word.lower() in ('.true.', '.false.'):
+        return word.lower() == '.true.'
     try:
         return int(word)
     except ValueError:
@@ -54,6 +56,8 @@ def parse(text):
 def text_of(value):
     if isinstance(value, str):
         return "'" + value.replace("'", "''") + "'"
+    if isinstance(value, bool):
+        return '.true.' if value else '.false.'
     if isinstance(value, int):
         return str(value)
     return repr(float(value))   # the shortest text that reads back the same
