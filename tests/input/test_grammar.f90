@@ -94,21 +94,40 @@ contains
     if (row%words /= '') call refused(row, assignment_of(row, "'no such word'"), 'a word that is not allowed')
   end subroutine check_item_row
 
-  !> The kinds a name belongs to are kinds that the group has.
+  !> The kinds or laws of time a name belongs to are kinds or laws that the group has.
   subroutine check_kinds(row)
     type(item_row_type), intent(in) :: row   !< of the grammar
     character(len=len(row%kinds)), allocatable :: kinds(:)
+    character(len=:), allocatable :: word
     integer, allocatable :: rows(:)
     integer :: k
 
     kinds = words_of(row%kinds)
-    rows = find_item_rows(row%group, 'kind')
-    call tester%is_true(size(rows) == 1, label(row)//': the group of the name has kinds')
     do k = 1, size(kinds)
-      call tester%is_true(any(words_of(item_table(rows(1))%words) == kinds(k)), &
-                          label(row)//': the group has the kind '//trim(kinds(k)))
+      word = merge('law ', 'kind', is_law(kinds(k)))
+      rows = find_item_rows(row%group, trim(word))
+      call tester%is_true(size(rows) == 1, label(row)//': the group of the name has a '//trim(word))
+      if (size(rows) /= 1) cycle
+      call tester%is_true(any(words_of(item_table(rows(1))%words) == without_law(kinds(k))), &
+                          label(row)//': the group has the '//trim(word)//' '//trim(without_law(kinds(k))))
     end do
   end subroutine check_kinds
+
+  !> Whether a word among the kinds of a name is a law of time.
+  pure logical function is_law(kind)
+    character(len=*), intent(in) :: kind   !< word among the kinds of a name, as 'revolute' or 'law:harmonic'
+
+    is_law = index(kind, 'law:') == 1
+  end function is_law
+
+  !> The kind or law that a word among the kinds of a name stands for.
+  pure function without_law(kind) result(word)
+    character(len=*), intent(in) :: kind   !< word among the kinds of a name, as 'revolute' or 'law:harmonic'
+    character(len=len(kind)) :: word
+
+    word = kind
+    if (is_law(kind)) word = kind(len('law:') + 1:)
+  end function without_law
 
   subroutine check_words(row)
     type(item_row_type), intent(in) :: row   !< of the grammar
@@ -165,7 +184,10 @@ contains
 
     kind = ''
     kinds = words_of(row%kinds)
-    if (size(kinds) > 0) kind = "kind='"//trim(kinds(1))//"' "
+    if (size(kinds) > 0) then
+      kind = "kind='"//trim(kinds(1))//"' "
+      if (is_law(kinds(1))) kind = "kind='torque' law='"//trim(without_law(kinds(1)))//"' "
+    end if
     call parse_document(source_from_text('test.nml', '&'//trim(row%group)//' '//kind//new_line('a')//assignment// &
                                          new_line('a')//'/'), document, diagnostics)
     call check_document(document, diagnostics)
