@@ -13,6 +13,8 @@ module mech9_law_notes
   integer, parameter :: most_times = 6, most_joints = 1000
   !> A change is a jump where it exceeds this part of the greatest rate, or of the largest acceleration beside joints.
   real(wp), parameter :: least_jump = 1.0e-6_wp
+  !> No drive jumps in a run that is shorter: rates over such a time have no place among the numbers [s].
+  real(wp), parameter :: least_duration = sqrt(tiny(1.0_wp))
 
 contains
 
@@ -38,14 +40,15 @@ contains
     type(error_type), allocatable :: err, failure
     integer :: n
 
+    if (abs(end - start) < least_duration) return
     direction = sign(1.0_wp, end - start)
     ! rates that differ by round-off do not jump
     largest(1) = drive%greatest_rate(start, end - start)
-    largest(2) = largest(1)/max(abs(end - start), tiny(start))
+    largest(2) = largest(1)/abs(end - start)
     n = 0
     do while (n < most_joints)
       times(n + 1) = drive%next_joint(merge(start, times(max(n, 1)), n == 0), direction)
-      if (.not. (end - times(n + 1))*direction > 0.0_wp) exit
+      if (.not. (end - times(n + 1))*direction >= 0.0_wp) exit
       call drive%evaluate(from_inside(times(n + 1), -direction), before(1), before(2), before(3), err)
       call drive%evaluate(from_inside(times(n + 1), direction), behind(1), behind(2), behind(3), failure)
       if (allocated(err) .or. allocated(failure)) exit
