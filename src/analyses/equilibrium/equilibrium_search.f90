@@ -21,6 +21,8 @@ module mech9_equilibrium_search
   real(wp), parameter :: near_by = 0.3_wp
   !> Longest and shortest step [rad, lengths of the mechanism].
   real(wp), parameter :: longest_step = 0.5_wp, shortest_step = 1.0e-12_wp
+  !> Longest part of a step along one shape of the stiffness, before the step is shortened [rad, lengths of the mechanism].
+  real(wp), parameter :: longest_fall = 1.0e3_wp
   !> Stiffnesses below this part of the sum of their terms are zero.
   real(wp), parameter :: zero_stiffness = 1.0e-11_wp
   !> Largest number of steps of each kind.
@@ -110,7 +112,7 @@ contains
     type(resting_type), intent(in) :: resting   !< with its stiffness
     real(wp), intent(out) :: step(:)            !< (n) of the free coordinates, in their units
     logical, intent(out) :: is_stable           !< no direction is unstable
-    real(wp) :: vectors(size(step), size(step)), values(size(step)), work(34*size(step)), least, force
+    real(wp) :: vectors(size(step), size(step)), values(size(step)), work(34*size(step)), least, force, resistance
     integer :: n, i, info
 
     n = size(step)
@@ -122,10 +124,10 @@ contains
     do i = 1, n
       force = dot_product(vectors(:, i), resting%forces)
       if (abs(values(i)) <= least .and. is_zero_force(resting, force)) cycle
-      step = step - vectors(:, i)*(force/max(abs(values(i)), least, tiny(1.0_wp)))
+      ! a force against no stiffness would give a step without bound
+      resistance = max(abs(values(i)), least, abs(force)/longest_fall, tiny(1.0_wp))
+      step = step - vectors(:, i)*(force/resistance)
     end do
-    ! a force against no stiffness would give a step without bound
-    where (.not. abs(step) <= 1.0e3_wp) step = sign(1.0e3_wp, step)
   end subroutine falling_step
 
   !> Newton's method from a position near an equilibrium, down to round-off. `found` is false where none is near.
