@@ -84,6 +84,7 @@ contains
     call motion%advance(0.5_wp, err)
     call test%no_error(err, 'the motion of a mechanism whose only coordinate is driven goes on')
     call test%near(motion%q(1), 0.1_wp*0.5_wp, 1.0e-15_wp, 'the only coordinate follows its drive in dynamics')
+    call motion%close()
     call read_text('&structure cq=1 / &pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,0 /', mechanism, err)
     call test%has_error(err, exit_data, 'a text with an axis of length zero is refused')
     call read_text('&structure cq=1,2 / &pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 /', mechanism, err)
