@@ -31,11 +31,12 @@ def pair(k, links, kind='revolute', point='0,0,0', axis='0,0,1', more=''):
 
 
 def body(link, mass, centre, inertia=0.0):
-    return f'&body link={link}, mass={mass!r}, centre={centre}, inertia={inertia!r},{inertia!r},{inertia!r},0,0,0 /'
+    about_each_axis = ','.join([repr(float(inertia))] * 3)
+    return f'&body link={link}, mass={float(mass)!r}, centre={centre}, inertia={about_each_axis},0,0,0 /'
 
 
 def initial(k, position):
-    return f'&initial coordinate={k}, position={position!r} /'
+    return f'&initial coordinate={k}, position={float(position)!r} /'
 
 
 class Case:
@@ -163,17 +164,19 @@ def check_bar_in_slots(checks, case):
 def four_bar(independent, scale=1.0, q=(-0.2, 1.8, -0.1, 1.45)):
     """A four-bar with springs and dampers; lengths and gravity in another scale leave its eigenvalues as they are."""
     def point(x, y):
-        return f'{x * scale!r},{y * scale!r},0'
+        return f'{float(x * scale)!r},{float(y * scale)!r},0'
     return mechanism(4, 4, [independent], pair(1, '1,2'), pair(2, '2,3', point=point(0.4, 0)),
                      pair(3, '3,4', point=point(1.4, 0), more=f', moving_point={point(2.0, 0.9)}'),
                      pair(4, '1,4', point=point(1.2, 0), more=f', moving_point={point(1.2, 0)}'),
                      body(2, 1.0, point(0.2, 0.05), 0.02 * scale**2), body(3, 2.0, point(0.9, 0.2), 0.1 * scale**2),
                      body(4, 1.5, point(1.6, 0.4), 0.06 * scale**2),
-                     f'&gravity acceleration=0,{-G * scale!r},0 /',
+                     f'&gravity acceleration=0,{float(-G * scale)!r},0 /',
                      f"&load kind='spring', links=1,3, position={point(0.3, 1.8)}, second_position={point(1.0, 0.3)}, stiffness=30, "
-                     f'free_length={0.5 * scale!r}, damping=2 /',
-                     f"&load kind='coordinate', coordinate=3, stiffness={4.0 * scale**2!r}, rest=0.4, damping={0.3 * scale**2!r} /",
-                     f"&load kind='force', link=4, position={point(1.5, 0.6)}, force={4 * scale!r},{2 * scale!r},0, frame='link' /",
+                     f'free_length={float(0.5 * scale)!r}, damping=2 /',
+                     f"&load kind='coordinate', coordinate=3, stiffness={float(4.0 * scale**2)!r}, rest=0.4, "
+                     f"damping={float(0.3 * scale**2)!r} /",
+                     f"&load kind='force', link=4, position={point(1.5, 0.6)}, "
+                     f"force={float(4 * scale)!r},{float(2 * scale)!r},0, frame='link' /",
                      *[initial(k, value) for k, value in enumerate(q, 1)])
 
 
@@ -208,7 +211,7 @@ def check_limit(checks, case):
 def hoop(speed, start):
     """A bead on a hoop of radius 0.5 that turns about the vertical y: driven pair 1; pair 2 turns the bead about z of the hoop."""
     return mechanism(3, 2, [1, 2], pair(1, '1,2', axis='0,1,0'), pair(2, '2,3'), body(3, 0.7, '0,-0.5,0'), GRAVITY,
-                     f"&drive coordinate=1, kind='polynomial', coefficients=0.3,{speed!r} /", initial(2, start))
+                     f"&drive coordinate=1, kind='polynomial', coefficients=0.3,{float(speed)!r} /", initial(2, start))
 
 
 def check_hoop(checks, case):
@@ -240,7 +243,7 @@ def balanced_beam(start):
     """Mass 2 at 0.6 m on a beam, and a spring without free length from 0.8 m above the pivot to 0.5 m on the beam."""
     stiffness = 2.0 * G * 0.6 / (0.8 * 0.5)
     return mechanism(2, 1, [1], pair(1, '1,2'), body(2, 2.0, '0.6,0,0', 0.05), GRAVITY, initial(1, start),
-                     f"&load kind='spring', links=1,2, position=0,0.8,0, second_position=0.5,0,0, stiffness={stiffness!r} /")
+                     f"&load kind='spring', links=1,2, position=0,0.8,0, second_position=0.5,0,0, stiffness={float(stiffness)!r} /")
 
 
 def check_balanced_beam(checks, case):

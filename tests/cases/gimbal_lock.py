@@ -210,7 +210,7 @@ def check_random_turns(session):
 def chain(independent, start, rate):
     """Two bodies on ball joints, the second of which carries a four-bar that turns round, described by one of its coordinates."""
     groups = ['&mechanism /', '&gravity acceleration=0,0,-9.81 /', '&structure cq=' + ','.join(map(str, range(1, 7)))
-              + f',{independent} /', f'&initial coordinate={independent}, position={start!r}, velocity={rate!r} /']
+              + f',{independent} /', f'&initial coordinate={independent}, position={float(start)!r}, velocity={float(rate)!r} /']
     pairs = [((k, k + 1), (X, Y, Z)[(k - 1) % 3], '0,0,0.5' if k == 4 else '0,0,0') for k in range(1, 7)]
     pairs += [((7, 8), X, '0,0,0.5'), ((8, 9), X, '0,0.1,0'), ((9, 10), X, '0,0,0.3'), ((7, 10), X, '0,0.3,0.5')]
     for k, (links, axis, point) in enumerate(pairs, 1):

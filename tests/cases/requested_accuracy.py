@@ -43,7 +43,7 @@ def check_rows(checks, why, table, report, accuracy, errors, noise):
 
 def check_motion(checks, mech9d, name, method, accuracies):
     data, end = MOTIONS[name]
-    common = ['--set', f'time.end={end!r}', '--set', 'time.intervals=40']
+    common = ['--set', f'time.end={float(end)!r}', '--set', 'time.intervals=40']
 
     def tight(by, tolerance):
         table = table_of(mech9d, data, *common, '--set', f'solver.method={by}', '--set', f'solver.relative_tolerance={tolerance}',
@@ -92,7 +92,7 @@ def check_chaos(checks, mech9d):
     checks.true(10 < last < 40, 'it is kept for some time', last)
     checks.true(np.max(rows['error']) <= 1e-6, 'no row is worse', np.max(rows['error']))
     truth = table_of(mech9d, data, '--set', 'solver.relative_tolerance=1e-14', '--set', 'solver.absolute_tolerance=1e-14',
-                     '--set', f'time.end={last!r}', '--set', f'time.intervals={len(rows["t"]) - 1}')
+                     '--set', f'time.end={float(last)!r}', '--set', f'time.intervals={len(rows["t"]) - 1}')
     error = np.max([np.abs(truth[name] - rows[name]) for name in ('q1', 'q2')], axis=0)
     checks.true(np.max(error) <= 5e-6, 'no row is wrong', np.max(error))
 
