@@ -33,13 +33,13 @@ contains
       call find_state_space(model%mechanism, columns%coordinates, columns%derivatives, equilibrium, space)
       call put_names(file, model, free, columns)
     end associate
-    call file%put('state_space/A', transpose(space%a), 'x'' = A x + B u')
+    call put_matrix(file, 'state_space/A', space%a, 'x'' = A x + B u')
     call file%attach_scales('state_space/A', ['/state_space/state', '/state_space/state'])
-    call file%put('state_space/B', transpose(space%b), 'x'' = A x + B u')
+    call put_matrix(file, 'state_space/B', space%b, 'x'' = A x + B u')
     call file%attach_scales('state_space/B', ['/state_space/state', '/state_space/input'])
-    call file%put('state_space/C', transpose(space%c), 'y = C x + D u')
+    call put_matrix(file, 'state_space/C', space%c, 'y = C x + D u')
     call file%attach_scales('state_space/C', ['/state_space/output', '/state_space/state '])
-    call file%put('state_space/D', transpose(space%d), 'y = C x + D u')
+    call put_matrix(file, 'state_space/D', space%d, 'y = C x + D u')
     call file%attach_scales('state_space/D', ['/state_space/output', '/state_space/input '])
   end subroutine put_linear_system
 
@@ -50,9 +50,22 @@ contains
     real(wp), intent(in) :: matrix(:, :)             !< (n,n)
     character(len=*), intent(in) :: long_name        !< its meaning
 
-    call file%put(name, transpose(matrix), long_name)
+    call put_matrix(file, name, matrix, long_name)
     call file%attach_scales(name, ['/free', '/free'])
   end subroutine put_square
+
+  !> Put a matrix with its rows along the first dimension of the data set.
+  subroutine put_matrix(file, name, matrix, long_name)
+    type(hdf5_file_type), intent(inout) :: file      !< the open file
+    character(len=*), intent(in) :: name             !< path of the data set
+    real(wp), intent(in) :: matrix(:, :)             !< (m,n)
+    character(len=*), intent(in) :: long_name        !< its meaning
+    real(wp) :: stored(size(matrix, 2), size(matrix, 1))
+
+    ! gfortran 14 passes a transposed argument to a contiguous one in the order of the matrix itself
+    stored = transpose(matrix)
+    call file%put(name, stored, long_name)
+  end subroutine put_matrix
 
   !> Put the names of states, inputs and outputs as scales, and their units.
   subroutine put_names(file, model, free, columns)
