@@ -11,6 +11,7 @@ module mech9_dynamic_task
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_equilibrium_task, only: asks_for_equilibrium, find_rest
+  use mech9_law_times, only: check_times_of_laws
   use mech9_task, only: task_type, answers_only, print_check, print_given, begin_run, end_run
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_facts, only: facts_type
@@ -83,6 +84,8 @@ contains
       return
     end if
     reported = .false.
+    if (options%has('check') .or. .not. answers_only(options)) call check_times_of_laws(model, .true., diagnostics)
+    if (diagnostics%failed()) return
     used = model
     call read_picture_requests(options, model, self%program_name, pictures, err)
     if (.not. allocated(err)) call assemble_free_start(model, plan, start, err)

@@ -13,6 +13,7 @@ module mech9_kinematic_task
   use mech9_driven_motion, only: set_inputs
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
   use mech9_row_source, only: row_source_type, new_row_source
+  use mech9_law_times, only: check_times_of_laws
   use mech9_task, only: task_type, answers_only, print_check, print_given, begin_run, end_run
   use mech9_range_text, only: print_ranges
   use mech9_facts, only: facts_type
@@ -80,6 +81,9 @@ contains
     type(error_type), allocatable :: err
 
     reported = .false.
+    if (options%has('check') .or. .not. answers_only(options)) &
+      call check_times_of_laws(model, with_masses .or. model%request%output%with_forces(), diagnostics)
+    if (diagnostics%failed()) return
     call read_picture_requests(options, model, program_name, pictures, err)
     if (.not. allocated(err)) call assemble_driven_start(model, plan, start, err)
     if (allocated(err)) then

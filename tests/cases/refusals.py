@@ -59,11 +59,22 @@ def main():
                 run_said, check_said = refused(program, text, DATA, words, '--set', f'solver.relative_tolerance={value}')
                 checks.equal(run_said, check_said, 'a check says the same of a tolerance as a run')
                 refused(program, text + f'&solver relative_tolerance={value} /\n', DATA, 'case.nml:')
-        for start, end, asked in ((0, 4, 4), (-1, 2, -1), (4, 1, 4), (2, -1, -1)):
-            words = 'the table of the drive of coordinate 1 covers t = 0 to 3, and t = '
-            said = refused(mech9k, TABLE.format(start=start, end=end), DATA, words)
-            checks.true(f'and t = {asked} is asked for' in said[1], 'a check tells the time that lies outside', said[1])
-            checks.true(all('case.nml:3:1:' in one for one in said), 'with the place of the drive', said)
+        for start, end, words in ((0, 4, 'after t = 3 s, and the run goes on to t = 4 s'),
+                                  (-1, 2, 'before t = 0 s, and the run begins at t = -1 s'),
+                                  (4, 1, 'after t = 3 s, and the run begins at t = 4 s'),
+                                  (2, -1, 'before t = 0 s, and the run goes on to t = -1 s'),
+                                  # more than round-off
+                                  (0, 3.0000001, 'after t = 3 s, and the run goes on to t = 3.0000001 s')):
+            for program in (mech9k, mech9d):
+                said = refused(program, TABLE.format(start=start, end=end), DATA,
+                               f'the table of the drive of coordinate 1 has no value {words}; lengthen the table or shorten &time')
+                checks.true(all('case.nml:3:1:' in one for one in said), 'with the place of the drive', said)
+        for law, words in (("law='table', file='table.dat'", 'the table of the load has no value after t = 3 s'),
+                           ("law='segments', times=0,3, values=0,1, laws='harmonic'",
+                            'the law in segments of the load has no value after t = 3 s')):
+            said = refused(mech9d, pendulum + f"&load kind='coordinate', coordinate=1, force=1, {law} /\n", DATA,
+                           f'{words}, and the run goes on to t = 4 s', '--set', 'time.end=4')
+            checks.true(all(f'case.nml:{pendulum.count(chr(10)) + 1}:1:' in one for one in said), 'with the place of the load', said)
         refused(mech9k, FLAT, SINGULAR, 'starts in a singular position of closed chain 1')
     checks.finish()
 

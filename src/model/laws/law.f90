@@ -1,11 +1,11 @@
 !> A law of time: an independent coordinate as a given function of time, or the factor by which a load is multiplied.
 module mech9_law
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, place_type
+  use mech9_error, only: error_type, place_type, raise, exit_data
   use mech9_text, only: to_text
   implicit none
   private
-  public :: law_type, drive_slot_type, law_slot_type, from_inside
+  public :: law_type, drive_slot_type, law_slot_type, from_inside, refuse_time
 
   !> A given function of time.
   type, abstract :: law_type
@@ -15,6 +15,7 @@ module mech9_law
     procedure(evaluate_interface), deferred :: evaluate
     procedure :: greatest_rate
     procedure :: next_joint
+    procedure :: check_time
     procedure :: owner
   end type law_type
 
@@ -73,6 +74,37 @@ contains
 
     next_joint = sign(huge(t), direction)
   end function next_joint
+
+  !> Fail where the law has no value at a time. This procedure, for laws that have values at all times, never does.
+  subroutine check_time(self, t, demand, err)
+    class(law_type), intent(in) :: self                 !< the law
+    real(wp), intent(in) :: t                           !< the time [s]
+    character(len=*), intent(in) :: demand              !< the words before this time, for example 'the run goes on to'
+    type(error_type), allocatable, intent(out) :: err   !< allocated if there is no value
+  end subroutine check_time
+
+  !> Fail because a law has values from one time to another, and not at a time that lies outside. The numbers have as many digits
+  !> as show the difference.
+  subroutine refuse_time(self, name, first, last, t, demand, remedy, err)
+    class(law_type), intent(in) :: self                 !< the law
+    character(len=*), intent(in) :: name                !< of that which gives its values, in the singular
+    real(wp), intent(in) :: first                       !< time of the first value [s]
+    real(wp), intent(in) :: last                        !< time of the last value [s]
+    real(wp), intent(in) :: t                           !< the time outside [s]
+    character(len=*), intent(in) :: demand              !< the words before this time
+    character(len=*), intent(in) :: remedy              !< in the imperative
+    type(error_type), allocatable, intent(out) :: err   !< the failure
+    real(wp) :: edge
+    integer :: digits
+
+    edge = merge(first, last, t < first)
+    do digits = 6, 16
+      if (to_text(edge, digits) /= to_text(t, digits)) exit
+    end do
+    call raise(err, exit_data, 'the '//name//' of the '//trim(self%owner())//' has no value '// &
+               trim(merge('before', 'after ', t < first))//' t = '//to_text(edge, digits)//' s, and '//demand//' t = '// &
+               to_text(t, digits)//' s; '//remedy, self%place)
+  end subroutine refuse_time
 
   !> The owner of the law in messages.
   pure function owner(self)

@@ -4,9 +4,8 @@
 !> indexing table does. The law of a load returns to its first value.
 module mech9_segments_law
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_data
-  use mech9_text, only: to_text
-  use mech9_law, only: law_type
+  use mech9_error, only: error_type
+  use mech9_law, only: law_type, refuse_time
   use mech9_cam_curves, only: cam_curve, steepest_slope_of
   implicit none
   private
@@ -22,6 +21,7 @@ module mech9_segments_law
     procedure :: evaluate
     procedure :: greatest_rate
     procedure :: next_joint
+    procedure :: check_time
     procedure, private :: rounds_before
   end type segments_law_type
 
@@ -38,16 +38,11 @@ contains
     real(wp) :: x, span, rise, s, ds, dds, rounds
     integer :: i, n
 
+    call self%check_time(t, 'a value is asked for at', err)
+    if (allocated(err)) return
     n = size(self%curves)
     rounds = self%rounds_before(t)
     x = t - rounds*(self%times(n + 1) - self%times(1))
-    ! output times are sums and may miss the ends by round-off
-    if (x < self%times(1) - slack(self, t) .or. x > self%times(n + 1) + slack(self, t)) then
-      call raise(err, exit_data, 'the segments of the '//trim(self%owner())//' cover t = '//to_text(self%times(1))//' to '// &
-                 to_text(self%times(n + 1))//', and t = '//to_text(t)//' is asked for; add segments, give period=, or shorten '// &
-                 '&time', self%place)
-      return
-    end if
     i = segment_of(self, x)
     span = self%times(i + 1) - self%times(i)
     rise = self%values(i + 1) - self%values(i)
@@ -57,6 +52,21 @@ contains
     dq = rise*ds/span
     ddq = rise*dds/span**2
   end subroutine evaluate
+
+  !> Fail outside the times of the segments, unless they repeat. Output times are sums and may miss the ends by round-off.
+  subroutine check_time(self, t, demand, err)
+    class(segments_law_type), intent(in) :: self        !< the law
+    real(wp), intent(in) :: t                           !< the time [s]
+    character(len=*), intent(in) :: demand              !< the words before this time
+    type(error_type), allocatable, intent(out) :: err   !< allocated if there is no value
+
+    if (self%repeats) return
+    associate (first => self%times(1), last => self%times(size(self%times)))
+      if (t < first - slack(self, t) .or. t > last + slack(self, t)) &
+        call refuse_time(self, 'law in segments', first, last, t, demand, 'add segments, give period=, or shorten &time', &
+                         err)
+    end associate
+  end subroutine check_time
 
   !> Number of whole periods before a time; 0 where nothing repeats.
   pure real(wp) function rounds_before(self, t)

@@ -1,10 +1,9 @@
 !> A law through the points of a table by a cubic spline with continuous second derivative.
 module mech9_table_law
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_data
-  use mech9_text, only: to_text
+  use mech9_error, only: error_type
   use mech9_spline, only: spline_type
-  use mech9_law, only: law_type
+  use mech9_law, only: law_type, refuse_time
   implicit none
   private
   public :: table_law_type
@@ -15,6 +14,7 @@ module mech9_table_law
   contains
     procedure :: evaluate
     procedure :: greatest_rate
+    procedure :: check_time
   end type table_law_type
 
 contains
@@ -27,19 +27,25 @@ contains
     real(wp), intent(out) :: dq                         !< its rate [rad/s, m/s]
     real(wp), intent(out) :: ddq                        !< its acceleration [rad/s^2, m/s^2]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    call self%check_time(t, 'a value is asked for at', err)
+    if (.not. allocated(err)) call self%spline%evaluate(t, q, dq, ddq)
+  end subroutine evaluate
+
+  !> Fail outside the times of the table. Output times are sums and may miss its ends by round-off.
+  subroutine check_time(self, t, demand, err)
+    class(table_law_type), intent(in) :: self           !< the table law
+    real(wp), intent(in) :: t                           !< the time [s]
+    character(len=*), intent(in) :: demand              !< the words before this time
+    type(error_type), allocatable, intent(out) :: err   !< allocated if there is no value
     real(wp) :: slack
 
     associate (first => self%spline%x(1), last => self%spline%x(size(self%spline%x)))
-      slack = 1.0e-12_wp*(last - first)   ! output times are sums and may miss the end by round-off
-      if (t < first - slack .or. t > last + slack) then
-        call raise(err, exit_data, 'the table of the '//trim(self%owner())// &
-                   ' covers t = '//to_text(first)//' to '//to_text(last)//', and t = '//to_text(t)// &
-                   ' is asked for; lengthen the table or shorten &time', self%place)
-        return
-      end if
+      slack = 1.0e-12_wp*(last - first)
+      if (t < first - slack .or. t > last + slack) &
+        call refuse_time(self, 'table', first, last, t, demand, 'lengthen the table or shorten &time', err)
     end associate
-    call self%spline%evaluate(t, q, dq, ddq)
-  end subroutine evaluate
+  end subroutine check_time
 
   !> The bound is that of the spline between the two times.
   function greatest_rate(self, t, h) result(rate)
