@@ -7,8 +7,9 @@
 module mech9_motion_system
   use mech9_kinds, only: wp, long
   use mech9_tolerances, only: trusted_between_steps, trusted_closing, third_derivative_step
-  use mech9_error, only: error_type, raise, exit_singular
-  use mech9_failure, only: failure_singular_step, failure_unclosed_step, failure_drive_jumps
+  use mech9_error, only: error_type, raise, exit_singular, exit_integrator
+  use mech9_failure, only: failure_singular_step, failure_unclosed_step, failure_drive_jumps, failure_no_inertia, &
+    failure_lost_inertia, failure_infinite_rate
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_law, only: law_type, from_inside
   use mech9_driven_equations, only: hold
@@ -44,6 +45,7 @@ module mech9_motion_system
     !> Trials with a worse conditioned block are refused: a step must not cross a singular position unseen.
     real(wp) :: refuse_below = 0.0_wp
     logical, private :: just_settled = .false.
+    logical, private :: has_inertia = .false.        !< all free coordinates had inertia in the position with which it was made
     logical :: has_joints = .false.                  !< a law of time has joints, where its derivatives may jump
     real(wp) :: joint_behind = 0.0_wp                !< laws are smooth from this time, which was passed last [s]
     real(wp) :: joint_ahead = 0.0_wp                 !< to this one, which comes next [s]
@@ -89,7 +91,29 @@ contains
     if (allocated(err)) return
     call system%present(err)
     if (.not. allocated(err)) call check_inertia(plan, system%dynamics, system%work, err)
+    system%has_inertia = .not. allocated(err)
   end subroutine set_motion_system
+
+  !> Rates and accelerations by the equations of motion. A coordinate without inertia is a fault of the data only in the position
+  !> with which the system was made; in later ones it is a failure of the integration, which a smaller step may avoid.
+  subroutine accelerate(self, err)
+    class(motion_system_type), intent(inout) :: self    !< the motion system, with placed frames and independent rates
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    integer :: k
+
+    call find_motion(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, err)
+    if (.not. (allocated(err) .and. self%has_inertia)) return
+    if (.not. allocated(err%failure)) return
+    if (err%failure%kind /= failure_no_inertia) return
+    k = err%failure%coordinates(1)
+    if (all(abs(self%work%coefficients) <= huge(1.0_wp))) then
+      call raise(err, exit_integrator, failure_lost_inertia)
+      err%failure%coordinates = [k]
+    else
+      call raise(err, exit_integrator, failure_infinite_rate)
+      err%failure%number = k
+    end if
+  end subroutine accelerate
 
   !> The coefficients of motion in a position.
   subroutine find_coefficients(mechanism, plan, assembled, coefficients, err)
@@ -277,7 +301,7 @@ contains
     if (allocated(err)) return
     call place_all(self%plan, self%state, err)
     if (allocated(err)) return
-    call find_motion(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, err)
+    call accelerate(self, err)
     if (allocated(err)) return
     if (self%conditioning() < self%refuse_below) then
       call raise(err, exit_singular, failure_singular_step)
@@ -413,7 +437,7 @@ contains
     class(motion_system_type), intent(inout) :: self    !< the motion system
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call find_motion(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, err)
+    call accelerate(self, err)
     if (allocated(err)) return
     call complete_accelerations(self%plan, self%dynamics, self%work, self%state)
     call show_state(self%plan, self%dynamics, self%state, self%work%view)

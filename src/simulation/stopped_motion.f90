@@ -41,7 +41,7 @@ contains
 
     call name_coordinate(system%plan, failure)
     call name_dead_point(system, t, y, failure)
-    if (.not. (failure%code == exit_integrator .or. is_of_kind(failure, failure_no_inertia))) return
+    if (failure%code /= exit_integrator) return
     call system%move_to(t, y, err)
     if (allocated(err)) return
     call find_equations(system%model%mechanism, system%plan, system%dynamics, system%state, system%work, err)

@@ -15,7 +15,7 @@ module mech9_explanation
     failure_points_order, failure_no_spline, failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, &
     failure_chain_off_plane, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
     failure_interrupted, failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
-    failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium
+    failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_choice_words, only: explain_choice, longest_list
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
@@ -225,6 +225,10 @@ contains
     case (failure_no_inertia)
       text = 'independent coordinate '//to_text(failure%coordinates)//' has no inertia: no link with mass moves with it '// &
              '(apart from those that the independent coordinates before it move already); give a &body'
+    case (failure_lost_inertia)
+      text = 'independent coordinate '//to_text(failure%coordinates)//' has no inertia in the position there, although it had '// &
+             'some at the start: no link with mass moves with it (apart from those that the independent coordinates before it '// &
+             'move already); give the links that move with it a &body, or lower the tolerances'
     case (failure_singular_step)
       text = 'a singular position for these independent coordinates is too near; others may pass it (cq), or smaller tolerances'
     case (failure_unclosed_step)

@@ -4,7 +4,8 @@
 !> Compares the program with itself: a motion in one go, in pieces and after an interruption.
 program test_simulation
   use mech9_kinds, only: wp, long
-  use mech9_error, only: error_type, exit_usage, exit_singular, exit_interrupted
+  use mech9_error, only: error_type, exit_usage, exit_data, exit_singular, exit_integrator, exit_interrupted
+  use mech9_failure, only: failure_lost_inertia, failure_no_inertia
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -18,6 +19,8 @@ program test_simulation
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation, assemble_driven
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation, assemble_free
   use mech9_accuracy, only: find_accuracy
+  use mech9_motion_system, only: motion_system_type, set_motion_system
+  use mech9_ode_system, only: is_recoverable
   use mech9_testing, only: tester_type
   use simulation_doubles, only: countdown_type, open_chains_type
   implicit none
@@ -56,6 +59,7 @@ program test_simulation
   call check_open_chains()
   call check_accuracy()
   call check_interrupted_accuracy()
+  call check_lost_inertia()
   call test%finish()
 
 contains
@@ -306,4 +310,47 @@ contains
     call test%has_error(err, exit_interrupted, 'runs for an accuracy can be interrupted')
     call test%is_true(errors%runs == 1, 'the first run for an accuracy stops, and no other begins')
   end subroutine check_interrupted_accuracy
+
+  !> Two bars with one mass, at the end of the second one: stretched, both turn it alike, and the matrix of the coefficients of
+  !> motion, (4, 2; 2, 1) kg m^2, is singular without any round-off. A trial of an integration there fails so that a smaller step
+  !> is tried; a system made there has data that are at fault.
+  subroutine check_lost_inertia()
+    character(len=*), parameter :: bars = '&structure cq=1, 2 / &pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 / '// &
+      '&pair coordinate=2, links=2,3, kind=''revolute'', axis=0,0,1, point=1,0,0, moving_point=0,0,0 / '// &
+      '&initial coordinate=1, position=0 / &initial coordinate=2, position=1 / &body link=3, mass=1, centre=1,0,0 / &time end=1 /'
+    type(model_type), target :: model
+    type(motion_system_type) :: system, stretched
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(error_type), allocatable :: err
+    real(wp) :: rate(4)
+
+    call read(bars, .false., model)
+    call assemble_free(model, plan, start, err)
+    if (.not. allocated(err)) call set_motion_system(model, model%problem%partition, plan, start, system, err)
+    call test%no_error(err, 'two bars with one mass have inertia where they are not stretched')
+    call system%rate(0.1_wp, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], rate, err)
+    call check_failure(err, exit_integrator, failure_lost_inertia, 'a trial step to the stretched position')
+    if (allocated(err)) call test%is_true(is_recoverable(err), 'a smaller step is tried after a loss of inertia')
+    model%problem%initial%position = 0.0_wp
+    call assemble_free(model, plan, start, err)
+    if (.not. allocated(err)) call set_motion_system(model, model%problem%partition, plan, start, stretched, err)
+    call check_failure(err, exit_data, failure_no_inertia, 'a start in the stretched position')
+  end subroutine check_lost_inertia
+
+  !> Check the code and the kind of a failure about the second coordinate.
+  subroutine check_failure(err, code, kind, name)
+    type(error_type), allocatable, intent(in) :: err   !< the failure
+    integer, intent(in) :: code                        !< expected exit code
+    integer, intent(in) :: kind                        !< expected kind
+    character(len=*), intent(in) :: name               !< of what fails
+
+    call test%is_true(allocated(err), name//' fails')
+    if (.not. allocated(err)) return
+    call test%is_true(err%code == code, name//' fails with the code of its cause')
+    call test%is_true(allocated(err%failure), name//' fails in numbers')
+    if (.not. allocated(err%failure)) return
+    call test%is_true(err%failure%kind == kind, name//' fails by its cause')
+    call test%is_true(all(err%failure%coordinates == 2), name//' fails by the second coordinate')
+  end subroutine check_failure
 end program test_simulation

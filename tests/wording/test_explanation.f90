@@ -7,7 +7,8 @@ program test_explanation
     failure_nearly_moving_chain, failure_undetermined_coordinates, failure_undetermined_block, failure_contradictory_inputs, &
     failure_start_on_branches, failure_start_unclear, failure_start_locked, failure_start_not_left, failure_escape, &
     failure_dead_point, failure_lost_branch, failure_singular_block, failure_singular_start_block, failure_other_branch, &
-    failure_no_jacobian, failure_step_memory, failure_step_settings, failure_no_inertia, failure_unknown_method, &
+    failure_no_jacobian, failure_step_memory, failure_step_settings, failure_no_inertia, failure_lost_inertia, &
+    failure_unknown_method, &
     failure_relative_tolerance, failure_absolute_tolerance, failure_tolerance_count, failure_infinite_rate, &
     failure_infinite_jacobian, failure_few_points, failure_points_order, failure_not_started, failure_backwards, &
     failure_interrupted, failure_lost_angles, failure_drive_jumps
@@ -230,6 +231,11 @@ contains
     call raise(err, exit_integrator, failure_infinite_jacobian)
     err%failure%number = 3
     call says(err, 'entry 3 of the Jacobian, column by column, is not finite: the motion, or a force, grows beyond all bounds')
+    call raise(err, exit_integrator, failure_lost_inertia)
+    err%failure%coordinates = [3]
+    call says(err, 'independent coordinate 3 has no inertia in the position there, although it had some at the start: no link '// &
+              'with mass moves with it (apart from those that the independent coordinates before it move already); give the '// &
+              'links that move with it a &body, or lower the tolerances')
   end subroutine integrations
 
   !> Mistakes of programs that use the library, and requests of theirs.
