@@ -2,13 +2,13 @@
 !> follow.
 module mech9_interview
   use mech9_text, only: to_text
-  use mech9_grammar, only: group_table, item_table, find_item_rows, rows_of_group
+  use mech9_grammar, only: group_table, item_table, find_item_rows, rows_of_group, for_forces
   use mech9_structure, only: structure_type
   use mech9_partition, only: partition_type
   use mech9_draft, only: draft_type, plain_name
   use mech9_draft_check, only: fault_type, read_draft_structure
   use mech9_topics, only: can_be_left_out
-  use mech9_outline, only: outline_type, ways, new_outline, make_groups, drop_foreign
+  use mech9_outline, only: outline_type, ways, new_outline, make_groups, drop_foreign, wants_forces
   use mech9_questions, only: question_type, make_questions, label_of, find_question, entry_name, &
                              is_seldom, ask_item, check_structure, check_start, check_all
   use mech9_question_words, only: is_lacking
@@ -266,11 +266,30 @@ contains
     class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
     character(len=*), intent(in) :: text          !< the answer as a data file writes it
     type(question_type) :: question
+    logical :: with_forces
 
     question = self%due()
+    with_forces = wants_forces(self%draft)
     call self%draft%give(trim(group_table(question%group_row)%name), question%place, entry_name(question), text)
     call self%refresh(label_of(question))
+    if (wants_forces(self%draft) .and. .not. with_forces) call go_on_with_masses(self)
   end subroutine note
+
+  !> A correction that asks for forces leads on to the questions about bodies, gravity and loads, if these come only now, and none
+  !> has its answer yet.
+  pure subroutine go_on_with_masses(self)
+    type(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
+    integer :: i
+
+    if (self%return_to == '' .or. self%draft%count_of('body') > 0) return
+    do i = self%at + 1, size(self%questions)
+      if (self%questions(i)%group_row == 0) cycle
+      if (group_table(self%questions(i)%group_row)%program /= for_forces) cycle
+      self%return_to = label_of(self%questions(i))
+      return
+    end do
+  end subroutine go_on_with_masses
+
 
   !> The answer to the question that is due is taken back.
   pure subroutine unnote(self)

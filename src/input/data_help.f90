@@ -3,7 +3,7 @@ module mech9_data_help
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: to_text, nearest_name
   use mech9_grammar, only: group_table, item_table, item_row_type, group_row_type, unlimited, find_group_row, rows_of_group, &
-                           find_item_rows, names_of_groups, names_in_group
+                           find_item_rows, names_of_groups, names_in_group, for_forces
   implicit none
   private
   public :: write_data_help, write_data_tables
@@ -132,7 +132,11 @@ contains
     text = 'stands at most once'
     if (row%repeats) text = 'may be repeated'
     if (row%key /= '') text = 'may be repeated, each with another '//trim(row%key)
-    if (row%program /= 'both') text = text//'; used by '//trim(row%program)
+    if (row%program == for_forces) then
+      text = text//'; used by mech9d, and by mech9k for the forces of reactions, drive_forces and force_arrows'
+    else if (row%program /= 'both') then
+      text = text//'; used by '//trim(row%program)
+    end if
   end function use_text
 
   !> The values that a name takes: "2 whole numbers, >=1", "a text: fixed or link".

@@ -4,7 +4,7 @@ module mech9_grammar
   use mech9_text, only: lower
   implicit none
   private
-  public :: group_row_type, item_row_type, group_table, item_table, unlimited
+  public :: group_row_type, item_row_type, group_table, item_table, unlimited, for_forces
   public :: find_group_row, rows_of_group, find_item_rows, item_row_for_kind, takes_kind, words_of
   public :: names_of_groups, names_in_group
 
@@ -13,7 +13,8 @@ module mech9_grammar
     character(len=9) :: name
     logical :: repeats           !< may stand more than once
     character(len=10) :: key     !< the name whose value tells its groups apart; empty: none does
-    character(len=6) :: program  !< program that uses it: both, mech9k or mech9d
+    !> Program that uses it: both, mech9k, mech9d, or for_forces: mech9d, and mech9k where forces are asked for.
+    character(len=6) :: program
     character(len=120) :: help
   end type group_row_type
 
@@ -39,6 +40,7 @@ module mech9_grammar
   end type item_row_type
 
   integer, parameter :: unlimited = huge(1)
+  character(len=*), parameter :: for_forces = 'forces'
   logical, parameter :: needed = .true., optional = .false.
   character(len=*), parameter :: screws = 'revolute prismatic helical'
   character(len=*), parameter :: motion_laws = 'dwell constant-velocity harmonic cycloidal polynomial345 polynomial4567 '// &
@@ -55,9 +57,9 @@ module mech9_grammar
     group_row_type('point', .true., 'name', 'both', 'a point of a link whose motion is recorded'), &
     group_row_type('drive', .true., 'coordinate', 'both', &
                    'an independent coordinate as a function of time; mech9k needs one for each, in mech9d the others are free'), &
-    group_row_type('body', .true., 'link', 'mech9d', 'mass, centre and inertia of a link; links without a body are massless'), &
-    group_row_type('gravity', .false., '', 'mech9d', 'the acceleration of gravity'), &
-    group_row_type('load', .true., '', 'mech9d', 'a force, torque, spring or damper, or a user''s procedure'), &
+    group_row_type('body', .true., 'link', for_forces, 'mass, centre and inertia of a link; links without a body are massless'), &
+    group_row_type('gravity', .false., '', for_forces, 'the acceleration of gravity'), &
+    group_row_type('load', .true., '', for_forces, 'a force, torque, spring or damper, or a user''s procedure'), &
     group_row_type('time', .false., '', 'both', &
                    'the times of the results: start + (end - start) i/intervals, i = 0 .. intervals'), &
     group_row_type('solver', .false., '', 'mech9d', 'method and tolerances of the integration'), &

@@ -12,7 +12,7 @@ import tempfile
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import dialogue_scripts as scripts
 from dialogue import Talk, answers_of, first_missing, piped
-from mech9_cases import TREE, Checks, run, text_of
+from mech9_cases import TREE, Checks, read_table, run, text_of
 from terminal import available
 
 DONE, USAGE, DATA, FILE, INTERRUPTED = 0, 2, 3, 8, 130
@@ -334,6 +334,33 @@ def gravity(talks):
         talks.checks.true(f'&gravity acceleration={written} /' in text, f'gravity: {answer} is {written}', text)
 
 
+# bodies, gravity and loads of a bar, as mech9k asks for them
+MASSES = [('body 1, link', '2'), ('mass', '2'), ('centre', '0.5 0 0'), ('inertia', ''), ('body 2, link', ''),
+          ('acceleration', '-y'), ('load 1, kind', 'torque'), ('link', '2'), ('torque', '0 0 3'), ('frame', ''), ('load 2, kind', '')]
+BAR = [('title [', 'Bar'), ('links: ', '2'), ('coordinates: ', '1'), ('angle_unit', ''), ('[pairs]', ''), ('links of pair 1', '1 2'),
+       ('cq: ', '1'), ('which of them', ''), ('kind', ''), ('point', ''), ('axis', 'z'), ('kind [polynomial]', ''),
+       ('coefficients', '0'), ('guesses', ''), ('point 1, name', ''), ('start', ''), ('end', ''), ('intervals', '2')]
+
+
+def forces_of_drives(talks):
+    """mech9k asks for bodies, gravity and loads once forces are asked for, in the course of the conversation or in a correction of
+    it, and not otherwise. The torque that holds the bar is its weight's moment less the load: 2 kg 9.81 m/s^2 0.5 m - 3 N m."""
+    asked = [('nly if you want', 'drive_forces'), ('table [', ''), ('drive_forces [no]', 'yes')]
+    plain = [('nly if you want', ''), ('table [', '')]
+    for steps, why in ((BAR + asked + MASSES, 'asked for in the course'),
+                       (BAR + plain + [('all is right', 'output drive_forces = yes')] + MASSES, 'asked for in a correction')):
+        with tempfile.TemporaryDirectory() as folder:
+            steps += [('all is right', ''), ('[both]', ''), ('data file', 'bar.nml'), ('run or done', '')]
+            talks.pipe(talks.mech9k, steps, f'forces {why}', folder=folder)
+            table = read_table(text_of(os.path.join(folder, 'bar.dat')))
+            talks.checks.near(table['F1'], 2 * 9.81 * 0.5 - 3, 1e-14, f'forces {why}: the torque of the drive')
+    with tempfile.TemporaryDirectory() as folder:
+        done = talks.pipe(talks.mech9k, BAR + plain + [('all is right', 'add body'), ('What can be added: point;', 'quit')],
+                          'without forces', folder=folder)
+        talks.checks.true(not any(word in done.stderr for word in ('Bodies', 'Gravity', 'Loads')), 'no masses without forces',
+                          done.stderr)
+
+
 def unsaved_runs(talks):
     """The end of a conversation says which file holds what was run, and what was changed since."""
     to_run = [*scripts.PENDULUM_TO_THE_END, ('all is right', ''), ('[both]', '?'), ('save writes your answers', 'run')]
@@ -388,6 +415,7 @@ def main():
     begun_by_mistake(talks)
     short_answers(talks)
     gravity(talks)
+    forces_of_drives(talks)
     unsaved_runs(talks)
     refusals(talks)
     cut_off_anywhere(talks)

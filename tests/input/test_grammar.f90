@@ -3,7 +3,7 @@
 program test_grammar
   use mech9_source, only: source_from_text
   use mech9_grammar, only: group_table, item_table, item_row_type, unlimited, find_group_row, find_item_rows, takes_kind, &
-                           words_of
+                           words_of, for_forces
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: parse_document
@@ -33,7 +33,7 @@ contains
     associate (group => group_table(row))
       call tester%is_true(find_group_row(group%name) == row, trim(group%name)//': the group is found under its name')
       call tester%is_true(any(item_table%group == group%name), trim(group%name)//': the group has names')
-      call tester%is_true(any(group%program == ['both  ', 'mech9k', 'mech9d']), &
+      call tester%is_true(any(group%program == ['both  ', 'mech9k', 'mech9d', for_forces]), &
                           trim(group%name)//': the group is for a program that exists')
       call tester%is_true(group%help /= '' .and. len_trim(group%help) < len(group%help), &
                           trim(group%name)//': the help fits its field')

@@ -6,7 +6,7 @@ module mech9_outline
   use mech9_draft, only: draft_type, plain_name, unquoted
   implicit none
   private
-  public :: outline_type, ways, new_outline, make_groups, drop_empty_guesses, drop_foreign, kind_in
+  public :: outline_type, ways, new_outline, make_groups, drop_empty_guesses, drop_foreign, kind_in, wants_forces
 
   !> The ways to give the structure: the links of each pair, the rows of the coincidence matrix, or the second set.
   character(len=7), parameter :: ways(3) = [character(len=7) :: 'pairs', 'matrix', 'vectors']
@@ -63,6 +63,19 @@ contains
       end do
     end associate
   end function kind_in
+
+  !> Whether the results of the draft hold forces, for which bodies, gravity and loads count in mech9k, too.
+  pure logical function wants_forces(draft)
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
+    character(len=12), parameter :: names(3) = [character(len=12) :: 'reactions', 'drive_forces', 'force_arrows']
+    integer :: i
+
+    wants_forces = .false.
+    do i = 1, size(names)
+      if (draft%has('output', 1, trim(names(i)))) &
+        wants_forces = wants_forces .or. scan(draft%value('output', 1, trim(names(i)))//' ', 'tT') > 0
+    end do
+  end function wants_forces
 
   !> The groups that are needed are made: a pair for each coordinate, a drive or initial values for each independent
   !> coordinate (in mech9d initial values for those without a drive), and guesses for the other coordinates if they are wanted.

@@ -4,10 +4,10 @@
 !> two lists if it has the same label.
 module mech9_questions
   use mech9_text, only: to_text
-  use mech9_grammar, only: group_table, item_table, item_row_type, rows_of_group, takes_kind, find_item_rows
+  use mech9_grammar, only: group_table, item_table, for_forces, item_row_type, rows_of_group, takes_kind, find_item_rows
   use mech9_draft, only: draft_type
   use mech9_topics, only: topics, groups_of_topic, is_numbered, can_be_left_out
-  use mech9_outline, only: outline_type, kind_in
+  use mech9_outline, only: outline_type, kind_in, wants_forces
   implicit none
   private
   public :: question_type, make_questions, label_of, find_question, entry_name, is_open, is_seldom
@@ -39,21 +39,55 @@ contains
     type(draft_type), intent(in) :: draft                          !< groups and names with their values as text
     type(outline_type), intent(in) :: outline                      !< facts known beside the draft
     type(question_type), allocatable, intent(out) :: questions(:)  !< all questions in order
-    integer, allocatable :: rows(:)
-    integer :: count, i, topic
+    integer :: count, topic
 
     allocate (questions(64))
     count = 0
     do topic = 1, size(topics)
-      rows = groups_of_topic(topic)
-      do i = 1, size(rows)
-        if (group_table(rows(i))%program /= 'both' .and. group_table(rows(i))%program /= outline%program_name) cycle
-        call ask_about_group(draft, outline, topic, rows(i), questions, count)
-      end do
+      call ask_about_topic(draft, outline, topic, outline%program_name == 'mech9d', questions, count)
+      if (topics(topic)%groups == 'output' .and. outline%program_name == 'mech9k' .and. wants_forces(draft)) &
+        call ask_about_masses(draft, outline, questions, count)
     end do
     call append(questions, count, question_type(kind=check_all, topic=size(topics)))
     questions = questions(:count)
   end subroutine make_questions
+
+  !> The questions about the groups of a topic that the program uses are appended.
+  pure subroutine ask_about_topic(draft, outline, topic, with_masses, questions, count)
+    type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline                        !< facts known beside the draft
+    integer, intent(in) :: topic                                     !< number of the topic
+    logical, intent(in) :: with_masses                               !< groups that serve for forces are used, too
+    type(question_type), allocatable, intent(inout) :: questions(:)  !< questions in order; the first `count` are in use
+    integer, intent(inout) :: count                                  !< number of questions in use
+    integer, allocatable :: rows(:)
+    integer :: i
+
+    rows = groups_of_topic(topic)
+    do i = 1, size(rows)
+      associate (program => group_table(rows(i))%program)
+        if (program == for_forces .and. .not. with_masses) cycle
+        if (all(program /= ['both  ', for_forces, outline%program_name])) cycle
+      end associate
+      call ask_about_group(draft, outline, topic, rows(i), questions, count)
+    end do
+  end subroutine ask_about_topic
+
+  !> The questions about bodies, gravity and loads are appended. In mech9k they come after the results, which need them only
+  !> where these hold forces.
+  pure subroutine ask_about_masses(draft, outline, questions, count)
+    type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline                        !< facts known beside the draft
+    type(question_type), allocatable, intent(inout) :: questions(:)  !< questions in order; the first `count` are in use
+    integer, intent(inout) :: count                                  !< number of questions in use
+    integer, allocatable :: rows(:)
+    integer :: topic
+
+    do topic = 1, size(topics)
+      rows = groups_of_topic(topic)
+      if (any(group_table(rows)%program == for_forces)) call ask_about_topic(draft, outline, topic, .true., questions, count)
+    end do
+  end subroutine ask_about_masses
 
   !> The questions about all groups of a name are appended.
   pure subroutine ask_about_group(draft, outline, topic, group_row, questions, count)
