@@ -1,6 +1,7 @@
 !> A structure is drawn as text: its chains of links and pairs, and its mobility by the count.
 module mech9_structure_sketch
   use mech9_text, only: to_text
+  use mech9_counted, only: counted
   use mech9_structure, only: structure_type
   use mech9_structural_vectors, only: structural_vectors_type, chain_type, chains_of
   use mech9_partition, only: partition_type
@@ -28,7 +29,7 @@ contains
     do i = 1, min(size(chains), most_chains)
       call print_chain(unit, partition%vectors, chains(i))
     end do
-    if (size(chains) > most_chains) write (unit, '(a)') '  and '//to_text(size(chains) - most_chains)//' chains more'
+    if (size(chains) > most_chains) write (unit, '(a)') '  and '//counted(size(chains) - most_chains, 'more chain')
     if (loops == 0) then
       write (unit, '(a)') '  Open chains only: each coordinate moves by itself, the mobility is '// &
         to_text(structure%n_coordinates)//'.'

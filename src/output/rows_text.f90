@@ -1,6 +1,7 @@
 !> Some columns and the last rows of results as lines for the terminal.
 module mech9_rows_text
   use mech9_text, only: to_text
+  use mech9_counted, only: counted
   use mech9_kept_rows, only: kept_rows_type
   implicit none
   private
@@ -36,9 +37,9 @@ contains
       end do
       text = text//eol
     end do
-    text = text//'(the last '//to_text(shown)//' of '//to_text(kept%count)//' rows'
+    text = text//'(the last '//to_text(shown)//' of '//counted(kept%count, 'row')
     if (kept%stride > 1) text = text//', every '//to_text(kept%stride)//'th of the run'
-    text = text//'; '//to_text(size(columns))//' of '//to_text(size(kept%names))//' columns)'//eol
+    text = text//'; '//to_text(size(columns))//' of '//counted(size(kept%names), 'column')//')'//eol
   end function rows_text
 
   !> A text in its column, with a blank before it even where it is too long.

@@ -2,6 +2,7 @@
 module mech9_run_comparison
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
+  use mech9_counted, only: counted
   use mech9_kept_rows, only: kept_rows_type
   implicit none
   private
@@ -148,21 +149,22 @@ contains
     type(kept_rows_type), intent(in) :: later        !< rows of the later run
     character(len=:), allocatable :: text
     character(len=79) :: line
-    integer :: i
+    integer :: i, alike
 
     if (comparison%times == 0) then
       text = 'The two runs have no time in common.'//eol
       return
     end if
-    text = 'Compared at '//to_text(comparison%times)//' common times: '
+    text = 'Compared at '//counted(comparison%times, 'common time')//': '
     if (size(comparison%columns) == 0) then
       text = text//'all columns are the same, '
       if (comparison%alike == 0) text = text//'to the last bit.'//eol
       if (comparison%alike > 0) text = text//'but for round-off.'//eol
       return
     end if
-    text = text//to_text(size(comparison%columns))//' columns differ, '// &
-           to_text(comparison%same + comparison%alike)//' do not.'//eol
+    alike = comparison%same + comparison%alike
+    text = text//counted(size(comparison%columns), 'column')//trim(merge(' differs', ' differ ', size(comparison%columns) == 1))// &
+           ', '//to_text(alike)//trim(merge(' does', ' do  ', alike == 1))//' not.'//eol
     write (line, '(a16,5a12)') 'column', 'difference', 'of largest', 'at t [s]', 'before', 'now'
     text = text//trim(line)//eol
     do i = 1, min(size(comparison%columns), most_lines)
@@ -174,6 +176,6 @@ contains
       text = text//trim(line)//eol
     end do
     if (size(comparison%columns) > most_lines) &
-      text = text//'and '//to_text(size(comparison%columns) - most_lines)//' columns that differ less.'//eol
+      text = text//'and '//counted(size(comparison%columns) - most_lines, 'column')//' with smaller differences.'//eol
   end function comparison_text
 end module mech9_run_comparison

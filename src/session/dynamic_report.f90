@@ -3,6 +3,7 @@ module mech9_dynamic_report
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
+  use mech9_counted, only: counted
   use mech9_json, only: json_type
   use mech9_facts, only: facts_type
   use mech9_hdf5_sink, only: hdf5_sink_type
@@ -34,11 +35,11 @@ contains
     integer :: i
 
     counts = simulation%motion%statistics()
-    write (unit, '(a)') to_text(outcome%rows)//' outputs: '//duration(outcome%seconds_solving)//' to solve, '// &
+    write (unit, '(a)') counted(outcome%rows, 'output')//': '//duration(outcome%seconds_solving)//' to solve, '// &
       duration(outcome%seconds_writing)//' to write'
-    write (unit, '(a)') method_of(simulation)//': '//to_text(counts%steps)//' steps'//by_bdf(counts)//', '// &
+    write (unit, '(a)') method_of(simulation)//': '//counted(counts%steps, 'step')//by_bdf(counts)//', '// &
       to_text(counts%error_test_failures + counts%convergence_failures + counts%refusals)//' made again, '// &
-      to_text(counts%rate_evaluations)//' evaluations'//each(outcome%seconds_solving, int(counts%rate_evaluations))
+      counted(counts%rate_evaluations, 'evaluation')//each(outcome%seconds_solving, int(counts%rate_evaluations))
     if (simulation%with_error) write (unit, '(a)') &
       'largest error '//to_text(simulation%largest_error, 2)//' (rad, m), estimated by '//to_text(simulation%errors%runs)// &
       ' other runs; tolerances '//to_text(simulation%model%request%solver%relative_tolerance, 2)

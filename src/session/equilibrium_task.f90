@@ -4,6 +4,7 @@ module mech9_equilibrium_task
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, raise, exit_usage, exit_data
   use mech9_text, only: to_text
+  use mech9_counted, only: counted
   use mech9_json, only: json_type
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
@@ -132,8 +133,9 @@ contains
     if (size(list) == 1) then
       write (unit, '(a)') words_about(list(1))
     else
-      write (unit, '(a)') to_text(size(list))//' positions of equilibrium from the initial position and '// &
-        options%argument('starts')//' random ones, '//to_text(count([(list(i)%is_stable, i=1, size(list))]))//' of them stable'
+      write (unit, '(a)') counted(size(list), 'position')//' of equilibrium from the initial position and '// &
+        counted(options%number('starts', 1), 'random one')//', '// &
+        to_text(count([(list(i)%is_stable, i=1, size(list))]))//' of them stable'
     end if
   end subroutine print_findings
 
@@ -146,7 +148,7 @@ contains
       words = 'an unstable equilibrium: a deviation grows by the factor e in '//to_text(1.0_wp/found%modes%growth, 4)//' s'
     else if (any(abs(found%modes%roots(:found%modes%count)) <= 0.0_wp)) then
       words = 'a stable equilibrium; neighbouring positions are as good in '// &
-              to_text(count(abs(found%modes%roots(:found%modes%count)) <= 0.0_wp))//' direction(s)'
+              counted(count(abs(found%modes%roots(:found%modes%count)) <= 0.0_wp), 'direction')
     else
       words = 'a stable equilibrium; its lowest frequency is '// &
               to_text(minval(abs(aimag(found%modes%roots(:found%modes%count))))/(2.0_wp*pi), 6)//' Hz'

@@ -3,6 +3,7 @@ module mech9_kinematic_report
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
+  use mech9_counted, only: counted
   use mech9_json, only: json_type
   use mech9_facts, only: facts_type
   use mech9_diagnostics, only: diagnostics_type
@@ -30,17 +31,17 @@ contains
     type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
     integer :: k, calls
 
-    write (unit, '(a)') to_text(outcome%rows)//' positions: '//duration(outcome%seconds_solving)//' to solve'// &
+    write (unit, '(a)') counted(outcome%rows, 'position')//': '//duration(outcome%seconds_solving)//' to solve'// &
       each(outcome%seconds_solving, outcome%rows)//', '//duration(outcome%seconds_writing)//' to write'
-    write (unit, '(a)') to_text(iterations_each(outcome, driven), 3)//' Newton iterations a position; largest closure '// &
-      to_text(driven%worst_closure, 3)//' m'
+    write (unit, '(a)') 'Newton iterations for each position: '//to_text(iterations_each(outcome, driven), 3)// &
+      '; largest closure '//to_text(driven%worst_closure, 3)//' m'
     if (driven%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
       to_text(driven%conditioning%least, 3)//' at t = '//to_text(driven%conditioning%t, 6)//' s: '// &
       words_of_block(plan%blocks(driven%conditioning%block)%chains, plan%blocks(driven%conditioning%block)%coordinates)
     if (driven%crossings > 0) write (unit, '(a)') 'special positions passed: '//to_text(driven%crossings)// &
       ', each on the branch with continuous velocities'
-    if (driven%steps >= outcome%rows) write (unit, '(a)') to_text(driven%steps)//' steps to keep to the branch, and '// &
-      to_text(driven%halvings)//' that were too long'
+    if (driven%steps >= outcome%rows) write (unit, '(a)') counted(driven%steps, 'step')//' to keep to the branch, and '// &
+      to_text(driven%halvings)//' more that '//trim(merge('was ', 'were', driven%halvings == 1))//' too long'
     calls = 0
     do k = 1, size(model%mechanism%pairs)
       if (model%mechanism%pairs(k)%pair%user_calls() > 1) calls = calls + model%mechanism%pairs(k)%pair%user_calls()

@@ -3,12 +3,14 @@ program test_text
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf, ieee_negative_inf
   use mech9_kinds, only: wp, long
   use mech9_text, only: string_type, to_text, lower, join, nearest_name, starts_with
+  use mech9_counted, only: counted
   use mech9_random, only: random_type
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
 
   call integers_as_text(test)
+  call integers_with_nouns(test)
   call reals_as_text(test)
   call reals_read_back(test)
   call pieces_of_text(test)
@@ -41,6 +43,16 @@ contains
     call same(test, to_text([1, -2, 30]), '1, -2, 30')
     call same(test, to_text([1, -2, 30], ' '), '1 -2 30')
   end subroutine integers_as_text
+
+  subroutine integers_with_nouns(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+
+    call same(test, counted(1, 'position'), '1 position')
+    call same(test, counted(0, 'position'), '0 positions')
+    call same(test, counted(12, 'assembly'), '12 assemblies')
+    call same(test, counted(1_long, 'assembly'), '1 assembly')
+    call same(test, counted(2_long, 'day'), '2 days')
+  end subroutine integers_with_nouns
 
   subroutine reals_as_text(test)
     type(tester_type), intent(inout) :: test   !< counts the checks

@@ -122,7 +122,7 @@ contains
                      'the share does not depend on which run has the larger values')
     call compare_runs(new_run(10, 2.0_wp), new_run(10, 2.5_wp), comparison)
     text = comparison_text(comparison, new_run(10, 2.5_wp))
-    call tester%is_true(index(text, '2 columns differ, 1 do not') > 0 .and. index(text, 'q1') < index(text, 'P.x'), &
+    call tester%is_true(index(text, '2 columns differ, 1 does not') > 0 .and. index(text, 'q1') < index(text, 'P.x'), &
                         'the comparison is told in words: '//text)
     call compare_runs(new_run(10, 2.0_wp), new_run(10, 2.0_wp), comparison)
     text = comparison_text(comparison, new_run(10, 2.0_wp))

@@ -1,6 +1,7 @@
 !> The assemblies of a mechanism in words, for --branches.
 module mech9_assemblies_text
   use mech9_text, only: to_text
+  use mech9_counted, only: counted
   use mech9_mechanism, only: mechanism_type
   use mech9_result_units, only: unit_of
   use mech9_plan, only: plan_type
@@ -26,12 +27,12 @@ contains
     integer :: i, k
 
     call find_assemblies(plan, start, n_starts, list)
-    write (unit, '(a)') '! '//to_text(size(list%found))//' assemblies found from '//to_text(list%starts)// &
-      ' starts, of which '//to_text(list%closed)//' could be closed'
+    write (unit, '(a)') '! '//counted(size(list%found), 'assembly')//' found from '//counted(list%starts, 'start')// &
+      ', of which '//to_text(list%closed)//' could be closed'
     do i = 1, size(list%found)
       words = ''
       if (i == 1) words = '; that of the data file'
-      write (unit, '(a)') '! assembly '//to_text(i)//', from '//to_text(list%found(i))//' starts'//words
+      write (unit, '(a)') '! assembly '//to_text(i)//', from '//counted(list%found(i), 'start')//words
       do k = 1, plan%n_coordinates
         if (.not. plan%steps(plan%step_of(k))%dependent) cycle
         write (number, '(es24.16)') list%q(k, i)/unit_of(mechanism, k)

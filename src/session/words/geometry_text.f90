@@ -2,6 +2,7 @@
 module mech9_geometry_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
+  use mech9_counted, only: counted
   use mech9_mechanism, only: mechanism_type
   use mech9_link_dimensions, only: link_dimension_type, link_dimensions
   implicit none
@@ -42,7 +43,7 @@ contains
           right(shown(1), given(1)), right(shown(2), given(2)), right(shown(3), given(3))
       end associate
     end do
-    if (size(dimensions) > most_lines) write (unit, '(a)') '  and '//to_text(size(dimensions) - most_lines)//' more lines'
+    if (size(dimensions) > most_lines) write (unit, '(a)') '  and '//counted(size(dimensions) - most_lines, 'more line')
   end subroutine print_dimensions
 
   !> A text at the left of a column.

@@ -3,6 +3,7 @@ module mech9_law_notes
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
+  use mech9_counted, only: counted
   use mech9_law, only: law_type, from_inside
   use mech9_model, only: model_type
   implicit none
@@ -75,7 +76,7 @@ contains
     do i = 2, min(size(times), most_times)
       list = list//', '//to_text(times(i), 8)
     end do
-    if (size(times) > most_times) list = list//' and '//to_text(size(times) - most_times)//' later times,'
+    if (size(times) > most_times) list = list//' and '//counted(size(times) - most_times, 'later time')//','
     write (unit, '(a)') 'note: the '//name//' of the '//trim(drive%owner())//' jumps at t = '//list//' s'
   end subroutine print_times
 end module mech9_law_notes

@@ -2,6 +2,7 @@
 module mech9_plan_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
+  use mech9_counted, only: counted
   use mech9_screw, only: split_space
   use mech9_mechanism, only: mechanism_type
   use mech9_explanation, only: explain_failure
@@ -60,7 +61,7 @@ contains
     if (.not. is_needed) write (unit, '(a)') '  left out: no result or load depends on it'
     if (size(block%unknowns) > 0) then
       write (unit, '(a)') '  solved for: '//to_text([(block%coordinates(i), i=1, size(block%unknowns))])//' from '// &
-        to_text(block%equations)//' equations of rank '//to_text(size(block%unknowns))
+        counted(block%equations, 'equation')//' of rank '//to_text(size(block%unknowns))
       if (block%is_constant) write (unit, '(a)') '  its Jacobian is constant, since nothing turns: factorized once'
     else
       write (unit, '(a)') '  nothing to solve: an open chain'
@@ -70,7 +71,7 @@ contains
       associate (closure => plan%closures(c))
         write (unit, '(a)') '  chain '//to_text(closure%chain)//' closes on link '//to_text(plan%steps(closure%closing)%link)// &
           ' through coordinate '//to_text(plan%steps(closure%closing)%coordinate)//'; its motions span '// &
-          to_text(closure%rank)//' dimensions'
+          counted(closure%rank, 'dimension')
         call print_basis(unit, plan, closure)
       end associate
     end do

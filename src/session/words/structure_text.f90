@@ -2,6 +2,7 @@
 module mech9_structure_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text, some_of
+  use mech9_counted, only: counted
   use mech9_masks, only: numbers_of
   use mech9_structural_vectors, only: structural_vectors_type
   use mech9_plan, only: plan_type
@@ -65,19 +66,10 @@ contains
     integer, intent(in) :: unit          !< Fortran unit to write to
     type(plan_type), intent(in) :: plan  !< the plan of the mechanism
 
-    write (unit, '(a)') to_text(plan%n_links)//' links, '//counted(plan%n_coordinates, 'coordinate')//', '// &
+    write (unit, '(a)') counted(plan%n_links, 'link')//', '//counted(plan%n_coordinates, 'coordinate')//', '// &
       counted(size(plan%closures), 'closed chain')
     write (unit, '(a)') 'independent: '//to_text(plan%independent)
   end subroutine print_counts
-
-  !> A number with its noun: "1 coordinate", "2 coordinates".
-  pure function counted(number, noun) result(words)
-    integer, intent(in) :: number         !< how many there are
-    character(len=*), intent(in) :: noun  !< the noun in the singular
-    character(len=:), allocatable :: words
-
-    words = trim(to_text(number)//' '//noun//merge(' ', 's', number == 1))
-  end function counted
 
   !> Write counts, ranks, redundant equations, and which coordinates can be independent or cannot move.
   subroutine print_mobility_report(unit, plan, report)
@@ -88,7 +80,7 @@ contains
 
     call print_counts(unit, plan)
     write (unit, '(a)') 'mobility by the count: '//to_text(report%by_count)//' = '//counted(plan%n_coordinates, 'coordinate')// &
-      ' - '//to_text(plan%n_coordinates - report%by_count)//' dimensions of the chains'' motions'
+      ' - '//counted(plan%n_coordinates - report%by_count, 'dimension')//' of the chains'' motions'
     write (unit, '(a)') 'mobility by the rank: '//to_text(report%by_rank)//' = '// &
       counted(plan%n_coordinates, 'coordinate')//' - rank '//to_text(plan%n_coordinates - report%by_rank)
     if (.not. report%general) write (unit, '(a)') 'the ranks are those of the start: no other closed position was found near it'
@@ -124,12 +116,12 @@ contains
         cycle
       end if
       write (unit, '(a)', advance='no') 'block '//to_text(b)//': '//chain_names(plan%blocks(b)%chains)//', '// &
-        to_text(plan%blocks(b)%equations)//' equations, rank '//to_text(report%ranks(b))
+        counted(plan%blocks(b)%equations, 'equation')//', rank '//to_text(report%ranks(b))
       if (report%at_start(b) < report%ranks(b)) write (unit, '(a)', advance='no') &
         '; at the start only '//to_text(report%at_start(b))//': a singular position'
       write (unit, '(a)') ''
     end do
-    if (left_out > 0) write (unit, '(a)') 'and '//to_text(left_out)//' more blocks'
+    if (left_out > 0) write (unit, '(a)') 'and '//counted(left_out, 'more block')
   end subroutine print_ranks
 
   !> Write which coordinates could be independent instead of one that is.
