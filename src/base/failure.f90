@@ -19,7 +19,8 @@ module mech9_failure
   public :: failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, failure_chain_off_plane
   public :: failure_no_initial_position, failure_not_started, failure_backwards, failure_interrupted
   public :: failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
-    failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, last_failure
+    failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve, &
+    last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
@@ -145,7 +146,12 @@ module mech9_failure
 
   !> No mass moves with an independent coordinate that had inertia at the start: coordinates.
   integer, parameter :: failure_lost_inertia = 57
-  integer, parameter :: last_failure = 57
+
+  ! Curves
+
+  !> A curve through points turns back on itself: number (of the point before the place).
+  integer, parameter :: failure_sharp_curve = 58
+  integer, parameter :: last_failure = 58
 
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type

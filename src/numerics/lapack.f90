@@ -3,7 +3,7 @@ module mech9_lapack
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: ilaver, dgtsv, dgesvd, zgesvd, dormqr, dgeqp3, dsyev, dgeev
+  public :: ilaver, dgtsv, dgbsv, dgesvd, zgesvd, dormqr, dgeqp3, dsyev, dgeev
 
   interface
     !> The version of the library.
@@ -25,6 +25,21 @@ module mech9_lapack
       real(wp), intent(inout) :: b(ldb, *)   !< (n,nrhs) right-hand sides; the solutions afterwards
       integer, intent(out) :: info           !< 0: all is well
     end subroutine dgtsv
+
+    !> Linear equations with a band matrix.
+    subroutine dgbsv(n, kl, ku, nrhs, ab, ldab, ipiv, b, ldb, info)
+      import :: wp
+      integer, intent(in) :: n                !< order of the matrix
+      integer, intent(in) :: kl               !< diagonals below the main one
+      integer, intent(in) :: ku               !< diagonals above it
+      integer, intent(in) :: nrhs             !< number of right-hand sides
+      integer, intent(in) :: ldab             !< rows of `ab` in memory, at least 2 kl + ku + 1
+      integer, intent(in) :: ldb              !< rows of `b` in memory
+      real(wp), intent(inout) :: ab(ldab, *)  !< the matrix: element i,j in row kl + ku + 1 + i - j of column j; overwritten
+      integer, intent(out) :: ipiv(*)         !< (n) exchanges of rows
+      real(wp), intent(inout) :: b(ldb, *)    !< (n,nrhs) right-hand sides; the solutions afterwards
+      integer, intent(out) :: info            !< 0: all is well
+    end subroutine dgbsv
 
     !> Singular values and vectors of a matrix.
     subroutine dgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)

@@ -15,7 +15,7 @@ module mech9_explanation
     failure_points_order, failure_no_spline, failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, &
     failure_chain_off_plane, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
     failure_interrupted, failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
-    failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia
+    failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_choice_words, only: explain_choice, longest_list
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
@@ -330,6 +330,9 @@ contains
              ' does not come after point '//to_text(failure%number)
     case (failure_no_spline)
       text = 'no smooth curve runs through these points: some are too close together; leave those out'
+    case (failure_sharp_curve)
+      text = 'the smooth curve through these points turns back on itself after point '//to_text(failure%number)// &
+             '; put the points there closer together, round a corner, or leave out a point that goes back'
     end select
   end subroutine explain_points
 

@@ -18,7 +18,7 @@ FLOORS = ['base', 'system', 'numerics', 'spatial', 'structure', 'model/laws', 'm
           'programs']
 MOST_FILES = 25            # in one folder: more are hard to find one's way in
 MOST_KINEMATICS = 14       # files of the kinematics that Lagrange's equations depend on, directly and through others
-WITHOUT_WORDS = ('numerics', 'kinematics/', 'ode', 'dynamics', 'simulation', 'analyses/')   # they fail with numbers, see src/wording
+WITHOUT_WORDS = ('numerics', 'spatial', 'kinematics/', 'ode', 'dynamics', 'simulation', 'analyses/')   # they fail with numbers, see src/wording
 MODULE = re.compile(r'^\s*module\s+(?!procedure\b|subroutine\b|function\b)(\w+)\s*$', re.I | re.M)
 USE = re.compile(r'^\s*use\b\s*(?:,\s*(?:non_)?intrinsic\s*)?(?:::)?\s*([\w@]+)\s*(,\s*only\s*:)?', re.I | re.M)
 PARENT = re.compile(r'^\s*submodule\s*\(\s*(\w+)', re.I | re.M)
