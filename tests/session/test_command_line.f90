@@ -142,6 +142,7 @@ contains
     call refuse(tester, 'a.nml|--mode|2', 'give all three', 'mech9d')
     call refuse(tester, 'a.nml|--modes|--animate|a.svg', 'tell which by --mode K', 'mech9d')
     call refuse(tester, 'a.nml|--equilibrium|--animate|a.svg', '--animate shows a run', 'mech9d')
+    call refuse_beside_rest(tester)
     call refuse(tester, 'a.nml|b.nml', "two data files are given, 'a.nml' and 'b.nml'")
     call refuse(tester, 'a.nml||', 'the name of the data file is empty')
     call refuse(tester, 'a.nml|--tabel|x', "unknown option '--tabel'; did you mean --table?")
@@ -169,6 +170,39 @@ contains
     call refuse(tester, 'a.nml|--no-write|--table=x', 'contradict')
     call refuse(tester, 'a.nml|--no-write|--hdf5=x', 'contradict')
   end subroutine test_bad_lines
+
+  !> Options without meaning beside those about equilibrium are refused, and all others are taken.
+  subroutine refuse_beside_rest(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    character(len=*), parameter :: of_rest(*) = [character(len=14) :: '--equilibrium', '--modes', '--linear|l.h5']
+    character(len=*), parameter :: good(*) = [character(len=16) :: '--table|t.dat', '--hdf5|h.h5', '--report|r.json', &
+                                              '--set|time.end=3', '--quiet', '--verbose']
+    character(len=*), parameter :: answers(*) = [character(len=14) :: '--check', '--structure', '--plan', '--branches', &
+                                                 '--graph|g.svg']
+    type(command_line_type) :: options
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: start
+    integer :: i, k
+
+    do i = 1, size(of_rest)
+      start = 'a.nml|'//trim(of_rest(i))//'|'
+      do k = 1, size(good)
+        call parse(start//trim(good(k)), options, err, 'mech9d')
+        call tester%no_error(err, start//trim(good(k)))
+      end do
+      do k = 1, size(answers)
+        call refuse(tester, start//trim(answers(k)), 'are two tasks', 'mech9d')
+      end do
+      call refuse(tester, start//'--plot|q1', '--plot shows a run', 'mech9d')
+      call refuse(tester, start//'--sketch|s.svg', '--sketch shows a run', 'mech9d')
+      call refuse(tester, start//'--view|xy', 'draws none', 'mech9d')
+      if (i > 1) call refuse(tester, start//'--starts|3', '--starts belongs to --equilibrium', 'mech9d')
+    end do
+    call refuse(tester, 'a.nml|--equilibrium|--starts|3|--linear|l.h5', '--linear is about one equilibrium', 'mech9d')
+    call refuse(tester, 'a.nml|--linear|l.h5|--no-write', 'contradicts', 'mech9d')
+    call refuse(tester, 'a.nml|--linear|l.h5|--animate|a.svg', '--animate shows a run', 'mech9d')
+    call refuse(tester, 'a.nml|--equilibrium|--starts|-1', "--starts needs a whole number from 1 on, not '-1'", 'mech9d')
+  end subroutine refuse_beside_rest
 
   !> The line is an error of usage whose message holds some words.
   subroutine refuse(tester, line, words, program_name)

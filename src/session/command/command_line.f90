@@ -4,6 +4,7 @@ module mech9_command_line
   use mech9_text, only: string_type, nearest_name, starts_with
   use mech9_options, only: option_type, options_table, option_names, find_option, &
                            no_argument, optional_argument, whole_number, assignment
+  use mech9_option_conflicts, only: judge_options, answer_of, rest_of
   implicit none
   private
   public :: command_line_type, get_command_words, parse_command_line
@@ -26,6 +27,7 @@ module mech9_command_line
     procedure :: number
     procedure :: converses
     procedure :: answer
+    procedure :: rest
     procedure :: table_of_answer
   end type command_line_type
 
@@ -70,7 +72,7 @@ contains
       end if
       if (allocated(err)) return
     end do
-    call judge(program_name, options, err)
+    call judge_options(program_name, options%given%name, options%file /= '', options%converses(), err)
   end subroutine parse_command_line
 
   !> Words as one line that a shell splits into the same words.
@@ -144,6 +146,13 @@ contains
     is_option = starts_with(word, '-') .and. len(word) > 1
   end function is_option
 
+  !> Whether a word is a minus sign with digits behind it.
+  pure logical function is_negative(word)
+    character(len=*), intent(in) :: word  !< one word of the command line
+
+    is_negative = starts_with(word, '-') .and. len(word) > 1 .and. verify(word(min(2, len(word) + 1):), '0123456789.') == 0
+  end function is_negative
+
   !> Take a word as the data file.
   pure subroutine take_file(word, options, err)
     character(len=*), intent(in) :: word               !< the path of the data file
@@ -187,7 +196,8 @@ contains
     end if
     i = i + 1
     if (options_table(place)%takes /= no_argument .and. .not. has_argument .and. i <= size(words)) then
-      has_argument = .not. is_option(words(i)%text)
+      has_argument = .not. is_option(words(i)%text) .or. &
+                     (options_table(place)%form == whole_number .and. is_negative(words(i)%text))
       if (has_argument) then
         argument = words(i)%text
         i = i + 1
@@ -337,42 +347,21 @@ contains
     end do
   end function place_of
 
-  !> Check the options for contradictions.
-  pure subroutine judge(program_name, options, err)
-    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
-    type(command_line_type), intent(in) :: options     !< the data file and the options
-    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
-
-    if (options%has('help') .or. options%has('version') .or. options%has('help-data')) return
-    if (options%has('quiet') .and. options%has('verbose')) then
-      call raise(err, exit_usage, '--quiet and --verbose contradict each other')
-    else if (options%has('no-write') .and. (options%has('table') .or. options%has('hdf5') .or. options%has('plot'))) then
-      call raise(err, exit_usage, '--no-write contradicts --table, --hdf5 and --plot')
-    else if (options%has('mode') .neqv. (options%has('modes') .and. options%has('animate'))) then
-      call judge_mode(options, err)
-    else if (options%has('modes') .and. options%has('equilibrium')) then
-      call raise(err, exit_usage, '--equilibrium and --modes write different tables; give one of them, --modes finds the '// &
-                 'equilibrium, too')
-    else if (options%has('animate') .and. options%answer() /= '' .and. options%answer() /= 'modes') then
-      call raise(err, exit_usage, '--animate shows a run, and --'//options%answer()//' makes none; leave one of them out')
-    else if (options%converses()) then
-      call judge_conversation(program_name, options, err)
-    end if
-  end subroutine judge
-
   !> The option that replaces the run by an answer, the first one where there are several; empty where none is given.
   pure function answer(self) result(name)
     class(command_line_type), intent(in) :: self  !< the command line
     character(len=:), allocatable :: name
-    character(len=*), parameter :: answers(*) = [character(len=11) :: 'structure', 'check', 'plan', 'branches', 'range', 'graph', &
-                                                            'equilibrium', 'modes', 'linear']
-    integer :: i
 
-    name = ''
-    do i = size(answers), 1, -1
-      if (self%has(trim(answers(i)))) name = trim(answers(i))
-    end do
+    name = answer_of(self%given%name)
   end function answer
+
+  !> The option that asks for positions of equilibrium in place of a run: equilibrium, modes or linear; empty where none is given.
+  pure function rest(self) result(name)
+    class(command_line_type), intent(in) :: self  !< the command line
+    character(len=:), allocatable :: name
+
+    name = rest_of(self%given%name)
+  end function rest
 
   !> The table of an equilibrium or of modes: the file that is named, or standard output where no other result is asked for;
   !> empty for none.
@@ -385,44 +374,10 @@ contains
     if (self%has('equilibrium') .or. self%has('modes')) path = '-'
   end function table_of_answer
 
-  !> Fail because of --modes with --animate and without --mode, or the other way round.
-  pure subroutine judge_mode(options, err)
-    type(command_line_type), intent(in) :: options     !< the command line
-    type(error_type), allocatable, intent(out) :: err  !< the failure
-
-    if (options%has('mode')) then
-      call raise(err, exit_usage, '--mode tells which mode --modes --animate FILE shows; give all three')
-    else
-      call raise(err, exit_usage, '--modes --animate shows one mode; tell which by --mode K')
-    end if
-  end subroutine judge_mode
-
   !> Whether the program holds a conversation instead of working on a data file.
   pure logical function converses(self)
     class(command_line_type), intent(in) :: self  !< the command line
 
     converses = self%file == '' .or. self%has('dialogue') .or. self%has('edit') .or. self%has('resume')
   end function converses
-
-  !> Check the options of a conversation: it takes one data file or none, and no option that replaces the run by an answer.
-  pure subroutine judge_conversation(program_name, options, err)
-    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
-    type(command_line_type), intent(in) :: options     !< the data file and the options
-    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
-    character(len=:), allocatable :: missing
-    character(len=*), parameter :: generic(*) = [character(len=11) :: 'check', 'structure', 'plan', 'branches', 'range', &
-                                                 'equilibrium', 'modes', 'linear', 'set']
-    integer :: i
-
-    do i = 1, size(generic)
-      if (.not. options%has(trim(generic(i)))) cycle
-      missing = 'no data file is given'
-      if (options%file /= '' .or. options%has('edit') .or. options%has('resume')) missing = 'this is a conversation'
-      call raise(err, exit_usage, missing//'; --'//trim(generic(i))//' is for a data file alone: '//program_name// &
-                 ' FILE --'//trim(generic(i)))
-      return
-    end do
-    if (count([options%file /= '', options%has('edit'), options%has('resume')]) > 1) &
-      call raise(err, exit_usage, 'more than one data file is given; a conversation takes one')
-  end subroutine judge_conversation
 end module mech9_command_line

@@ -10,9 +10,6 @@ module mech9_unused_options
   character(len=*), parameter :: of_runs(*) = [character(len=8) :: 'table', 'hdf5', 'plot', 'no-write']
   character(len=*), parameter :: of_mechanisms(*) = [character(len=8) :: 'check', 'plan', 'branches', 'range', 'graph', 'sketch']
 
-  !> The same where a table is written without a run.
-  character(len=*), parameter :: of_runs_alone(*) = [character(len=8) :: 'plot', 'sketch']
-
 contains
 
   !> Write a line for each reason why options are without effect.
@@ -22,14 +19,12 @@ contains
     type(command_line_type), intent(in) :: options  !< the command line
     type(model_type), intent(in) :: model       !< the model, whose data file may request pictures, too
     character(len=:), allocatable :: answer, names
-    logical :: drawn, rests
+    logical :: drawn
 
     answer = options%answer()
-    rests = answer == 'equilibrium' .or. answer == 'modes' .or. answer == 'linear'
-    if (rests) then
-      call list_given(options, of_runs_alone, names)
-      if (names /= '') write (unit, '(a)') program_name//': without effect: '//names//'; --'//answer//' makes no run'
-    else if (answer /= '') then
+    ! options without effect are refused there
+    if (options%rest() /= '') return
+    if (answer /= '') then
       call list_given(options, of_runs, names)
       if (names /= '') write (unit, '(a)') program_name//': without effect: '//names//'; --'//answer//' makes no run'
     end if
@@ -37,10 +32,9 @@ contains
       call list_given(options, of_mechanisms, names)
       if (names /= '') write (unit, '(a)') program_name//': without effect: '//names//'; --structure reads the structure alone'
     end if
-    if (options%has('starts') .and. (answer == 'structure' .or. .not. (options%has('branches') .or. options%has('equilibrium')))) &
+    if (options%has('starts') .and. (answer == 'structure' .or. .not. options%has('branches'))) &
       write (unit, '(a)') program_name//': without effect: --starts; it is the number of guesses of --branches'
     drawn = options%has('sketch')
-    if (answer == 'modes') drawn = drawn .or. options%has('animate')
     if (answer == '') drawn = drawn .or. options%has('animate') .or. pictures_of(model)
     if (options%has('view') .and. (answer == 'structure' .or. .not. drawn)) &
       write (unit, '(a)') program_name//': without effect: --view; no picture of the mechanism is drawn'

@@ -1,0 +1,138 @@
+!> Options that contradict each other, and those that take the place of a run.
+module mech9_option_conflicts
+  use mech9_error, only: error_type, raise, exit_usage
+  implicit none
+  private
+  public :: judge_options, answer_of, rest_of
+
+  !> The options that replace a run by an answer, the first ones before the others.
+  character(len=*), parameter :: answers(*) = [character(len=11) :: 'structure', 'check', 'plan', 'branches', 'range', 'graph', &
+                                               'equilibrium', 'modes', 'linear']
+  !> Those of them that are about positions of equilibrium.
+  character(len=*), parameter :: of_rest(*) = [character(len=11) :: 'equilibrium', 'modes', 'linear']
+  !> Options that a conversation does not take.
+  character(len=*), parameter :: of_files(*) = [character(len=11) :: 'check', 'structure', 'plan', 'branches', 'range', &
+                                                'equilibrium', 'modes', 'linear', 'set']
+
+contains
+
+  !> The option that replaces the run by an answer, the first one where there are several; empty where none is given.
+  pure function answer_of(given) result(name)
+    character(len=*), intent(in) :: given(:)  !< names of the options that are given, without the dashes
+    character(len=:), allocatable :: name
+
+    name = first_of(answers, given)
+  end function answer_of
+
+  !> The option that asks for positions of equilibrium in place of a run, the first one where there are several; empty where none is
+  !> given.
+  pure function rest_of(given) result(name)
+    character(len=*), intent(in) :: given(:)  !< names of the options that are given, without the dashes
+    character(len=:), allocatable :: name
+
+    name = first_of(of_rest, given)
+  end function rest_of
+
+  !> The first one of some names that is given; empty where none is.
+  pure function first_of(names, given) result(name)
+    character(len=*), intent(in) :: names(:)  !< names of options, without the dashes
+    character(len=*), intent(in) :: given(:)  !< names of the options that are given
+    character(len=:), allocatable :: name
+    integer :: i
+
+    name = ''
+    do i = size(names), 1, -1
+      if (any(given == names(i))) name = trim(names(i))
+    end do
+  end function first_of
+
+  !> Fail where options contradict each other (exit_usage).
+  pure subroutine judge_options(program_name, given, has_file, converses, err)
+    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
+    character(len=*), intent(in) :: given(:)           !< names of the options that are given, without the dashes
+    logical, intent(in) :: has_file                    !< a data file is given
+    logical, intent(in) :: converses                   !< the program holds a conversation
+    type(error_type), allocatable, intent(out) :: err  !< allocated if they do
+
+    if (has('help') .or. has('version') .or. has('help-data')) return
+    if (has('quiet') .and. has('verbose')) then
+      call raise(err, exit_usage, '--quiet and --verbose contradict each other')
+    else if (has('no-write') .and. (has('table') .or. has('hdf5') .or. has('plot') .or. has('linear'))) then
+      call raise(err, exit_usage, '--no-write contradicts --table, --hdf5, --plot and --linear')
+    else if (has('mode') .neqv. (has('modes') .and. has('animate'))) then
+      call judge_mode(has('mode'), err)
+    else if (has('modes') .and. has('equilibrium')) then
+      call raise(err, exit_usage, '--equilibrium and --modes write different tables; give one of them, --modes finds the '// &
+                 'equilibrium, too')
+    else if (converses) then
+      call judge_conversation(program_name, given, has_file, err)
+    else if (rest_of(given) /= '') then
+      call judge_rest(given, err)
+    else if (has('animate') .and. answer_of(given) /= '') then
+      call raise(err, exit_usage, '--animate shows a run, and --'//answer_of(given)//' makes none; leave one of them out')
+    end if
+  contains
+    !> Whether an option is given.
+    pure logical function has(name)
+      character(len=*), intent(in) :: name   !< its name, without the dashes
+
+      has = any(given == name)
+    end function has
+  end subroutine judge_options
+
+  !> Fail because of --modes with --animate and without --mode, or the other way round.
+  pure subroutine judge_mode(has_mode, err)
+    logical, intent(in) :: has_mode                    !< --mode is given
+    type(error_type), allocatable, intent(out) :: err  !< the failure
+
+    if (has_mode) then
+      call raise(err, exit_usage, '--mode tells which mode --modes --animate FILE shows; give all three')
+    else
+      call raise(err, exit_usage, '--modes --animate shows one mode; tell which by --mode K')
+    end if
+  end subroutine judge_mode
+
+  !> Fail because of options that have no meaning beside --equilibrium, --modes and --linear.
+  pure subroutine judge_rest(given, err)
+    character(len=*), intent(in) :: given(:)           !< names of the options that are given, without the dashes
+    type(error_type), allocatable, intent(out) :: err  !< allocated if there is one
+    character(len=:), allocatable :: rest, other
+
+    rest = '--'//rest_of(given)
+    other = answer_of(given)
+    if ('--'//other /= rest) then
+      call raise(err, exit_usage, '--'//other//' and '//rest//' are two tasks; give one of them')
+      return
+    end if
+    other = first_of([character(len=7) :: 'plot', 'sketch'], given)
+    if (other == '' .and. .not. any(given == 'modes')) other = first_of(['animate'], given)
+    if (other /= '') then
+      call raise(err, exit_usage, '--'//other//' shows a run, and '//rest//' makes none; leave one of them out')
+    else if (any(given == 'view') .and. .not. any(given == 'animate')) then
+      call raise(err, exit_usage, '--view is the view of a picture of the mechanism, and '//rest//' draws none; leave it out')
+    else if (any(given == 'starts') .and. rest /= '--equilibrium') then
+      call raise(err, exit_usage, '--starts belongs to --equilibrium, and '//rest//' is about the equilibrium to which the '// &
+                 'initial position leads; leave it out')
+    else if (any(given == 'starts') .and. any(given == 'linear')) then
+      call raise(err, exit_usage, '--linear is about one equilibrium, and --starts finds several; leave one of them out')
+    end if
+  end subroutine judge_rest
+
+  !> Check the options of a conversation: it takes one data file or none, and no option that replaces the run by an answer.
+  pure subroutine judge_conversation(program_name, given, has_file, err)
+    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
+    character(len=*), intent(in) :: given(:)           !< names of the options that are given, without the dashes
+    logical, intent(in) :: has_file                    !< a data file is given beside the options
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
+    character(len=:), allocatable :: missing, other
+
+    other = first_of(of_files, given)
+    if (other /= '') then
+      missing = 'no data file is given'
+      if (has_file .or. any(given == 'edit') .or. any(given == 'resume')) missing = 'this is a conversation'
+      call raise(err, exit_usage, missing//'; --'//other//' is for a data file alone: '//program_name//' FILE --'//other)
+    else if (count([has_file, any(given == 'edit'), any(given == 'resume')]) > 1) then
+      call raise(err, exit_usage, 'more than one data file is given; a conversation takes one')
+    end if
+  end subroutine judge_conversation
+end module mech9_option_conflicts
