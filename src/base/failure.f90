@@ -20,7 +20,7 @@ module mech9_failure
   public :: failure_no_initial_position, failure_not_started, failure_backwards, failure_interrupted
   public :: failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
     failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve, &
-    last_failure
+    failure_interrupted_starts, last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
@@ -141,17 +141,19 @@ module mech9_failure
   !> No position of equilibrium was found: coordinates (the free ones), values (free coordinate; the force that is left on it [N m, N],
   !> the coordinate where the search ended).
   integer, parameter :: failure_no_equilibrium = 56
+  !> The user interrupted a search for equilibria: number (of random starts so far), limit (number of all).
+  integer, parameter :: failure_interrupted_starts = 57
 
   ! Trials of an integration
 
   !> No mass moves with an independent coordinate that had inertia at the start: coordinates.
-  integer, parameter :: failure_lost_inertia = 57
+  integer, parameter :: failure_lost_inertia = 58
 
   ! Curves
 
   !> A curve through points turns back on itself: number (of the point before the place).
-  integer, parameter :: failure_sharp_curve = 58
-  integer, parameter :: last_failure = 58
+  integer, parameter :: failure_sharp_curve = 59
+  integer, parameter :: last_failure = 59
 
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type

@@ -2,7 +2,7 @@
 module mech9_equilibrium_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp, pi
-  use mech9_error, only: error_type, raise, exit_usage, exit_data
+  use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_interrupted
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_json, only: json_type
@@ -26,6 +26,10 @@ module mech9_equilibrium_task
     put_energy_shares
   use mech9_linear_file, only: put_linear_system
   use mech9_run_words, only: begin_report
+  use mech9_row_source, only: signal_interruption_type
+  use mech9_requested, only: requested_by_results
+  use mech9_structure_text, only: print_structure, print_mobility
+  use mech9_plan_text, only: print_plan
   use mech9_version, only: version
   implicit none
   private
@@ -41,7 +45,7 @@ contains
   pure logical function asks_for_equilibrium(options)
     type(command_line_type), intent(in) :: options   !< the command line
 
-    asks_for_equilibrium = options%has('equilibrium') .or. options%has('modes') .or. options%has('linear')
+    asks_for_equilibrium = options%rest() /= ''
   end function asks_for_equilibrium
 
   !> Find the equilibria, and write what is asked of them.
@@ -54,17 +58,20 @@ contains
     type(plan_type) :: plan
     type(state_type) :: start
     type(picture_requests_type) :: pictures
-    type(error_type), allocatable :: err
+    type(error_type), allocatable :: err, interruption
 
     reported = .false.
     allocate (list(0))
     if (options%has('animate')) call read_picture_requests(options, model, 'mech9d', pictures, err)
     if (.not. allocated(err)) call assemble_in_space(model, plan, start, err)
+    if (.not. allocated(err) .and. options%has('verbose')) call print_making(model, plan)
     if (.not. allocated(err)) call search(options, model, plan, start, list, err)
+    if (is_interruption(err) .and. size(list) > 0) call move_alloc(err, interruption)
     if (.not. allocated(err)) then
-      if (.not. options%has('quiet')) call print_findings(error_unit, options, list)
+      if (.not. options%has('quiet')) call print_findings(error_unit, options, list, allocated(interruption))
       call write_results(options, model, list, diagnostics%sources(1)%text, err)
     end if
+    if (allocated(interruption)) call diagnostics%add_error(interruption)
     if (.not. allocated(err) .and. options%has('mode')) call show_mode(options, model, pictures, list(1), err)
     if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('report')) return
@@ -72,6 +79,24 @@ contains
     reported = .not. allocated(err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine find_rest
+
+  !> Whether a failure is an interruption by the user.
+  pure logical function is_interruption(err)
+    type(error_type), allocatable, intent(in) :: err   !< a failure, or none
+
+    is_interruption = .false.
+    if (allocated(err)) is_interruption = err%code == exit_interrupted
+  end function is_interruption
+
+  !> Print the structural vectors and the plan.
+  subroutine print_making(model, plan)
+    type(model_type), intent(in) :: model   !< the model
+    type(plan_type), intent(in) :: plan     !< its plan
+
+    call print_structure(error_unit, model%problem%partition%vectors)
+    call print_mobility(error_unit, plan)
+    call print_plan(error_unit, model%mechanism, plan, requested_by_results(model%mechanism, model%request%output, .true.))
+  end subroutine print_making
 
   !> Plan and closed position at the start, in space, with the motion of the driven coordinates.
   subroutine assemble_in_space(model, plan, start, err)
@@ -111,12 +136,13 @@ contains
     type(equilibrium_type), allocatable :: one(:)
 
     if (options%has('starts') .and. options%has('equilibrium')) then
-      call find_equilibria(model%mechanism, model%problem%partition, plan, start, options%number('starts', 1), one, err)
+      call find_equilibria(model%mechanism, model%problem%partition, plan, start, options%number('starts', 1), one, err, &
+                           signal_interruption_type())
     else
       allocate (one(1))
       call find_equilibrium(model%mechanism, model%problem%partition, plan, start, one(1), err)
     end if
-    if (.not. allocated(err)) call move_alloc(one, list)
+    if (.not. allocated(err) .or. is_interruption(err)) call move_alloc(one, list)
     if (allocated(err) .or. .not. options%has('mode')) return
     if (options%number('mode', 1) > list(1)%modes%count) &
       call raise(err, exit_usage, 'there is no mode '//options%argument('mode')//'; the modes are 1 to '// &
@@ -124,13 +150,17 @@ contains
   end subroutine search
 
   !> Say what was found, in a line.
-  subroutine print_findings(unit, options, list)
+  subroutine print_findings(unit, options, list, interrupted)
     integer, intent(in) :: unit                      !< Fortran unit to write to
     type(command_line_type), intent(in) :: options   !< the command line
     type(equilibrium_type), intent(in) :: list(:)    !< the equilibria
+    logical, intent(in) :: interrupted               !< the search was interrupted
     integer :: i
 
-    if (size(list) == 1) then
+    if (interrupted) then
+      write (unit, '(a)') counted(size(list), 'position')//' of equilibrium found so far, '// &
+        to_text(count([(list(i)%is_stable, i=1, size(list))]))//' of them stable'
+    else if (size(list) == 1) then
       write (unit, '(a)') words_about(list(1))
     else
       write (unit, '(a)') counted(size(list), 'position')//' of equilibrium from the initial position and '// &

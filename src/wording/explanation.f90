@@ -6,6 +6,7 @@ module mech9_explanation
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text, some_of
+  use mech9_counted, only: counted
   use mech9_failure, only: failure_type, failure_wrong_choice, failure_undetermined_coordinates, failure_open_chain, &
     failure_nearly_closed_chain, failure_locked_chain, failure_nearly_moving_chain, failure_large_block, &
     failure_undetermined_block, failure_contradictory_inputs, failure_start_at_dead_point, failure_start_on_branches, &
@@ -15,7 +16,8 @@ module mech9_explanation
     failure_points_order, failure_no_spline, failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, &
     failure_chain_off_plane, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
     failure_interrupted, failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
-    failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve
+    failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve, &
+    failure_interrupted_starts
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_choice_words, only: explain_choice, longest_list
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
@@ -294,13 +296,15 @@ contains
     end select
   end subroutine explain_simulation
 
-  !> A search for an equilibrium that finds none: the forces that are left, by coordinate.
+  !> A search for equilibria that was interrupted, or finds none: the forces that are left, by coordinate.
   pure subroutine explain_equilibrium(failure, text)
     type(failure_type), intent(in) :: failure             !< any kind
     character(len=:), allocatable, intent(inout) :: text  !< the message
     character(len=:), allocatable :: forces
     integer :: i
 
+    if (failure%kind == failure_interrupted_starts) text = 'interrupted after '//to_text(failure%number)//' of '// &
+      counted(failure%limit, 'random start')
     if (failure%kind /= failure_no_equilibrium) return
     forces = ''
     do i = 1, size(failure%coordinates)

@@ -255,6 +255,19 @@ def check_balanced_beam(checks, case):
         checks.near([modes['frequency'][0], modes['damping'][0]], [0, 0], 0.0, 'of frequency zero')
 
 
+def check_many_starts(checks, case):
+    """A mass that rests everywhere: a row for nearly each start, at a cost that grows with their number. Twice as many starts take
+    twice as long; when all equilibria were copied for each new one, it was more than four times."""
+    anywhere = mechanism(2, 1, [1], pair(1, '1,2', 'prismatic', axis='1,0,0'), body(2, 1.0, '0,0,0'), initial(1, 0.0))
+    seconds = []
+    for n in (400, 800):
+        before = os.times().children_user
+        table = case.table(anywhere, '--equilibrium', '--starts', str(n), '--table', '-')
+        seconds.append(os.times().children_user - before)
+        checks.true(len(table['q1']) > 0.95 * n and np.all(np.diff(table['q1']) > 0), f'{n} starts: many rows, sorted')
+    checks.true(seconds[1] < 3 * seconds[0] + 0.1, 'twice as many starts take twice as long', seconds)
+
+
 def check_free_body(checks, case):
     """Two masses on a rail, joined by a spring: one mode is the motion of both."""
     data = mechanism(3, 2, [1, 2], pair(1, '1,2', 'prismatic', axis='1,0,0'), pair(2, '2,3', 'prismatic', axis='1,0,0'),
@@ -339,7 +352,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         case = Case(sys.argv[1], folder)
         for check in (check_pendulum, check_damped_mass, check_double_pendulum, check_bar_in_slots, check_four_bar, check_limit,
-                      check_hoop, check_forces, check_balanced_beam, check_free_body, check_linear, check_files, check_failures):
+                      check_hoop, check_forces, check_balanced_beam, check_many_starts, check_free_body, check_linear, check_files,
+                      check_failures):
             check(checks, case)
     checks.finish()
 

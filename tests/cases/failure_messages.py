@@ -40,6 +40,7 @@ UNREACHABLE = {
     'not_started': 'the programs start each motion',
     'backwards': 'the times of a data file are in order',
     'interrupted': 'a signal leads to it: interrupted_run.py',
+    'interrupted_starts': 'a signal leads to it: interrupted_run.py',
 }
 
 

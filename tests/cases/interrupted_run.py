@@ -135,6 +135,22 @@ def check_rows(checks, program, data, settings, folder, number):
             checks.equal(file['time'][:].tolist(), times.tolist(), f'{why}: the HDF5 file holds the same times')
 
 
+def check_starts(checks, mech9d, folder, number):
+    """A search from many random positions keeps what it has found: here the lower and the upper position of a pendulum."""
+    with open(os.path.join(folder, 'single.nml'), 'w', encoding='utf-8') as file:
+        file.write("&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /\n&initial coordinate=1, position=1 /\n"
+                   '&body link=2, mass=1, centre=1,0,0 /\n&gravity acceleration=0,-9.81,0 /\n')
+    words = [mech9d, 'single.nml', '--equilibrium', '--starts', MANY, '--table', 'rest.dat', '--report', 'rest.json']
+    code, _, errors = interrupted(words, folder, number, lambda: True, 0.5)
+    why = f'--starts, {signal.Signals(number).name}'
+    checks.equal(code, 130, f'{why}: exit code')
+    checks.true(f' of {MANY} random starts' in errors and '2 positions of equilibrium found so far' in errors, f'{why}: told', errors)
+    with open(os.path.join(folder, 'rest.dat'), encoding='utf-8') as file:
+        checks.equal(read_table(file.read())['stable'].tolist(), [1.0, 0.0], f'{why}: both positions are kept')
+    with open(os.path.join(folder, 'rest.json'), encoding='utf-8') as file:
+        checks.equal(json.load(file)['exit_code'], 130, f'{why}: the report is written')
+
+
 def main():
     mech9k, mech9d, endless = map(os.path.abspath, sys.argv[1:4])
     checks = Checks()
@@ -152,6 +168,8 @@ def main():
         checks.true(code == 130 and 'interrupted' in errors, 'mech9d, between two outputs', (code, errors))
         with open(path, encoding='utf-8') as file:
             checks.equal(read_table(file.read())['t'].tolist(), [0.0], 'mech9d, between two outputs: the start is kept')
+        for number in SIGNALS:
+            check_starts(checks, mech9d, folder, number)
         # Ctrl-\\ is not taken
         code, _, errors = interrupted([mech9k, FIG1, '--no-write', '--set', 'time.intervals=' + MANY], folder, signal.SIGQUIT,
                                       lambda: True, 0.5)

@@ -8,7 +8,7 @@ program test_explanation
     failure_start_on_branches, failure_start_unclear, failure_start_locked, failure_start_not_left, failure_escape, &
     failure_dead_point, failure_lost_branch, failure_singular_block, failure_singular_start_block, failure_other_branch, &
     failure_no_jacobian, failure_step_memory, failure_step_settings, failure_no_inertia, failure_lost_inertia, &
-    failure_unknown_method, &
+    failure_interrupted_starts, failure_unknown_method, &
     failure_relative_tolerance, failure_absolute_tolerance, failure_tolerance_count, failure_infinite_rate, &
     failure_infinite_jacobian, failure_few_points, failure_points_order, failure_not_started, failure_backwards, &
     failure_interrupted, failure_lost_angles, failure_drive_jumps
@@ -257,6 +257,10 @@ contains
     call raise(err, exit_interrupted, failure_interrupted)
     err%failure%t = 0.25_wp
     call says(err, 'interrupted before t = 0.25 s')
+    call raise(err, exit_interrupted, failure_interrupted_starts)
+    err%failure%number = 17
+    err%failure%limit = 100
+    call says(err, 'interrupted after 17 of 100 random starts')
     call raise(err, exit_singular, failure_lost_angles)
     err%failure%coordinates = [1, 2, 3]
     err%failure%t = 0.25_wp

@@ -1,7 +1,7 @@
 !> Positions of equilibrium of a mechanism, with their linearised equations of motion and modes.
 module mech9_equilibria
   use mech9_kinds, only: wp, pi
-  use mech9_error, only: error_type, raise, exit_assembly, exit_data
+  use mech9_error, only: error_type, raise, exit_assembly, exit_data, exit_interrupted
   use mech9_random, only: random_type
   use mech9_eigenmodes, only: eigenmodes_type, find_eigenmodes
   use mech9_mechanism, only: mechanism_type
@@ -10,7 +10,8 @@ module mech9_equilibria
   use mech9_state, only: state_type
   use mech9_assemblies, only: close_from
   use mech9_frame_motion, only: place_all
-  use mech9_failure, only: failure_no_inertia
+  use mech9_failure, only: failure_no_inertia, failure_interrupted_starts
+  use mech9_simulation, only: interruption_type
   use mech9_linearisation, only: find_matrix, by_rate, by_acceleration
   use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, is_balanced, find_stiffness, &
     return_to_coordinates, copy_resting
@@ -29,6 +30,11 @@ module mech9_equilibria
     logical :: is_stable = .false.              !< no root grows beyond round-off
     integer :: found = 1                        !< number of starts that led to it
   end type equilibrium_type
+
+  !> One of several equilibria.
+  type :: equilibrium_slot_type
+    type(equilibrium_type), allocatable :: item
+  end type equilibrium_slot_type
 
   !> Conditioning at which the coordinates of the data file are taken again for the matrices.
   real(wp), parameter :: fair_conditioning = 1.0e-4_wp
@@ -57,8 +63,9 @@ contains
   end subroutine find_equilibrium
 
   !> All equilibria to which an assembled position and random ones lead, sorted by their coordinates. The random positions are
-  !> the same in every run. Fails as find_equilibrium does, but with exit_assembly only where none is found.
-  subroutine find_equilibria(mechanism, partition, plan, assembled, n_starts, list, err)
+  !> the same in every run. Fails as find_equilibrium does, but with exit_assembly only where none is found. Fails with
+  !> exit_interrupted where it shall stop, with the equilibria that were found before.
+  subroutine find_equilibria(mechanism, partition, plan, assembled, n_starts, list, err, interruption)
     type(mechanism_type), intent(in) :: mechanism                     !< the mechanism
     type(partition_type), intent(in) :: partition                     !< driven, free and dependent coordinates
     type(plan_type), intent(in) :: plan                               !< its plan, in space
@@ -66,36 +73,73 @@ contains
     integer, intent(in) :: n_starts                                   !< number of random positions
     type(equilibrium_type), allocatable, intent(out) :: list(:)       !< the equilibria
     type(error_type), allocatable, intent(out) :: err                 !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption    !< is asked before each start whether the search shall stop
     type(equilibrium_type) :: found
-    type(resting_type) :: resting
+    type(equilibrium_slot_type), allocatable :: slots(:)
     type(random_type) :: random
-    type(error_type), allocatable :: failure, at_lock
-    integer :: i
+    type(error_type), allocatable :: failure
+    integer :: i, n
     logical :: reached
 
-    allocate (list(0))
+    allocate (list(0), slots(16))
+    n = 0
     call find_equilibrium(mechanism, partition, plan, assembled, found, failure)
     if (allocated(failure)) then
       if (failure%code /= exit_assembly) call move_alloc(failure, err)
       if (allocated(err)) return
     else
-      call add_new(found, list)
+      call add_new(found, slots, n)
     end if
     do i = 1, n_starts
-      call start_anywhere(mechanism, partition, plan, assembled, random, resting, reached)
-      if (.not. reached) cycle
-      call find_any(mechanism, resting, reached, err)
-      if (allocated(err)) return
-      if (.not. reached) cycle
-      call reduce_turns(mechanism, assembled, resting)
-      call copy_resting(resting, found%resting)
-      call linearise(mechanism, partition, found, at_lock)
-      ! without inertia, the forces say nothing about a coordinate: angles of a ball joint in gimbal lock
-      if (.not. allocated(at_lock)) call add_new(found, list)
+      if (present(interruption)) call stop_if_interrupted(interruption, i - 1, n_starts, err)
+      if (.not. allocated(err)) call try_anywhere(mechanism, partition, plan, assembled, random, found, reached, err)
+      if (allocated(err)) exit
+      if (reached) call add_new(found, slots, n)
     end do
-    if (size(list) == 0) call move_alloc(failure, err)
-    call sort(list)
+    if (allocated(err)) then
+      if (err%code /= exit_interrupted) return
+    else if (n == 0) then
+      call move_alloc(failure, err)
+    end if
+    call take_sorted(slots(:n), list)
   end subroutine find_equilibria
+
+  !> Fail with exit_interrupted where the search shall stop.
+  subroutine stop_if_interrupted(interruption, made, n_starts, err)
+    class(interruption_type), intent(in) :: interruption   !< is asked
+    integer, intent(in) :: made                            !< number of random starts so far
+    integer, intent(in) :: n_starts                        !< number of all
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it shall stop
+
+    if (.not. interruption%is_wanted()) return
+    call raise(err, exit_interrupted, failure_interrupted_starts)
+    err%failure%number = made
+    err%failure%limit = n_starts
+  end subroutine stop_if_interrupted
+
+  !> The equilibrium to which one random position leads. `reached` is false where there is none.
+  subroutine try_anywhere(mechanism, partition, plan, assembled, random, found, reached, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(partition_type), intent(in) :: partition       !< driven, free and dependent coordinates
+    type(plan_type), intent(in) :: plan                 !< its plan, in space
+    type(state_type), intent(in) :: assembled           !< closed, with the motion of the driven coordinates
+    type(random_type), intent(inout) :: random          !< source of random numbers
+    type(equilibrium_type), intent(inout) :: found      !< the equilibrium
+    logical, intent(out) :: reached                     !< there is one
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
+    type(resting_type) :: resting
+    type(error_type), allocatable :: at_lock
+
+    call start_anywhere(mechanism, partition, plan, assembled, random, resting, reached)
+    if (.not. reached) return
+    call find_any(mechanism, resting, reached, err)
+    if (allocated(err) .or. .not. reached) return
+    call reduce_turns(mechanism, assembled, resting)
+    call copy_resting(resting, found%resting)
+    call linearise(mechanism, partition, found, at_lock)
+    ! without inertia, the forces say nothing about a coordinate: angles of a ball joint in gimbal lock
+    reached = .not. allocated(at_lock)
+  end subroutine try_anywhere
 
   !> A mechanism at rest in a random position. `reached` is false where the chains do not close.
   subroutine start_anywhere(mechanism, partition, plan, assembled, random, resting, reached)
@@ -194,25 +238,32 @@ contains
     end associate
   end subroutine linearise
 
-  !> Add an equilibrium to a list, unless it is in it; then its finds are counted.
-  subroutine add_new(found, list)
-    type(equilibrium_type), intent(in) :: found                         !< the equilibrium
-    type(equilibrium_type), allocatable, intent(inout) :: list(:)       !< equilibria found so far
-    type(equilibrium_type), allocatable :: longer(:)
+  !> Add an equilibrium to those found so far, unless it is among them; then its finds are counted.
+  subroutine add_new(found, slots, n)
+    type(equilibrium_type), intent(in) :: found                           !< the equilibrium
+    type(equilibrium_slot_type), allocatable, intent(inout) :: slots(:)   !< equilibria found so far; it grows
+    integer, intent(inout) :: n                                           !< their number
+    type(equilibrium_slot_type), allocatable :: longer(:)
     integer :: i
 
-    do i = 1, size(list)
-      if (any(abs(list(i)%resting%state%q - found%resting%state%q) > same_position*found%resting%plan%unit_of)) cycle
-      list(i)%found = list(i)%found + 1
-      return
+    do i = 1, n
+      associate (known => slots(i)%item)
+        if (any(abs(known%resting%state%q - found%resting%state%q) > same_position*found%resting%plan%unit_of)) cycle
+        known%found = known%found + 1
+        return
+      end associate
     end do
-    allocate (longer(size(list) + 1))
-    do i = 1, size(list)
-      call copy_equilibrium(list(i), longer(i))
-    end do
-    call copy_equilibrium(found, longer(size(longer)))
-    longer(size(longer))%found = 1
-    call move_alloc(longer, list)
+    if (n == size(slots)) then
+      allocate (longer(2*n))
+      do i = 1, n
+        call move_alloc(slots(i)%item, longer(i)%item)
+      end do
+      call move_alloc(longer, slots)
+    end if
+    n = n + 1
+    allocate (slots(n)%item)
+    call copy_equilibrium(found, slots(n)%item)
+    slots(n)%item%found = 1
   end subroutine add_new
 
   !> Copy an equilibrium.
@@ -223,23 +274,28 @@ contains
     to = from
   end subroutine copy_equilibrium
 
-  !> Sort equilibria by their first coordinates, where these are the same by the second ones, and so on.
-  subroutine sort(list)
-    type(equilibrium_type), intent(inout) :: list(:)   !< to be sorted
-    type(equilibrium_type) :: one
-    integer :: i, j
+  !> Make the list of the equilibria that were found, sorted by their first coordinates, where these are the same by the second
+  !> ones, and so on.
+  subroutine take_sorted(slots, list)
+    type(equilibrium_slot_type), intent(inout) :: slots(:)        !< the equilibria; empty afterwards
+    type(equilibrium_type), allocatable, intent(out) :: list(:)   !< the same, sorted
+    integer :: order(size(slots)), i, j
 
-    do i = 2, size(list)
-      call copy_equilibrium(list(i), one)
-      j = i - 1
-      do while (j > 0)
-        if (.not. comes_before(one, list(j))) exit
-        call copy_equilibrium(list(j), list(j + 1))
+    do i = 1, size(slots)
+      j = i
+      do while (j > 1)
+        if (.not. comes_before(slots(i)%item, slots(order(j - 1))%item)) exit
+        order(j) = order(j - 1)
         j = j - 1
       end do
-      call copy_equilibrium(one, list(j + 1))
+      order(j) = i
     end do
-  end subroutine sort
+    allocate (list(size(slots)))
+    do i = 1, size(slots)
+      call copy_equilibrium(slots(order(i))%item, list(i))
+      deallocate (slots(order(i))%item)
+    end do
+  end subroutine take_sorted
 
   !> Whether an equilibrium comes before another one.
   pure logical function comes_before(a, b)
