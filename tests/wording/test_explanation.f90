@@ -8,7 +8,7 @@ program test_explanation
     failure_start_on_branches, failure_start_unclear, failure_start_locked, failure_start_not_left, failure_escape, &
     failure_dead_point, failure_lost_branch, failure_singular_block, failure_singular_start_block, failure_other_branch, &
     failure_no_jacobian, failure_step_memory, failure_step_settings, failure_no_inertia, failure_lost_inertia, &
-    failure_interrupted_starts, failure_unknown_method, &
+    failure_interrupted_starts, failure_sharp_curve, failure_unknown_method, &
     failure_relative_tolerance, failure_absolute_tolerance, failure_tolerance_count, failure_infinite_rate, &
     failure_infinite_jacobian, failure_few_points, failure_points_order, failure_not_started, failure_backwards, &
     failure_interrupted, failure_lost_angles, failure_drive_jumps
@@ -248,6 +248,10 @@ contains
     call raise(err, exit_data, failure_points_order)
     err%failure%number = 2
     call says(err, 'points must have increasing abscissae; point 3 does not come after point 2')
+    call raise(err, exit_data, failure_sharp_curve)
+    err%failure%number = 2
+    call says(err, 'the smooth curve through these points turns back on itself after point 2; put the points there closer '// &
+              'together, round a corner, or leave out a point that goes back')
     call raise(err, exit_usage, failure_not_started)
     call says(err, 'a motion must be started before it can advance')
     call raise(err, exit_usage, failure_backwards)
