@@ -44,13 +44,13 @@ module mech9_hdf5_file
     procedure :: link_properties
     procedure :: check
     !> A data set with its values: put(name, values, long_name [, unit]). One that exists already gets the new values.
-    generic :: put => put_text, put_texts, put_real, put_reals, put_matrix, put_integer, put_integers, &
+    generic :: put => put_text, put_texts, put_real, put_reals, put_matrix, put_block, put_integer, put_integers, &
       put_integer_matrix, put_long
     procedure :: add_attribute
     procedure :: describe
     procedure :: make_scale
     procedure :: attach_scales
-    procedure, private :: put_text, put_texts, put_real, put_reals, put_matrix, put_integer, put_integers, &
+    procedure, private :: put_text, put_texts, put_real, put_reals, put_matrix, put_block, put_integer, put_integers, &
       put_integer_matrix, put_long, put_values
   end type hdf5_file_type
 
@@ -215,6 +215,17 @@ contains
     call self%put_values(name, h5t_ieee_f64le, h5t_native_double, shape(values, kind=hsize_t), c_loc(values), &
                          long_name, unit)
   end subroutine put_matrix
+
+  subroutine put_block(self, name, values, long_name, unit)
+    class(hdf5_file_type), intent(inout) :: self                 !< the HDF5 file
+    character(len=*), intent(in) :: name                         !< path of the data set
+    character(len=*), intent(in) :: long_name                    !< a few words that describe it
+    real(wp), intent(in), contiguous, target :: values(:, :, :)  !< the numbers; dimensions are those of the data set in reverse
+    character(len=*), intent(in), optional :: unit               !< unit of the numbers; absent for none
+
+    call self%put_values(name, h5t_ieee_f64le, h5t_native_double, shape(values, kind=hsize_t), c_loc(values), &
+                         long_name, unit)
+  end subroutine put_block
 
   subroutine put_integer(self, name, value, long_name)
     class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file

@@ -14,7 +14,7 @@ module mech9_hdf5_sink
   use mech9_hdf5_series, only: hdf5_series_type
   implicit none
   private
-  public :: hdf5_sink_type
+  public :: hdf5_sink_type, put_force_scales, common_unit
 
   !> Longest time after which readers of the file see new rows [s].
   real(wp), parameter :: longest_wait = 1.0_wp
@@ -67,7 +67,7 @@ contains
     call add_coordinate_scales(self%file, mechanism, columns)
     if (size(mechanism%points) > 0) call add_point_scales(self%file, mechanism)
     has_axes = size(mechanism%points) > 0
-    if (columns%forces() > 0) call add_force_scales(self%file, mechanism, columns, has_axes)
+    if (columns%forces() > 0) call put_force_scales(self%file, mechanism, columns, has_axes)
     if (columns%poses%n_links > 0) call add_pose_scales(self%file, columns%poses, has_axes)
     call self%series%attach(self%file)
     call self%pacer%start(longest_wait)
@@ -178,7 +178,7 @@ contains
   end subroutine add_poses
 
   !> Write the numbers of the pairs with forces and of the driven coordinates, and the unit of the force of each.
-  subroutine add_force_scales(file, mechanism, columns, has_axes)
+  subroutine put_force_scales(file, mechanism, columns, has_axes)
     type(hdf5_file_type), intent(inout) :: file    !< the open file
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(columns_type), intent(in) :: columns      !< columns of the rows to come
@@ -200,7 +200,7 @@ contains
     call file%make_scale('pair')
     if (.not. has_axes) call put_axes(file, 'axis', 'axis of the fixed frame')
     has_axes = .true.
-  end subroutine add_force_scales
+  end subroutine put_force_scales
 
   !> Write scales of the poses, and to which links vertices and lines belong. A scale stands in the group of the data set
   !> that it scales, or above: readers that follow the rules of netCDF look for it nowhere else.

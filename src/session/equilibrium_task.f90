@@ -23,9 +23,11 @@ module mech9_equilibrium_task
   use mech9_hdf5_record, only: write_provenance, write_structure, write_coordinates
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_equilibrium_rows, only: columns_of_equilibria, rows_of_equilibria, columns_of_modes, rows_of_modes, put_rows, &
-    put_energy_shares
+    put_forces, put_energy_shares
   use mech9_linear_file, only: put_linear_system
-  use mech9_run_words, only: begin_report
+  use mech9_run_words, only: begin_report, add_uniqueness
+  use mech9_force_record, only: force_record_type
+  use mech9_force_text, only: print_undetermined, print_forceless
   use mech9_row_source, only: signal_interruption_type
   use mech9_requested, only: requested_by_results
   use mech9_structure_text, only: print_structure, print_mobility
@@ -58,6 +60,7 @@ contains
     type(plan_type) :: plan
     type(state_type) :: start
     type(picture_requests_type) :: pictures
+    type(force_record_type) :: forces
     type(error_type), allocatable :: err, interruption
 
     reported = .false.
@@ -69,13 +72,14 @@ contains
     if (is_interruption(err) .and. size(list) > 0) call move_alloc(err, interruption)
     if (.not. allocated(err)) then
       if (.not. options%has('quiet')) call print_findings(error_unit, options, list, allocated(interruption))
-      call write_results(options, model, list, diagnostics%sources(1)%text, err)
+      if (.not. options%has('modes')) call judge_forces(options, model, list(1), forces)
+      call write_results(options, model, list, forces, diagnostics%sources(1)%text, err)
     end if
     if (allocated(interruption)) call diagnostics%add_error(interruption)
     if (.not. allocated(err) .and. options%has('mode')) call show_mode(options, model, pictures, list(1), err)
     if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('report')) return
-    call save_report(options, model, list, diagnostics, err)
+    call save_report(options, model, list, forces, diagnostics, err)
     reported = .not. allocated(err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine find_rest
@@ -185,11 +189,26 @@ contains
     end if
   end function words_about
 
+  !> Find which components of the forces in pairs are unique, if any are recorded, and say how many are not.
+  subroutine judge_forces(options, model, equilibrium, forces)
+    type(command_line_type), intent(in) :: options         !< the command line
+    type(model_type), intent(in) :: model                  !< the model
+    type(equilibrium_type), intent(in) :: equilibrium      !< one equilibrium
+    type(force_record_type), intent(inout) :: forces       !< gets the components that are unique
+
+    call forces%judge(model, equilibrium%resting%plan, equilibrium%resting%state)
+    if (options%has('quiet') .or. .not. model%request%output%with_forces()) return
+    call print_forceless(error_unit, model%mechanism)
+    if (allocated(forces%unique)) &
+      call print_undetermined(error_unit, model%request%output%reacting(size(model%mechanism%pairs)), forces%unique)
+  end subroutine judge_forces
+
   !> Write table, HDF5 file, and file of matrices.
-  subroutine write_results(options, model, list, data_text, err)
+  subroutine write_results(options, model, list, forces, data_text, err)
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in) :: model                   !< the model
     type(equilibrium_type), intent(inout) :: list(:)        !< the equilibria; the first one has the modes
+    type(force_record_type), intent(in) :: forces           !< with the components that are unique
     character(len=*), intent(in) :: data_text               !< text of the data file
     type(error_type), allocatable, intent(out) :: err       !< allocated if a file cannot be written
     type(columns_type) :: columns
@@ -204,7 +223,8 @@ contains
     end if
     if (allocated(err)) return
     call write_table(options, model, columns, rows, err)
-    if (.not. allocated(err) .and. options%has('hdf5')) call write_hdf5(options, model, list, columns, rows, data_text, err)
+    if (.not. allocated(err) .and. options%has('hdf5')) &
+      call write_hdf5(options, model, list, columns, rows, forces, data_text, err)
     if (.not. allocated(err) .and. options%has('linear')) call write_linear(options, model, list(1), data_text, err)
   end subroutine write_results
 
@@ -230,12 +250,13 @@ contains
   end subroutine write_table
 
   !> Write the rows as an HDF5 file.
-  subroutine write_hdf5(options, model, list, columns, rows, data_text, err)
+  subroutine write_hdf5(options, model, list, columns, rows, forces, data_text, err)
     type(command_line_type), intent(in) :: options      !< the command line
     type(model_type), intent(in) :: model               !< the model
     type(equilibrium_type), intent(in) :: list(:)       !< the equilibria; the first one has the modes
     type(columns_type), intent(in) :: columns           !< names and units
     real(wp), intent(in) :: rows(:, :)                  !< (columns, rows)
+    type(force_record_type), intent(in) :: forces       !< with the components that are unique
     character(len=*), intent(in) :: data_text           !< text of the data file
     type(error_type), allocatable, intent(out) :: err   !< allocated if the file cannot be written
     type(hdf5_file_type) :: file
@@ -247,6 +268,7 @@ contains
       call put_energy_shares(file, list(1))
     else
       call put_rows(file, columns, rows, 2, size(model%mechanism%pairs), [''])
+      call put_forces(file, model%mechanism, columns, rows, forces)
     end if
     call end_file(file, err)
   end subroutine write_hdf5
@@ -325,10 +347,11 @@ contains
   end subroutine show_mode
 
   !> Write the report as JSON.
-  subroutine save_report(options, model, list, diagnostics, err)
+  subroutine save_report(options, model, list, forces, diagnostics, err)
     type(command_line_type), intent(in) :: options       !< the command line
     type(model_type), intent(in) :: model                !< the model
     type(equilibrium_type), intent(in) :: list(:)        !< the equilibria; none after an error
+    type(force_record_type), intent(in) :: forces        !< with the components that are unique
     type(diagnostics_type), intent(in) :: diagnostics    !< the errors
     type(error_type), allocatable, intent(out) :: err    !< allocated if the file cannot be written
     type(json_type) :: json
@@ -346,6 +369,8 @@ contains
     end do
     call json%end_array()
     if (options%has('modes') .and. size(list) > 0) call add_modes(json, list(1))
+    if (allocated(forces%unique)) &
+      call add_uniqueness(json, model%request%output%reacting(size(model%mechanism%pairs)), forces%unique)
     call json%end_object()
     call json%save(options%argument('report'), err)
   end subroutine save_report

@@ -324,6 +324,19 @@ def check_files(checks, case):
     with h5py.File(os.path.join(case.folder, 'rest.h5')) as file:
         checks.near(file['q'][()], [[0], [np.pi]], EXACT, 'HDF5: q(equilibrium, coordinate)')
         checks.near(file['stable'][()], [1, 0], 0.0, 'HDF5: stable')
+    data = four_bar(1) + '&output reactions=.true. /\n'
+    result = case(data, '--equilibrium', '--hdf5', 'forces.h5', '--table', 'forces.dat', '--report', 'forces.json')
+    checks.equal(result.returncode, 0, 'forces are written')
+    table = read_table(text_of(os.path.join(case.folder, 'forces.dat')))
+    with h5py.File(os.path.join(case.folder, 'forces.h5')) as file:
+        for name, kind in (('reaction_force', 'f'), ('reaction_moment', 'm')):
+            expected = [[[table[f'R{k}.{kind}{axis}'][0] for axis in 'xyz'] for k in (1, 2, 3, 4)]]
+            checks.equal(file[name].shape, (1, 4, 3), f'HDF5: {name} (equilibrium, pair, axis), as in runs')
+            checks.near(file[name][()], expected, 0.0, f'HDF5: {name} holds the columns')
+            checks.equal([file[name].dims[i][0].name for i in range(3)], ['/equilibrium', '/pair', '/axis'], f'HDF5: scales of {name}')
+        checks.equal([name for name in file if name.startswith('R')], [], 'HDF5: no data sets of single columns')
+        checks.equal(int(np.sum(file['reaction_unique'][()] == 0)), 12, 'HDF5: a planar four-bar has 12 components that are not unique')
+    checks.true('"unique"' in text_of(os.path.join(case.folder, 'forces.json')), 'the report tells the components that are unique')
     with h5py.File(os.path.join(case.folder, 'modes.h5')) as file:
         checks.near([file['kinetic_share'][0, 0], file['q_re'][0, 0]], [1, 1], EXACT, 'HDF5: shares of the energy, shapes')
 

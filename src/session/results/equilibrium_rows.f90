@@ -3,8 +3,6 @@ module mech9_equilibrium_rows
   use mech9_kinds, only: wp, pi
   use mech9_text, only: to_text
   use mech9_error, only: error_type
-  use mech9_masks, only: numbers_of
-  use mech9_partition, only: driven_coordinate
   use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
   use mech9_state, only: state_type
@@ -14,11 +12,15 @@ module mech9_equilibrium_rows
   use mech9_result_units, only: unit_of, unit_name
   use mech9_columns, only: columns_type
   use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_hdf5_sink, only: put_force_scales, common_unit
+  use mech9_hdf5_record, only: write_uniqueness
+  use mech9_force_record, only: force_record_type
   use mech9_equilibria, only: equilibrium_type
   use mech9_mode_shapes, only: shape_of_mode, energy_shares
   implicit none
   private
-  public :: columns_of_equilibria, rows_of_equilibria, columns_of_modes, rows_of_modes, put_rows, put_energy_shares
+  public :: columns_of_equilibria, rows_of_equilibria, columns_of_modes, rows_of_modes, put_rows, put_forces, &
+    put_energy_shares
 
 contains
 
@@ -26,19 +28,16 @@ contains
   function columns_of_equilibria(model) result(columns)
     type(model_type), intent(in) :: model   !< the model
     type(columns_type) :: columns
-    logical :: driven(size(model%mechanism%pairs))
+    type(force_record_type) :: forces
     integer :: k
 
     allocate (columns%names(0), columns%units(0), columns%long_names(0))
     call columns%append('equilibrium', '', 'number of the position of equilibrium')
-    do k = 1, size(driven)
+    do k = 1, size(model%mechanism%pairs)
       call columns%append('q'//to_text(k), trim(unit_name(model%mechanism, k)))
     end do
     columns%motion = columns%count
-    if (model%request%output%with_forces()) then
-      driven = model%request%output%drive_forces .and. model%problem%partition%kind == driven_coordinate
-      call columns%append_forces(model%mechanism, numbers_of(driven), numbers_of(model%request%output%reacting(size(driven))))
-    end if
+    call forces%begin(model, columns)
     call columns%append('stable', '', '1 where no small deviation grows, else 0')
     call columns%append('growth', '1/s', 'largest real part of the eigenvalues of the linearised equations of motion')
   end function columns_of_equilibria
@@ -129,7 +128,8 @@ contains
     rows = rows + 0.0_wp
   end subroutine rows_of_modes
 
-  !> Put rows into a file: the first column is the scale of the others, and columns of coordinates become one data set.
+  !> Put rows into a file: the first column is the scale of the others, columns of coordinates become one data set, and those of
+  !> forces are left to put_forces.
   subroutine put_rows(file, columns, rows, first, n_coordinates, suffixes)
     type(hdf5_file_type), intent(inout) :: file       !< the open file
     type(columns_type), intent(in) :: columns         !< of the rows
@@ -147,6 +147,7 @@ contains
     call file%make_scale(scale)
     do i = 2, columns%count
       if (i >= first .and. i < first + n_coordinates*size(suffixes)) cycle
+      if (columns%forces() > 0 .and. i > columns%motion .and. i <= columns%motion + columns%forces()) cycle
       name = columns%names(i)%text
       at = index(name, '.')
       if (at > 0) name(at:at) = '_'
@@ -162,6 +163,42 @@ contains
       call file%attach_scales(name, scales)
     end do
   end subroutine put_rows
+
+  !> Put the forces at equilibria into a file, in the data sets of runs, with the components that are unique.
+  subroutine put_forces(file, mechanism, columns, rows, forces)
+    type(hdf5_file_type), intent(inout) :: file       !< the open file, with the scale of the equilibria
+    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
+    type(columns_type), intent(in) :: columns         !< of the rows
+    real(wp), intent(in) :: rows(:, :)                !< (columns, rows)
+    type(force_record_type), intent(in) :: forces     !< with the components that are unique
+    real(wp), allocatable :: wrenches(:, :, :, :), part(:, :, :)
+    character(len=12) :: scales(3)
+    logical :: has_axes
+    integer :: at, n
+
+    if (columns%forces() == 0) return
+    has_axes = .false.
+    call put_force_scales(file, mechanism, columns, has_axes)
+    scales = [character(len=12) :: '/equilibrium', '/pair', '/axis']
+    at = columns%motion
+    n = size(columns%drives)
+    if (n > 0) then
+      call file%put('drive_force', rows(at + 1:at + n, :), 'forces that the drives need', common_unit(columns%units(at + 1:at + n)))
+      call file%attach_scales('drive_force', [scales(1), '/driven     '])
+    end if
+    n = size(columns%reacting)
+    if (n == 0) return
+    wrenches = reshape(rows(at + size(columns%drives) + 1:at + columns%forces(), :), [3, 2, n, size(rows, 2)])
+    part = wrenches(:, 1, :, :)
+    call file%put('reaction_force', part, 'forces that the reference links pass to the moving links through the pairs, in the '// &
+                  'fixed frame', 'N')
+    call file%attach_scales('reaction_force', scales)
+    part = wrenches(:, 2, :, :)
+    call file%put('reaction_moment', part, 'moments that they pass, about the origins of the pairs'' frames in the moving links', &
+                  'N m')
+    call file%attach_scales('reaction_moment', scales)
+    call write_uniqueness(file, columns, forces)
+  end subroutine put_forces
 
   !> Put the shares of the kinetic energy into a file of modes.
   subroutine put_energy_shares(file, equilibrium)
