@@ -4,7 +4,7 @@ module mech9_equilibrium_task
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_interrupted
   use mech9_text, only: to_text
-  use mech9_counted, only: counted
+  use mech9_failure, only: failure_no_inertia
   use mech9_json, only: json_type
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
@@ -14,7 +14,8 @@ module mech9_equilibrium_task
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
   use mech9_explained_assembly, only: assemble_free_start
-  use mech9_equilibria, only: equilibrium_type, find_equilibrium, find_equilibria
+  use mech9_linearised_equilibrium, only: equilibrium_type
+  use mech9_equilibria, only: find_equilibrium, find_equilibria
   use mech9_mode_shapes, only: position_in_vibration
   use mech9_film, only: film_type, new_film
   use mech9_columns, only: columns_type
@@ -27,6 +28,7 @@ module mech9_equilibrium_task
   use mech9_linear_file, only: put_linear_system
   use mech9_run_words, only: begin_report, add_uniqueness
   use mech9_force_record, only: force_record_type
+  use mech9_equilibrium_words, only: print_findings
   use mech9_force_text, only: print_undetermined, print_forceless
   use mech9_row_source, only: signal_interruption_type
   use mech9_requested, only: requested_by_results
@@ -71,7 +73,8 @@ contains
     if (.not. allocated(err)) call search(options, model, plan, start, list, err)
     if (is_interruption(err) .and. size(list) > 0) call move_alloc(err, interruption)
     if (.not. allocated(err)) then
-      if (.not. options%has('quiet')) call print_findings(error_unit, options, list, allocated(interruption))
+      if (.not. options%has('quiet')) call print_findings(error_unit, options%number('starts', 0), list, &
+                                                            allocated(interruption))
       if (.not. options%has('modes')) call judge_forces(options, model, list(1), forces)
       call write_results(options, model, list, forces, diagnostics%sources(1)%text, err)
     end if
@@ -146,6 +149,7 @@ contains
       allocate (one(1))
       call find_equilibrium(model%mechanism, model%problem%partition, plan, start, one(1), err)
     end if
+    if (.not. allocated(err) .and. .not. options%has('equilibrium')) call need_inertia(one(1), err)
     if (.not. allocated(err) .or. is_interruption(err)) call move_alloc(one, list)
     if (allocated(err) .or. .not. options%has('mode')) return
     if (options%number('mode', 1) > list(1)%modes%count) &
@@ -153,41 +157,15 @@ contains
                  to_text(list(1)%modes%count))
   end subroutine search
 
-  !> Say what was found, in a line.
-  subroutine print_findings(unit, options, list, interrupted)
-    integer, intent(in) :: unit                      !< Fortran unit to write to
-    type(command_line_type), intent(in) :: options   !< the command line
-    type(equilibrium_type), intent(in) :: list(:)    !< the equilibria
-    logical, intent(in) :: interrupted               !< the search was interrupted
-    integer :: i
+  !> Fail because modes and linearised equations of motion need the inertia of each free coordinate.
+  subroutine need_inertia(equilibrium, err)
+    type(equilibrium_type), intent(in) :: equilibrium   !< the equilibrium
+    type(error_type), allocatable, intent(out) :: err   !< allocated if one has none
 
-    if (interrupted) then
-      write (unit, '(a)') counted(size(list), 'position')//' of equilibrium found so far, '// &
-        to_text(count([(list(i)%is_stable, i=1, size(list))]))//' of them stable'
-    else if (size(list) == 1) then
-      write (unit, '(a)') words_about(list(1))
-    else
-      write (unit, '(a)') counted(size(list), 'position')//' of equilibrium from the initial position and '// &
-        counted(options%number('starts', 1), 'random one')//', '// &
-        to_text(count([(list(i)%is_stable, i=1, size(list))]))//' of them stable'
-    end if
-  end subroutine print_findings
-
-  !> An equilibrium in words.
-  function words_about(found) result(words)
-    type(equilibrium_type), intent(in) :: found   !< the equilibrium
-    character(len=:), allocatable :: words
-
-    if (.not. found%is_stable) then
-      words = 'an unstable equilibrium: a deviation grows by the factor e in '//to_text(1.0_wp/found%modes%growth, 4)//' s'
-    else if (any(abs(found%modes%roots(:found%modes%count)) <= 0.0_wp)) then
-      words = 'a stable equilibrium; neighbouring positions are as good in '// &
-              counted(count(abs(found%modes%roots(:found%modes%count)) <= 0.0_wp), 'direction')
-    else
-      words = 'a stable equilibrium; its lowest frequency is '// &
-              to_text(minval(abs(aimag(found%modes%roots(:found%modes%count))))/(2.0_wp*pi), 6)//' Hz'
-    end if
-  end function words_about
+    if (equilibrium%without_inertia == 0) return
+    call raise(err, exit_data, failure_no_inertia)
+    err%failure%coordinates = [equilibrium%without_inertia]
+  end subroutine need_inertia
 
   !> Find which components of the forces in pairs are unique, if any are recorded, and say how many are not.
   subroutine judge_forces(options, model, equilibrium, forces)

@@ -255,6 +255,32 @@ def check_balanced_beam(checks, case):
         checks.near([modes['frequency'][0], modes['damping'][0]], [0, 0], 0.0, 'of frequency zero')
 
 
+def check_statics(checks, case):
+    """Two slides in a row on springs of 10 N/m and 20 N/m (or -20 N/m), and 4 N on the second one: it rests where 20 q2 = 4, with mass
+    or without. Without the mass of some link there is no growth, and the stiffness alone tells whether the position is stable."""
+    def slides(stiffness, *masses):
+        return mechanism(3, 2, [1, 2], pair(1, '1,2', 'prismatic', axis='1,0,0'), pair(2, '2,3', 'prismatic', axis='1,0,0'),
+                         initial(1, 0.1), initial(2, 0.0), "&load kind='coordinate', coordinate=1, stiffness=10 /",
+                         f"&load kind='coordinate', coordinate=2, stiffness={stiffness}, force=4 /",
+                         *[body(link, 1.0, '0,0,0') for link in masses])
+    for masses in ((), (2,), (3,), (2, 3)):
+        for stiffness, stable in ((20, 1), (-20, 0)):
+            table = case.table(slides(stiffness, *masses), '--equilibrium')
+            why = f'slides of {stiffness} N/m with masses on links {masses}'
+            checks.near([table['q1'][0], table['q2'][0]], [0, 4 / stiffness], EXACT, f'{why}: the position', scale=1)
+            checks.equal(table['stable'].tolist(), [stable], f'{why}: stable or not')
+            checks.equal(bool(np.isnan(table['growth'][0])), masses != (2, 3), f'{why}: no growth without inertia')
+    for options in (('--modes',), ('--linear', 'l.h5')):
+        result = case(slides(20, 3), *options)
+        checks.equal(result.returncode, DATA, f'{options} need inertia')
+        checks.true('independent coordinate 2 has no inertia' in result.stderr, f'{options}: the coordinate is named', result.stderr)
+    # a ball joint of three hinges in gimbal lock: the forces do not tell whether it rests, although it has inertia elsewhere
+    ball = mechanism(4, 3, [1, 2, 3], *[pair(k, f'{k},{k + 1}', axis=axis) for k, axis in enumerate(('1,0,0', '0,1,0', '0,0,1'), 1)],
+                     *[initial(k, np.pi / 2 if k == 2 else 0) for k in (1, 2, 3)], body(4, 1.0, '0,0,0', 1.0))
+    result = case(ball, '--equilibrium')
+    checks.equal(result.returncode, DATA, 'no equilibrium is told in gimbal lock')
+
+
 def check_many_starts(checks, case):
     """A mass that rests everywhere: a row for nearly each start, at a cost that grows with their number. Twice as many starts take
     twice as long; when all equilibria were copied for each new one, it was more than four times."""
@@ -365,8 +391,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         case = Case(sys.argv[1], folder)
         for check in (check_pendulum, check_damped_mass, check_double_pendulum, check_bar_in_slots, check_four_bar, check_limit,
-                      check_hoop, check_forces, check_balanced_beam, check_many_starts, check_free_body, check_linear, check_files,
-                      check_failures):
+                      check_hoop, check_forces, check_balanced_beam, check_statics, check_many_starts, check_free_body, check_linear,
+                      check_files, check_failures):
             check(checks, case)
     checks.finish()
 

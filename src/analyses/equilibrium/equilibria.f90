@@ -1,45 +1,28 @@
 !> Positions of equilibrium of a mechanism, with their linearised equations of motion and modes.
 module mech9_equilibria
   use mech9_kinds, only: wp, pi
-  use mech9_error, only: error_type, raise, exit_assembly, exit_data, exit_interrupted
+  use mech9_error, only: error_type, raise, exit_assembly, exit_interrupted
   use mech9_random, only: random_type
-  use mech9_eigenmodes, only: eigenmodes_type, find_eigenmodes
   use mech9_mechanism, only: mechanism_type
   use mech9_partition, only: partition_type
   use mech9_plan, only: plan_type, step_type
   use mech9_state, only: state_type
   use mech9_assemblies, only: close_from
   use mech9_frame_motion, only: place_all
-  use mech9_failure, only: failure_no_inertia, failure_interrupted_starts
+  use mech9_failure, only: failure_interrupted_starts
   use mech9_simulation, only: interruption_type
-  use mech9_linearisation, only: find_matrix, by_rate, by_acceleration
-  use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, is_balanced, find_stiffness, &
-    return_to_coordinates, copy_resting
+  use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, is_balanced, copy_resting
+  use mech9_linearised_equilibrium, only: equilibrium_type, linearise, copy_equilibrium
   use mech9_equilibrium_search, only: settle, find_any
   implicit none
   private
-  public :: equilibrium_type, find_equilibrium, find_equilibria
-
-  !> A position of equilibrium. Matrices are in SI units, of the coordinates `resting%free`.
-  type :: equilibrium_type
-    type(resting_type) :: resting               !< the mechanism in this position
-    real(wp), allocatable :: inertia(:, :)      !< M [kg m^2, kg m, kg]
-    real(wp), allocatable :: damping(:, :)      !< C [N m s/rad, N s/m]
-    real(wp), allocatable :: stiffness(:, :)    !< K [N m/rad, N/m]
-    type(eigenmodes_type) :: modes              !< of M x'' + C x' + K x = 0; shapes in SI units
-    logical :: is_stable = .false.              !< no root grows beyond round-off
-    integer :: found = 1                        !< number of starts that led to it
-  end type equilibrium_type
+  public :: find_equilibrium, find_equilibria
 
   !> One of several equilibria.
   type :: equilibrium_slot_type
     type(equilibrium_type), allocatable :: item
   end type equilibrium_slot_type
 
-  !> Conditioning at which the coordinates of the data file are taken again for the matrices.
-  real(wp), parameter :: fair_conditioning = 1.0e-4_wp
-  !> Stiffness and damping below this part of the sum of their terms are round-off.
-  real(wp), parameter :: round_off = 1.0e-11_wp
   !> Equilibria whose coordinates differ by less are the same, in units of the coordinates.
   real(wp), parameter :: same_position = 1.0e-5_wp
   !> Random positions tried for each start, because chains do not close everywhere.
@@ -48,7 +31,7 @@ module mech9_equilibria
 contains
 
   !> The equilibrium to which an assembled position leads. Fails with exit_assembly where there is none, with exit_data where a free
-  !> coordinate has no inertia, and where a load fails.
+  !> coordinate has no inertia although it has some in other positions (gimbal lock), and where a load fails.
   subroutine find_equilibrium(mechanism, partition, plan, assembled, found, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(partition_type), intent(in) :: partition       !< driven, free and dependent coordinates
@@ -198,46 +181,6 @@ contains
     end do
   end subroutine reduce_turns
 
-  !> Linearise the equations of motion in an equilibrium and find their modes.
-  subroutine linearise(mechanism, partition, found, err)
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
-    type(partition_type), intent(in) :: partition       !< with the coordinates of the data file
-    type(equilibrium_type), intent(inout) :: found      !< with its position; gets all else
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp), allocatable, dimension(:, :) :: m, c, per_unit
-    real(wp) :: m_magnitude, c_magnitude
-    integer :: i, n
-
-    call return_to_coordinates(mechanism, partition, fair_conditioning, found%resting, err)
-    if (allocated(err)) return
-    call find_stiffness(mechanism, found%resting, err)
-    if (allocated(err)) return
-    associate (resting => found%resting)
-      n = size(resting%free)
-      allocate (m(n, n), c(n, n))
-      call find_matrix(mechanism, resting%plan, resting%state, by_rate, resting%free, resting%linearisation, c, c_magnitude, err)
-      if (allocated(err)) return
-      call find_matrix(mechanism, resting%plan, resting%state, by_acceleration, resting%free, resting%linearisation, m, &
-                       m_magnitude, err)
-      if (allocated(err)) return
-      call find_eigenmodes(m, c, resting%stiffness, round_off*c_magnitude, round_off*resting%stiffness_magnitude, found%modes)
-      if (found%modes%without_inertia > 0) then
-        call raise(err, exit_data, failure_no_inertia)
-        err%failure%coordinates = [resting%free(found%modes%without_inertia)]
-        return
-      end if
-      found%is_stable = .not. found%modes%growth > 0.0_wp
-      allocate (per_unit(n, n))
-      do i = 1, n
-        per_unit(:, i) = 1.0_wp/(resting%plan%unit_of(resting%free)*resting%plan%unit_of(resting%free(i)))
-        found%modes%shapes(i, :) = found%modes%shapes(i, :)*resting%plan%unit_of(resting%free(i))
-      end do
-      found%inertia = per_unit*0.5_wp*(m + transpose(m))
-      found%damping = per_unit*c
-      found%stiffness = per_unit*resting%stiffness
-    end associate
-  end subroutine linearise
-
   !> Add an equilibrium to those found so far, unless it is among them; then its finds are counted.
   subroutine add_new(found, slots, n)
     type(equilibrium_type), intent(in) :: found                           !< the equilibrium
@@ -265,14 +208,6 @@ contains
     call copy_equilibrium(found, slots(n)%item)
     slots(n)%item%found = 1
   end subroutine add_new
-
-  !> Copy an equilibrium.
-  subroutine copy_equilibrium(from, to)
-    type(equilibrium_type), intent(in) :: from      !< the equilibrium
-    type(equilibrium_type), intent(inout) :: to     !< the same afterwards
-
-    to = from
-  end subroutine copy_equilibrium
 
   !> Make the list of the equilibria that were found, sorted by their first coordinates, where these are the same by the second
   !> ones, and so on.

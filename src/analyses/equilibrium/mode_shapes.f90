@@ -6,7 +6,7 @@ module mech9_mode_shapes
   use mech9_state, only: state_type
   use mech9_motion_variation, only: vary_position
   use mech9_resting_mechanism, only: resting_type, try_step
-  use mech9_equilibria, only: equilibrium_type
+  use mech9_linearised_equilibrium, only: equilibrium_type
   implicit none
   private
   public :: shape_of_mode, energy_shares, position_in_vibration

@@ -9,7 +9,7 @@ module mech9_state_space
   use mech9_pose, only: transformed
   use mech9_mechanism, only: mechanism_type
   use mech9_motion_variation, only: vary_motion
-  use mech9_equilibria, only: equilibrium_type
+  use mech9_linearised_equilibrium, only: equilibrium_type
   implicit none
   private
   public :: state_space_type, find_state_space

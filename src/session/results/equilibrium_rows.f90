@@ -15,7 +15,7 @@ module mech9_equilibrium_rows
   use mech9_hdf5_sink, only: put_force_scales, common_unit
   use mech9_hdf5_record, only: write_uniqueness
   use mech9_force_record, only: force_record_type
-  use mech9_equilibria, only: equilibrium_type
+  use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_mode_shapes, only: shape_of_mode, energy_shares
   implicit none
   private

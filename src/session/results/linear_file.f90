@@ -6,7 +6,7 @@ module mech9_linear_file
   use mech9_result_units, only: unit_name
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_equilibria, only: equilibrium_type
+  use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_state_space, only: state_space_type, find_state_space
   implicit none
   private

@@ -1,0 +1,161 @@
+!> A position of equilibrium with its stability, its linearised equations of motion and its modes.
+module mech9_linearised_equilibrium
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_data
+  use mech9_failure, only: failure_no_inertia
+  use mech9_lapack, only: dsyev
+  use mech9_cholesky, only: cholesky_factorize
+  use mech9_tolerances, only: negligible_inertia
+  use mech9_eigenmodes, only: eigenmodes_type, find_eigenmodes
+  use mech9_mechanism, only: mechanism_type
+  use mech9_partition, only: partition_type
+  use mech9_linearisation, only: find_matrix, by_rate, by_acceleration
+  use mech9_resting_mechanism, only: resting_type, find_stiffness, try_step, return_to_coordinates
+  implicit none
+  private
+  public :: equilibrium_type, linearise, copy_equilibrium
+
+  !> A position of equilibrium. Matrices are in SI units, of the coordinates `resting%free`.
+  type :: equilibrium_type
+    type(resting_type) :: resting               !< the mechanism in this position
+    real(wp), allocatable :: inertia(:, :)      !< M [kg m^2, kg m, kg]
+    real(wp), allocatable :: damping(:, :)      !< C [N m s/rad, N s/m]
+    real(wp), allocatable :: stiffness(:, :)    !< K [N m/rad, N/m]
+    type(eigenmodes_type) :: modes              !< of M x'' + C x' + K x = 0; shapes in SI units
+    !> No root grows beyond round-off; where a coordinate has no inertia, no stiffness is negative beyond round-off.
+    logical :: is_stable = .false.
+    !> A free coordinate that moves no mass in any position; 0: none. There are no modes then, and the growth has no value.
+    integer :: without_inertia = 0
+    integer :: found = 1                        !< number of starts that led to it
+  end type equilibrium_type
+
+  !> Conditioning at which the coordinates of the data file are taken again for the matrices.
+  real(wp), parameter :: fair_conditioning = 1.0e-4_wp
+  !> Stiffness and damping below this part of the sum of their terms are round-off.
+  real(wp), parameter :: round_off = 1.0e-11_wp
+
+contains
+
+  !> Linearise the equations of motion in an equilibrium and find their modes.
+  subroutine linearise(mechanism, partition, found, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(partition_type), intent(in) :: partition       !< with the coordinates of the data file
+    type(equilibrium_type), intent(inout) :: found      !< with its position; gets all else
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp), allocatable, dimension(:, :) :: m, c, per_unit
+    real(wp) :: c_magnitude
+    integer :: i, n, massless
+
+    call return_to_coordinates(mechanism, partition, fair_conditioning, found%resting, err)
+    if (allocated(err)) return
+    call find_stiffness(mechanism, found%resting, err)
+    if (allocated(err)) return
+    associate (resting => found%resting)
+      n = size(resting%free)
+      allocate (m(n, n), c(n, n))
+      call find_matrix(mechanism, resting%plan, resting%state, by_rate, resting%free, resting%linearisation, c, c_magnitude, err)
+      if (allocated(err)) return
+      call find_inertia(mechanism, resting, m, massless, err)
+      if (allocated(err)) return
+      if (massless == 0) then
+        call find_eigenmodes(m, c, resting%stiffness, round_off*c_magnitude, round_off*resting%stiffness_magnitude, found%modes)
+        massless = found%modes%without_inertia
+      end if
+      if (massless > 0) then
+        call judge_statics(mechanism, resting%free(massless), found, err)
+        return
+      end if
+      found%without_inertia = 0
+      found%is_stable = .not. found%modes%growth > 0.0_wp
+      allocate (per_unit(n, n))
+      do i = 1, n
+        per_unit(:, i) = 1.0_wp/(resting%plan%unit_of(resting%free)*resting%plan%unit_of(resting%free(i)))
+        found%modes%shapes(i, :) = found%modes%shapes(i, :)*resting%plan%unit_of(resting%free(i))
+      end do
+      found%inertia = per_unit*0.5_wp*(m + transpose(m))
+      found%damping = per_unit*c
+      found%stiffness = per_unit*resting%stiffness
+    end associate
+  end subroutine linearise
+
+  !> The inertia of the free coordinates, and one that moves no mass.
+  subroutine find_inertia(mechanism, resting, m, massless, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(resting_type), intent(inout) :: resting        !< the mechanism at rest; its last variation changes
+    real(wp), intent(out) :: m(:, :)                    !< (n,n) [J s^2]
+    integer, intent(out) :: massless                    !< its place among the free coordinates; 0: none is found by its own inertia
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
+    real(wp) :: magnitude
+    integer :: i
+
+    massless = 0
+    call find_matrix(mechanism, resting%plan, resting%state, by_acceleration, resting%free, resting%linearisation, m, magnitude, &
+                     err)
+    if (allocated(err)) return
+    do i = size(m, 1), 1, -1
+      if (.not. m(i, i) > negligible_inertia*magnitude) massless = i
+    end do
+  end subroutine find_inertia
+
+  !> Judge an equilibrium in which a coordinate moves no mass by its stiffness alone. Fails with exit_data where the coordinate
+  !> does so in this position only: the forces then say nothing about it.
+  subroutine judge_statics(mechanism, coordinate, found, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    integer, intent(in) :: coordinate                   !< the coordinate
+    type(equilibrium_type), intent(inout) :: found      !< with its position and stiffness; gets its stability
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp), dimension(size(found%resting%free), size(found%resting%free)) :: vectors
+    real(wp) :: values(size(found%resting%free)), work(34*size(found%resting%free))
+    integer :: info
+    logical :: has_inertia
+
+    call look_elsewhere(mechanism, found%resting, has_inertia, err)
+    if (allocated(err)) return
+    if (has_inertia) then
+      call raise(err, exit_data, failure_no_inertia)
+      err%failure%coordinates = [coordinate]
+      return
+    end if
+    vectors = 0.5_wp*(found%resting%stiffness + transpose(found%resting%stiffness))
+    call dsyev('N', 'L', size(values), vectors, size(values), values, work, size(work), info)
+    found%is_stable = all(values >= -round_off*found%resting%stiffness_magnitude)
+    found%without_inertia = coordinate
+    found%modes%count = 0
+    found%modes%growth = ieee_value(found%modes%growth, ieee_quiet_nan)
+  end subroutine judge_statics
+
+  !> Whether all free coordinates have inertia in another position near by. Where the mechanism cannot move, they have not.
+  subroutine look_elsewhere(mechanism, resting, has_inertia, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(resting_type), intent(in) :: resting           !< the mechanism at rest
+    logical, intent(out) :: has_inertia                 !< they have
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
+    real(wp), parameter :: steps(3) = [0.3_wp, 0.1_wp, 0.01_wp]   ! [rad, lengths of the mechanism]
+    type(resting_type) :: other
+    real(wp) :: m(size(resting%free), size(resting%free)), step(size(resting%free))
+    integer :: i, k, massless, failed_at
+    logical :: moved
+
+    has_inertia = .false.
+    do i = 1, size(steps)
+      step = [(steps(i)*(0.7_wp + 0.3_wp*sin(real(k, wp))), k=1, size(step))]
+      call try_step(mechanism, resting, step, other, moved, err)
+      if (allocated(err)) return
+      if (moved) exit
+    end do
+    if (.not. moved) return
+    call find_inertia(mechanism, other, m, massless, err)
+    if (allocated(err) .or. massless > 0) return
+    call cholesky_factorize(size(step), m, failed_at)
+    has_inertia = failed_at == 0
+  end subroutine look_elsewhere
+
+  !> Copy an equilibrium.
+  subroutine copy_equilibrium(from, to)
+    type(equilibrium_type), intent(in) :: from      !< the equilibrium
+    type(equilibrium_type), intent(inout) :: to     !< the same afterwards
+
+    to = from
+  end subroutine copy_equilibrium
+end module mech9_linearised_equilibrium

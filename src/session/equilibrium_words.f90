@@ -1,0 +1,51 @@
+!> Sentences about positions of equilibrium.
+module mech9_equilibrium_words
+  use mech9_kinds, only: wp, pi
+  use mech9_text, only: to_text
+  use mech9_counted, only: counted
+  use mech9_linearised_equilibrium, only: equilibrium_type
+  implicit none
+  private
+  public :: print_findings
+
+contains
+
+  !> Say what was found, in a line.
+  subroutine print_findings(unit, n_starts, list, interrupted)
+    integer, intent(in) :: unit                     !< Fortran unit to write to
+    integer, intent(in) :: n_starts                 !< number of random starts
+    type(equilibrium_type), intent(in) :: list(:)   !< the equilibria
+    logical, intent(in) :: interrupted              !< the search was interrupted
+    integer :: i
+
+    if (interrupted) then
+      write (unit, '(a)') counted(size(list), 'position')//' of equilibrium found so far, '// &
+        to_text(count([(list(i)%is_stable, i=1, size(list))]))//' of them stable'
+    else if (size(list) == 1) then
+      write (unit, '(a)') words_about(list(1))
+    else
+      write (unit, '(a)') counted(size(list), 'position')//' of equilibrium from the initial position and '// &
+        counted(n_starts, 'random one')//', '// &
+        to_text(count([(list(i)%is_stable, i=1, size(list))]))//' of them stable'
+    end if
+  end subroutine print_findings
+
+  !> An equilibrium in words.
+  function words_about(found) result(words)
+    type(equilibrium_type), intent(in) :: found   !< the equilibrium
+    character(len=:), allocatable :: words
+
+    if (found%without_inertia > 0) then
+      words = trim(merge('a stable equilibrium   ', 'an unstable equilibrium', found%is_stable))// &
+              ' by its stiffness; coordinate '//to_text(found%without_inertia)//' has no inertia, so that no growth can be told'
+    else if (.not. found%is_stable) then
+      words = 'an unstable equilibrium: a deviation grows by the factor e in '//to_text(1.0_wp/found%modes%growth, 4)//' s'
+    else if (any(abs(found%modes%roots(:found%modes%count)) <= 0.0_wp)) then
+      words = 'a stable equilibrium; neighbouring positions are as good in '// &
+              counted(count(abs(found%modes%roots(:found%modes%count)) <= 0.0_wp), 'direction')
+    else
+      words = 'a stable equilibrium; its lowest frequency is '// &
+              to_text(minval(abs(aimag(found%modes%roots(:found%modes%count))))/(2.0_wp*pi), 6)//' Hz'
+    end if
+  end function words_about
+end module mech9_equilibrium_words
