@@ -211,7 +211,8 @@ def without_effect(s):
                          (['--plan', '--hdf5', 'x.h5'], '--hdf5'), (['--range', '--no-write'], '--no-write'),
                          (['--structure', '--check', '--sketch', 'x.svg'], '--check, --sketch'),
                          (['--starts', '3', '--no-write'], '--starts'), (['--check', '--view', 'xy'], '--view'),
-                         (['--view', 'xy', '--no-write'], '--view')):
+                         (['--view', 'xy', '--no-write'], '--view'),
+                         (['--check', '--sketch', 'x.svg', '--set', 'output.force_arrows=.true.'], 'force_arrows')):
         done = s.ends(DONE, ' '.join(words), FIG1, *words, says=f'mech9k: without effect: {named};')
         s.checks.equal(s.ends(DONE, 'quietly', FIG1, *words, '--quiet').stderr, '', f'{words}: quiet')
         s.checks.true(done.stderr.count('without effect') == 1, f'{words}: nothing else is said so', done.stderr)

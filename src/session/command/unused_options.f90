@@ -36,6 +36,8 @@ contains
       write (unit, '(a)') program_name//': without effect: --starts; it is the number of guesses of --branches'
     drawn = options%has('sketch')
     if (answer == '') drawn = drawn .or. options%has('animate') .or. pictures_of(model)
+    if (options%has('sketch') .and. answer /= '' .and. answer /= 'structure' .and. model%request%output%force_arrows) &
+      write (unit, '(a)') program_name//': without effect: force_arrows; a run draws the forces, and --'//answer//' makes none'
     if (options%has('view') .and. (answer == 'structure' .or. .not. drawn)) &
       write (unit, '(a)') program_name//': without effect: --view; no picture of the mechanism is drawn'
   end subroutine print_unused_options
