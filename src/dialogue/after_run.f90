@@ -16,41 +16,50 @@ module mech9_after_run
   use mech9_correcting, only: change
   implicit none
   private
-  public :: look_back, over, again, changing
+  public :: look_back, over, again, changing, answering
 
-  !> The next step that the user wants: to end, to run again, or to be asked for a value first.
-  integer, parameter :: over = 0, again = 1, changing = 2
+  !> The next step that the user wants: to end, to run again, to be asked for a value first, or an answer that is no run.
+  integer, parameter :: over = 0, again = 1, changing = 2, answering = 3
 
   !> The number of rows that are shown unless the user gives one, the largest number of rows, and the length up to which a
   !> line is read.
   integer, parameter :: usual_rows = 8, most_rows = 1000, longest_line = 500
-  character(len=7), parameter :: commands(6) = [character(len=7) :: 'show', 'plot', 'compare', 'change', 'run', 'done']
+  character(len=11), parameter :: commands(8) = [character(len=11) :: 'show', 'plot', 'compare', 'change', 'run', 'done', &
+                                                 'equilibrium', 'modes']
   character(len=*), parameter :: help = &
     'show: the last rows of the table; "show 20 q1 P.x" shows twenty rows of these columns, "show P" of a point. '// &
     'plot: a plot here in the terminal; "plot q1,P.x", "plot P.x:P.y" (a path), "plot picture.svg:q1" (a file). '// &
     'compare: the largest differences from the run before. "change time end = 2" changes an answer; without the '// &
     'value you are asked for it; its number from list will do, too. run: run again. done ends.'
+  character(len=*), parameter :: help_of_rest = &
+    'equilibrium: the position in which the mechanism rests; "equilibrium 30" searches from 30 random positions, too. '// &
+    'modes: frequencies, dampings and shapes of its small vibrations there.'
 
 contains
 
   !> Commands about a finished run are heard and carried out, until one of them asks for more than a look at results.
-  subroutine look_back(conversation, kept, earlier, changed, next)
+  subroutine look_back(conversation, kept, earlier, changed, next, request)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept                 !< results of the last run; none where it gave none
     type(kept_rows_type), intent(in) :: earlier              !< results of the run before the last one
     logical, intent(in) :: changed                           !< an answer was changed since the last run, so that Enter runs again
-    integer, intent(out) :: next                             !< over, again or changing
+    integer, intent(out) :: next                             !< over, again, changing or answering
+    character(len=:), allocatable, intent(out) :: request    !< the answer that is wanted: options of the command line
     type(string_type), allocatable :: words(:)
-    character(len=:), allocatable :: line, word, rest, usual
-    logical :: done
+    character(len=:), allocatable :: line, word, rest, usual, prompt
+    logical :: done, with_rest
 
-    call words_here(kept, words)
+    with_rest = conversation%program_name == 'mech9d'
+    call words_here(kept, with_rest, words)
+    prompt = '  show, plot, compare, change, run or done ['
+    if (with_rest) prompt = '  show, plot, compare, equilibrium, modes, change, run or done ['
+    request = ''
     rest = ''
     usual = 'done'
     if (changed) usual = 'run'
     next = over
     do
-      call conversation%listen('  show, plot, compare, change, run or done ['//usual//']: ', words, line)
+      call conversation%listen(prompt//usual//']: ', words, line)
       if (conversation%state /= going) return
       if (line == '') line = usual
       line = line(:min(len(line), longest_line))
@@ -62,6 +71,7 @@ contains
         return
       case ('?', 'help')
         call conversation%say(help)
+        if (with_rest) call conversation%say(help_of_rest)
         call say_columns(conversation, kept)
       case ('show')
         call show(conversation, kept, rest)
@@ -72,27 +82,51 @@ contains
       case ('run')
         next = again
       case default
-        call change(conversation, line, done)
-        if (done) next = changing
+        if (with_rest .and. (word == 'equilibrium' .or. word == 'modes')) then
+          call ask_for_rest(conversation, word, rest, request)
+          if (request /= '') next = answering
+        else
+          call change(conversation, line, done)
+          if (done) next = changing
+        end if
       end select
       if (next /= over) return
     end do
   end subroutine look_back
 
+  !> The options of the command line that give an answer about equilibrium; empty where the line is no request for one.
+  subroutine ask_for_rest(conversation, word, number, request)
+    class(conversation_type), intent(in) :: conversation     !< the conversation as it stands
+    character(len=*), intent(in) :: word                     !< equilibrium or modes
+    character(len=*), intent(in) :: number                   !< the text behind it: a number of random starts, or nothing
+    character(len=:), allocatable, intent(out) :: request    !< the options, with blanks between
+
+    request = '--'//word
+    if (number == '') return
+    if (word == 'equilibrium' .and. verify(number, '0123456789') == 0) then
+      request = request//' --starts '//number
+    else
+      request = ''
+      call conversation%say(help_of_rest)
+    end if
+  end subroutine ask_for_rest
+
   !> The words that can be completed: the commands and the names of the columns.
-  pure subroutine words_here(kept, words)
+  pure subroutine words_here(kept, with_rest, words)
     type(kept_rows_type), intent(in) :: kept                 !< results of the last run
+    logical, intent(in) :: with_rest                         !< the program answers about equilibrium
     type(string_type), allocatable, intent(out) :: words(:)  !< the commands and the names of the columns
-    integer :: i, n
+    integer :: i, n, n_commands
 
     n = 0
     if (kept%count > 0) n = size(kept%names)
-    allocate (words(size(commands) + n))
-    do i = 1, size(commands)
+    n_commands = size(commands) - merge(0, 2, with_rest)
+    allocate (words(n_commands + n))
+    do i = 1, n_commands
       words(i)%text = trim(commands(i))
     end do
     do i = 1, n
-      words(size(commands) + i)%text = kept%names(i)%text
+      words(n_commands + i)%text = kept%names(i)%text
     end do
   end subroutine words_here
 

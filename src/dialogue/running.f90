@@ -1,7 +1,9 @@
 !> The run at the end of a conversation, and what follows it: looking at results, changes, further runs.
 module mech9_running
   use mech9_error, only: error_type
-  use mech9_command_line, only: command_line_type
+  use mech9_text, only: string_type
+  use mech9_grammar, only: words_of
+  use mech9_command_line, only: command_line_type, parse_command_line
   use mech9_system, only: catch_interrupts, asked_to_end
   use mech9_kept_rows, only: kept_rows_type
   use mech9_task, only: task_type
@@ -9,7 +11,7 @@ module mech9_running
   use mech9_conversation, only: conversation_type, going, finished
   use mech9_closing, only: write_data_file
   use mech9_leading, only: lead
-  use mech9_after_run, only: look_back, over, changing
+  use mech9_after_run, only: look_back, over, changing, answering
   implicit none
   private
   public :: run_by_turns
@@ -24,6 +26,7 @@ contains
     character(len=*), intent(in) :: path                     !< the data file of the conversation, or its draft
     integer, intent(out) :: code                             !< exit code of the last run
     type(kept_rows_type) :: kept, earlier
+    character(len=:), allocatable :: request
     integer :: next
     logical :: changed, saved_again
 
@@ -36,7 +39,14 @@ contains
       call catch_interrupts()
       conversation%state = going
       do
-        call look_back(conversation, kept, earlier, changed, next)
+        call look_back(conversation, kept, earlier, changed, next, request)
+        if (next == answering) then
+          call answer(conversation, task, path, changed, request)
+          if (asked_to_end()) next = over
+          if (next == over) exit
+          call catch_interrupts()
+          cycle
+        end if
         if (next /= changing) exit
         changed = .true.
         call lead(conversation, task)
@@ -52,6 +62,39 @@ contains
     call tell_what_is_kept(conversation, path, changed, saved_again)
     conversation%state = finished
   end subroutine run_by_turns
+
+  !> An answer about the mechanism as it stands is given. Changes since the last run are in the draft.
+  subroutine answer(conversation, task, path, changed, request)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
+    character(len=*), intent(in) :: path                     !< name of the file that was run
+    logical, intent(in) :: changed                           !< something was changed since the last run
+    character(len=*), intent(in) :: request                  !< options of the command line
+    character(len=len(request)), allocatable :: options_given(:)
+    type(string_type), allocatable :: words(:)
+    type(command_line_type) :: options
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: file
+    integer :: i, code
+
+    file = path
+    if (changed) then
+      call conversation%keep()
+      file = conversation%draft_path
+    end if
+    options_given = words_of(request)
+    allocate (words(size(options_given) + 1))
+    do i = 1, size(options_given)
+      words(i)%text = trim(options_given(i))
+    end do
+    words(size(words))%text = file
+    call parse_command_line(words, conversation%program_name, options, err)
+    if (allocated(err)) then
+      call conversation%say(err%message)
+    else
+      call run_file(task, options, file, code)
+    end if
+  end subroutine answer
 
   !> The user is told in which file the answers are, unless this was told when the data file was saved.
   subroutine tell_what_is_kept(conversation, path, changed, saved_again)

@@ -18,6 +18,7 @@ from mech9_cases import TREE, Checks, read_table, run, table_of, text_of
 from terminal import Terminal, available
 
 PROMPT = 'show, plot, compare, change, run or done'
+PROMPT_OF_DYNAMICS = 'show, plot, compare, equilibrium, modes, change, run or done'
 
 
 class Session:
@@ -41,7 +42,7 @@ class Session:
         done = run(self.program, '--edit', f'{self.example}.nml', folder=self.folder,
                    stdin='\n'.join(['', 'both', '', *lines]) + '\n')
         self.checks.equal(done.returncode, code, f'{self.example} {lines}: exit code')
-        parts = re.split(r'  ' + PROMPT + r' \[(?:done|run)\]: \n', done.stderr)
+        parts = re.split(r'  (?:' + PROMPT + '|' + PROMPT_OF_DYNAMICS + r') \[(?:done|run)\]: \n', done.stderr)
         self.checks.true(len(parts) > 1, f'{self.example} {lines}: there is a prompt after the run', done.stderr)
         return parts[1:], done.stdout
 
@@ -158,6 +159,27 @@ def test_dynamics(session):
                         'mech9d: the last rows of the table', said[0])
 
 
+def test_rest(session):
+    """Equilibria and modes of the pendulum as it stands, also with a change that was not run: g/l = 9.81, then 4, in 1/s^2."""
+    checks = session.checks
+    said, shown = session.after_run('equilibrium', 'equilibrium 5', 'modes', 'gravity acceleration = 0 -4 0', 'modes', 'modes 4',
+                                    'equilibrium x', 'equilibrium 0', 'run', 'modes', 'done')
+    checks.true('its lowest frequency is 0.498488 Hz' in said[0], 'equilibrium: told', said[0])
+    checks.true('2 positions of equilibrium from the initial position and 5 random ones, 1 of them stable' in said[1],
+                'equilibrium 5: told', said[1])
+    tables = [read_table('# ' + part) for part in shown.split('# Simple pendulum')[1:]]
+    checks.equal([len(table.get('q1', table.get('mode'))) for table in tables], [1, 2, 1, 1, 1], 'the tables are shown')
+    checks.near([table['frequency'][0] for table in tables[2:]], np.sqrt([9.81, 4, 4]) / (2 * np.pi), 1e-9,
+                'modes: of the data as they stand, run or not')
+    checks.true(all('random positions' in one for one in said[5:7]), 'what is no number is explained', said[5:7])
+    checks.true("not '0'" in said[7], 'no start is none', said[7])
+
+
+def test_no_rest_in_kinematics(session):
+    said, _ = session.after_run('equilibrium', 'done')
+    session.checks.true('no answer that can be changed' in said[0], 'mech9k finds no equilibria', said[0])
+
+
 def test_interrupted(session):
     """Ctrl-C ends the run and not the conversation."""
     with Terminal([session.program, '--edit', f'{session.example}.nml'], folder=session.folder) as terminal:
@@ -196,11 +218,14 @@ def test_simple_terminal(session):
 def main():
     checks = Checks()
     kinematics, dynamics = sys.argv[1:3]
-    for test in (test_show, test_bare_change, test_compare, test_change, test_change_before, test_plot, test_failed_run):
+    for test in (test_show, test_bare_change, test_compare, test_change, test_change_before, test_plot, test_failed_run,
+                 test_no_rest_in_kinematics):
         with Session(checks, kinematics, 'fig1') as session:
             test(session)
     with Session(checks, dynamics, 'pendulum') as session:
         test_dynamics(session)
+    with Session(checks, dynamics, 'pendulum') as session:
+        test_rest(session)
     if available():
         with Session(checks, kinematics, 'fig1') as session:
             test_interrupted(session)
