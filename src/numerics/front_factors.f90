@@ -7,6 +7,7 @@
 !> which follows from that of its parent (Erisman and Tinney in docs/bibliography.md).
 module mech9_front_factors
   use mech9_kinds, only: wp
+  use mech9_householder, only: reflect_back
   use mech9_front_plan, only: front_plan_type
   use mech9_front_kernels, only: gather, eliminate, add_squares, add_differences, pass_rows, reflect, substitute, take_covariance, &
     invert, fill_covariance
@@ -39,6 +40,7 @@ module mech9_front_factors
     procedure :: find_distances
     procedure :: distance
     procedure :: solve
+    procedure :: solve_transposed
     procedure :: least_singular_value
   end type front_factors_type
 
@@ -233,6 +235,31 @@ contains
       end do
     end associate
   end function least_singular_value
+
+  !> The shortest y for which a^T y = b.
+  pure subroutine solve_transposed(self, b, y)
+    class(front_factors_type), intent(inout) :: self   !< the factors; scratch
+    real(wp), intent(inout), contiguous :: b(:)        !< (n) right-hand side; overwritten
+    real(wp), intent(inout), contiguous :: y(:)        !< (m) gets the solution
+    integer :: f, i, first
+
+    call substitute_transposed(self, b)
+    do f = size(self%plan%fronts), 1, -1
+      associate (front => self%plan%fronts(f), plan => self%plan)
+        first = front%row
+        if (front%parent > 0) first = plan%fronts(front%parent)%row + front%parent_row - front%pivots
+        do i = front%pivots + 1, front%rows
+          self%sides(front%row + i) = 0.0_wp
+          if (front%parent > 0) self%sides(front%row + i) = self%sides(first + i)
+        end do
+        call reflect_back(front%rows, front%pivots, self%values(front%value + 1:), self%scales(front%pivot + 1:), &
+                          self%sides(front%row + 1:))
+        do i = 1, front%own
+          y(plan%rows(front%row + i)) = self%sides(front%row + i)
+        end do
+      end associate
+    end do
+  end subroutine solve_transposed
 
   !> y = R^-T x. The numbers of y become right-hand sides, those of each front at its own place.
   pure subroutine substitute_transposed(self, x)

@@ -7,7 +7,7 @@ module mech9_householder
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: householder, reflect, back_substitute
+  public :: householder, reflect, reflect_back, back_substitute, substitute_above_round_off, solve_by_transposed
 
 contains
 
@@ -63,6 +63,76 @@ contains
       call substitute(m, n, a, reciprocal, b)
     end if
   end subroutine back_substitute
+
+  !> b becomes Q b, with the first n reflections.
+  pure subroutine reflect_back(m, n, a, tau, b)
+    integer, intent(in) :: m          !< number of rows
+    integer, intent(in) :: n          !< number of columns used
+    real(wp), intent(in) :: a(m, n)   !< factors, as `householder` leaves them
+    real(wp), intent(in) :: tau(n)    !< scales of the reflections
+    real(wp), intent(inout) :: b(m)   !< any vector; Q b afterwards
+    real(wp) :: s
+    integer :: i, j
+
+    do j = n, 1, -1
+      s = b(j)
+      do i = j + 1, m
+        s = s + a(i, j)*b(i)
+      end do
+      s = s*tau(j)
+      b(j) = b(j) - s
+      do i = j + 1, m
+        b(i) = b(i) - s*a(i, j)
+      end do
+    end do
+  end subroutine reflect_back
+
+  !> The shortest y for which a^T y = b, in the first `rank` equations in the order of the pivots.
+  pure subroutine solve_by_transposed(m, n, rank, a, pivot, tau, reciprocal, b, y)
+    integer, intent(in) :: m                !< number of rows
+    integer, intent(in) :: n                !< number of columns
+    integer, intent(in) :: rank             !< columns used
+    real(wp), intent(in) :: a(m, n)         !< factors, as `householder` or LAPACK leaves them
+    integer, intent(in) :: pivot(n)         !< column of the matrix at each place
+    real(wp), intent(in) :: tau(n)          !< scales of the reflections
+    real(wp), intent(in) :: reciprocal(n)   !< of the diagonal of R
+    real(wp), intent(in) :: b(n)            !< right-hand side
+    real(wp), intent(out) :: y(m)           !< the solution
+    integer :: i, j
+
+    y = 0.0_wp
+    do j = 1, rank
+      y(j) = b(pivot(j))
+      do i = 1, j - 1
+        y(j) = y(j) - a(i, j)*y(i)
+      end do
+      y(j) = y(j)*reciprocal(j)
+    end do
+    call reflect_back(m, min(m, n), a, tau, y)
+  end subroutine solve_by_transposed
+
+  !> R^-1 b in the first `rank` columns, with zeros for the unknowns of nearly dependent columns that round-off alone can explain.
+  pure subroutine substitute_above_round_off(m, rank, a, reciprocal, lengths, nearly_dependent, round_off, b)
+    integer, intent(in) :: m                   !< number of rows
+    integer, intent(in) :: rank                !< columns that are used
+    real(wp), intent(in) :: a(m, rank)         !< factors, as `householder` leaves them
+    real(wp), intent(in) :: reciprocal(rank)   !< of the diagonal of R
+    real(wp), intent(in) :: lengths(rank)      !< of the pivots
+    real(wp), intent(in) :: nearly_dependent   !< a pivot below this part of the largest is that of a nearly dependent column
+    real(wp), intent(in) :: round_off          !< error of x by round-off in a well determined column, in the unit of x
+    real(wp), intent(inout) :: b(m)            !< Q^T b; the solution in its first `rank` numbers afterwards
+    real(wp) :: s
+    integer :: i, j
+
+    do j = rank, 1, -1
+      b(j) = b(j)*reciprocal(j)
+      s = lengths(j)/lengths(1)
+      if (s < nearly_dependent .and. abs(b(j))*s**2 <= round_off) b(j) = 0.0_wp
+      do i = 1, j - 1
+        b(i) = b(i) - a(i, j)*b(j)
+      end do
+    end do
+  end subroutine substitute_above_round_off
 
   ! The arguments that these procedures share are declared and described in the included files.
 

@@ -8,7 +8,7 @@
 module mech9_least_squares
   use mech9_kinds, only: wp
   use mech9_lapack, only: dgeqp3, dormqr
-  use mech9_householder, only: householder, reflect, back_substitute
+  use mech9_householder, only: householder, reflect, back_substitute, substitute_above_round_off, solve_by_transposed
   use mech9_cofactors, only: invert_by_cofactors
   use mech9_matrix_norms, only: distance_in_full
   use mech9_front_plan, only: front_plan_type
@@ -48,6 +48,7 @@ module mech9_least_squares
     procedure :: create
     procedure :: factorize
     procedure :: solve
+    procedure :: solve_transposed
     procedure :: rank
     procedure :: conditioning
     procedure :: largest_pivot
@@ -169,7 +170,7 @@ contains
     conditioning = 1.0_wp
     if (present(round_off)) conditioning = self%conditioning()
     if (conditioning < nearly_dependent) then
-      call substitute_above_round_off(self, rank, round_off, b)
+      call substitute_above_round_off(self%m, rank, self%a, self%reciprocal, self%lengths, nearly_dependent, round_off, b)
     else
       call back_substitute(self%m, rank, self%a, self%reciprocal, b)
     end if
@@ -178,6 +179,24 @@ contains
       x(self%pivot(j)) = b(j)
     end do
   end subroutine solve
+
+  !> The shortest y for which a^T y = b, where the columns of a are independent; equations of others are left out.
+  pure subroutine solve_transposed(self, b, y, regularity)
+    class(least_squares_type), intent(inout) :: self   !< the least squares problem: its matrix and factors
+    real(wp), intent(inout), contiguous :: b(:)        !< (n) right-hand side; overwritten
+    real(wp), intent(out), contiguous :: y(:)          !< (m) the solution
+    real(wp), intent(out), optional :: regularity      !< least number on the diagonal of R over the largest one
+
+    if (present(regularity)) regularity = self%lengths(self%n)/max(self%lengths(1), tiny(regularity))
+    if (self%by_fronts) then
+      if (present(regularity)) regularity = self%fronts%diagonal_ratio
+      call self%fronts%solve_transposed(b, y)
+    else if (self%by_cofactors) then
+      y = matmul(b, self%inverse)
+    else
+      call solve_by_transposed(self%m, self%n, self%safe_rank, self%a, self%pivot, self%tau, self%reciprocal, b, y)
+    end if
+  end subroutine solve_transposed
 
   !> Find the largest and the least pivot of a matrix that is factorized by fronts. If the matrix is not clearly regular, it is
   !> factorized with column pivoting instead.
@@ -213,25 +232,6 @@ contains
 
     to = from
   end subroutine copy
-
-  !> R^-1 b in the first `rank` columns, with zeros for the unknowns that round-off alone can explain.
-  pure subroutine substitute_above_round_off(self, rank, round_off, b)
-    class(least_squares_type), intent(in) :: self   !< the least squares problem: its matrix and factors
-    integer, intent(in) :: rank                     !< columns that are used
-    real(wp), intent(in) :: round_off                   !< error of x by round-off in a well determined column, in the unit of x
-    real(wp), intent(inout) :: b(:)                 !< (m) Q^T b; the solution in its first `rank` numbers afterwards
-    real(wp) :: s
-    integer :: i, j
-
-    do j = rank, 1, -1
-      b(j) = b(j)*self%reciprocal(j)
-      s = self%lengths(j)/self%lengths(1)
-      if (s < nearly_dependent .and. abs(b(j))*s**2 <= round_off) b(j) = 0.0_wp
-      do i = 1, j - 1
-        b(i) = b(i) - self%a(i, j)*b(j)
-      end do
-    end do
-  end subroutine substitute_above_round_off
 
   !> Number of columns that are independent beyond round-off.
   integer function rank(self, tolerance)

@@ -183,6 +183,8 @@ contains
       call test%is_true(norm2(x - y) <= allowed*(norm2(y) + norm2(b)*s(1)/s(size(s))**2), &
                         name//': the solution is that of the full matrix')
       call test%is_true(abs(remainder - expected) <= allowed*norm2(b), name//': the remainder is that of the full matrix')
+      call check_transposed(by_fronts, a, norm2(b), allowed, name//', by fronts')
+      call check_transposed(full, a, norm2(b), allowed, name)
       call test%is_true(by_fronts%determinant_sign() == full%determinant_sign(), &
                         name//': the determinant has the sign of the full matrix')
     end if
@@ -201,6 +203,24 @@ contains
                           name//': the least singular value is that of the full matrix')
     end associate
   end subroutine check_matrix
+
+  !> A solution of the transposed equations satisfies them, and is the shortest: it is a linear combination of the columns.
+  subroutine check_transposed(factors, a, length, allowed, name)
+    type(least_squares_type), intent(inout) :: factors   !< of the matrix
+    real(wp), intent(in) :: a(:, :)                      !< the matrix
+    real(wp), intent(in) :: length                       !< of a typical right-hand side
+    real(wp), intent(in) :: allowed                      !< round-off over the conditioning
+    character(len=*), intent(in) :: name                 !< for the report of a failure
+    real(wp) :: b(size(a, 2)), side(max(size(a, 1), size(a, 2))), y(size(a, 1)), x(size(a, 2)), remainder
+
+    b = reshape(random_matrix(random, size(b), 1), [size(b)])
+    side(:size(b)) = b
+    call factors%solve_transposed(side(:size(b)), y)
+    call test%is_true(norm2(matmul(y, a) - b) <= allowed*length, name//': a^T y = b')
+    side(:size(y)) = y
+    call factors%solve(side(:size(y)), x, remainder)
+    call test%is_true(remainder <= allowed*norm2(y), name//': y is a combination of columns')
+  end subroutine check_transposed
 
   !> Singular values, the largest first.
   function singular_values(a) result(s)
