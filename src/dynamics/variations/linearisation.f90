@@ -17,7 +17,7 @@ module mech9_linearisation
   use mech9_motion_variation, only: motion_variation_work_type, new_motion_variation_work, factorize_chains, &
     prepare_variations, vary_motion
   use mech9_tree_forces, only: tree_forces_type, new_tree_forces, find_tree_forces, vary_tree_forces, loop_wrench_type
-  use mech9_loop_forces, only: loop_forces_type, new_loop_forces, prepare_loop_forces, eliminate_dependent, loop_wrenches
+  use mech9_loop_forces, only: loop_forces_type, new_loop_forces, eliminate_dependent, loop_wrenches
   implicit none
   private
   public :: linearisation_type, new_linearisation, find_forces, vary_forces, find_matrix
@@ -75,11 +75,10 @@ contains
     end do
     call prepare_variations(plan, state, self%motion, err)
     if (allocated(err)) return
-    call prepare_loop_forces(plan, self%motion%blocks, self%loops)
     call find_tree_forces(mechanism, plan, self%dynamics, state, self%tree, err)
     if (allocated(err)) return
     self%forces = self%tree%required
-    call eliminate_dependent(plan, state, self%loops, self%forces)
+    call eliminate_dependent(plan, state, self%motion%blocks, self%loops, self%forces)
     call loop_wrenches(plan, state, self%loops, self%wrenches)
     call find_tree_forces(mechanism, plan, self%dynamics, state, self%tree, err, self%wrenches)
   end subroutine find_forces
@@ -97,7 +96,7 @@ contains
     call vary_tree_forces(mechanism, plan, self%dynamics, state, self%variation, self%tree, err, self%wrenches)
     if (allocated(err)) return
     self%change = self%tree%required_change
-    call eliminate_dependent(plan, state, self%loops, self%change)
+    call eliminate_dependent(plan, state, self%motion%blocks, self%loops, self%change)
   end subroutine vary_forces
 
   !> Derivatives of the forces of some independent coordinates by these coordinates, by their rates, or by their accelerations.

@@ -3,70 +3,58 @@
 module mech9_loop_forces
   use mech9_kinds, only: wp
   use mech9_rotation, only: turn_back, cross
-  use mech9_least_squares, only: least_squares_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
+  use mech9_block_equations, only: constraint_wrench
   use mech9_block_solver, only: block_work_type
   use mech9_tree_forces, only: loop_wrench_type
   implicit none
   private
-  public :: loop_forces_type, new_loop_forces, prepare_loop_forces, eliminate_dependent, loop_wrenches
+  public :: loop_forces_type, new_loop_forces, eliminate_dependent, loop_wrenches
 
-  !> Transposed equations of one block.
-  type :: transposed_type
-    type(least_squares_type) :: equations      !< as many equations as unknowns of the block; factorized
-    real(wp), allocatable :: right(:)          !< (unknowns) right-hand side
-    real(wp), allocatable :: multipliers(:)    !< (equations of the block) their forces
-  end type transposed_type
+  !> The forces of the equations of one block, and scratch.
+  type :: multipliers_type
+    real(wp), allocatable :: right(:)      !< (unknowns) right-hand side
+    real(wp), allocatable :: values(:)     !< (equations of the block) their forces
+  end type multipliers_type
 
-  !> Transposed equations of all blocks.
+  !> The forces of the equations of all blocks.
   type :: loop_forces_type
-    type(transposed_type), allocatable :: blocks(:)
+    type(multipliers_type), allocatable :: blocks(:)
   end type loop_forces_type
 
 contains
 
-  !> Room for the transposed equations.
+  !> Room for the forces of closed chains.
   pure function new_loop_forces(plan) result(loops)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism, in space
     type(loop_forces_type) :: loops
-    integer :: b, n
+    integer :: b
 
     allocate (loops%blocks(size(plan%blocks)))
     do b = 1, size(plan%blocks)
-      n = size(plan%blocks(b)%unknowns)
-      call loops%blocks(b)%equations%create(n, plan%blocks(b)%equations)
-      allocate (loops%blocks(b)%right(n), loops%blocks(b)%multipliers(plan%blocks(b)%equations), source=0.0_wp)
+      associate (block => plan%blocks(b))
+        allocate (loops%blocks(b)%right(size(block%unknowns)), loops%blocks(b)%values(block%equations), source=0.0_wp)
+      end associate
     end do
   end function new_loop_forces
 
-  !> Factorize the transposed Jacobians.
-  subroutine prepare_loop_forces(plan, work, loops)
-    type(plan_type), intent(in) :: plan               !< the plan of the mechanism, in space
-    type(block_work_type), intent(in) :: work(:)      !< (blocks) with the Jacobians
-    type(loop_forces_type), intent(inout) :: loops    !< gets the factors
-    integer :: b
-
-    do b = 1, size(plan%blocks)
-      if (plan%blocks(b)%equations > 0) call loops%blocks(b)%equations%factorize(transpose(work(b)%jacobian))
-    end do
-  end subroutine prepare_loop_forces
-
   !> Eliminate the forces of dependent coordinates by those of the closed chains. The forces of the independent coordinates then
   !> include all that the dependent ones hand on; those of dependent coordinates are zero.
-  subroutine eliminate_dependent(plan, state, loops, forces)
+  subroutine eliminate_dependent(plan, state, work, loops, forces)
     type(plan_type), intent(in) :: plan               !< the plan of the mechanism, in space
     type(state_type), intent(in) :: state             !< position of the mechanism
-    type(loop_forces_type), intent(inout) :: loops    !< with the factors; gets the multipliers
+    type(block_work_type), intent(inout) :: work(:)   !< (blocks) with the factors of their Jacobians
+    type(loop_forces_type), intent(inout) :: loops    !< gets the multipliers
     real(wp), intent(inout) :: forces(:)              !< (M) forces on the coordinates [N m, N]
     integer :: b
 
     do b = size(plan%blocks), 1, -1
       if (size(plan%blocks(b)%unknowns) == 0) cycle
-      associate (block => plan%blocks(b), transposed => loops%blocks(b))
-        transposed%right = forces(block%coordinates)*plan%unit_of(block%coordinates)
-        call transposed%equations%solve(transposed%right, transposed%multipliers)
-        call hand_on(plan, block, state, transposed%multipliers, forces)
+      associate (block => plan%blocks(b), multipliers => loops%blocks(b))
+        multipliers%right = forces(block%coordinates)*plan%unit_of(block%coordinates)
+        call work(b)%equations%solve_transposed(multipliers%right, multipliers%values)
+        call hand_on(plan, block, state, multipliers%values, forces)
         forces(block%coordinates) = 0.0_wp
       end associate
     end do
@@ -102,23 +90,14 @@ contains
     type(state_type), intent(in) :: state                    !< position of the mechanism
     type(loop_forces_type), intent(in) :: loops              !< with the multipliers
     type(loop_wrench_type), intent(out) :: wrenches(:)       !< (closures)
-    real(wp) :: values(6), force(3), moment(3), arm(3), along(3)
-    integer :: b, c, i, n, row
+    real(wp) :: force(3), moment(3), arm(3)
+    integer :: b, c, n, row
 
     do b = 1, size(plan%blocks)
       row = 0
       do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
         n = plan%constraints(c)%item%equations
-        associate (multipliers => loops%blocks(b)%multipliers(row + 1:row + n))
-          do i = 1, 3
-            along = 0.0_wp
-            along(i) = 1.0_wp
-            call plan%constraints(c)%item%opening(plan, state, along, [0.0_wp, 0.0_wp, 0.0_wp], values(:n))
-            moment(i) = dot_product(values(:n), multipliers)
-            call plan%constraints(c)%item%opening(plan, state, [0.0_wp, 0.0_wp, 0.0_wp], along, values(:n))
-            force(i) = dot_product(values(:n), multipliers)
-          end do
-        end associate
+        call constraint_wrench(plan, c, state, loops%blocks(b)%values(row + 1:row + n), force, moment)
         associate (base => plan%closures(c)%base)
           ! from the origin of the closing frame to that of the base
           arm = state%p(:, plan%closures(c)%closing) - state%p(:, base)

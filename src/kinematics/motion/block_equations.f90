@@ -6,7 +6,7 @@ module mech9_block_equations
   use mech9_state, only: state_type
   implicit none
   private
-  public :: block_residual, block_jacobian, block_rates, block_fronts, largest_gap
+  public :: block_residual, block_jacobian, block_rates, block_fronts, constraint_wrench, largest_gap
 
 contains
 
@@ -69,6 +69,32 @@ contains
       end associate
     end do
   end subroutine block_rates
+
+  !> The force, and the moment about the closing frame's origin, that do the work of the multipliers of a constraint's equations in
+  !> any motion of the closing frame relative to its target.
+  pure subroutine constraint_wrench(plan, c, state, multipliers, force, moment)
+    type(plan_type), intent(in) :: plan         !< the plan of the mechanism
+    integer, intent(in) :: c                    !< number of the constraint
+    type(state_type), intent(in) :: state       !< with the poses of the frames
+    real(wp), intent(in) :: multipliers(:)      !< (equations) [N m]
+    real(wp), intent(out) :: force(3)           !< axes of frame 0 [N]
+    real(wp), intent(out) :: moment(3)          !< axes of frame 0 [N m]
+    real(wp), parameter :: none(3) = 0.0_wp
+    real(wp) :: along(3), values(6)
+    integer :: i, n
+
+    n = size(multipliers)
+    associate (constraint => plan%constraints(c)%item)
+      do i = 1, 3
+        along = 0.0_wp
+        along(i) = 1.0_wp
+        call constraint%opening(plan, state, along, none, values(:n))
+        moment(i) = dot_product(values(:n), multipliers)
+        call constraint%opening(plan, state, none, along, values(:n))
+        force(i) = dot_product(values(:n), multipliers)
+      end do
+    end associate
+  end subroutine constraint_wrench
 
   !> The fronts by which the block's Jacobian can be factorized: its rows come in groups, one for each constraint, and only the
   !> unknowns of a constraint's loop occur in its group.
