@@ -16,6 +16,8 @@ program test_reactions
   use mech9_lagrange, only: find_equations, complete_accelerations
   use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
   use mech9_reactions, only: reactions_type, new_reactions, find_reactions
+  use mech9_required_wrenches, only: find_required
+  use mech9_joint_geometry, only: joint_geometry_type, new_joint_geometry, find_geometry
   use mech9_uniqueness, only: find_unique
   use mech9_mixed_structures, only: structure_type, random_structure, finished, below
   use mech9_loaded_mechanisms, only: loaded_loop, five_bar, loaded_fig1, open_chain
@@ -109,7 +111,7 @@ contains
     scale = max(maxval(abs(needed)), maxval(abs(reactions%force)), maxval(abs(reactions%moment)))
     call test%near(maxval(abs(reactions%needed(plan%independent) - needed))/scale, 0.0_wp, 1.0e-13_wp/conditioning**2, &
                    why//': independent coordinates need a ddq + h - Q')
-    call check_balance(model, plan, reaction_plan, reactions, scale, why)
+    call check_balance(model, plan, reaction_plan, state, reactions, scale, why)
     call find_unique(plan, reaction_plan, state, unique)
     call test%is_true(all(unique(:, pack([(i, i=1, plan%n_coordinates)], reaction_plan%alone(plan%step_of)))), &
                       why//': all components of open chains are unique')
@@ -120,25 +122,25 @@ contains
   end subroutine check
 
   !> Each link but link 1 receives from its pairs what it requires.
-  subroutine check_balance(model, plan, reaction_plan, reactions, scale, why)
+  subroutine check_balance(model, plan, reaction_plan, state, reactions, scale, why)
     type(model_type), intent(in) :: model                   !< the mechanism
     type(plan_type), intent(in) :: plan                     !< its plan
     type(reaction_plan_type), intent(in) :: reaction_plan   !< its plan of inverse dynamics
+    type(state_type), intent(in) :: state                   !< the motion
     type(reactions_type), intent(in) :: reactions           !< the forces
     real(wp), intent(in) :: scale                           !< the largest force [N, N m]
     character(len=*), intent(in) :: why                     !< name of the mechanism
+    type(joint_geometry_type) :: geometry
     real(wp) :: force(3, plan%n_links), moment(3, plan%n_links), arm(3)
-    integer :: k, side, link, s
+    integer :: k, side, link
 
-    ! the requirements of links have those of the clusters that stand on them in them already
-    force = reactions%link_force
-    moment = reactions%link_moment
+    geometry = new_joint_geometry(plan)
+    call find_geometry(plan, reaction_plan, state, geometry)
+    call find_required(model%mechanism, plan, reaction_plan, state, geometry%place, reactions%view, reactions%sum, force, moment)
     do k = 1, plan%n_coordinates
-      s = plan%step_of(k)
       do side = 1, 2
-        if (reaction_plan%begins(s) .and. ((side == 2) .eqv. (reaction_plan%pairs(k)%direction > 0.0_wp))) cycle
         link = reaction_plan%pairs(k)%links(side)
-        arm = reactions%geometry%point(:, k) - reactions%geometry%place(:, link)
+        arm = geometry%point(:, k) - geometry%place(:, link)
         force(:, link) = force(:, link) - (3 - 2*side)*reactions%force(:, k)
         moment(:, link) = moment(:, link) - (3 - 2*side)*(reactions%moment(:, k) + cross(arm, reactions%force(:, k)))
       end do

@@ -14,6 +14,9 @@ module mech9_joint_geometry
   !> mechanism's size; wrenches that work on them are force, then moment over this size.
   type :: joint_geometry_type
     real(wp), allocatable :: place(:, :)   !< (3,N) a place on each link, on the axis of one of its pairs [m]
+    real(wp), allocatable :: reached(:, :) !< (3,M) origin of the frame that each step reaches [m]
+    real(wp), allocatable :: spin(:, :)    !< (3,M) its angular velocity per unit of the coordinate
+    real(wp), allocatable :: slide(:, :)   !< (3,M) velocity of this origin per unit of the coordinate [m per unit]
     real(wp), allocatable :: point(:, :)   !< (3,M) origin of each pair's frame in its moving link [m]
     real(wp), allocatable :: axis(:, :)    !< (6,M) motion of the moving link at this point in the reference link, of length 1
     real(wp), allocatable :: length(:)     !< (M) of this motion per unit of the coordinate [m per unit]
@@ -26,8 +29,11 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(joint_geometry_type) :: geometry
 
-    allocate (geometry%place(3, plan%n_links), geometry%point(3, plan%n_coordinates), source=0.0_wp)
-    allocate (geometry%axis(6, plan%n_coordinates), geometry%length(plan%n_coordinates), source=0.0_wp)
+    allocate (geometry%place(3, plan%n_links), source=0.0_wp)
+    associate (m => plan%n_coordinates)
+      allocate (geometry%reached(3, m), geometry%spin(3, m), geometry%slide(3, m), geometry%point(3, m), source=0.0_wp)
+      allocate (geometry%axis(6, m), geometry%length(m), source=0.0_wp)
+    end associate
   end function new_joint_geometry
 
   !> The geometry of the position in `state`.
@@ -43,6 +49,9 @@ contains
       k = plan%steps(s)%coordinate
       associate (pair => reactions%pairs(k), point => geometry%point(:, k))
         call step_screw(plan, state, s, w, v, place)
+        geometry%reached(:, s) = place
+        geometry%spin(:, s) = w
+        geometry%slide(:, s) = v
         if (plan%frame_of(plan%steps(s)%link) == s) geometry%place(:, plan%steps(s)%link) = place
         point = place
         if (pair%direction < 0.0_wp) call move_to_start(plan, state, s, v, point)

@@ -6,10 +6,13 @@
 !> outside are taken one after the other, from the ends of open chains inwards.
 module mech9_reaction_plan
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: negligible_distance
-  use mech9_pose, only: inverse, pose_type
+  use mech9_tolerances, only: negligible_distance, planar_round_off
+  use mech9_pose, only: inverse, pose_type, transformed
+  use mech9_inertia, only: inertia_in_axes
   use mech9_pair, only: pair_type, screw_factors_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_planar_motion, only: to_plane
+  use mech9_planar_lagrange, only: planar_body_type, planar_body
   use mech9_clusters, only: clusters_type, find_clusters
   use mech9_plan, only: plan_type
   implicit none
@@ -30,6 +33,10 @@ module mech9_reaction_plan
     integer, allocatable :: pairs(:)     !< coordinates of its pairs
     integer, allocatable :: links(:)     !< its links but the one on which it stands
     integer, allocatable :: nodes(:, :)  !< (2,pairs) place of moving and reference link among these; 0: the one on which it stands
+    integer, allocatable :: blocks(:)    !< blocks of its closures, in the order of execution
+    !> Equilibrium alone determines the wrenches of all pairs, in planar mechanisms those in the plane: there are as many equations
+    !> of closed chains as loops can have, and all are independent.
+    logical :: determined = .false.
   end type joined_cluster_type
 
   !> The plan of inverse dynamics.
@@ -43,6 +50,11 @@ module mech9_reaction_plan
     integer, allocatable :: acting(:)     !< numbers of the loads that may move something
     integer, allocatable :: loaded(:)     !< links on which loads act or depend, without link 1
     real(wp) :: length = 1.0_wp           !< by which moments are divided to count beside forces [m]
+    !> The mechanism is planar with its pairs at one height, inertia and weight act in this plane, and all clusters are determined.
+    logical :: flat = .false.
+    real(wp) :: height = 0.0_wp           !< of the pairs above frame 0, in a flat mechanism [m]
+    real(wp) :: gravity(2) = 0.0_wp       !< acceleration of free fall in the plane's axes [m/s^2]
+    type(planar_body_type), allocatable :: flat_bodies(:)   !< the moving bodies in the plane
   end type reaction_plan_type
 
 contains
@@ -75,7 +87,36 @@ contains
       call mechanism%loads(reactions%acting(i))%load%mark_links(loaded)
     end do
     reactions%loaded = pack([(i, i=2, plan%n_links)], loaded(2:))
+    allocate (reactions%flat_bodies(0))
+    if (plan%planar%used .and. all(reactions%clusters%determined)) call lay_flat(mechanism, plan, reactions)
   end subroutine make_reaction_plan
+
+  !> Whether inertia and weight act in the plane of a planar mechanism, and its bodies there.
+  subroutine lay_flat(mechanism, plan, reactions)
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(plan_type), intent(in) :: plan                    !< its plan
+    type(reaction_plan_type), intent(inout) :: reactions   !< with length and bodies; gets those in the plane
+    real(wp) :: centre(3), inertia(3, 3), gravity(3), across
+    integer :: i
+
+    gravity = to_plane(plan%planar, mechanism%gravity)
+    reactions%gravity = gravity(1:2)
+    reactions%height = plan%planar%height(1)
+    reactions%flat = abs(gravity(3)) <= planar_round_off*norm2(gravity) .and. &
+                     all(abs(plan%planar%height(1:) - reactions%height) <= planar_round_off*reactions%length)
+    do i = 1, size(reactions%bodies)
+      associate (body => mechanism%bodies(reactions%bodies(i)))
+        centre = transformed(plan%planar%link_in_frame(body%link), body%centre)
+        inertia = inertia_in_axes(plan%planar%link_in_frame(body%link)%r, body%inertia)
+        across = max(abs(inertia(1, 3)), abs(inertia(2, 3)))
+        if (body%mass > 0.0_wp) &
+          across = max(across, body%mass*reactions%length*abs(centre(3) - reactions%height))
+        reactions%flat = reactions%flat .and. &
+                         across <= planar_round_off*(body%mass*reactions%length**2 + inertia(1, 1) + inertia(2, 2) + inertia(3, 3))
+        reactions%flat_bodies = [reactions%flat_bodies, planar_body(plan, body)]
+      end associate
+    end do
+  end subroutine lay_flat
 
   !> A pair as inverse dynamics sees it. The frame of a pair without a fixed axis is that of its moving link.
   function joined_pair(pair, plan, coordinate) result(joined)
@@ -162,7 +203,35 @@ contains
         do i = 1, n
           cluster%nodes(:, i) = node(reactions%pairs(cluster%pairs(i))%links)
         end do
+        call join_closures(plan, clusters, steps, reactions, cluster)
       end associate
     end do
   end subroutine join_clusters
+
+  !> The closures of a cluster, and whether they determine its wrenches.
+  pure subroutine join_closures(plan, clusters, steps, reactions, cluster)
+    type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
+    type(clusters_type), intent(in) :: clusters          !< its clusters
+    integer, intent(in) :: steps(:)                      !< those of the cluster
+    type(reaction_plan_type), intent(in) :: reactions    !< with its pairs
+    type(joined_cluster_type), intent(inout) :: cluster  !< with pairs and links; gets what closures tell
+    integer :: b, closures, loops
+    logical :: regular
+
+    allocate (cluster%blocks(0))
+    closures = 0
+    regular = .true.
+    do b = 1, size(plan%blocks)
+      associate (block => plan%blocks(b))
+        if (block%last_closure < block%first_closure) cycle
+        if (clusters%of_step(plan%closures(block%first_closure)%closing) /= steps(1)) cycle
+        cluster%blocks = [cluster%blocks, b]
+        regular = regular .and. block%equations == size(block%unknowns)
+        closures = closures + block%last_closure - block%first_closure + 1
+      end associate
+    end do
+    loops = size(cluster%pairs) - size(cluster%links)
+    cluster%determined = regular .and. count(reactions%pairs(cluster%pairs)%dependent) == merge(3, 6, plan%planar%used)*loops &
+                         .and. closures == loops
+  end subroutine join_closures
 end module mech9_reaction_plan

@@ -16,10 +16,13 @@ module mech9_reactions
   use mech9_state, only: state_type
   use mech9_motion_view, only: motion_view_type
   use mech9_force_sum, only: force_sum_type, new_force_sum
+  use mech9_generalized_forces, only: sum_loads
   use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type
   use mech9_required_wrenches, only: find_required
   use mech9_joint_geometry, only: joint_geometry_type, new_joint_geometry, find_geometry
   use mech9_cluster_balance, only: cluster_balance_type, new_cluster_balance
+  use mech9_loop_balance, only: loop_balance_type, new_loop_balance, balance_loops, show_loops
+  use mech9_planar_wrenches, only: planar_wrenches_type, new_planar_wrenches, balance_in_plane, show_wrenches
   use mech9_planar_balance, only: planar_balance_type, new_planar_balance
   use mech9_singular_cluster, only: singular_cluster_type, decompose_cluster
   implicit none
@@ -36,6 +39,8 @@ module mech9_reactions
     type(joint_geometry_type) :: geometry         !< of the position
     type(motion_view_type) :: view                !< the motion as loads read it
     type(force_sum_type) :: sum                   !< of the loads
+    type(planar_wrenches_type) :: flat            !< of a flat mechanism
+    type(loop_balance_type) :: loops              !< of the clusters that equilibrium determines
     type(cluster_balance_type), allocatable :: balances(:)   !< of the clusters
     type(planar_balance_type), allocatable :: in_plane(:)    !< of the clusters of a planar mechanism
     real(wp), allocatable :: link_force(:, :)     !< (3,N) scratch: what links require, with clusters that stand on them [N]
@@ -66,6 +71,8 @@ contains
       self%sum = new_force_sum(n, m)
     end associate
     self%geometry = new_joint_geometry(plan)
+    if (reactions%flat) self%flat = new_planar_wrenches(plan)
+    self%loops = new_loop_balance(plan, reactions)
     allocate (self%balances(size(reactions%clusters)), self%in_plane(merge(size(reactions%clusters), 0, plan%planar%used)))
     do c = 1, size(reactions%clusters)
       self%balances(c) = new_cluster_balance(reactions, reactions%clusters(c))
@@ -85,15 +92,30 @@ contains
     integer :: c
     logical :: done
 
+    if (size(reactions%acting) > 0) then
+      call sum_loads(mechanism, plan, reactions%acting, reactions%loaded, state, self%view, self%sum, err)
+      if (allocated(err)) return
+    end if
+    if (reactions%flat) then
+      call balance_in_plane(plan, reactions, state, self%view, self%sum, self%flat, done)
+      if (done) then
+        call show_wrenches(plan, reactions, state, self%sum, self%flat, self%force, self%moment, self%needed)
+        return
+      end if
+    end if
     call find_geometry(plan, reactions, state, self%geometry)
     call find_required(mechanism, plan, reactions, state, self%geometry%place, self%view, self%sum, self%link_force, &
-                       self%link_moment, err)
-    if (allocated(err)) return
+                       self%link_moment)
     call carry_inwards(plan, reactions, self)
     do c = 1, size(reactions%clusters)
       call leave_unloaded(reactions%clusters(c), self, done)
-      if (plan%planar%used .and. .not. done) &
-        call solve_in_plane(plan, reactions, reactions%clusters(c), self%balances(c)%held, self%in_plane(c), self, done)
+      if (.not. done) then
+        if (plan%planar%used) then
+          call solve_in_plane(plan, reactions, reactions%clusters(c), self%balances(c)%held, self%in_plane(c), self, done)
+        else if (reactions%clusters(c)%determined) then
+          call solve_loops(plan, reactions, reactions%clusters(c), state, self, done)
+        end if
+      end if
       if (done) cycle
       call solve_cluster(plan, reactions, reactions%clusters(c), self%balances(c), self, err)
       if (allocated(err)) then
@@ -156,6 +178,20 @@ contains
       self%moment(:, cluster%pairs(i)) = 0.0_wp
     end do
   end subroutine leave_unloaded
+
+  !> The wrenches of the pairs of a cluster that equilibrium alone determines. `done` is false beside singular positions.
+  subroutine solve_loops(plan, reactions, cluster, state, self, done)
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(reaction_plan_type), intent(in) :: reactions   !< the plan of inverse dynamics
+    type(joined_cluster_type), intent(in) :: cluster    !< the cluster
+    type(state_type), intent(in) :: state               !< the position
+    type(reactions_type), intent(inout) :: self         !< with what its links require; gets the wrenches
+    logical, intent(out) :: done                        !< the wrenches are found
+
+    call balance_loops(plan, reactions, cluster, state, self%geometry, self%link_force, self%link_moment, self%sum, &
+                       self%loops, done)
+    if (done) call show_loops(reactions, cluster, self%geometry, self%loops, self%force, self%moment)
+  end subroutine solve_loops
 
   !> The wrenches of the pairs of a planar cluster across whose plane nothing acts. `done` is false where something does, and
   !> beside singular positions.

@@ -1,14 +1,12 @@
 !> The wrench that each link requires from its pairs: inertia less gravity and loads.
 module mech9_required_wrenches
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
   use mech9_rotation, only: turn, turn_back, cross
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_motion_view, only: motion_view_type
   use mech9_force_sum, only: force_sum_type
-  use mech9_generalized_forces, only: sum_loads
   use mech9_frame_motion, only: link_motion, link_turning, point_motion
   use mech9_reaction_plan, only: reaction_plan_type
   implicit none
@@ -17,18 +15,17 @@ module mech9_required_wrenches
 
 contains
 
-  !> The force that each link requires, and the moment about a place of its own; and the loads on the coordinates.
-  subroutine find_required(mechanism, plan, reactions, state, places, view, sum, force, moment, err)
+  !> The force that each link requires, and the moment about a place of its own.
+  pure subroutine find_required(mechanism, plan, reactions, state, places, view, sum, force, moment)
     type(mechanism_type), intent(in) :: mechanism         !< the mechanism
     type(plan_type), intent(in) :: plan                   !< its plan
     type(reaction_plan_type), intent(in) :: reactions     !< the plan of inverse dynamics
     type(state_type), intent(in) :: state                 !< with the accelerations of the frames
     real(wp), intent(in), contiguous :: places(:, :)      !< (3,N) from the origin of frame 0 [m]
-    type(motion_view_type), intent(inout) :: view         !< scratch: the motion as loads read it
-    type(force_sum_type), intent(inout) :: sum            !< gets the sums of the loads
+    type(motion_view_type), intent(in) :: view            !< the motion that the loads read
+    type(force_sum_type), intent(in) :: sum               !< the sums of the loads
     real(wp), intent(out), contiguous :: force(:, :)      !< (3,N) axes of link 1 [N]
     real(wp), intent(out), contiguous :: moment(:, :)     !< (3,N) about `places`, axes of link 1 [N m]
-    type(error_type), allocatable, intent(out) :: err     !< allocated if a load failed
     real(wp) :: arm(3), turning(3)
     integer :: i, k
 
@@ -38,9 +35,6 @@ contains
       k = mechanism%bodies(reactions%bodies(i))%link
       call add_body(mechanism, plan, reactions%bodies(i), state, places(:, k), force(:, k), moment(:, k))
     end do
-    if (size(reactions%acting) == 0) return
-    call sum_loads(mechanism, plan, reactions%acting, reactions%loaded, state, view, sum, err)
-    if (allocated(err)) return
     do i = 1, size(reactions%loaded)
       k = reactions%loaded(i)
       ! the sums are about the origins of the links' own systems

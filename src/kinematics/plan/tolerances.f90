@@ -19,7 +19,8 @@ module mech9_tolerances
     far_slide, escaped_slide, escaping_speed, escape_law, just_short_of_end, shorter_crossing, trusted_crossing, &
     trusted_crossing_rates, first_move, doubtful_conditioning, worthwhile_improvement, regular_conditioning, &
     refused_conditioning, trusted_closing, trusted_between_steps, steepest_slope, negligible_inertia, &
-    doubtful_margin, short_way, third_derivative_step, locked, locked_together, balanced, balanced_singular
+    doubtful_margin, short_way, third_derivative_step, locked, locked_together, balanced, balanced_singular, &
+    regular_balance
 
   ! Ranks and singular positions: judged alike by --check, driven motion and dynamics.
 
@@ -238,6 +239,9 @@ module mech9_tolerances
   real(wp), parameter :: balanced = 1.0e-12_wp
   !> The same beside a singular position, where wrenches are large against what the links require.
   real(wp), parameter :: balanced_singular = 1.0e-9_wp
+  !> Transposed equations of motion give the wrenches where the least pivot is above this part of the largest; in worse positions the
+  !> singular values of the links' balance decide which wrenches are finite.
+  real(wp), parameter :: regular_balance = 1.0e-6_wp
   !> Distance in time of two evaluations whose difference gives third derivatives, over the time that the motion takes for
   !> 1 rad: the square of this and round-off over it are both the error, about 1e-10.
   real(wp), parameter :: third_derivative_step = 1.0e-5_wp
