@@ -3,7 +3,6 @@ what must not change them.
 
 usage: reactions.py MECH9K MECH9D
 """
-import json
 import os
 import sys
 import tempfile
@@ -12,99 +11,10 @@ import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 from data_file import parse, write
-from dense_forces import Forces
+from force_files import COMPONENTS, compare, example, forces_of, h5py, revolute, rotated, rotation, with_links, with_masses, wrenches
 from mech9_cases import TREE, Checks, read_table, run, text_of
 
-try:
-    import h5py
-except ImportError:
-    h5py = None
-
-COMPONENTS = ('fx', 'fy', 'fz', 'mx', 'my', 'mz')
-# Sums over the pairs of a link are round-off of the largest force; the program corrects them to some units in the last place, and
-# the table gives accelerations with an error of as many.
-BALANCE = 1e-11
-# Along directions in which links are held weakly, round-off of the sums is enlarged by the conditioning, up to some thousands.
-AGREEMENT = 1e-8
-
-
-def forces_of(program, text, *options):
-    """(table, report, unique components by pair or None) of a data file with all forces recorded."""
-    with tempfile.TemporaryDirectory() as folder:
-        names = {name: os.path.join(folder, name) for name in ('case.nml', 'rows.dat', 'rows.h5', 'report.json')}
-        with open(names['case.nml'], 'w', encoding='utf-8') as file:
-            file.write(text)
-        done = run(program, names['case.nml'], '--table', names['rows.dat'], '--hdf5', names['rows.h5'], '--report', names['report.json'],
-                   '--set', 'output.reactions=.true.', '--set', 'output.drive_forces=.true.', *options, folder=folder)
-        if done.returncode != 0:
-            raise RuntimeError(f'{program} ended with {done.returncode}:\n{done.stderr}')
-        with open(names['report.json'], encoding='utf-8') as file:
-            report = json.load(file)
-        unique = None
-        if h5py:
-            with h5py.File(names['rows.h5']) as file:
-                unique = file['reaction_unique'][:]
-        return read_table(text_of(names['rows.dat'])), report, unique
-
-
-def wrenches(table, row, pairs):
-    return np.array([[table[f'R{k + 1}.{c}'][row] for c in COMPONENTS] for k in range(pairs)])
-
-
-def compare(checks, program, groups, why, intervals=4):
-    """Hold the forces of a data file against dense equations; gives the least uniqueness pattern as a list of texts."""
-    groups = [(group, items) for group, items in groups if group != 'output']
-    table, report, unique = forces_of(program, write(groups), '--set', f'time.intervals={intervals}')
-    dense = Forces(groups, report['independent'])
-    pairs = len(dense.pairs)
-    units = [1.0 if pair.kind == 'prismatic' else float(dense.unit) for pair in dense.pairs]
-    scales = np.array([1] * 3 + [dense.length] * 3)
-    for row in range(len(table['t'])):
-        q = [[table[f'{name}{k + 1}'][row] * units[k] * factor for k in range(pairs)]
-             for name, factor in (('q', 1), ('dq', 1), ('ddq', 0.5))]
-        expected, drives, null = dense.solve(q)
-        found = wrenches(table, row, pairs)
-        # a pendulum that is released at its side feels no force there
-        largest = np.max(np.abs(expected / scales)) or 1.0
-        checks.true(np.max(np.abs(found - expected) / scales) <= AGREEMENT * largest, f'{why}: wrenches of least norm in row {row}',
-                    np.max(np.abs(found - expected) / scales) / largest)
-        checks.true(dense.imbalance(q, found) <= BALANCE * largest, f'{why}: every link is in balance in row {row}',
-                    dense.imbalance(q, found) / largest)
-        for k, force in zip(report['independent'], drives):
-            if f'F{k}' in table:
-                checks.true(abs(force - table[f'F{k}'][row]) <= AGREEMENT * largest * max(1, dense.length), f'{why}: force of drive {k}',
-                            (force, table[f'F{k}'][row]))
-        # the last position may be a special one, as the first
-        if unique is not None and row == 1:
-            checks.true((unique == (null < 1e-9)).all(), f'{why}: the unique components are those without a part in the null space',
-                        f'{unique}\n{(null < 1e-9).astype(int)}')
-    checks.true(any(table[f'R{k + 1}.{c}'].any() for k in range(pairs) for c in COMPONENTS), f'{why}: there are forces')
-    return None if unique is None else [''.join(c + ' ' for c, u in zip(COMPONENTS, row) if not u).strip() for row in unique]
-
-
 # --- mechanisms -------------------------------------------------------------------------------------------------------
-
-def example(name, file=None):
-    """The groups of an example's data file."""
-    text = text_of(os.path.join(TREE, 'examples', name, file or f'{name}.nml'))
-    return parse(text.replace('.true.', '1').replace('.false.', '0'))
-
-
-def with_masses(rng, groups):
-    """Bodies on all links, gravity across no axis, and some loads."""
-    links = max(max(items['links']) for group, items in groups if group == 'pair')
-    groups = [(group, items) for group, items in groups if group not in ('body', 'gravity', 'load')]
-    for link in range(2, links + 1):
-        groups.append(('body', {'link': [link], 'mass': [float(rng.uniform(0.5, 2))], 'centre': list(map(float, rng.uniform(-0.3, 0.3, 3))),
-                                'inertia': [0.3, 0.4, 0.5, 0.02, -0.03, 0.01]}))
-    groups.append(('gravity', {'acceleration': [1.0, -9.0, 3.0]}))
-    groups.append(('load', {'kind': ['force'], 'link': [links], 'position': [0.1, 0.2, 0.3], 'force': [3.0, -2.0, 1.0], 'frame': ['link']}))
-    groups.append(('load', {'kind': ['spring'], 'links': [1, 2], 'position': [0.5, 0.1, 0.2], 'second_position': [0.1, 0.4, -0.2],
-                            'stiffness': [20.0], 'free_length': [0.3], 'damping': [0.5]}))
-    for k in (1, max(items['coordinate'][0] for group, items in groups if group == 'pair')):
-        groups.append(('load', {'kind': ['coordinate'], 'coordinate': [k], 'stiffness': [2.0], 'damping': [0.7], 'force': [1.5]}))
-    return groups
-
 
 def gallery(checks, mech9k, mech9d):
     """Every example with bodies, and those for mech9k with bodies of their own."""
@@ -116,10 +26,6 @@ def gallery(checks, mech9k, mech9d):
     for name in ('fig1', 'slider_crank', 'watt_parallel_motion', 'peaucellier', 'jansen_leg', 'whitworth', 'class_three_group', 'bennett',
                  'sarrus', 'double_hooke', 'rsur', 'stewart_gough', 'palletising_arm'):
         compare(checks, mech9k, with_masses(rng, example(name)), name, intervals=3)
-
-
-def revolute(k, links, point, axis='0,0,1'):
-    return f"&pair coordinate={k}, links={links}, kind='revolute', point={point}, axis={axis} /\n"
 
 
 def uniqueness(checks, mech9k, mech9d):
@@ -185,50 +91,17 @@ def by_hand(checks, mech9k, mech9d):
 
 
 def changes(checks, mech9k):
-    """Forces do not depend on the choice of independent coordinates, on the numbers of links, on which pair closes a chain, nor on the
-    plane or the rotation of the whole."""
+    """Forces do not depend on the numbers of links nor on the rotation of the whole; force_identities changes more."""
     rng = np.random.default_rng(8)
     groups = with_masses(rng, example('fig1'))
-    first, report, unique = forces_of(mech9k, write(groups), '--set', 'time.intervals=3')
-    pairs = 7
-    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
-    turn = turn * np.linalg.det(turn)
-    rotated = []
-    for group, items in groups:
-        items = dict(items)
-        if group == 'pair':
-            axis = np.array(items['axis'])
-            zero = np.array(items.get('zero', [1.0, 0, 0] if abs(axis[0]) <= np.sqrt(0.5) else [0, 1.0, 0]))
-            items['axis'], items['zero'] = list(turn @ axis), list(turn @ zero)
-            for name in ('point', 'moving_point'):
-                if name in items:
-                    items[name] = list(turn @ np.array(items[name]))
-        for name in {'point': ('position',), 'body': ('centre',), 'gravity': ('acceleration',),
-                     'load': ('position', 'second_position', 'force', 'torque')}.get(group, ()):
-            if name in items and len(items[name]) == 3:
-                items[name] = list(turn @ np.array(items[name]))
-        if group == 'body':
-            xx, yy, zz, xy, xz, yz = items['inertia']
-            i = turn @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ turn.T
-            items['inertia'] = [i[0, 0], i[1, 1], i[2, 2], i[0, 1], i[0, 2], i[1, 2]]
-        rotated.append((group, {name: [float(v) if isinstance(v, np.floating) else v for v in value] for name, value in items.items()}))
-    second, _, other = forces_of(mech9k, write(rotated), '--set', 'time.intervals=3')
-    numbers = {1: 1, **{a: b for a, b in zip(range(2, 7), (5, 2, 6, 3, 4))}}
-    renumbered = []
-    for group, items in groups:
-        items = dict(items)
-        if group == 'structure':
-            items = {'cq': items['cq']}
-        for name in ('link', 'links'):
-            if name in items:
-                items[name] = [numbers[v] for v in items[name]]
-        renumbered.append((group, items))
-    third, _, _ = forces_of(mech9k, write([(group, {**items, **({'links': [6]} if group == 'mechanism' else {})})
-                                           for group, items in renumbered]), '--set', 'time.intervals=3')
+    first, _, unique = forces_of(mech9k, write(groups), '--set', 'time.intervals=3')
+    turn = rotation(rng)
+    second, _, other = forces_of(mech9k, write(rotated(groups, turn)), '--set', 'time.intervals=3')
+    third, _, _ = forces_of(mech9k, write(with_links(groups, (1, 5, 2, 6, 3, 4))), '--set', 'time.intervals=3')
     for row in range(4):
-        one = wrenches(first, row, pairs)
+        one = wrenches(first, row, 7)
         largest = np.abs(one).max()
-        two, three = wrenches(second, row, pairs), wrenches(third, row, pairs)
+        two, three = wrenches(second, row, 7), wrenches(third, row, 7)
         back = np.concatenate([two[:, :3] @ turn, two[:, 3:] @ turn], axis=1)
         checks.true(np.abs(back - one).max() <= 1e-10 * largest, f'rotated forces in row {row}', np.abs(back - one).max() / largest)
         checks.true(np.abs(three - one).max() <= 1e-10 * largest, f'forces of renumbered links in row {row}', np.abs(three - one).max() / largest)

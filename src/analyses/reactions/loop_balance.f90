@@ -132,7 +132,7 @@ contains
     moment(3) = moment(3) + sign*(m(3) + x*f(2) - y*f(1))
   end subroutine add_at
 
-  !> What a dependent coordinate requires beside the loads on it [N m, N].
+  !> The generalized force that a dependent coordinate requires beside the loads on it [N m, N].
   pure real(wp) function lacking_at(k, s, geometry, loads, self) result(lacking)
     integer, intent(in) :: k                            !< number of the coordinate
     integer, intent(in) :: s                            !< its step

@@ -10,7 +10,7 @@ module mech9_planar_wrenches
   use mech9_planar_plan, only: planar_step_type
   use mech9_state, only: state_type
   use mech9_planar_motion, only: to_space, to_plane
-  use mech9_planar_formulas, only: turn_in_plane, point_acceleration, rows_at_base
+  use mech9_planar_formulas, only: turn_in_plane, point_acceleration
   use mech9_planar_lagrange, only: planar_body_type
   use mech9_block_solver, only: block_work_type, new_block_work, factorize_block
   use mech9_motion_view, only: motion_view_type
