@@ -260,6 +260,11 @@ contains
       end if
       if (interview%draft%count_of('mechanism') == 0) call interview%draft%add('mechanism')
       call interview%refresh(here)
+      if (group == 'drive' .and. name == '') then
+        ! without its drive a coordinate is free, and begins at a position and a rate that are asked for
+        if (interview%return_to == '') interview%return_to = here
+        call interview%step()
+      end if
     end associate
     call conversation%keep()
     call conversation%say('Removed.')

@@ -168,7 +168,7 @@ contains
     is_begun = .false.
     associate (question => self%questions(self%at))
       if (question%kind /= ask_item .or. question%is_new) return
-      if (.not. can_be_left_out(question%group_row)) return
+      if (.not. can_be_left_out(question%group_row, self%outline%program_name)) return
       rows = rows_of_group(group_table(question%group_row)%name)
       if (question%row /= rows(1)) return
       do i = self%at, size(self%questions)
@@ -190,7 +190,7 @@ contains
     question = self%due()
     done = .false.
     if (question%kind /= ask_item .or. question%is_new) return
-    done = can_be_left_out(question%group_row)
+    done = can_be_left_out(question%group_row, self%outline%program_name)
     if (.not. done) return
     group = trim(group_table(question%group_row)%name)
     rows = rows_of_group(group)

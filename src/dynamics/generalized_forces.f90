@@ -102,6 +102,12 @@ contains
     integer :: i, k
 
     view%t = state%t
+    if (allocated(state%motor)) then
+      view%motor = state%motor
+      view%limited = state%limited
+    else if (allocated(view%motor)) then
+      deallocate (view%motor, view%limited)
+    end if
     do i = 1, plan%n_coordinates
       view%q(i) = state%q(i)
       view%dq(i) = state%dq(i)

@@ -14,7 +14,7 @@ module mech9_drive_check
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: check_drives, check_independent
+  public :: check_drives, check_motors, check_independent
 
   !> An initial value agrees with a drive where it differs by no more than this part of it, or by the second number [rad, m, ...].
   real(wp), parameter :: same_value = 1.0e-6_wp, same_zero = 1.0e-9_wp
@@ -43,6 +43,32 @@ contains
       call check_start(document%groups(numbers(i)), model, diagnostics)
     end do
   end subroutine check_drives
+
+  !> Report motors on dependent coordinates, and on driven ones.
+  subroutine check_motors(document, model, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(model_type), intent(in) :: model                 !< all that was read; sound where there are no errors
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    integer, allocatable :: numbers(:)
+    integer :: i, j, k
+    logical :: sound
+
+    sound = .not. diagnostics%failed()
+    numbers = groups_named(document, 'motor')
+    do i = 1, size(numbers)
+      call check_independent(document%groups(numbers(i)), model, sound, 'have a motor', &
+                             'put the motor on an independent one (see cq)', diagnostics)
+      k = get_integer(document%groups(numbers(i)), 'coordinate')
+      do j = 1, size(model%problem%drives)
+        if (.not. allocated(model%problem%drives(j)%drive)) cycle
+        if (model%problem%drives(j)%drive%coordinate /= k) cycle
+        call diagnostics%add(span_of(document%groups(numbers(i)), 'coordinate', 1), 'coordinate '//to_text(k)//' has the drive '// &
+                             'of line '//to_text(model%problem%drives(j)%drive%place%line)//', which sets its motion, so that '// &
+                             'a motor has no effect; leave one of the two out')
+        exit
+      end do
+    end do
+  end subroutine check_motors
 
   !> Report independent coordinates without a drive.
   pure subroutine check_complete(document, partition, diagnostics)

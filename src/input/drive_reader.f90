@@ -220,7 +220,7 @@ contains
     end if
   end subroutine check_period
 
-  !> The files that drives and laws of loads are read from, in a document that may be unchecked yet.
+  !> The files that drives and laws of loads and motors are read from, in a document that may be unchecked yet.
   pure subroutine files_of_drives(document, paths)
     type(document_type), intent(in) :: document              !< the data file as groups and items
     type(string_type), allocatable, intent(out) :: paths(:)  !< path of each file, from the working directory
@@ -232,7 +232,7 @@ contains
     n = 0
     do i = 1, size(paths)
       associate (group => document%groups(i))
-        if ((group%name /= 'drive' .and. group%name /= 'load') .or. .not. allocated(group%items)) cycle
+        if (all(group%name /= ['drive', 'load ', 'motor']) .or. .not. allocated(group%items)) cycle
         call take_file(document%source%name, group%items, paths, n)
       end associate
     end do

@@ -60,6 +60,8 @@ module mech9_grammar
     group_row_type('body', .true., 'link', for_forces, 'mass, centre and inertia of a link; links without a body are massless'), &
     group_row_type('gravity', .false., '', for_forces, 'the acceleration of gravity'), &
     group_row_type('load', .true., '', for_forces, 'a force, torque, spring or damper, or a user''s procedure'), &
+    group_row_type('motor', .true., '', 'mech9d', &
+                   'a motor on an independent coordinate without a drive: direct current, or set by a PID controller'), &
     group_row_type('time', .false., '', 'both', &
                    'the times of the results: start + (end - start) i/intervals, i = 0 .. intervals'), &
     group_row_type('solver', .false., '', 'mech9d', 'method and tolerances of the integration'), &
@@ -226,6 +228,55 @@ module mech9_grammar
     item_row_type('load', 'period', 'real', 1, 1, 's', optional, '(no repetition)', '>0', '', 'law:segments', &
                   'the segments repeat after this time, which is that from the first to the last of times', '1')]
 
+  type(item_row_type), parameter :: motor_items(*) = [ &
+    item_row_type('motor', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
+                  'number of the independent coordinate on which it acts', '1'), &
+    item_row_type('motor', 'kind', 'text', 1, 1, '', needed, '', '', 'dc pid', '', &
+                  'dc: direct current at a given voltage; pid: a PID controller sets the force', '''dc'''), &
+    item_row_type('motor', 'voltage', 'real', 1, 1, 'V', optional, '(1 with a law)', '', '', 'dc', &
+                  'voltage, which a law multiplies if there is one', '24'), &
+    item_row_type('motor', 'resistance', 'real', 1, 1, 'ohm', needed, '', '>0', '', 'dc', 'resistance of the circuit', '0.6'), &
+    item_row_type('motor', 'inductance', 'real', 1, 1, 'H', optional, '0', '>=0', '', 'dc', &
+                  'inductance of the circuit; 0: the current follows the voltage at once', '0.001'), &
+    item_row_type('motor', 'constant', 'real', 1, 1, 'N m/A, N/A', needed, '', '>0', '', 'dc', &
+                  'torque or force per current, which is also voltage per rad/s or m/s', '0.05'), &
+    item_row_type('motor', 'gear_ratio', 'real', 1, 1, '', optional, '1', '', '', 'dc', &
+                  'turns of the motor per turn of the coordinate; negative: the other way', '20', seldom=.true.), &
+    item_row_type('motor', 'proportional', 'real', 1, 1, 'N m/rad, N/m', optional, '0', '>=0', '', 'pid', &
+                  'force per deviation from the setpoint; per rad for angles, also with angle_unit=''deg''', '50'), &
+    item_row_type('motor', 'integral', 'real', 1, 1, 'N m/rad/s', optional, '0', '>=0', '', 'pid', &
+                  'force per time integral of the deviation', '20'), &
+    item_row_type('motor', 'derivative', 'real', 1, 1, 'N m s, N s/m', optional, '0', '>=0', '', 'pid', &
+                  'force per rate of the deviation', '5'), &
+    item_row_type('motor', 'limit', 'real', 1, 1, 'N m, N', optional, '(none)', '>0', '', 'pid', &
+                  'largest magnitude of the force; the integral is led back while the force is there', '8', seldom=.true.), &
+    item_row_type('motor', 'setpoint', 'real', 1, 1, 'q', optional, '(by law)', '', '', 'pid', &
+                  'a constant setpoint; one that changes is given by law in its place', '0.5'), &
+    item_row_type('motor', 'law', 'text', 1, 1, '', optional, '''constant''', '', 'constant polynomial harmonic table segments', &
+                  '', 'the form in time of the factor of voltage, or of the setpoint, with the names of &drive', '''harmonic''', &
+                  seldom=.true.), &
+    item_row_type('motor', 'coefficients', 'real', 1, unlimited, '1 or q, /s', needed, '', '', '', 'law:polynomial', &
+                  'c0, c1, c2, ... of the factor or setpoint c0 + c1 t + c2 t^2 + ...', '0, 0.5'), &
+    item_row_type('motor', 'mean', 'real', 1, 1, '1 or q', optional, '0', '', '', 'law:harmonic', &
+                  'the mean in the factor or setpoint mean + amplitude sin(angular_frequency t + phase)', '1'), &
+    item_row_type('motor', 'amplitude', 'real', 1, 1, '1 or q', needed, '', '', '', 'law:harmonic', &
+                  'largest distance from the mean', '1'), &
+    item_row_type('motor', 'angular_frequency', 'real', 1, 1, 'angle/s', needed, '', '', '', 'law:harmonic', &
+                  'growth of the angle of the sine per second', '6.28'), &
+    item_row_type('motor', 'phase', 'real', 1, 1, 'angle', optional, '0', '', '', 'law:harmonic', &
+                  'angle of the sine at t = 0', '1.57'), &
+    item_row_type('motor', 'file', 'text', 1, 1, 's, 1 or q', needed, '', '', '', 'law:table', &
+                  'a text file with t and factor or setpoint in each line, beside the data file; a smooth curve joins the points', &
+                  '''voltage.dat'''), &
+    item_row_type('motor', 'times', 'real', 2, unlimited, 's', needed, '', '', '', 'law:segments', &
+                  'the times at which segments begin and end, increasing', '0, 0.5, 1'), &
+    item_row_type('motor', 'values', 'real', 2, unlimited, '1 or q', needed, '', '', '', 'law:segments', &
+                  'the factor or setpoint at these times', '0, 1, 1'), &
+    item_row_type('motor', 'laws', 'text', 1, unlimited, '', needed, '', '', motion_laws, 'law:segments', &
+                  'the motion law of each segment, or one for all', '''cycloidal'''), &
+    item_row_type('motor', 'period', 'real', 1, 1, 's', optional, '(no repetition)', '>0', '', 'law:segments', &
+                  'the segments repeat after this time, which is that from the first to the last of times', '1')]
+
   type(item_row_type), parameter :: run_items(*) = [ &
     item_row_type('time', 'start', 'real', 1, 1, 's', optional, '0', '', '', '', 'time of the first result', '0'), &
     item_row_type('time', 'end', 'real', 1, 1, 's', optional, '1', '', '', '', 'time of the last result', '2.5'), &
@@ -286,7 +337,7 @@ module mech9_grammar
                   'numbers that every user procedure receives', '0.1, 2.0')]
 
   type(item_row_type), parameter :: item_table(*) = &
-    [general_items, pair_items, motion_items, body_items, load_items, run_items]
+    [general_items, pair_items, motion_items, body_items, load_items, motor_items, run_items]
 
 contains
 

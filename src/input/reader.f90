@@ -13,10 +13,11 @@ module mech9_reader
   use mech9_structure_reader, only: read_structure
   use mech9_pair_reader, only: read_pairs
   use mech9_drive_reader, only: read_drives
-  use mech9_drive_check, only: check_drives
+  use mech9_drive_check, only: check_drives, check_motors
   use mech9_motion_reader, only: read_initial, read_points
   use mech9_body_reader, only: read_bodies, read_gravity
   use mech9_load_reader, only: read_loads
+  use mech9_motor_reader, only: read_motors
   use mech9_output_reader, only: read_output
   use mech9_diagnostics, only: diagnostics_type
   implicit none
@@ -45,7 +46,8 @@ contains
   end subroutine read_structure_only
 
   !> The model, in m, rad, kg, s. All errors are collected in the diagnostics, which may hold some from
-  !> reading the document already; the model is of use only where there are none.
+  !> reading the document already; the model is of use only where there are none. Motors are left out where all independent
+  !> coordinates are driven.
   subroutine read_model(document, needs_drives, model, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
@@ -62,7 +64,10 @@ contains
     call read_structure(checked, model%mechanism%structure, model%problem%partition, known, diagnostics)
     if (.not. known) call forget(model%mechanism%structure, model%problem%partition)
     call read_parts(checked, model%mechanism, model%problem, model%request, diagnostics)
+    if (.not. needs_drives) call read_motors(checked, model%mechanism%pairs, model%mechanism%angle_unit, &
+                                             model%mechanism%loads, model%mechanism%n_motors, diagnostics)
     call check_drives(checked, needs_drives, model, diagnostics)
+    if (.not. needs_drives) call check_motors(checked, model, diagnostics)
   end subroutine read_model
 
   !> Set a structure and its partition to the form that means unknown: no links and no coordinates.

@@ -21,7 +21,8 @@ module mech9_mechanism
     type(pair_slot_type), allocatable :: pairs(:)     !< pair k has coordinate k
     type(point_type), allocatable :: points(:)
     type(body_type), allocatable :: bodies(:)
-    type(load_slot_type), allocatable :: loads(:)   !< in the order of the data file
+    type(load_slot_type), allocatable :: loads(:)   !< in the order of the data file; motors are the last ones
+    integer :: n_motors = 0                         !< how many of the loads are motors
     real(wp) :: gravity(3) = 0.0_wp                 !< in the axes of link 1 [m/s^2]
     real(wp), allocatable :: parameters(:)                  !< numbers for the user's procedures
   end type mechanism_type

@@ -5,7 +5,10 @@ module mech9_motion_view
   use mech9_call_fault, only: call_fault_type
   implicit none
   private
-  public :: motion_view_type, link_motion_type
+  public :: motion_view_type, link_motion_type, unlocked
+
+  !> No limit of a motor is chosen yet.
+  integer, parameter :: unlocked = 2
 
   !> Motion of one link: of its own system in the system of link 1.
   type :: link_motion_type
@@ -25,6 +28,8 @@ module mech9_motion_view
     type(link_motion_type), allocatable :: links(:)   !< (N); only the links requested by loads are up to date
     real(wp), allocatable :: q(:)                     !< (M) coordinates [rad, m]
     real(wp), allocatable :: dq(:)                    !< (M) their rates [rad/s, m/s]
+    real(wp), allocatable :: motor(:)                 !< states of the motors; not allocated: they have come to rest
+    integer, allocatable :: limited(:)                !< limits at which the motors work: -1, 0, 1 or `unlocked`
     !> Keeps wrong numbers of links while loads are added. It is a pointer because loads may not change the motion.
     type(call_fault_type), pointer :: fault => null()
   contains

@@ -1,12 +1,17 @@
 !> The columns of kinematic results: names, units, and a row of numbers from a state of motion.
 module mech9_columns
   use mech9_kinds, only: wp
+  use mech9_error, only: error_type
   use mech9_text, only: string_type, to_text
   use mech9_request, only: output_settings_type
+  use mech9_motor, only: motor_type, motor_action_type
+  use mech9_dc_motor, only: dc_motor_type
+  use mech9_pid_motor, only: pid_motor_type
   use mech9_mechanism, only: mechanism_type
   use mech9_result_units, only: unit_of, unit_name, force_unit_name
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_motor_states, only: find_action
   use mech9_poses, only: poses_type, poses_of
   use mech9_frame_motion, only: point_motion
   implicit none
@@ -26,12 +31,16 @@ module mech9_columns
     integer :: motion = 0                   !< how many columns, the first ones, belong to time, coordinates and points
     integer, allocatable :: drives(:)       !< driven coordinates whose forces have columns, ascending
     integer, allocatable :: reacting(:)     !< pairs whose wrenches have columns, ascending
+    integer :: motors = 0                   !< how many columns belong to motors, after those of forces
+    real(wp), allocatable :: motor_factors(:)   !< (motors) factors from the program's units to those of the results
     type(poses_type) :: poses               !< columns after the others, if they were requested
   contains
     procedure :: append
     procedure :: append_forces
     procedure :: forces
     procedure :: fill_forces
+    procedure :: append_motors
+    procedure :: fill_motors
     procedure :: width
     procedure :: fill
     procedure :: fill_poses
@@ -129,6 +138,50 @@ contains
       at = at + 6
     end do
   end subroutine fill_forces
+
+  !> Append the columns of motors: state and force of each.
+  subroutine append_motors(self, mechanism)
+    class(columns_type), intent(inout) :: self     !< the columns
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    integer :: i
+
+    self%motors = 2*mechanism%n_motors
+    allocate (self%motor_factors(self%motors), source=1.0_wp)
+    do i = 1, mechanism%n_motors
+      select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
+      type is (dc_motor_type)
+        call self%append('M'//to_text(i)//'.current', 'A', 'current of motor '//to_text(i))
+      type is (pid_motor_type)
+        self%motor_factors(2*i - 1) = 1.0_wp/unit_of(mechanism, motor%coordinate)
+        call self%append('M'//to_text(i)//'.integral', trim(unit_name(mechanism, motor%coordinate))//' s', &
+                         'time integral of the deviation of motor '//to_text(i))
+      end select
+      select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
+      class is (motor_type)
+        call self%append('M'//to_text(i)//'.torque', force_unit_name(mechanism, motor%coordinate), &
+                         'force of motor '//to_text(i)//' on coordinate '//to_text(motor%coordinate))
+      end select
+    end do
+  end subroutine append_motors
+
+  !> Fill the columns of motors in a row. Fails where the law of a motor has no value.
+  subroutine fill_motors(self, mechanism, state, row, err)
+    class(columns_type), intent(in) :: self             !< the columns
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(state_type), intent(in) :: state               !< motion of the mechanism, with the states of the motors
+    real(wp), intent(inout) :: row(:)                   !< numbers of one row, one for each column
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(motor_action_type) :: action
+    integer :: at, i
+
+    do i = 1, self%motors/2
+      call find_action(mechanism, i, state, action, err)
+      if (allocated(err)) return
+      at = self%motion + self%forces() + 2*i
+      row(at - 1) = action%value*self%motor_factors(2*i - 1)
+      row(at) = action%force
+    end do
+  end subroutine fill_motors
 
   !> Append a column.
   pure subroutine append(self, name, unit, long_name)

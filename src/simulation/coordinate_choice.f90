@@ -199,5 +199,9 @@ contains
     end if
     new_state%t = state%t
     new_state%dq = state%dq
+    if (.not. allocated(state%motor)) return
+    new_state%motor = state%motor
+    new_state%motor_rate = state%motor_rate
+    new_state%limited = state%limited
   end subroutine carry_over
 end module mech9_coordinate_choice

@@ -9,6 +9,8 @@ module mech9_dense_output
   use mech9_tolerances, only: steepest_slope
   use mech9_error, only: error_type
   use mech9_hermite, only: hermite_type, build_hermite
+  use mech9_motor, only: motor_action_type
+  use mech9_motor_states, only: find_action
   use mech9_motion_system, only: motion_system_type
   implicit none
   private
@@ -25,7 +27,8 @@ module mech9_dense_output
     real(wp), allocatable :: y(:)                     !< vector of the motion system
     integer, allocatable :: signs(:)                  !< signs of the determinants of the blocks' Jacobians
     logical :: is_known = .false.                     !< the following are known
-    real(wp), allocatable :: q(:), dq(:), ddq(:)      !< (M) coordinates, rates and accelerations
+    !> (M and motors) coordinates, rates and accelerations; then states of motors, their first and second derivatives
+    real(wp), allocatable :: q(:), dq(:), ddq(:)
   end type step_point_type
 
   !> The ends of the last steps in the same independent coordinates, and the points inserted into the last step.
@@ -36,7 +39,7 @@ module mech9_dense_output
     integer :: count = 0                              !< number of ends
     integer :: inserted = 0                           !< number of inserted points
     integer :: chosen(most) = 0                       !< places of the points of the polynomial, the nearest first
-    type(hermite_type) :: polynomial                  !< all coordinates over time
+    type(hermite_type) :: polynomial                  !< all coordinates and states of motors over time
   contains
     procedure :: begin
     procedure :: add
@@ -153,9 +156,9 @@ contains
     real(wp), intent(out) :: y(:)                       !< the vector at this time
     logical, intent(out) :: found                       !< the vector is certain to be accurate
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp), dimension(system%plan%n_coordinates) :: q, dq, ddq, worse_q, worse_dq
+    real(wp), dimension(system%plan%n_coordinates + system%model%mechanism%n_motors) :: q, dq, ddq, worse_q, worse_dq
     real(wp) :: change, change_of_rate, per_length
-    integer :: i, k, m
+    integer :: i, k, m, n
 
     y = 0.0_wp
     found = .false.
@@ -166,7 +169,9 @@ contains
     call self%polynomial%evaluate(t, q, dq, ddq)
     per_length = steepest_slope/abs(self%points(self%chosen(1))%t - self%points(self%chosen(2))%t)
     m = system%plan%n_coordinates
-    y(:m) = q
+    n = m + size(system%plan%free)
+    y(:m) = q(:m)
+    y(n + 1:) = q(m + 1:)
     found = .true.
     associate (solver => system%model%request%solver)
       do i = 1, size(system%plan%free)
@@ -180,6 +185,10 @@ contains
                 .and. change_of_rate + change*per_length <= solver%relative_tolerance*abs(dq(k)) &
                 + solver%absolute_tolerance
       end do
+      do i = m + 1, size(q)
+        found = found .and. abs(q(i) - worse_q(i)) + abs(dq(i) - worse_dq(i))/per_length <= &
+                solver%relative_tolerance*abs(q(i)) + solver%absolute_tolerance
+      end do
     end associate
   end subroutine find
 
@@ -189,7 +198,7 @@ contains
     type(motion_system_type), intent(inout) :: system   !< the system, which is evaluated
     real(wp), intent(in) :: t                           !< time within the last step [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp), dimension(system%plan%n_coordinates, most) :: q, dq, ddq
+    real(wp), dimension(system%plan%n_coordinates + system%model%mechanism%n_motors, most) :: q, dq, ddq
     real(wp) :: times(most)
     integer :: chosen(most), i, n
 
@@ -200,11 +209,8 @@ contains
       associate (point => self%points(chosen(i)))
         if (.not. point%is_known) then
           call system%move_to(point%t, point%y, err)
+          if (.not. allocated(err)) call take_motion(system, point, err)
           if (allocated(err)) return
-          point%q = system%state%q
-          point%dq = system%state%dq
-          point%ddq = system%state%ddq
-          point%is_known = .true.
         end if
         times(i) = point%t
         q(:, i) = point%q
@@ -215,6 +221,27 @@ contains
     call build_hermite(times(:n), q(:, :n), dq(:, :n), ddq(:, :n), self%polynomial)
     self%chosen = chosen
   end subroutine build
+
+  !> Put the motion of the system's state into a point.
+  subroutine take_motion(system, point, err)
+    type(motion_system_type), intent(in) :: system      !< the system, moved to the point
+    type(step_point_type), intent(inout) :: point       !< gets coordinates, states of motors, and their derivatives
+    type(error_type), allocatable, intent(out) :: err   !< allocated if the law of a motor has no value
+    type(motor_action_type) :: action
+    integer :: i
+
+    point%q = system%state%q
+    point%dq = system%state%dq
+    point%ddq = system%state%ddq
+    do i = 1, system%model%mechanism%n_motors
+      call find_action(system%model%mechanism, i, system%state, action, err)
+      if (allocated(err)) return
+      point%q = [point%q, system%state%motor(i)]
+      point%dq = [point%dq, action%rate]
+      point%ddq = [point%ddq, action%second]
+    end do
+    point%is_known = .true.
+  end subroutine take_motion
 
   !> Places of the points next to time t, the nearest first; 0 where there are no more.
   pure function points_next_to(self, t) result(chosen)

@@ -19,6 +19,7 @@ module mech9_free_simulation
   use mech9_integrated_vector, only: unpack_state
   use mech9_motion_system, only: set_motion_system, find_coefficients
   use mech9_integrated_motion, only: integrated_motion_type
+  use mech9_limit_passing, only: stop_at_limits
   use mech9_stopped_motion, only: name_cause, name_cause_at_start
   use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type
   implicit none
@@ -41,7 +42,6 @@ module mech9_free_simulation
     procedure :: count_work
     procedure :: close => close_simulation
     procedure, private :: step
-    procedure, private :: look_between
     procedure, private :: change_coordinates
     procedure, private :: change_angles
     procedure, private :: continue_angles
@@ -146,7 +146,7 @@ contains
           if (allocated(err)) return
           exit
         end if
-        call self%look_between(t, found)
+        call self%motion%look_between(t, found)
         if (found) exit
         self%steps_onto = .true.
         call motion%step_back(t, err)
@@ -199,7 +199,7 @@ contains
       call self%motion%system%move_to(t, self%motion%y, err)
       return
     end if
-    call self%look_between(t, found)
+    call self%motion%look_between(t, found)
     if (found) return
     call raise(err, exit_singular, failure_lost_angles)
     err%failure%t = t
@@ -241,6 +241,7 @@ contains
       if (.not. allocated(failure)) then
         motion%conditioning_here = motion%system%conditioning()
         call motion%dense_output%add(motion%system, motion%t, motion%y)
+        call stop_at_limits(motion, err)
         return
       end if
     end associate
@@ -309,40 +310,6 @@ contains
     grown(n + 1)%replaced = self%motion%angles%replaced_coordinates()
     call move_alloc(grown, self%events)
   end subroutine add_event
-
-  !> The motion at a time within the last step: by the method's own interpolation, or by dense output from the ends of the last
-  !> steps, or from these and points between them, or by steps onto it. `found` is false where none of these leads there.
-  subroutine look_between(self, t, found)
-    class(free_simulation_type), intent(inout) :: self   !< the simulation
-    real(wp), intent(in) :: t                            !< time within the last step [s]
-    logical, intent(out) :: found                        !< the system stands at this time
-    type(error_type), allocatable :: err
-    real(wp) :: from, y(size(self%motion%y))
-
-    found = .false.
-    associate (motion => self%motion)
-      if (motion%dense_output%crosses()) return
-      call motion%integrator%interpolate(t, y, found)
-      if (.not. found) call motion%dense_output%find(motion%system, t, y, found, err)
-      if (.not. (found .or. motion%dense_output%count_inserted() > 0)) then
-        call motion%insert(0.5_wp, err)
-        if (.not. allocated(err)) call motion%dense_output%find(motion%system, t, y, found, err)
-      end if
-      if (.not. (found .or. allocated(err) .or. motion%dense_output%count_inserted() > 1)) then
-        call motion%insert(0.25_wp, err)
-        if (.not. allocated(err)) call motion%insert(0.75_wp, err)
-        if (.not. allocated(err)) call motion%dense_output%find(motion%system, t, y, found, err)
-      end if
-      if (allocated(err)) return
-      if (found) call motion%system%close_near(t, y, found, err)
-      if (found) found = motion%dense_output%agrees(motion%system)
-      if (found) return
-      call motion%dense_output%start_of_step(from, y)
-      call motion%aside%reach(motion%system, from, y, t, err)
-      if (.not. allocated(err)) call motion%system%move_to(t, motion%aside%y, err)
-      found = .not. allocated(err)
-    end associate
-  end subroutine look_between
 
   !> The plan in the present independent coordinates and the present state, in the angles of the data file.
   subroutine present(self, plan, state)

@@ -16,6 +16,7 @@ module mech9_integrated_motion
   use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_ball_angles, only: ball_angles_type
   use mech9_dense_output, only: dense_output_type
+  use mech9_limit_watch, only: limit_watch_type
   use mech9_side_steps, only: side_steps_type, begin_integration
   implicit none
   private
@@ -28,6 +29,7 @@ module mech9_integrated_motion
     type(ball_angles_type) :: angles              !< of ball joints, as in the data file
     type(integrator_type) :: integrator
     type(dense_output_type) :: dense_output       !< motion within the last step
+    type(limit_watch_type) :: limits              !< demands on the motors there
     type(side_steps_type) :: aside                !< steps to times at which dense output is not certain
     real(wp) :: t = 0.0_wp                        !< end of the last step [s]
     real(wp), allocatable :: y(:)                 !< the integrated vector there
@@ -40,7 +42,8 @@ module mech9_integrated_motion
     procedure :: change_coordinates
     procedure :: change_angles
     procedure :: show_angles
-    procedure :: insert
+    procedure, private :: insert
+    procedure :: look_between
     procedure :: step_back
     procedure :: pass_joint
     procedure :: statistics
@@ -61,6 +64,7 @@ contains
     call self%dense_output%begin()
     call self%dense_output%add(self%system, self%t, self%y)
     call begin_integration(self%integrator, self%system, self%t, self%y, err)
+    if (.not. allocated(err)) call self%limits%note(self%system, err)
   end subroutine begin
 
   !> Go on in better conditioned independent coordinates, if there are any. Where the others cannot serve, the motion goes on
@@ -191,6 +195,38 @@ contains
     if (.not. allocated(err)) call self%dense_output%insert(self%aside%t, self%aside%y)
   end subroutine insert
 
+  !> The motion at a time within the last step: by the method's own interpolation, or by dense output from the ends of the last
+  !> steps, or from these and points between them, or by steps onto it. `found` is false where none of these leads there.
+  subroutine look_between(self, t, found)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion
+    real(wp), intent(in) :: t                              !< time within the last step [s]
+    logical, intent(out) :: found                          !< the system stands at this time
+    type(error_type), allocatable :: err
+    real(wp) :: from, y(size(self%y))
+
+    found = .false.
+    if (self%dense_output%crosses()) return
+    call self%integrator%interpolate(t, y, found)
+    if (.not. found) call self%dense_output%find(self%system, t, y, found, err)
+    if (.not. (found .or. self%dense_output%count_inserted() > 0)) then
+      call self%insert(0.5_wp, err)
+      if (.not. allocated(err)) call self%dense_output%find(self%system, t, y, found, err)
+    end if
+    if (.not. (found .or. allocated(err) .or. self%dense_output%count_inserted() > 1)) then
+      call self%insert(0.25_wp, err)
+      if (.not. allocated(err)) call self%insert(0.75_wp, err)
+      if (.not. allocated(err)) call self%dense_output%find(self%system, t, y, found, err)
+    end if
+    if (allocated(err)) return
+    if (found) call self%system%close_near(t, y, found, err)
+    if (found) found = self%dense_output%agrees(self%system)
+    if (found) return
+    call self%dense_output%start_of_step(from, y)
+    call self%aside%reach(self%system, from, y, t, err)
+    if (.not. allocated(err)) call self%system%move_to(t, self%aside%y, err)
+    found = .not. allocated(err)
+  end subroutine look_between
+
   !> Back to the start of the last step, to go onto time t within it.
   subroutine step_back(self, t, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion
@@ -206,9 +242,10 @@ contains
     self%conditioning_here = self%system%conditioning()
     call self%dense_output%begin()
     call self%dense_output%add(self%system, self%t, self%y)
+    call self%limits%note(self%system, err)
   end subroutine step_back
 
-  !> Pass a joint of the laws of time, at the end of the last step.
+  !> Pass a joint of the laws of time, or the limit of a motor, at the end of the last step.
   subroutine pass_joint(self, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
@@ -218,11 +255,13 @@ contains
     if (allocated(err)) return
     call self%system%resume(nothing)
     call self%system%move_to(self%t, self%y, err)
+    if (.not. allocated(err)) call self%system%pass_limits(err)
     if (.not. allocated(err)) call self%integrator%restart(self%t, self%y, err)
     if (allocated(err)) return
     self%conditioning_here = self%system%conditioning()
     call self%dense_output%begin()
     call self%dense_output%add(self%system, self%t, self%y)
+    call self%limits%note(self%system, err)
   end subroutine pass_joint
 
   !> Counts of all integrators of the motion together.

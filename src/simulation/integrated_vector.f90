@@ -1,4 +1,4 @@
-!> The vector that is integrated: all coordinates, and after them the rates of the free ones.
+!> The vector that is integrated: all coordinates, after them the rates of the free ones, then the states of the motors.
 !>
 !> Driven coordinates are in the vector, too, but they are not taken from it: their drives give them.
 module mech9_integrated_vector
@@ -12,25 +12,32 @@ module mech9_integrated_vector
 contains
 
   !> The length of the vector.
-  pure integer function length_of_vector(plan)
+  pure integer function length_of_vector(plan, n_motors)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    integer, intent(in) :: n_motors       !< how many motors there are
 
-    length_of_vector = plan%n_coordinates + size(plan%free)
+    length_of_vector = plan%n_coordinates + size(plan%free) + n_motors
   end function length_of_vector
 
-  !> The coordinate that a number of the vector belongs to, by itself or by its rate.
+  !> The coordinate that a number of the vector belongs to, by itself or by its rate; minus the number of the motor to which it
+  !> belongs otherwise.
   pure integer function coordinate_of(plan, place)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     integer, intent(in) :: place          !< of the number in the vector
 
     coordinate_of = place
-    if (place > plan%n_coordinates) coordinate_of = plan%free(place - plan%n_coordinates)
+    if (place <= plan%n_coordinates) return
+    if (place <= plan%n_coordinates + size(plan%free)) then
+      coordinate_of = plan%free(place - plan%n_coordinates)
+    else
+      coordinate_of = plan%n_coordinates + size(plan%free) - place
+    end if
   end function coordinate_of
 
   !> The vector of a state.
   pure subroutine pack_state(plan, state, y)
     type(plan_type), intent(in) :: plan     !< the plan of the mechanism
-    type(state_type), intent(in) :: state   !< coordinates, and rates of the free ones
+    type(state_type), intent(in) :: state   !< coordinates, rates of the free ones, and states of the motors
     real(wp), intent(out) :: y(:)           !< the vector
     integer :: i, m
 
@@ -41,12 +48,13 @@ contains
     do i = 1, size(plan%free)
       y(m + i) = state%dq(plan%free(i))
     end do
+    if (allocated(state%motor)) y(m + size(plan%free) + 1:) = state%motor
   end subroutine pack_state
 
   !> The derivative of the vector in time.
   pure subroutine pack_rates(plan, state, accelerations, ydot)
     type(plan_type), intent(in) :: plan          !< the plan of the mechanism
-    type(state_type), intent(in) :: state        !< with the rates of all coordinates
+    type(state_type), intent(in) :: state        !< with the rates of all coordinates, and of the motors' states
     real(wp), intent(in) :: accelerations(:)     !< of the independent coordinates [rad/s^2, m/s^2]
     real(wp), intent(out) :: ydot(:)             !< the derivative
     integer :: i, m
@@ -58,9 +66,10 @@ contains
     do i = 1, size(plan%free)
       ydot(m + i) = accelerations(plan%free_places(i))
     end do
+    if (allocated(state%motor)) ydot(m + size(plan%free) + 1:) = state%motor_rate
   end subroutine pack_rates
 
-  !> Put time, coordinates and free rates of a vector into a state. The drives give the motion of driven coordinates
+  !> Put time, coordinates, free rates and motors of a vector into a state. The drives give the motion of driven coordinates
   !> afterwards.
   pure subroutine unpack_state(plan, t, y, state)
     type(plan_type), intent(in) :: plan        !< the plan of the mechanism
@@ -77,5 +86,6 @@ contains
     do i = 1, size(plan%free)
       state%dq(plan%free(i)) = y(m + i)
     end do
+    if (allocated(state%motor)) state%motor = y(m + size(plan%free) + 1:)
   end subroutine unpack_state
 end module mech9_integrated_vector

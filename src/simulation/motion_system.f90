@@ -1,7 +1,7 @@
 !> The motion as differential equations for an integrator.
 !>
-!> The vector that is integrated holds all coordinates and the rates of the free ones; the motion of driven coordinates is that of
-!> their drives. An
+!> The vector that is integrated holds all coordinates, the rates of the free ones and the states of motors; the motion of driven
+!> coordinates is that of their drives. An
 !> evaluation takes the positions as they are, and the chains are closed after each accepted step:
 !> half the cost of closing them in every evaluation, at the same error (docs/design-decisions.md).
 module mech9_motion_system
@@ -14,6 +14,7 @@ module mech9_motion_system
   use mech9_law, only: law_type, from_inside
   use mech9_driven_equations, only: hold
   use mech9_partition, only: partition_type
+  use mech9_motor, only: motor_action_type
   use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
@@ -27,6 +28,7 @@ module mech9_motion_system
   use mech9_lagrange_work, only: new_lagrange_work
   use mech9_lagrange, only: find_motion, find_equations, check_inertia, complete_accelerations
   use mech9_generalized_forces, only: show_state
+  use mech9_motor_states, only: start_motors, find_motor_rates, find_limits, find_action
   use mech9_frame_motion, only: place_all
   use mech9_branch_stepping, only: set_inputs
   implicit none
@@ -49,6 +51,7 @@ module mech9_motion_system
     logical :: has_joints = .false.                  !< a law of time has joints, where its derivatives may jump
     real(wp) :: joint_behind = 0.0_wp                !< laws are smooth from this time, which was passed last [s]
     real(wp) :: joint_ahead = 0.0_wp                 !< to this one, which comes next [s]
+    integer, private :: passing = 0                  !< motor that passes its limit there; 0: none does
   contains
     procedure :: size_of_vector
     procedure :: vector
@@ -63,6 +66,8 @@ module mech9_motion_system
     procedure :: signs
     procedure :: is_at_joint
     procedure :: pass_joint
+    procedure :: stop_at_limit
+    procedure :: pass_limits
   end type motion_system_type
 
 contains
@@ -84,6 +89,8 @@ contains
     call make_dynamics_plan(model%mechanism, plan, system%dynamics)
     system%work = new_lagrange_work(plan, system%dynamics)
     system%state = start
+    call place_motors(system, err)
+    if (allocated(err)) return
     call find_joints(system, start%t)
     ! reports show the coefficients of the start; articulated bodies do without
     if (system%dynamics%articulated) &
@@ -115,6 +122,16 @@ contains
     end if
   end subroutine accelerate
 
+  !> Let the motors begin, unless they work already.
+  subroutine place_motors(self, err)
+    class(motion_system_type), intent(inout) :: self    !< the motion system; its state gets those of the motors
+    type(error_type), allocatable, intent(out) :: err   !< allocated if the law of a motor has no value
+
+    if (self%model%mechanism%n_motors == 0 .or. allocated(self%state%motor)) return
+    call start_motors(self%model%mechanism, self%state)
+    call find_limits(self%model%mechanism, self%state, err)
+  end subroutine place_motors
+
   !> The coefficients of motion in a position.
   subroutine find_coefficients(mechanism, plan, assembled, coefficients, err)
     type(mechanism_type), intent(in) :: mechanism            !< the mechanism
@@ -137,13 +154,13 @@ contains
   pure integer function size_of_vector(self)
     class(motion_system_type), intent(in) :: self   !< the motion system
 
-    size_of_vector = length_of_vector(self%plan)
+    size_of_vector = length_of_vector(self%plan, self%model%mechanism%n_motors)
   end function size_of_vector
 
   !> The vector of the present state.
   pure function vector(self) result(y)
     class(motion_system_type), intent(in) :: self   !< the motion system
-    real(wp) :: y(length_of_vector(self%plan))
+    real(wp) :: y(length_of_vector(self%plan, self%model%mechanism%n_motors))
 
     call pack_state(self%plan, self%state, y)
   end function vector
@@ -245,6 +262,39 @@ contains
     end do
   end subroutine pass_joint
 
+  !> A motor passes its limit at a time ahead, at which steps end as at a joint of the laws.
+  pure subroutine stop_at_limit(self, t, motor)
+    class(motion_system_type), intent(inout) :: self   !< the motion system
+    real(wp), intent(in) :: t                          !< when [s]
+    integer, intent(in) :: motor                       !< number of the motor
+
+    self%has_joints = .true.
+    self%joint_ahead = t
+    self%passing = motor
+  end subroutine stop_at_limit
+
+  !> Let the motors work at other limits behind a joint: the one that passes its limit there, and all whose forces jump.
+  subroutine pass_limits(self, err)
+    class(motion_system_type), intent(inout) :: self    !< the motion system behind the joint, with all rates
+    type(error_type), allocatable, intent(out) :: err   !< allocated if the law of a motor has no value
+    type(motor_action_type) :: action
+    integer :: before
+
+    if (self%model%mechanism%n_motors == 0) return
+    if (self%passing > 0) before = self%state%limited(self%passing)
+    call find_limits(self%model%mechanism, self%state, err)
+    if (allocated(err)) return
+    if (self%passing > 0) then
+      ! the demand is the limit but for round-off, which must not decide
+      self%state%limited(self%passing) = 0
+      call find_action(self%model%mechanism, self%passing, self%state, action, err)
+      if (allocated(err)) return
+      if (before == 0) self%state%limited(self%passing) = nint(sign(1.0_wp, action%demand))
+      self%passing = 0
+    end if
+    call self%present(err)
+  end subroutine pass_limits
+
   !> Change the free rates by the impulse of drives whose rates jump.
   subroutine take_impulse(self, jump, y, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system, with the state behind the joint
@@ -293,7 +343,7 @@ contains
   subroutine rate(self, t, y, ydot, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     real(wp), intent(in) :: t                           !< time [s]
-    real(wp), intent(in) :: y(:)                        !< the vector: all coordinates, and the rates of the free ones
+    real(wp), intent(in) :: y(:)                        !< the vector: all coordinates, rates of the free ones, states of motors
     real(wp), intent(out) :: ydot(:)                    !< its rate of change
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
@@ -308,6 +358,8 @@ contains
       return
     end if
     if (self%just_settled) call remember(self)
+    call find_motor_rates(self%model%mechanism, self%state, err)
+    if (allocated(err)) return
     call pack_rates(self%plan, self%state, self%work%accelerations, ydot)
   end subroutine rate
 
@@ -325,7 +377,7 @@ contains
   subroutine settle(self, t, y, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     real(wp), intent(in) :: t                           !< time of the end of the step [s]
-    real(wp), intent(inout) :: y(:)   !< the vector: all coordinates, and the rates of the free ones; closed on return
+    real(wp), intent(inout) :: y(:)   !< the vector: coordinates, free rates, motors; closed on return
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: failed
 
@@ -370,7 +422,7 @@ contains
   subroutine close_near(self, t, y, ok, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     real(wp), intent(in) :: t                           !< time between the settled states [s]
-    real(wp), intent(in) :: y(:)                        !< the vector: all coordinates, and the rates of the free ones
+    real(wp), intent(in) :: y(:)                        !< the vector: all coordinates, rates of the free ones, states of motors
     logical, intent(out) :: ok                          !< the chains are certain to close on the same branch
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: failed
@@ -440,6 +492,8 @@ contains
     call accelerate(self, err)
     if (allocated(err)) return
     call complete_accelerations(self%plan, self%dynamics, self%work, self%state)
+    call find_motor_rates(self%model%mechanism, self%state, err)
+    if (allocated(err)) return
     call show_state(self%plan, self%dynamics, self%state, self%work%view)
   end subroutine present
 

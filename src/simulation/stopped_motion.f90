@@ -22,6 +22,7 @@ module mech9_stopped_motion
   use mech9_lagrange, only: find_equations
   use mech9_coordinate_choice, only: best_independent
   use mech9_integrated_vector, only: coordinate_of
+  use mech9_motor_states, only: coordinate_of_motor
   use mech9_motion_system, only: motion_system_type, find_coefficients
   implicit none
   private
@@ -39,7 +40,7 @@ contains
     type(error_type), allocatable :: err
     logical :: is_locked(size(system%plan%free))
 
-    call name_coordinate(system%plan, failure)
+    call name_coordinate(system, failure)
     call name_dead_point(system, t, y, failure)
     if (failure%code /= exit_integrator) return
     call system%move_to(t, y, err)
@@ -143,11 +144,15 @@ contains
   end subroutine refuse_lock
 
   !> Name the coordinate whose motion is not finite.
-  pure subroutine name_coordinate(plan, failure)
-    type(plan_type), intent(in) :: plan             !< the plan of the mechanism
+  pure subroutine name_coordinate(system, failure)
+    type(motion_system_type), intent(in) :: system  !< the system
     type(error_type), intent(inout) :: failure      !< of an integration; gets the coordinate, if it is of this kind
+    integer :: k
 
-    if (is_of_kind(failure, failure_infinite_rate)) failure%failure%coordinates = [coordinate_of(plan, failure%failure%number)]
+    if (.not. is_of_kind(failure, failure_infinite_rate)) return
+    k = coordinate_of(system%plan, failure%failure%number)
+    if (k < 0) k = coordinate_of_motor(system%model%mechanism, -k)
+    failure%failure%coordinates = [k]
   end subroutine name_coordinate
 
   !> The coordinates that can nearly move together without moving any mass; none where there is no gimbal lock.

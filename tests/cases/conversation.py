@@ -241,7 +241,7 @@ def edited_files(talks):
                  ('inertia', ''), ('all is right', 'remove body 2'), ('Removed', 'remove point 1'),
                  ('Removed', 'remove time start'), ('Removed', '?'),
                  ('Give the number', '999'), ('no answer that can be changed', 'zero zero zero zero'),
-                 ('no answer that can be changed', 'add nothing'), ('What can be added: body, load, point', ''),
+                 ('no answer that can be changed', 'add nothing'), ('What can be added: drive, body, load, motor, point', ''),
                  ('[both]', 'save'), ('data file [p.nml]', '/'),
                  ('exists; overwrite it [no]', 'yes'), ('cannot open', '')]
         talks.pipe(talks.mech9d, steps, 'changes', arguments=('--edit', 'p.nml'), folder=folder)
@@ -294,6 +294,41 @@ def begun_by_mistake(talks):
         steps = [('all is right', 'add load'), ('load 1, kind', 'torque'), ('link: ', 'remove'), ('load 1, kind', ''),
                  ('all is right', 'quit')]
         talks.pipe(talks.mech9d, steps, 'an added load left out', arguments=('--edit', 'p.nml'), folder=folder)
+
+
+ARM = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', point=0.5,0,0, axis=0,0,1 /
+&initial coordinate=1, position=0 /
+&initial coordinate=2, position=0.4 /
+&body link=3, mass=1, centre=0.8,0,0, inertia=0,0,0.03,0,0,0 /
+"""
+
+
+def drives_and_motors(talks):
+    """In mech9d drives and motors are begun in the conversation, added and removed; what is free then is asked for its start."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'arm.nml')
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(ARM)
+        steps = [('all is right', 'remove initial 1'), ('Removed.', 'add drive'), ('drive 1, coordinate', '7'),
+                 ('there is no coordinate 7', '1'), ('kind', 'har'), ('mean', ''), ('amplitude', '0.5'),
+                 ('angular_frequency', '3'), ('phase', ''), ('velocity', ''), ('all is right', 'add motor'), ('motor 1, coordinate', '1'),
+                 ('has the drive', '2'), ('kind', 'dc'), ('voltage', '12'), ('resistance', '0'), ("'resistance' must be", '0.6'),
+                 ('inductance', '0.01'), ('constant', '0.3'), ('all is right', ''), ('[both]', 'save'),
+                 ('data file [arm.nml]', '')]
+        talks.pipe(talks.mech9d, steps, 'drive and motor added', arguments=('--edit', 'arm.nml'), folder=folder)
+        text = text_of(path)
+        talks.checks.true("&drive coordinate=1, kind='harmonic', amplitude=0.5, angular_frequency=3 /" in text
+                          and "&motor coordinate=2, kind='dc', voltage=12, resistance=0.6, inductance=0.01, constant=0.3 /" in text
+                          and '&initial coordinate=1' not in text, 'the file has drive and motor, and no start of coordinate 1', text)
+        steps = [('all is right', 'remove drive 1'), ('Removed.', '0.3'), ('velocity', '1'),
+                 ('all is right', 'remove motor 1'), ('Removed.', ''), ('[both]', 'save'),
+                 ('data file [arm.nml]', '')]
+        talks.pipe(talks.mech9d, steps, 'drive and motor removed', arguments=('--edit', 'arm.nml'), folder=folder)
+        text = text_of(path)
+        talks.checks.true('&drive' not in text and '&motor' not in text and '&initial coordinate=1, position=0.3, velocity=1 /' in text,
+                          'the file has neither drive nor motor, and the start of coordinate 1', text)
 
 
 def short_answers(talks):
@@ -413,6 +448,7 @@ def main():
     structure_and_start(talks)
     edited_files(talks)
     begun_by_mistake(talks)
+    drives_and_motors(talks)
     short_answers(talks)
     gravity(talks)
     forces_of_drives(talks)

@@ -96,6 +96,13 @@ contains
     do i = 1, size(loads)
       call draft%give('load', i, 'kind', ''''//trim(loads(i))//'''')
     end do
+    if (program_name == 'mech9d') then
+      call draft%give('motor', 1, 'coordinate', '1')
+      call draft%give('motor', 1, 'kind', '''dc''')
+      call draft%give('motor', 2, 'coordinate', '1')
+      call draft%give('motor', 2, 'kind', '''pid''')
+      if (drive /= 'user') call draft%give('motor', 1, 'law', ''''//drive//'''')
+    end if
     ! drives and loads have the same laws of time
     if (drive /= 'user') call draft%give('load', 1, 'law', ''''//drive//'''')
     call draft%give('point', 1, 'name', '''P''')

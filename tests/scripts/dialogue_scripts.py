@@ -45,9 +45,9 @@ FIG1_BY_VECTORS = MECHANISM + BY_VECTORS + pairs(True) + MOTION + POINTS_OF_FIG1
 PENDULUM_TO_THE_END = [
     ('title [', 'Simple pendulum, released from the horizontal'), ('links: ', '2'), ('coordinates: ', '1'),
     ('angle_unit [rad]', ''), ('[pairs]', ''), ('links of pair 1', '1 2'), ('cq: ', '1'), ('which of them', ''),
-    ('kind', ''), ('point', ''), ('axis', '0,0,1'), ('position', ''), ('velocity', '0.0'),
+    ('kind', ''), ('point', ''), ('axis', '0,0,1'), ('drive 1, coordinate', ''), ('position', ''), ('velocity', '0.0'),
     ('body 1, link', '2'), ('mass', '1.0'), ('centre', '-1 0 0'), ('inertia', ''), ('body 2, link', ''),
-    ('acceleration', '0 -9.81 0'), ('load 1, kind', ''),
+    ('acceleration', '0 -9.81 0'), ('load 1, kind', ''), ('motor 1, coordinate', ''),
     ('point 1, name', 'P'), ('link: ', '2'), ('position', '-1 0 0'), ('point 2, name', ''),
     ('start', ''), ('end', '10'), ('intervals', ''),
     ('which of them', 'relative_tolerance, absolute_tolerance'), ('method', ''),

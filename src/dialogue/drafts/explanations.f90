@@ -267,6 +267,69 @@ module mech9_explanations
     explanation_type('load', 'period', 'law:segments', &
                   'With a period the segments repeat. It is the time from the first to the last of the times.', '1')]
 
+  type(explanation_type), parameter :: motor_texts(*) = [ &
+    explanation_type('motor', 'coordinate', '', &
+                  'A motor acts on an independent coordinate without a drive. Name it by its number. Enter goes on without a '// &
+                  'further motor.', '1'), &
+    explanation_type('motor', 'kind', '', &
+                  'A dc motor runs on direct current: its torque grows with its current. The torque of a pid motor is set by '// &
+                  'a controller, so that the coordinate follows a setpoint.', 'dc'), &
+    explanation_type('motor', 'voltage', 'dc', &
+                  'Give the voltage at the motor. Where a law of time is given too, it is multiplied by the law.', '24'), &
+    explanation_type('motor', 'resistance', 'dc', &
+                  'The voltage less that of the turning motor, over the resistance, is the steady current.', '0.6'), &
+    explanation_type('motor', 'inductance', 'dc', &
+                  'The inductance delays the current by inductance over resistance, in seconds; with 0 it follows at once.', &
+                  '0.001'), &
+    explanation_type('motor', 'constant', 'dc', &
+                  'The torque for each ampere, and also the voltage for each radian per second; of a linear motor the force, '// &
+                  'and the voltage for each metre per second.', '0.05 (0.05 N m for each ampere)'), &
+    explanation_type('motor', 'gear_ratio', 'dc', &
+                  'The motor turns so many times while the coordinate turns once.', '20'), &
+    explanation_type('motor', 'proportional', 'pid', &
+                  'The torque or force for each radian or metre by which the coordinate is short of the setpoint.', &
+                  '50 (50 N m for each rad)', '50 (50 N m for each rad)', '500 (500 N for each m)'), &
+    explanation_type('motor', 'integral', 'pid', &
+                  'The torque or force for each second during which the coordinate is 1 rad or 1 m short of the setpoint. It '// &
+                  'removes deviations that a constant load leaves.', '20'), &
+    explanation_type('motor', 'derivative', 'pid', &
+                  'The torque or force for each rad/s or m/s by which the setpoint is faster than the coordinate. It damps.', &
+                  '5'), &
+    explanation_type('motor', 'limit', 'pid', &
+                  'The torque or force is never larger. While it is at its limit, the integral is led back.', '8'), &
+    explanation_type('motor', 'setpoint', 'pid', &
+                  'The coordinate is to have this value. A setpoint that changes in time is given by a law, and none here.', &
+                  '0.5', '30', '0.2'), &
+    explanation_type('motor', 'law', '', &
+                  'The voltage is multiplied by a number that depends on time as a drive does, or the setpoint depends on time '// &
+                  'so: constant, polynomial, harmonic, table or segments.', 'harmonic'), &
+    explanation_type('motor', 'coefficients', 'law:polynomial', &
+                  'The factor or setpoint is c0 + c1 t + c2 t^2 + ..., with the time t in seconds.', &
+                  '0, 0.5 (grows by a half each second)'), &
+    explanation_type('motor', 'mean', 'law:harmonic', &
+                  'The factor or setpoint is mean + amplitude sin(angular_frequency t + phase).', '1'), &
+    explanation_type('motor', 'amplitude', 'law:harmonic', &
+                  'The factor or setpoint is mean + amplitude sin(angular_frequency t + phase).', '0.5'), &
+    explanation_type('motor', 'angular_frequency', 'law:harmonic', &
+                  'The factor or setpoint is mean + amplitude sin(angular_frequency t + phase).', &
+                  '6.2832 (one swing to and fro each second)', '360 (one swing to and fro each second)'), &
+    explanation_type('motor', 'phase', 'law:harmonic', &
+                  'The factor or setpoint is mean + amplitude sin(angular_frequency t + phase).', &
+                  '1.5708 (begins at mean + amplitude)', '90 (begins at mean + amplitude)'), &
+    explanation_type('motor', 'file', 'law:table', &
+                  'Name a text file that has a time and the factor or setpoint in each line, beside the data file.', &
+                  'voltage.dat'), &
+    explanation_type('motor', 'times', 'law:segments', &
+                  'Segments begin and end at these times in seconds, which increase: three times make two segments. They '// &
+                  'cover the times of the run, unless they repeat.', '0, 0.5, 1'), &
+    explanation_type('motor', 'values', 'law:segments', &
+                  'Give the factor or setpoint at each of the times, as many numbers as there are times.', '0, 1, 1'), &
+    explanation_type('motor', 'laws', 'law:segments', &
+                  'Each segment goes from its first value to its last by a motion law of cam design, and by dwell where both '// &
+                  'values are the same. One law serves for all segments.', 'cycloidal, dwell (two segments)'), &
+    explanation_type('motor', 'period', 'law:segments', &
+                  'With a period the segments repeat. It is the time from the first to the last of the times.', '1')]
+
   type(explanation_type), parameter :: run_texts(*) = [ &
     explanation_type('time', 'start', '', &
                   'The first result is given at this time.', '0'), &
@@ -335,7 +398,7 @@ module mech9_explanations
                   'again.', '0.1, 2.0')]
 
   type(explanation_type), parameter :: explanations(*) = &
-    [general_texts, pair_texts, motion_texts, body_texts, load_texts, run_texts]
+    [general_texts, pair_texts, motion_texts, body_texts, load_texts, motor_texts, run_texts]
 
 contains
 

@@ -91,10 +91,25 @@ contains
     if (outline%program_name == 'mech9k') then
       call make_numbered(draft, 'drive', outline%independent)
     else
+      call drop_driven_starts(draft)
       call make_numbered(draft, 'initial', outline%independent .and. .not. has_drive(draft, size(outline%independent)))
     end if
     if (outline%guesses) call make_numbered(draft, 'initial', .not. outline%independent)
   end subroutine make_groups
+
+  !> Initial values of driven coordinates are removed if they hold nothing but their coordinate: their drives tell them.
+  pure subroutine drop_driven_starts(draft)
+    type(draft_type), intent(inout) :: draft  !< groups and names with their values as text
+    integer :: i, k, place
+
+    do i = 1, draft%count_of('drive')
+      k = draft%number('drive', i, 'coordinate')
+      do place = draft%count_of('initial'), 1, -1
+        if (draft%number('initial', place, 'coordinate') /= k) cycle
+        if (size(draft%groups(draft%find('initial', place))%entries) < 2) call draft%remove('initial', place)
+      end do
+    end do
+  end subroutine drop_driven_starts
 
   !> Whether the draft drives each coordinate.
   pure function has_drive(draft, m)

@@ -65,7 +65,8 @@ contains
     text = text//line_end//'Enter takes what stands in brackets. Also: back (to the question before), list (what is '// &
            'known), default (as if never answered), quit (what was typed is kept).'
     if (question%kind /= ask_item .or. question%is_new) return
-    if (can_be_left_out(question%group_row)) text = text//' remove leaves out the '//trim(item_table(question%row)%group)// &
+    if (can_be_left_out(question%group_row, outline%program_name)) &
+      text = text//' remove leaves out the '//trim(item_table(question%row)%group)// &
                                                     ' that is asked about.'
   end function help_of
 

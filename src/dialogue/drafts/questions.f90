@@ -111,15 +111,16 @@ contains
     if (group == 'initial') then
       if (outline%program_name == 'mech9k' .or. .not. all(outline%independent)) &
         call append(questions, count, question_type(kind=ask_guesses, topic=topic, group_row=group_row))
-    else if (any(item_table(rows)%seldom) .and. group /= 'mechanism' .and. (group /= 'load' .or. draft%count_of(group) > 0)) then
+    else if (any(item_table(rows)%seldom) .and. group /= 'mechanism' .and. &
+             (all(group /= ['load ', 'motor']) .or. draft%count_of(group) > 0)) then
       ! a conversation does not begin with rarely used names; those of the mechanism can be changed by their names, and laws of
-      ! loads are for loads that are there
+      ! loads and motors are for those that are there
       call append(questions, count, question_type(kind=ask_seldom, topic=topic, group_row=group_row))
     end if
     do place = 1, merge(draft%count_of(group), 1, group_table(group_row)%repeats)
       call ask_about_one(draft, outline, question_type(topic=topic, group_row=group_row, place=place), rows, questions, count)
     end do
-    if (can_be_left_out(group_row)) &
+    if (can_be_left_out(group_row, outline%program_name)) &
       call append(questions, count, question_type(topic=topic, group_row=group_row, place=draft%count_of(group) + 1, &
                                                   row=rows(1), is_new=.true.))
     if (group == 'initial') call append(questions, count, question_type(kind=check_start, topic=topic))
@@ -179,7 +180,8 @@ contains
       group = draft%find(name, question%place)
       kind = ''
       if (group > 0) kind = kind_in(draft, group)
-      if (is_numbered(question%group_row) .and. row%name == 'coordinate') return
+      if (is_numbered(question%group_row) .and. row%name == 'coordinate' .and. &
+          .not. can_be_left_out(question%group_row, outline%program_name)) return
       if (row%kinds /= '' .and. (kind == '' .or. .not. takes_kind(row, kind))) return
       if (is_seldom(outline, row) .and. .not. outline%asked(question%row)) return
       if (name == 'pair' .and. row%name == 'links' .and. outline%way == 'pairs') return
@@ -207,8 +209,8 @@ contains
     is_used = row%program == 'both' .or. row%program == outline%program_name
   end function is_used
 
-  !> Whether there is a question about a value at the start. There is for independent coordinates in mech9d, and for
-  !> guesses of dependent ones.
+  !> Whether there is a question about a value at the start. There is for free coordinates in mech9d, and for guesses of
+  !> dependent ones.
   pure logical function is_open_at_start(draft, outline, question) result(open)
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
     type(outline_type), intent(in) :: outline    !< facts known beside the draft
@@ -220,11 +222,23 @@ contains
     k = draft%number('initial', question%place, 'coordinate')
     if (k < 1 .or. k > size(outline%independent)) return
     if (outline%independent(k)) then
-      open = outline%program_name == 'mech9d'
+      open = outline%program_name == 'mech9d' .and. .not. is_driven(draft, k)
     else
       open = item_table(question%row)%name /= 'velocity'
     end if
   end function is_open_at_start
+
+  !> Whether the draft drives a coordinate.
+  pure logical function is_driven(draft, k)
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
+    integer, intent(in) :: k               !< number of the coordinate
+    integer :: place
+
+    is_driven = .false.
+    do place = 1, draft%count_of('drive')
+      is_driven = is_driven .or. draft%number('drive', place, 'coordinate') == k
+    end do
+  end function is_driven
 
   !> Whether the draft uses procedures of the user.
   pure logical function has_procedures(draft)

@@ -19,12 +19,15 @@ module mech9_topics
                'mechanism and give all points and directions in the frame, as they are in that position; all coordinates are '// &
                'then 0 there. Where links have systems of their own, they are given in the reference link, and again in the '// &
                'moving link as moving_point, moving_axis and moving_zero.'), &
-    topic_type('Drives', 'drive', 'Each independent coordinate is a given function of time.'), &
+    topic_type('Drives', 'drive', 'An independent coordinate with a drive is a given function of time; mech9k needs one '// &
+               'for each.'), &
     topic_type('The start', 'initial', ''), &
     topic_type('Bodies', 'body', 'Links without a body are massless. A body begun by mistake is left out by remove.'), &
     topic_type('Gravity', 'gravity', 'It acts on all bodies: 0, -9.81, 0 on Earth where y points up; none where it is left out.'), &
     topic_type('Loads', 'load', 'Forces, torques, springs and dampers, on links and on coordinates. '// &
                'A load begun by mistake is left out by remove.'), &
+    topic_type('Motors', 'motor', 'A motor moves a coordinate without a drive: by direct current, or by a controller. '// &
+               'A motor begun by mistake is left out by remove.'), &
     topic_type('Points', 'point', 'Positions, velocities and accelerations of these points are recorded.'), &
     topic_type('Time', 'time', ''), &
     topic_type('Computation', 'solver', ''), &
@@ -67,10 +70,13 @@ contains
     is_numbered = group_table(group_row)%key == 'coordinate'
   end function is_numbered
 
-  !> Whether there can be any number of groups of a name, which the user begins one by one.
-  pure logical function can_be_left_out(group_row)
-    integer, intent(in) :: group_row  !< row of the group in group_table
+  !> Whether there can be any number of groups of a name, which the user begins one by one. In mech9d, drives are among them:
+  !> an independent coordinate without one is free.
+  pure logical function can_be_left_out(group_row, program_name)
+    integer, intent(in) :: group_row              !< row of the group in group_table
+    character(len=*), intent(in) :: program_name  !< program of the conversation: mech9k or mech9d
 
     can_be_left_out = group_table(group_row)%repeats .and. .not. is_numbered(group_row)
+    if (group_table(group_row)%name == 'drive') can_be_left_out = program_name == 'mech9d'
   end function can_be_left_out
 end module mech9_topics

@@ -24,6 +24,10 @@ module mech9_state
     real(wp), allocatable :: q(:)                !< (M) coordinates [rad, m]
     real(wp), allocatable :: dq(:)               !< (M) rates [rad/s, m/s]
     real(wp), allocatable :: ddq(:)              !< (M) accelerations [rad/s^2, m/s^2]
+    real(wp), allocatable :: motor(:)            !< states of the motors: currents [A], integrals [rad s, m s]; not allocated: they
+                                                 !< have come to rest
+    real(wp), allocatable :: motor_rate(:)       !< derivatives of these states in time
+    integer, allocatable :: limited(:)           !< limits at which the motors work: -1, 0 for none, 1
     real(wp), allocatable :: angle(:)            !< (M) angle by which each step turns [rad]
     real(wp), allocatable :: turn(:, :)          !< (2,M) its cosine and sine
     real(wp), allocatable :: r(:, :, :)          !< (3,3,0:M) rotation of each frame

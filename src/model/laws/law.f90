@@ -1,4 +1,5 @@
-!> A law of time: an independent coordinate as a given function of time, or the factor by which a load is multiplied.
+!> A law of time: an independent coordinate as a given function of time, the setpoint of a motor, or the factor by which a load is
+!> multiplied.
 module mech9_law
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_type, raise, exit_data
@@ -9,7 +10,8 @@ module mech9_law
 
   !> A given function of time.
   type, abstract :: law_type
-    integer :: coordinate = 0   !< number of the coordinate it drives; 0 for the law of a load
+    integer :: coordinate = 0   !< number of the coordinate that it drives or leads; 0 for a factor
+    integer :: motor = 0        !< number of the motor whose voltage or setpoint it gives; 0 for other laws
     type(place_type) :: place   !< place of its group in the data file
   contains
     procedure(evaluate_interface), deferred :: evaluate
@@ -112,7 +114,8 @@ contains
     character(len=40) :: owner
 
     owner = 'load'
-    if (self%coordinate > 0) owner = 'drive of coordinate '//to_text(self%coordinate)
+    if (self%motor > 0) owner = 'motor '//to_text(self%motor)
+    if (self%coordinate > 0 .and. self%motor == 0) owner = 'drive of coordinate '//to_text(self%coordinate)
   end function owner
 
   !> A time at or near a joint, moved into the piece on one side of it by a little more than round-off.

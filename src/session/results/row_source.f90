@@ -41,6 +41,7 @@ contains
     source%simulation => simulation
     source%columns = kinematic_columns(simulation%model%mechanism, simulation%model%request%output)
     call source%forces%begin(simulation%model, source%columns)
+    call source%columns%append_motors(simulation%model%mechanism)
     if (simulation%with_energies) then
       call source%columns%append('E.kinetic', 'J', 'kinetic energy')
       call source%columns%append('E.potential', 'J', 'potential energy of gravity and springs')
@@ -78,7 +79,9 @@ contains
         call self%columns%fill_forces(found%needed, found%force, found%moment, row)
       end associate
     end if
-    next = self%columns%motion + self%columns%forces()
+    call self%columns%fill_motors(self%simulation%model%mechanism, state, row, err)
+    if (allocated(err)) return
+    next = self%columns%motion + self%columns%forces() + self%columns%motors
     associate (simulation => self%simulation)
       if (simulation%with_energies) then
         row(next + 1) = simulation%kinetic_energy

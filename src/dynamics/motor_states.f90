@@ -1,0 +1,109 @@
+!> The states of motors in a state of motion: their start, their rates, and the limits at which motors work.
+module mech9_motor_states
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_motion_view, only: unlocked
+  use mech9_motor, only: motor_type, motor_motion_type, motor_action_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_state, only: state_type
+  implicit none
+  private
+  public :: start_motors, find_motor_rates, find_action, find_limits, coordinate_of_motor, has_limits
+
+contains
+
+  !> Put the motors into a state of motion, without current and with integrals that begin at zero. Nothing is done where there are
+  !> none, or where they have states already.
+  subroutine start_motors(mechanism, state)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(state_type), intent(inout) :: state        !< gets the states of the motors
+
+    if (mechanism%n_motors == 0 .or. allocated(state%motor)) return
+    allocate (state%motor(mechanism%n_motors), state%motor_rate(mechanism%n_motors), source=0.0_wp)
+    allocate (state%limited(mechanism%n_motors), source=unlocked)
+  end subroutine start_motors
+
+  !> The number of a motor's coordinate.
+  pure integer function coordinate_of_motor(mechanism, i)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: i                        !< number of the motor
+
+    coordinate_of_motor = 0
+    select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
+    class is (motor_type)
+      coordinate_of_motor = motor%coordinate
+    end select
+  end function coordinate_of_motor
+
+  !> The action of a motor in a state of motion with all coordinates, rates and accelerations. Fails where its law has no value.
+  subroutine find_action(mechanism, i, state, action, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    integer, intent(in) :: i                            !< number of the motor
+    type(state_type), intent(in) :: state               !< the state of motion
+    type(motor_action_type), intent(out) :: action      !< the action
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(motor_motion_type) :: motion
+
+    select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
+    class is (motor_type)
+      motion%t = state%t
+      motion%q = state%q(motor%coordinate)
+      motion%dq = state%dq(motor%coordinate)
+      motion%ddq = state%ddq(motor%coordinate)
+      motion%steady = .not. allocated(state%motor)
+      if (.not. motion%steady) then
+        motion%value = state%motor(i)
+        motion%limited = state%limited(i)
+      end if
+      call motor%act(motion, action, err)
+    end select
+  end subroutine find_action
+
+  !> The rates of the motors' states.
+  subroutine find_motor_rates(mechanism, state, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(state_type), intent(inout) :: state            !< with the rates of all coordinates; gets those of the motors' states
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(motor_action_type) :: action
+    integer :: i
+
+    if (.not. allocated(state%motor)) return
+    do i = 1, size(state%motor)
+      call find_action(mechanism, i, state, action, err)
+      if (allocated(err)) return
+      state%motor_rate(i) = action%rate
+    end do
+  end subroutine find_motor_rates
+
+  !> Whether the force of any motor has a limit.
+  pure logical function has_limits(mechanism)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer :: i
+
+    has_limits = .false.
+    do i = size(mechanism%loads) - mechanism%n_motors + 1, size(mechanism%loads)
+      select type (motor => mechanism%loads(i)%load)
+      class is (motor_type)
+        has_limits = has_limits .or. motor%has_limit()
+      end select
+    end do
+  end function has_limits
+
+  !> The limits at which the motors work, by the forces that they would have without.
+  subroutine find_limits(mechanism, state, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(state_type), intent(inout) :: state            !< with the rates of the motors' coordinates; gets the limits
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(motor_action_type) :: action
+    integer :: i
+
+    if (.not. allocated(state%motor)) return
+    do i = 1, size(state%motor)
+      state%limited(i) = unlocked
+      call find_action(mechanism, i, state, action, err)
+      if (allocated(err)) return
+      state%limited(i) = 0
+      if (abs(action%demand) > 1.0_wp) state%limited(i) = nint(sign(1.0_wp, action%demand))
+    end do
+  end subroutine find_limits
+end module mech9_motor_states

@@ -1,0 +1,152 @@
+!> Motors from the groups &motor of a checked document.
+module mech9_motor_reader
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_pair, only: pair_slot_type
+  use mech9_polynomial_law, only: polynomial_law_type
+  use mech9_load, only: load_slot_type
+  use mech9_motor, only: motor_type
+  use mech9_dc_motor, only: dc_motor_type
+  use mech9_pid_motor, only: pid_motor_type
+  use mech9_document, only: document_type, group_type
+  use mech9_lookup, only: groups_named, has_name, get_integer, get_real, get_text, span_of
+  use mech9_drive_reader, only: read_law, unit_of_coordinate
+  use mech9_diagnostics, only: diagnostics_type
+  implicit none
+  private
+  public :: read_motors
+
+contains
+
+  !> Append all motors to the loads, in the order of the file.
+  subroutine read_motors(document, pairs, angle_unit, loads, n_motors, diagnostics)
+    type(document_type), intent(in) :: document                   !< the data file as groups and items
+    type(pair_slot_type), intent(in) :: pairs(:)                  !< (M) pairs by coordinate; size 0 where they are not known
+    real(wp), intent(in) :: angle_unit                            !< unit of angles in the file [rad]
+    type(load_slot_type), allocatable, intent(inout) :: loads(:)  !< gets the motors of sound groups
+    integer, intent(out) :: n_motors                              !< how many motors there are
+    type(diagnostics_type), intent(inout) :: diagnostics          !< gets what is wrong
+    type(load_slot_type), allocatable :: all(:)
+    class(motor_type), allocatable :: motor
+    integer, allocatable :: numbers(:)
+    integer :: i, n
+
+    numbers = groups_named(document, 'motor')
+    n = size(loads)
+    n_motors = size(numbers)
+    if (n_motors == 0) return
+    allocate (all(n + n_motors))
+    do i = 1, n
+      call move_alloc(loads(i)%load, all(i)%load)
+    end do
+    do i = 1, n_motors
+      associate (group => document%groups(numbers(i)))
+        call check_coordinate(group, size(pairs), diagnostics)
+        if (get_text(group, 'kind') == 'dc') then
+          call read_dc_motor(document, group, angle_unit, motor, diagnostics)
+        else
+          call read_pid_motor(document, group, pairs, angle_unit, motor, diagnostics)
+        end if
+        motor%coordinate = get_integer(group, 'coordinate')
+        motor%number = i
+        motor%place = diagnostics%place(group%span)
+        if (allocated(motor%law)) then
+          motor%law%motor = i
+          motor%law%place = motor%place
+        end if
+        call move_alloc(motor, all(n + i)%load)
+      end associate
+    end do
+    call move_alloc(all, loads)
+  end subroutine read_motors
+
+  !> A direct-current motor.
+  subroutine read_dc_motor(document, group, angle_unit, motor, diagnostics)
+    type(document_type), intent(in) :: document               !< the data file as groups and items
+    type(group_type), intent(in) :: group                     !< the group of the data file
+    real(wp), intent(in) :: angle_unit                        !< unit of angles in the file [rad]
+    class(motor_type), allocatable, intent(out) :: motor      !< the motor
+    type(diagnostics_type), intent(inout) :: diagnostics      !< gets what is wrong
+    type(dc_motor_type) :: dc
+
+    dc%voltage = 1.0_wp
+    if (has_name(group, 'voltage')) dc%voltage = get_real(group, 'voltage')
+    dc%resistance = get_real(group, 'resistance')
+    dc%inductance = get_real(group, 'inductance')
+    dc%constant = get_real(group, 'constant')
+    dc%gear_ratio = get_real(group, 'gear_ratio')
+    call read_law(document, group, get_text(group, 'law'), angle_unit, 1.0_wp, dc%law, diagnostics)
+    if (.not. (has_law(group) .or. has_name(group, 'voltage'))) &
+      call diagnostics%add(group%span, 'the motor has no voltage; give voltage= (0 for a short circuit), or law= and its names')
+    if (.not. abs(dc%gear_ratio) > 0.0_wp) &
+      call diagnostics%add(span_of(group, 'gear_ratio', 1), 'with gear_ratio=0 the motor moves nothing; give the turns of the '// &
+                           'motor per turn of the coordinate')
+    allocate (motor, source=dc)
+  end subroutine read_dc_motor
+
+  !> A motor that a PID controller sets.
+  subroutine read_pid_motor(document, group, pairs, angle_unit, motor, diagnostics)
+    type(document_type), intent(in) :: document               !< the data file as groups and items
+    type(group_type), intent(in) :: group                     !< the group of the data file
+    type(pair_slot_type), intent(in) :: pairs(:)              !< (M) pairs by coordinate; size 0 where they are not known
+    real(wp), intent(in) :: angle_unit                        !< unit of angles in the file [rad]
+    class(motor_type), allocatable, intent(out) :: motor      !< the motor
+    type(diagnostics_type), intent(inout) :: diagnostics      !< gets what is wrong
+    type(pid_motor_type) :: pid
+    type(polynomial_law_type) :: constant
+    real(wp) :: unit
+
+    pid%proportional = get_real(group, 'proportional')
+    pid%integral = get_real(group, 'integral')
+    pid%derivative = get_real(group, 'derivative')
+    if (has_name(group, 'limit')) pid%limit = get_real(group, 'limit')
+    unit = unit_of_coordinate(group, pairs, angle_unit)
+    if (has_law(group)) then
+      call read_law(document, group, get_text(group, 'law'), angle_unit, unit, pid%law, diagnostics)
+    else if (has_name(group, 'setpoint')) then
+      constant%coefficients = [unit*get_real(group, 'setpoint')]
+      allocate (pid%law, source=constant)
+    end if
+    if (allocated(pid%law)) pid%law%coordinate = get_integer(group, 'coordinate')
+    call check_pid_motor(group, pid, diagnostics)
+    allocate (motor, source=pid)
+  end subroutine read_pid_motor
+
+  !> Whether a law of time is given that is not constant.
+  pure logical function has_law(group)
+    type(group_type), intent(in) :: group  !< the group of the data file
+
+    has_law = has_name(group, 'law')
+    if (has_law) has_law = get_text(group, 'law') /= 'constant'
+  end function has_law
+
+  !> Report a controller without setpoint, with two, without gains, or whose integral could not be led back at the limit.
+  subroutine check_pid_motor(group, pid, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(pid_motor_type), intent(in) :: pid               !< the controller
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+
+    if (.not. (has_law(group) .or. has_name(group, 'setpoint'))) &
+      call diagnostics%add(group%span, 'the controller has no setpoint; give setpoint=, or law= and its names, for instance '// &
+                           'law=''polynomial'', coefficients=0.5')
+    if (has_law(group) .and. has_name(group, 'setpoint')) &
+      call diagnostics%add(span_of(group, 'setpoint', 1), 'the setpoint is given twice, by setpoint= and by law=; leave one out')
+    if (.not. max(pid%proportional, pid%integral, pid%derivative) > 0.0_wp) &
+      call diagnostics%add(group%span, 'the controller has no gain; give proportional, integral or derivative')
+    if (pid%has_limit() .and. pid%integral > 0.0_wp .and. .not. max(pid%proportional, pid%derivative) > 0.0_wp) &
+      call diagnostics%add(span_of(group, 'limit', 1), 'a controller with an integral part alone cannot have a limit, because '// &
+                           'the time in which the integral is led back follows from the other gains; give proportional='// &
+                           ' or derivative= too')
+  end subroutine check_pid_motor
+
+  !> Report a motor on a coordinate that does not exist.
+  pure subroutine check_coordinate(group, n_coordinates, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    integer, intent(in) :: n_coordinates                  !< how many coordinates there are; 0: unknown
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+
+    if (n_coordinates > 0 .and. get_integer(group, 'coordinate') > n_coordinates) &
+      call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '// &
+                           to_text(get_integer(group, 'coordinate'))//'; they are 1 to '//to_text(n_coordinates))
+  end subroutine check_coordinate
+end module mech9_motor_reader

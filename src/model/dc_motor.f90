@@ -1,0 +1,75 @@
+!> A direct-current motor with permanent magnets.
+module mech9_dc_motor
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_motor, only: motor_type, motor_motion_type, motor_action_type
+  implicit none
+  private
+  public :: dc_motor_type
+
+  !> inductance di/dt = voltage - resistance i - constant gear_ratio dq/dt; the force is gear_ratio constant i.
+  type, extends(motor_type) :: dc_motor_type
+    real(wp) :: voltage = 0.0_wp      !< multiplied by the law of time, where there is one [V]
+    real(wp) :: resistance = 1.0_wp   !< [ohm]
+    real(wp) :: inductance = 0.0_wp   !< zero: the current follows at once [H]
+    real(wp) :: constant = 1.0_wp     !< torque per current, and voltage per speed [N m/A = V s/rad, N/A = V s/m]
+    real(wp) :: gear_ratio = 1.0_wp   !< turns of the motor per turn of the coordinate
+  contains
+    procedure :: act
+    procedure :: has_state
+    procedure :: has_limit
+    procedure :: has_input
+  end type dc_motor_type
+
+contains
+
+  !> The torque by the current, and the rate of the current by the voltage that is left. Fails where the voltage has no value.
+  subroutine act(self, motion, action, err)
+    class(dc_motor_type), intent(in) :: self             !< the motor
+    type(motor_motion_type), intent(in) :: motion        !< of its coordinate, and its current
+    type(motor_action_type), intent(out) :: action       !< its force, the rate of its current, and derivatives
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    real(wp) :: factor, factor_rate, unused, coupling
+
+    factor = 1.0_wp
+    factor_rate = 0.0_wp
+    if (allocated(self%law)) call self%law%evaluate(motion%t, factor, factor_rate, unused, err)
+    if (allocated(err)) return
+    coupling = self%gear_ratio*self%constant
+    if (motion%steady .or. .not. self%has_state()) then
+      action%value = (self%voltage*factor - coupling*motion%dq)/self%resistance
+      action%force_by_dq = -coupling**2/self%resistance
+      action%force_by_input = coupling/self%resistance
+    else
+      action%value = motion%value
+      action%rate = (self%voltage*factor - self%resistance*motion%value - coupling*motion%dq)/self%inductance
+      action%second = (self%voltage*factor_rate - self%resistance*action%rate - coupling*motion%ddq)/self%inductance
+      action%force_by_value = coupling
+      action%rate_by_dq = -coupling/self%inductance
+      action%rate_by_value = -self%resistance/self%inductance
+      action%rate_by_input = 1.0_wp/self%inductance
+    end if
+    action%force = coupling*action%value
+  end subroutine act
+
+  !> Whether its current has a rate.
+  pure logical function has_state(self)
+    class(dc_motor_type), intent(in) :: self   !< the motor
+
+    has_state = self%inductance > 0.0_wp
+  end function has_state
+
+  !> Its current has no limit but its resistance.
+  pure logical function has_limit(self)
+    class(dc_motor_type), intent(in) :: self   !< the motor
+
+    has_limit = .false.
+  end function has_limit
+
+  !> Its voltage is an input.
+  pure logical function has_input(self)
+    class(dc_motor_type), intent(in) :: self   !< the motor
+
+    has_input = .true.
+  end function has_input
+end module mech9_dc_motor

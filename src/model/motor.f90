@@ -1,0 +1,141 @@
+!> Motors on coordinates: loads with a state of their own, which is integrated along with the motion.
+module mech9_motor
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_motion_view, only: motion_view_type, unlocked
+  use mech9_motion_change, only: motion_change_type
+  use mech9_force_sum, only: force_sum_type
+  use mech9_load, only: load_type
+  implicit none
+  private
+  public :: motor_type, motor_motion_type, motor_action_type, motion_of_motor
+
+  !> The motion of a motor's coordinate, and the motor's own state.
+  type :: motor_motion_type
+    real(wp) :: t = 0.0_wp          !< time [s]
+    real(wp) :: q = 0.0_wp          !< the coordinate [rad, m]
+    real(wp) :: dq = 0.0_wp         !< its rate [rad/s, m/s]
+    real(wp) :: ddq = 0.0_wp        !< its acceleration, where `second` and `demand_rate` are asked for [rad/s^2, m/s^2]
+    real(wp) :: value = 0.0_wp      !< the state: current [A], or integral of the deviation [rad s, m s]
+    integer :: limited = unlocked   !< the limit at which the motor works: -1, 0 for none, 1; `unlocked`: it is found
+    logical :: steady = .false.     !< the state has come to rest: `value` does not count
+  end type motor_motion_type
+
+  !> The action of a motor in such a motion, with its derivatives.
+  type :: motor_action_type
+    real(wp) :: force = 0.0_wp            !< on the coordinate [N m, N]
+    real(wp) :: value = 0.0_wp            !< the state as it is shown: the current without inductance, too
+    real(wp) :: rate = 0.0_wp             !< derivative of the state in time
+    real(wp) :: second = 0.0_wp           !< second derivative of the state in time
+    real(wp) :: demand = 0.0_wp           !< the force without its limit, in parts of the limit; 0 without a limit
+    real(wp) :: demand_rate = 0.0_wp      !< its derivative in time [1/s]
+    real(wp) :: force_by_q = 0.0_wp       !< derivatives of the force by coordinate, rate, state, and input
+    real(wp) :: force_by_dq = 0.0_wp
+    real(wp) :: force_by_value = 0.0_wp
+    real(wp) :: force_by_input = 0.0_wp
+    real(wp) :: rate_by_q = 0.0_wp        !< derivatives of the rate of the state by the same
+    real(wp) :: rate_by_dq = 0.0_wp
+    real(wp) :: rate_by_value = 0.0_wp
+    real(wp) :: rate_by_input = 0.0_wp
+  end type motor_action_type
+
+  !> A motor of any kind. Its work counts as put in.
+  type, abstract, extends(load_type) :: motor_type
+    integer :: coordinate = 0   !< number of the coordinate on which it acts
+    integer :: number = 0       !< its number, in the order of the data file
+  contains
+    procedure(act_interface), deferred :: act
+    procedure(answer_interface), deferred :: has_state
+    procedure(answer_interface), deferred :: has_limit
+    procedure(answer_interface), deferred :: has_input
+    procedure :: mark_links
+    procedure :: mark_coordinates
+    procedure :: apply
+    procedure :: potential
+    procedure :: vary
+  end type motor_type
+
+  abstract interface
+    !> The action of the motor. Fails where its law of time has no value.
+    subroutine act_interface(self, motion, action, err)
+      import :: motor_type, motor_motion_type, motor_action_type, error_type
+      class(motor_type), intent(in) :: self                !< the motor
+      type(motor_motion_type), intent(in) :: motion        !< of its coordinate, and its state
+      type(motor_action_type), intent(out) :: action       !< its force, the rate of its state, and derivatives
+      type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    end subroutine act_interface
+
+    !> A property of the motor: its state changes in time; its force has a limit; its voltage is an input of linearised equations.
+    pure logical function answer_interface(self)
+      import :: motor_type
+      class(motor_type), intent(in) :: self   !< the motor
+    end function answer_interface
+  end interface
+
+contains
+
+  !> The motion of the motor's coordinate, as loads read it. The acceleration is left out.
+  pure function motion_of_motor(self, view) result(motion)
+    class(motor_type), intent(in) :: self         !< the motor
+    type(motion_view_type), intent(in) :: view    !< present motion of links and coordinates
+    type(motor_motion_type) :: motion
+
+    motion%t = view%t
+    motion%q = view%q(self%coordinate)
+    motion%dq = view%dq(self%coordinate)
+    motion%steady = .not. allocated(view%motor)
+    if (motion%steady) return
+    motion%value = view%motor(self%number)
+    motion%limited = view%limited(self%number)
+  end function motion_of_motor
+
+  !> The motor acts on a coordinate and requests no link.
+  pure subroutine mark_links(self, needed)
+    class(motor_type), intent(in) :: self   !< the motor
+    logical, intent(inout) :: needed(:)     !< (N) unchanged
+  end subroutine mark_links
+
+  !> Mark its coordinate.
+  pure subroutine mark_coordinates(self, needed)
+    class(motor_type), intent(in) :: self   !< the motor
+    logical, intent(inout) :: needed(:)     !< (M) becomes true for the coordinate
+
+    needed(self%coordinate) = .true.
+  end subroutine mark_coordinates
+
+  !> Add the generalized force on the coordinate.
+  subroutine apply(self, state, sum, err)
+    class(motor_type), intent(in) :: self               !< the motor
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates, with the motors' states
+    type(force_sum_type), intent(inout) :: sum          !< forces so far; that of the motor is added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(motor_action_type) :: action
+
+    call self%act(motion_of_motor(self, state), action, err)
+    if (.not. allocated(err)) call sum%add_generalized(self%coordinate, action%force)
+  end subroutine apply
+
+  !> Add the derivative of the generalized force by a parameter, with the motor's state held unless it is steady.
+  subroutine vary(self, state, change, changes, err)
+    class(motor_type), intent(in) :: self               !< the motor
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates, with the motors' states
+    type(motion_change_type), intent(in) :: change      !< derivative of the motion by the parameter
+    type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the motor are added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(motor_action_type) :: action
+
+    call self%act(motion_of_motor(self, state), action, err)
+    if (allocated(err)) return
+    associate (k => self%coordinate)
+      call changes%add_generalized(k, action%force_by_q*change%q(k) + action%force_by_dq*change%dq(k))
+    end associate
+  end subroutine vary
+
+  !> Motors store no energy of the mechanism.
+  pure real(wp) function potential(self, state)
+    class(motor_type), intent(in) :: self         !< the motor
+    type(motion_view_type), intent(in) :: state   !< present motion of links and coordinates
+
+    potential = 0.0_wp
+  end function potential
+end module mech9_motor
