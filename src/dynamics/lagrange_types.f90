@@ -45,7 +45,6 @@ module mech9_lagrange_types
     procedure(force_adder), deferred :: add_link_force
     procedure(tree_solver), deferred :: solve_tree
     procedure(tree_weigher), deferred :: weigh_tree
-    procedure(energy_of), deferred :: kinetic_energy
   end type dynamics_arithmetic_type
 
   !> The plan of dynamics holds everything of dynamics that can be decided once.
@@ -209,13 +208,5 @@ module mech9_lagrange_types
       type(state_type), intent(in) :: state                 !< with the accelerations that rates alone give
       type(lagrange_work_type), intent(inout) :: work       !< with the columns of closed clusters; gets the results
     end subroutine tree_weigher
-
-    !> Sum over the bodies of half m v^2 of the centre and half omega . I omega.
-    pure real(wp) function energy_of(self, dynamics, state)
-      import :: dynamics_arithmetic_type, dynamics_plan_type, state_type, wp
-      class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
-      type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
-      type(state_type), intent(in) :: state                 !< with its velocities; the result is in J
-    end function energy_of
   end interface
 end module mech9_lagrange_types

@@ -9,7 +9,7 @@ module mech9_planar_dynamics
   use mech9_planar_closure, only: planar_bias_rates, planar_difference
   use mech9_block_solver, only: block_work_type
   use mech9_planar_lagrange, only: planar_body_type, planar_body, spread_columns, add_bodies => add_inertia, &
-    planar_wrench, add_force => add_link_force, planar_kinetic_energy
+    planar_wrench, add_force => add_link_force
   use mech9_planar_block, only: planar_block_type, list_loops, fill_columns, add_earlier, take_rates, move_frames, &
     move_with_drives
   use mech9_planar_articulated, only: new_planar_work, set_bodies, go_inward, go_outward, &
@@ -37,7 +37,6 @@ module mech9_planar_dynamics
     procedure :: add_link_force
     procedure :: solve_tree
     procedure :: weigh_tree
-    procedure :: kinetic_energy
   end type planar_dynamics_type
 
 contains
@@ -330,13 +329,4 @@ contains
       end do
     end associate
   end subroutine weigh_tree
-
-  !> Kinetic energy: the sum over the bodies of half m v^2 of the centre and half I w^2 [J].
-  pure real(wp) function kinetic_energy(self, dynamics, state)
-    class(planar_dynamics_type), intent(in) :: self    !< the arithmetic
-    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
-    type(state_type), intent(in) :: state              !< with its velocities
-
-    kinetic_energy = planar_kinetic_energy(self%bodies, state%planar)
-  end function kinetic_energy
 end module mech9_planar_dynamics

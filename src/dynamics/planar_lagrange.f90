@@ -10,11 +10,9 @@ module mech9_planar_lagrange
   use mech9_plan, only: plan_type
   use mech9_planar_plan, only: planar_plan_type, planar_step_type
   use mech9_planar_motion, only: to_plane
-  use mech9_state, only: planar_motion_type
   implicit none
   private
-  public :: planar_body_type, planar_body, spread_columns, carry_columns, add_inertia, planar_wrench, add_link_force, &
-    planar_kinetic_energy
+  public :: planar_body_type, planar_body, spread_columns, carry_columns, add_inertia, planar_wrench, add_link_force
 
   !> A link with mass or inertia, in its frame in the plane.
   type :: planar_body_type
@@ -179,21 +177,4 @@ contains
     wrench(1) = spin(3) + x*pull(2) - y*pull(1)
     wrench(2:3) = pull(1:2)
   end function planar_wrench
-
-  !> Kinetic energy of all bodies [J].
-  pure real(wp) function planar_kinetic_energy(bodies, motion) result(energy)
-    type(planar_body_type), intent(in) :: bodies(:)   !< links with mass or inertia
-    type(planar_motion_type), intent(in) :: motion    !< with poses and velocities of the frames
-    real(wp) :: x, y
-    integer :: i
-
-    energy = 0.0_wp
-    do i = 1, size(bodies)
-      associate (body => bodies(i), f => motion%pose(:, bodies(i)%frame), v => motion%velocity(:, bodies(i)%frame))
-        x = f(1)*body%centre(1) - f(2)*body%centre(2)
-        y = f(2)*body%centre(1) + f(1)*body%centre(2)
-        energy = energy + 0.5_wp*(body%mass*((v(2) - v(1)*y)**2 + (v(3) + v(1)*x)**2) + body%inertia*v(1)**2)
-      end associate
-    end do
-  end function planar_kinetic_energy
 end module mech9_planar_lagrange

@@ -1,7 +1,7 @@
 !> Lagrange's equations in space: Jacobians of frames, inertia of links, forces on them, articulated bodies.
 module mech9_spatial_dynamics
   use mech9_kinds, only: wp
-  use mech9_rotation, only: turn, turn_back, cross
+  use mech9_rotation, only: cross
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: solver_factorize => factorize_block
@@ -28,7 +28,6 @@ module mech9_spatial_dynamics
     procedure :: add_link_force
     procedure :: solve_tree
     procedure :: weigh_tree
-    procedure :: kinetic_energy
   end type spatial_dynamics_type
 
 contains
@@ -288,24 +287,4 @@ contains
       end do
     end associate
   end subroutine weigh_tree
-
-  !> Kinetic energy: the sum over the bodies of half m v^2 of the centre and half omega . I omega [J].
-  pure real(wp) function kinetic_energy(self, dynamics, state)
-    class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
-    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
-    type(state_type), intent(in) :: state              !< with its velocities
-    real(wp) :: arm(3), v(3), omega(3)
-    integer :: i
-
-    kinetic_energy = 0.0_wp
-    do i = 1, size(dynamics%bodies)
-      associate (body => dynamics%bodies(i), f => dynamics%bodies(i)%frame)
-        arm = turn(state%r(:, :, f), body%centre)
-        v = state%v(:, f) + cross(state%omega(:, f), arm)
-        omega = turn_back(state%r(:, :, f), state%omega(:, f))
-        kinetic_energy = kinetic_energy &
-                         + 0.5_wp*(body%mass*dot_product(v, v) + dot_product(omega, turn(body%inertia, omega)))
-      end associate
-    end do
-  end function kinetic_energy
 end module mech9_spatial_dynamics

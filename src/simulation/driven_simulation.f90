@@ -7,7 +7,6 @@ module mech9_driven_simulation
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_frame_motion, only: show_all_frames
   use mech9_requested, only: requested_by_results, add_forces, leave_out_unrequested
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance, set_inputs
   use mech9_lagrange_types, only: dynamics_plan_type
@@ -129,9 +128,8 @@ contains
       allocate (self%view%links(self%plan%n_links))
       allocate (self%view%q(self%plan%n_coordinates), self%view%dq(self%plan%n_coordinates), source=0.0_wp)
     end if
-    call show_all_frames(self%plan, self%driven%state)
     call show_state(self%plan, self%dynamics, self%driven%state, self%view)
-    kinetic = kinetic_energy(self%dynamics, self%driven%state)
+    kinetic = kinetic_energy(self%model%mechanism, self%plan, self%driven%state)
     potential = potential_energy(self%model%mechanism, self%plan, self%driven%state, self%view)
   end subroutine energies
 

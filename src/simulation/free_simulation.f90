@@ -352,7 +352,7 @@ contains
     real(wp), intent(out) :: potential                   !< of gravity and springs [J]
 
     associate (system => self%motion%system)
-      kinetic = kinetic_energy(system%dynamics, system%state)
+      kinetic = kinetic_energy(self%model%mechanism, system%plan, system%state)
       potential = potential_energy(self%model%mechanism, system%plan, system%state, system%work%view)
     end associate
   end subroutine energies

@@ -72,7 +72,7 @@ contains
                        1.0e-9_wp, why//': the velocity terms are those of (19)')
     call check_numbers(test, work%forces, literal%forces, maxval(abs(literal%forces)), 1.0e-11_wp, &
                        why//': the generalized forces are those of (25)')
-    call test%near(kinetic_energy(dynamics, state), &
+    call test%near(kinetic_energy(model%mechanism, plan, state), &
                    0.5_wp*dot_product(state%dq(plan%independent), &
                                       matmul(literal%coefficients, state%dq(plan%independent))), &
                    1.0e-11_wp, why//': the kinetic energy is that of (20)')

@@ -133,7 +133,7 @@ contains
         call test%no_error(err, why//': a position nearby is found')
         if (allocated(err)) return
         q(:, i) = state%q
-        energy(i) = kinetic_energy(dynamics, state)
+        energy(i) = kinetic_energy(model%mechanism, plan, state)
       end do
     end do
     call complete_accelerations(plan, dynamics, work, start)

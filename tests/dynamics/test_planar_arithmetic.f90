@@ -220,7 +220,7 @@ contains
       call point_motion(plan, state, point%link, point%position, result%points(:, 1), result%points(:, 2), &
                         result%points(:, 3))
     end associate
-    result%energies = [kinetic_energy(dynamics, state), potential_energy(model%mechanism, plan, state, work%view)]
+    result%energies = [kinetic_energy(model%mechanism, plan, state), potential_energy(model%mechanism, plan, state, work%view)]
   end subroutine evaluate
 
   subroutine check(numbers, expected, tolerance, why)
