@@ -16,7 +16,7 @@ module mech9_articulated_bodies
   implicit none
   private
   public :: articulated_type, articulated_work_type, new_articulated, new_articulated_work, add_to_frame, set_bodies, &
-    go_inward, go_outward, pass_inward, pass_outward, rigid_inertia, add_to_parent
+    go_inward, go_outward, pass_inward, pass_outward, rigid_inertia, add_to_parent, body_wrench, set_rigid_body, in_fixed_axes
 
   !> The steps and bodies of a mechanism in the form that the passes use. Indices are the numbers of frames, which are those of
   !> the steps.
@@ -88,10 +88,11 @@ contains
     end associate
   end subroutine add_to_frame
 
-  !> The inertia of each frame's own bodies in fixed axes, and the wrench that these bodies require for the motion by rates
-  !> alone, less that of the loads and of gravity.
-  pure subroutine set_bodies(m, mass, moment, tensor, gravity, r, omega, alpha, a, applied, inertia, wrench, amount)
+  !> The inertia of the own bodies of each marked frame in fixed axes, and the wrench that these bodies require for the motion by
+  !> rates alone, less that of the loads and of gravity.
+  pure subroutine set_bodies(m, marked, mass, moment, tensor, gravity, r, omega, alpha, a, applied, inertia, wrench, amount)
     integer, intent(in) :: m                        !< number of steps
+    logical, intent(in) :: marked(0:m)              !< the frames
     real(wp), intent(in) :: mass(m)                 !< of the bodies of each frame together [kg]
     real(wp), intent(in) :: moment(3, m)            !< mass times centre, in the frame's axes [kg m]
     real(wp), intent(in) :: tensor(3, 3, m)         !< inertia about the frame's origin, in its axes [kg m^2]
@@ -104,35 +105,73 @@ contains
     real(wp), intent(inout) :: inertia(3, 9, 0:m)   !< gets J, H, M of each frame but 0
     real(wp), intent(inout) :: wrench(6, 0:m)       !< gets the wrench of each frame but 0
     real(wp), intent(inout) :: amount(5, 0:m)       !< gets mass, moment and sum of m r^2 of each frame but 0
-    real(wp) :: h(3), j(3, 3), fall(3)
-    integer :: s, i
+    real(wp) :: h(3), j(3, 3)
+    integer :: s
 
     do s = 1, m
-      wrench(:, s) = -applied(:, s)
-      amount(:, s) = 0.0_wp
-      inertia(:, :, s) = 0.0_wp
-      if (.not. (mass(s) > 0.0_wp .or. tensor(1, 1, s) + tensor(2, 2, s) + tensor(3, 3, s) > 0.0_wp)) cycle
-      h = turn(r(:, :, s), moment(:, s))
-      j = in_fixed_axes(r(:, :, s), tensor(:, :, s))
-      inertia(:, 1:3, s) = j
-      ! a motion dv requires the torque h x dv
-      inertia(2, 4, s) = h(3)
-      inertia(3, 4, s) = -h(2)
-      inertia(1, 5, s) = -h(3)
-      inertia(3, 5, s) = h(1)
-      inertia(1, 6, s) = h(2)
-      inertia(2, 6, s) = -h(1)
-      do i = 1, 3
-        inertia(i, 6 + i, s) = mass(s)
-      end do
-      fall = a(:, s) - gravity
-      wrench(1:3, s) = wrench(1:3, s) + cross(h, fall) + turn(j, alpha(:, s)) + cross(omega(:, s), turn(j, omega(:, s)))
-      wrench(4:6, s) = wrench(4:6, s) + mass(s)*fall + cross(alpha(:, s), h) + cross(omega(:, s), cross(omega(:, s), h))
-      amount(1, s) = mass(s)
-      amount(2:4, s) = h
-      amount(5, s) = 0.5_wp*(j(1, 1) + j(2, 2) + j(3, 3))
+      if (.not. marked(s)) cycle
+      if (mass(s) > 0.0_wp .or. tensor(1, 1, s) + tensor(2, 2, s) + tensor(3, 3, s) > 0.0_wp) then
+        h = turn(r(:, :, s), moment(:, s))
+        j = in_fixed_axes(r(:, :, s), tensor(:, :, s))
+        call set_rigid_body(mass(s), h, j, inertia(:, :, s), amount(:, s))
+        call body_wrench(mass(s), h, j, omega(:, s), alpha(:, s), a(:, s) - gravity, wrench(:, s))
+        wrench(:, s) = wrench(:, s) - applied(:, s)
+      else
+        wrench(:, s) = -applied(:, s)
+        amount(:, s) = 0.0_wp
+        inertia(:, :, s) = 0.0_wp
+      end if
     end do
   end subroutine set_bodies
+
+  !> The inertia J, H, M and the amount of a rigid body.
+  pure subroutine set_rigid_body(mass, h, j, inertia, amount)
+    real(wp), intent(in) :: mass            !< of the body [kg]
+    real(wp), intent(in) :: h(3)            !< mass times centre, fixed axes [kg m]
+    real(wp), intent(in) :: j(3, 3)         !< inertia about the frame's origin, fixed axes [kg m^2]
+    real(wp), intent(out) :: inertia(3, 9)  !< J, H, M, fixed axes
+    real(wp), intent(out) :: amount(5)      !< mass, moment and sum of m r^2
+    integer :: i
+
+    inertia(:, 1:3) = j
+    ! a motion dv requires the torque h x dv
+    inertia(:, 4) = [0.0_wp, h(3), -h(2)]
+    inertia(:, 5) = [-h(3), 0.0_wp, h(1)]
+    inertia(:, 6) = [h(2), -h(1), 0.0_wp]
+    inertia(:, 7:9) = 0.0_wp
+    do i = 1, 3
+      inertia(i, 6 + i) = mass
+    end do
+    amount(1) = mass
+    amount(2:4) = h
+    amount(5) = 0.5_wp*(j(1, 1) + j(2, 2) + j(3, 3))
+  end subroutine set_rigid_body
+
+  !> The wrench that a rigid body requires for a motion, about the origin of its frame:
+  !>   torque = h x fall + J alpha + omega x J omega,   force = m fall + alpha x h + omega x (omega x h).
+  !> All vectors are in the same axes.
+  pure subroutine body_wrench(mass, h, j, omega, alpha, fall, wrench)
+    real(wp), intent(in) :: mass         !< of the body [kg]
+    real(wp), intent(in) :: h(3)         !< mass times centre [kg m]
+    real(wp), intent(in) :: j(3, 3)      !< inertia about the frame's origin [kg m^2]
+    real(wp), intent(in) :: omega(3)     !< angular velocity [rad/s]
+    real(wp), intent(in) :: alpha(3)     !< angular acceleration [rad/s^2]
+    real(wp), intent(in) :: fall(3)      !< acceleration of the frame's origin less that of free fall [m/s^2]
+    real(wp), intent(out) :: wrench(6)   !< torque and force [N m, N]
+    real(wp) :: spin(3), change(3), along, square
+
+    ! written out, because calls of `cross` would cost as much as their arithmetic
+    spin = j(:, 1)*omega(1) + j(:, 2)*omega(2) + j(:, 3)*omega(3)
+    change = j(:, 1)*alpha(1) + j(:, 2)*alpha(2) + j(:, 3)*alpha(3)
+    along = omega(1)*h(1) + omega(2)*h(2) + omega(3)*h(3)
+    square = omega(1)**2 + omega(2)**2 + omega(3)**2
+    wrench(1) = h(2)*fall(3) - h(3)*fall(2) + change(1) + omega(2)*spin(3) - omega(3)*spin(2)
+    wrench(2) = h(3)*fall(1) - h(1)*fall(3) + change(2) + omega(3)*spin(1) - omega(1)*spin(3)
+    wrench(3) = h(1)*fall(2) - h(2)*fall(1) + change(3) + omega(1)*spin(2) - omega(2)*spin(1)
+    wrench(4) = mass*fall(1) + alpha(2)*h(3) - alpha(3)*h(2) + omega(1)*along - square*h(1)
+    wrench(5) = mass*fall(2) + alpha(3)*h(1) - alpha(1)*h(3) + omega(2)*along - square*h(2)
+    wrench(6) = mass*fall(3) + alpha(1)*h(2) - alpha(2)*h(1) + omega(3)*along - square*h(3)
+  end subroutine body_wrench
 
   !> The tensor r t r^T, by its lower triangle.
   pure function in_fixed_axes(r, t) result(turned)

@@ -36,7 +36,7 @@ contains
         call spread_accelerations(plan, block, block%last_step, state)
         return
       end if
-      call dynamics%arithmetic%factorize_block(plan, b, state, work)
+      call dynamics%arithmetics(dynamics%arithmetic_of(b))%kind%factorize_block(plan, b, state, work)
       conditioning = work%blocks(b)%equations%conditioning()
       work%conditioning = min(work%conditioning, conditioning)
       if (conditioning < singular_conditioning) then
@@ -45,7 +45,8 @@ contains
         err%failure%coordinates = block%coordinates
         return
       end if
-      call dynamics%arithmetic%move_regular_block(plan, dynamics, b, conditioning, state, work, moved)
+      call dynamics%arithmetics(dynamics%arithmetic_of(b))%kind%move_regular_block(plan, dynamics, b, conditioning, state, &
+                                                                                   work, moved)
       if (moved) return
       call expect(state%t, work)
       call move_as_expected(plan, dynamics, b, state, work)
@@ -70,7 +71,7 @@ contains
     type(lagrange_work_type), intent(inout) :: work    !< with the expected values; gets the Jacobian entries of the block
 
     associate (block => plan%blocks(b))
-      call find_jacobian(plan, dynamics, block, state, work%expected_b, work%blocks(b), work%jacobian)
+      call find_jacobian(plan, dynamics, b, state, work%expected_b, work%blocks(b), work%jacobian)
       call find_rates(plan, dynamics, block, work%jacobian%b, state%dq)
       call spread_velocities(plan, block, state)
       call find_bias(plan, block, work%expected_ddq, state, work%blocks(b))

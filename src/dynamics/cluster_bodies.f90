@@ -16,7 +16,7 @@ module mech9_cluster_bodies
   implicit none
   private
   public :: cluster_work_type, new_cluster_work, find_rest, hold_columns, divide_columns, find_accelerations, &
-    eliminate_cluster, move_cluster
+    add_frames, eliminate_cluster, move_cluster
 
   !> Scratch of one closed cluster with n independent coordinates, sized once.
   type :: cluster_work_type
@@ -56,13 +56,10 @@ contains
     end do
   end subroutine find_rest
 
-  !> Eliminate the accelerations of a cluster; its base gets the inertia and the wrench that are left. `found` is false where A is
-  !> not positive definite beyond round-off.
-  pure subroutine eliminate_cluster(n, n_held, held, n_frames, frames, base, m, n_entries, first, local, w, v, p, inertia, &
-                                    wrench, amount, factors, column, rest, rigid, found)
+  !> Add the frames of a cluster to the sums A, U and Q - S^T p, and to the inertia and the wrench of its base.
+  pure subroutine add_frames(n, n_frames, frames, base, m, n_entries, first, local, w, v, p, inertia, wrench, amount, factors, &
+                             column, rest, rigid)
     integer, intent(in) :: n                        !< number of independent coordinates of the cluster
-    integer, intent(in) :: n_held                   !< number of those of them that are driven
-    integer, intent(in) :: held(n_held)             !< these
     integer, intent(in) :: n_frames                 !< number of its frames that carry anything
     integer, intent(in) :: frames(n_frames)         !< these frames
     integer, intent(in) :: base                     !< frame on which the cluster stands; nothing passes to frame 0
@@ -76,17 +73,13 @@ contains
     real(wp), intent(inout) :: inertia(3, 9, 0:m)   !< J, H, M of each frame with all links beyond it outside the cluster
     real(wp), intent(inout) :: wrench(6, 0:m)       !< torque_0 and force_0 in the same way [N m, N]
     real(wp), intent(inout) :: amount(5, 0:m)       !< mass, moment and sum of m r^2 in the same way, as if rigid
-    real(wp), intent(out) :: factors(n, n)          !< L, lower triangle
-    real(wp), intent(out) :: column(6, n)           !< Y
-    real(wp), intent(inout) :: rest(n)              !< Q in, z out
-    real(wp), intent(out) :: rigid(n)               !< bound of the diagonal of A, if all links beyond were rigid
-    logical, intent(out) :: found                   !< whether the coordinates have inertia
+    real(wp), intent(inout) :: factors(n, n)        !< A, lower triangle
+    real(wp), intent(inout) :: column(6, n)         !< U
+    real(wp), intent(inout) :: rest(n)              !< Q - S^T p
+    real(wp), intent(inout) :: rigid(n)             !< bound of the diagonal of A, if all links beyond were rigid
     real(wp) :: torque(3), force(3), arm(3)
     integer :: i, f, e, d, j
 
-    factors = 0.0_wp
-    column = 0.0_wp
-    rigid = 0.0_wp
     do i = 1, n_frames
       f = frames(i)
       arm = p(:, f) - p(:, base)
@@ -107,16 +100,35 @@ contains
       call add_to_parent(arm, inertia(:, :, f), wrench(:, f), amount(:, f), inertia(:, :, base), wrench(:, base), &
                          amount(:, base))
     end do
+  end subroutine add_frames
+
+  !> Eliminate the accelerations of a cluster; its base gets the inertia and the wrench that are left. `found` is false where A is
+  !> not positive definite beyond round-off.
+  pure subroutine eliminate_cluster(m, n, n_held, held, base, inertia, wrench, factors, column, rest, rigid, found)
+    integer, intent(in) :: m                    !< number of steps of the plan
+    integer, intent(in) :: n                    !< number of independent coordinates of the cluster
+    integer, intent(in) :: n_held               !< number of those of them that are driven
+    integer, intent(in) :: held(n_held)         !< these
+    integer, intent(in) :: base                 !< frame on which the cluster stands; nothing passes to frame 0
+    real(wp), intent(inout) :: inertia(3, 9)    !< J, H, M of the base with all links beyond it
+    real(wp), intent(inout) :: wrench(6)        !< torque_0 and force_0 in the same way [N m, N]
+    real(wp), intent(inout) :: factors(n, n)    !< A in, L out, lower triangle
+    real(wp), intent(inout) :: column(6, n)     !< U in, Y out
+    real(wp), intent(inout) :: rest(n)          !< Q - S^T p in, z out
+    real(wp), intent(inout) :: rigid(n)         !< bound of the diagonal of A in; least pivots that count out
+    logical, intent(out) :: found               !< whether the coordinates have inertia
+    integer :: i, j
+
     if (n_held > 0) call hold_columns(n, held, 6, factors, column, rest, rigid)
     call divide_columns(m, n, 6, factors, column, rest, rigid, found)
     if (base == 0 .or. .not. found) return
     do j = 1, n
       do i = 1, 3
-        inertia(:, i, base) = inertia(:, i, base) - column(1:3, j)*column(i, j)
-        inertia(:, 3 + i, base) = inertia(:, 3 + i, base) - column(1:3, j)*column(3 + i, j)
-        inertia(:, 6 + i, base) = inertia(:, 6 + i, base) - column(4:6, j)*column(3 + i, j)
+        inertia(:, i) = inertia(:, i) - column(1:3, j)*column(i, j)
+        inertia(:, 3 + i) = inertia(:, 3 + i) - column(1:3, j)*column(3 + i, j)
+        inertia(:, 6 + i) = inertia(:, 6 + i) - column(4:6, j)*column(3 + i, j)
       end do
-      wrench(:, base) = wrench(:, base) + column(:, j)*rest(j)
+      wrench = wrench + column(:, j)*rest(j)
     end do
   end subroutine eliminate_cluster
 

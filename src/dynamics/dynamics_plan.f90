@@ -1,15 +1,18 @@
 !> The plan of dynamics: which links have inertia, and on which independent coordinates each frame depends.
 module mech9_dynamics_plan
   use mech9_kinds, only: wp
+  use mech9_rotation, only: turn
   use mech9_pose, only: transformed
   use mech9_inertia, only: inertia_in_axes
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_clusters, only: clusters_type, find_clusters
-  use mech9_tree_stages, only: find_stages
-  use mech9_lagrange_types, only: dynamics_plan_type
+  use mech9_tree_stages, only: stage_type, find_stages, find_plane
+  use mech9_moving_plane, only: add_to_plane
+  use mech9_lagrange_types, only: dynamics_plan_type, frame_body_type
   use mech9_spatial_dynamics, only: new_spatial_dynamics
   use mech9_planar_dynamics, only: new_planar_dynamics
+  use mech9_plane_block_dynamics, only: new_plane_block_dynamics
   implicit none
   private
   public :: make_dynamics_plan
@@ -43,11 +46,8 @@ contains
     call find_columns(plan, clusters, dynamics)
     call find_carriers(plan, dynamics)
     call find_tree(plan, clusters, dynamics)
-    if (plan%planar%used) then
-      allocate (dynamics%arithmetic, source=new_planar_dynamics(mechanism, plan, dynamics))
-    else
-      allocate (dynamics%arithmetic, source=new_spatial_dynamics(plan, dynamics))
-    end if
+    call find_planes(plan, dynamics)
+    call set_arithmetics(mechanism, plan, dynamics)
   end subroutine make_dynamics_plan
 
   !> Bodies with mass or inertia, moved into the frames of their links.
@@ -306,6 +306,69 @@ contains
     dynamics%articulated = size(dynamics%stages) /= 1
     if (.not. dynamics%articulated) dynamics%articulated = .not. dynamics%stages(1)%closed
   end subroutine find_tree
+
+  !> The clusters of a spatial mechanism that move in planes, and the frames of which the sweeps use the motion in space.
+  pure subroutine find_planes(plan, dynamics)
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(inout) :: dynamics   !< with the stages; gets their planes
+    logical :: loaded(0:plan%n_coordinates)
+    integer :: stage_of(0:plan%n_coordinates), i
+
+    allocate (dynamics%arithmetic_of(size(plan%blocks)), source=1)
+    allocate (dynamics%in_space(0:plan%n_coordinates), source=.true.)
+    if (.not. (allocated(plan%planar%planes) .and. dynamics%articulated)) return
+    loaded = .false.
+    loaded(plan%frame_of(dynamics%loaded)) = .true.
+    stage_of = 0
+    do i = 1, size(dynamics%stages)
+      associate (stage => dynamics%stages(i))
+        if (.not. stage%closed) cycle
+        call find_plane(plan, loaded, stage)
+        if (stage%plane == 0) cycle
+        stage_of(stage%steps) = i
+        dynamics%in_space(stage%steps) = .false.
+        dynamics%in_space(stage%frames) = .true.
+      end associate
+    end do
+    do i = 1, size(plan%blocks)
+      if (size(plan%blocks(i)%unknowns) == 0) cycle
+      if (stage_of(plan%blocks(i)%unknowns(1)) > 0) dynamics%arithmetic_of(i) = 2
+    end do
+    do i = 1, size(dynamics%bodies)
+      if (stage_of(dynamics%bodies(i)%frame) > 0) &
+        call add_body(plan, dynamics%bodies(i), dynamics%stages(stage_of(dynamics%bodies(i)%frame)))
+    end do
+  end subroutine find_planes
+
+  !> Add a body to those of its cluster that move in the plane only, in its planar frame, if it is one of them.
+  pure subroutine add_body(plan, body, stage)
+    type(plan_type), intent(in) :: plan           !< the plan of the mechanism
+    type(frame_body_type), intent(in) :: body     !< the body
+    type(stage_type), intent(inout) :: stage      !< the cluster
+    integer :: i
+
+    associate (to_planar => plan%planar%to_planar(:, :, body%frame))
+      do i = 1, size(stage%flat)
+        if (stage%flat(i) == body%frame) call add_to_plane(stage%bodies(i), body%mass, turn(to_planar, body%centre), &
+                                                           inertia_in_axes(to_planar, body%inertia))
+      end do
+    end associate
+  end subroutine add_body
+
+  !> The arithmetics in which the equations are formed.
+  subroutine set_arithmetics(mechanism, plan, dynamics)
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(inout) :: dynamics   !< the plan of dynamics; gets the arithmetics
+
+    allocate (dynamics%arithmetics(maxval([1, dynamics%arithmetic_of])))
+    if (plan%planar%used) then
+      allocate (dynamics%arithmetics(1)%kind, source=new_planar_dynamics(mechanism, plan, dynamics))
+    else
+      allocate (dynamics%arithmetics(1)%kind, source=new_spatial_dynamics(plan, dynamics))
+    end if
+    if (size(dynamics%arithmetics) > 1) allocate (dynamics%arithmetics(2)%kind, source=new_plane_block_dynamics(plan, dynamics))
+  end subroutine set_arithmetics
 
   !> The places of columns among those of their cluster.
   pure subroutine find_local(places, first, last, dynamics)

@@ -61,7 +61,7 @@ contains
     integer :: i
 
     do i = 1, size(dynamics%loaded)
-      call dynamics%arithmetic%add_link_force(plan, dynamics, state, dynamics%loaded(i), work)
+      call dynamics%arithmetics(1)%kind%add_link_force(plan, dynamics, state, dynamics%loaded(i), work)
     end do
   end subroutine collect_forces
 

@@ -2,7 +2,7 @@
 module mech9_jacobian
   use mech9_kinds, only: wp
   use mech9_tolerances, only: round_off_of_rates
-  use mech9_plan, only: plan_type, block_type
+  use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type
   use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type
@@ -31,59 +31,63 @@ contains
   !> Find the entries of a block's frames and its part of B = dq/dq_i. The frames must have their poses, the block's Jacobian
   !> must be factorized, and earlier blocks must be done. Where round-off hides the rate of a dependent coordinate, near a
   !> position where branches meet, the rate keeps its expected value, so that the motion goes on in the same direction.
-  subroutine find_jacobian(plan, dynamics, block, state, expected, work, jacobian)
+  subroutine find_jacobian(plan, dynamics, b, state, expected, work, jacobian)
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
-    type(block_type), intent(in) :: block              !< the block
+    integer, intent(in) :: b                           !< number of the block
     type(state_type), intent(in) :: state              !< with the poses of the frames
     real(wp), intent(in) :: expected(:)                !< (entries) B, extrapolated from earlier evaluations
     type(block_work_type), intent(inout) :: work       !< with the block's Jacobian factorized; scratch
     type(jacobian_type), intent(inout) :: jacobian     !< with the entries of earlier blocks; gets those of this one
     integer :: s, e, c
 
-    do s = block%first_step, block%last_step
-      if (.not. plan%steps(s)%dependent) cycle
-      do e = dynamics%first(s), dynamics%first(s + 1) - 1
-        jacobian%b(e) = expected(e)
+    associate (block => plan%blocks(b))
+      do s = block%first_step, block%last_step
+        if (.not. plan%steps(s)%dependent) cycle
+        do e = dynamics%first(s), dynamics%first(s + 1) - 1
+          jacobian%b(e) = expected(e)
+        end do
       end do
-    end do
-    if (size(block%unknowns) > 0) then
-      call dynamics%arithmetic%spread_jacobian(plan, dynamics, block, state, .true., jacobian)
-      do c = 1, dynamics%first(block%unknowns(1) + 1) - dynamics%first(block%unknowns(1))
-        call eliminate(plan, dynamics, block, state, c - 1, work, jacobian)
-      end do
-    end if
-    call dynamics%arithmetic%spread_jacobian(plan, dynamics, block, state, .false., jacobian)
+      if (size(block%unknowns) > 0) then
+        call dynamics%arithmetics(dynamics%arithmetic_of(b))%kind%spread_jacobian(plan, dynamics, block, state, .true., jacobian)
+        do c = 1, dynamics%first(block%unknowns(1) + 1) - dynamics%first(block%unknowns(1))
+          call eliminate(plan, dynamics, b, state, c - 1, work, jacobian)
+        end do
+      end if
+      call dynamics%arithmetics(dynamics%arithmetic_of(b))%kind%spread_jacobian(plan, dynamics, block, state, .false., jacobian)
+    end associate
   end subroutine find_jacobian
 
   !> Rates of the block's dependent coordinates per unit rate of one independent coordinate, as corrections of the rates b_d
   !> that `jacobian` has: J_d (correction of b_d) = -(relative velocity of the closures' frames with these rates).
-  subroutine eliminate(plan, dynamics, block, state, offset, work, jacobian)
+  subroutine eliminate(plan, dynamics, b, state, offset, work, jacobian)
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
-    type(block_type), intent(in) :: block              !< the block
+    integer, intent(in) :: b                           !< number of the block
     type(state_type), intent(in) :: state              !< with the poses of the frames
     integer, intent(in) :: offset                      !< number of the independent coordinate among those of the block, less one
     type(block_work_type), intent(inout) :: work       !< with the block's Jacobian factorized; scratch
     type(jacobian_type), intent(inout) :: jacobian     !< with expected rates in `b` and their columns; gets the corrected `b`
     integer :: c, e, row, i, s, k
 
-    row = 0
-    do c = block%first_closure, block%last_closure
-      associate (rank => plan%closures(c)%rank)
-        e = dynamics%first(plan%closures(c)%closing) + offset
-        call dynamics%arithmetic%closing_column(plan, c, state, jacobian, e, dynamics%target_entry(e), &
-                                                work%right(row + 1:row + rank))
-        row = row + rank
-      end associate
-    end do
-    work%right = -work%right
-    k = plan%independent(dynamics%column(dynamics%first(block%unknowns(1)) + offset))
-    call work%equations%solve(work%right, work%change, round_off=round_off_of_rates/plan%unit_of(k))
-    do i = 1, size(block%unknowns)
-      s = block%unknowns(i)
-      e = dynamics%first(s) + offset
-      jacobian%b(e) = jacobian%b(e) + work%change(i)*plan%unit_of(plan%steps(s)%coordinate)
-    end do
+    associate (block => plan%blocks(b), arithmetic => dynamics%arithmetics(dynamics%arithmetic_of(b))%kind)
+      row = 0
+      do c = block%first_closure, block%last_closure
+        associate (rank => plan%closures(c)%rank)
+          e = dynamics%first(plan%closures(c)%closing) + offset
+          call arithmetic%closing_column(plan, c, state, jacobian, e, dynamics%target_entry(e), &
+                                           work%right(row + 1:row + rank))
+          row = row + rank
+        end associate
+      end do
+      work%right = -work%right
+      k = plan%independent(dynamics%column(dynamics%first(block%unknowns(1)) + offset))
+      call work%equations%solve(work%right, work%change, round_off=round_off_of_rates/plan%unit_of(k))
+      do i = 1, size(block%unknowns)
+        s = block%unknowns(i)
+        e = dynamics%first(s) + offset
+        jacobian%b(e) = jacobian%b(e) + work%change(i)*plan%unit_of(plan%steps(s)%coordinate)
+      end do
+    end associate
   end subroutine eliminate
 end module mech9_jacobian

@@ -26,7 +26,7 @@ module mech9_lagrange
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_block_motion, only: move_block
   use mech9_generalized_forces, only: collect_loads, collect_forces, add_generalized
-  use mech9_frame_motion, only: spread_all_velocities, spread_all_accelerations
+  use mech9_frame_motion, only: spread_all_velocities, spread_all_accelerations, show_all_frames
   implicit none
   private
   public :: find_motion, find_equations, check_inertia, complete_accelerations
@@ -113,9 +113,11 @@ contains
     if (allocated(err)) return
     if (dynamics%articulated) then
       do b = 1, size(plan%blocks)
-        call dynamics%arithmetic%spread_jacobian(plan, dynamics, plan%blocks(b), state, .true., work%jacobian)
+        call dynamics%arithmetics(dynamics%arithmetic_of(b))%kind%spread_jacobian(plan, dynamics, plan%blocks(b), state, .true., &
+                                                                                  work%jacobian)
       end do
-      call dynamics%arithmetic%weigh_tree(plan, dynamics, state, work)
+      call show_all_frames(plan, state)
+      call dynamics%arithmetics(1)%kind%weigh_tree(plan, dynamics, state, work)
     else
       call collect_inertia(dynamics, state, work)
       if (size(dynamics%acting) > 0) call collect_forces(plan, dynamics, state, work)
@@ -163,7 +165,7 @@ contains
     if (allocated(err)) return
     call collect_loads(mechanism, plan, dynamics, state, work, err)
     if (allocated(err)) return
-    call dynamics%arithmetic%solve_tree(plan, dynamics, state, work, found)
+    call dynamics%arithmetics(1)%kind%solve_tree(plan, dynamics, state, work, found)
   end subroutine move_tree
 
   !> The coefficients a_pr (21), the velocity terms of (19), and the generalized forces of the weights.
@@ -175,7 +177,7 @@ contains
     work%coefficients = 0.0_wp
     work%velocity_terms = 0.0_wp
     work%forces = 0.0_wp
-    call dynamics%arithmetic%add_inertia(dynamics, state, work)
+    call dynamics%arithmetics(1)%kind%add_inertia(dynamics, state, work)
   end subroutine collect_inertia
 
   !> The accelerations of all coordinates and frames, for results, after find_motion.

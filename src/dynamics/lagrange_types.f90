@@ -21,7 +21,7 @@ module mech9_lagrange_types
   use mech9_planar_articulated, only: planar_work_type
   implicit none
   private
-  public :: frame_body_type, dynamics_plan_type, jacobian_type, lagrange_work_type, dynamics_arithmetic_type
+  public :: frame_body_type, dynamics_plan_type, dynamics_slot_type, jacobian_type, lagrange_work_type, dynamics_arithmetic_type
 
   !> A link with mass or inertia, in its frame.
   type :: frame_body_type
@@ -47,6 +47,11 @@ module mech9_lagrange_types
     procedure(tree_weigher), deferred :: weigh_tree
   end type dynamics_arithmetic_type
 
+  !> Holds one arithmetic, so that those of different kinds can stand in one list.
+  type :: dynamics_slot_type
+    class(dynamics_arithmetic_type), allocatable :: kind   !< the arithmetic
+  end type dynamics_slot_type
+
   !> The plan of dynamics holds everything of dynamics that can be decided once.
   type :: dynamics_plan_type
     type(frame_body_type), allocatable :: bodies(:)    !< links with mass or inertia, without link 1
@@ -69,7 +74,10 @@ module mech9_lagrange_types
     type(stage_type), allocatable :: stages(:)         !< in the order of a sweep outward
     !> Accelerations by articulated bodies. Otherwise there is one closed cluster, on link 1, and they follow from the coefficients.
     logical :: articulated = .false.
-    class(dynamics_arithmetic_type), allocatable :: arithmetic   !< the arithmetic, in space or in a plane
+    !> The arithmetic of the whole mechanism, in space or in a plane; then, in space, that of blocks in planes.
+    type(dynamics_slot_type), allocatable :: arithmetics(:)
+    integer, allocatable :: arithmetic_of(:)           !< (blocks) number of the arithmetic in which a block moves
+    logical, allocatable :: in_space(:)                !< (0:M) the frame is not in a plane only: the sweeps use its motion in space
   end type dynamics_plan_type
 
   !> Derivatives of a frame's angular velocity and of the velocity of its origin, in fixed axes, by the rate of an independent
@@ -77,7 +85,7 @@ module mech9_lagrange_types
   type :: jacobian_type
     real(wp), allocatable :: w(:, :)    !< (3, entries) angular velocity per unit rate
     real(wp), allocatable :: v(:, :)    !< (3, entries) velocity of the origin per unit rate
-    real(wp), allocatable :: flat(:, :) !< (3, entries) in planar arithmetic, instead of both: w about the normal, v in the plane
+    real(wp), allocatable :: flat(:, :) !< (3, entries) in planar arithmetic, of both: w about the normal, v in the plane
     real(wp), allocatable :: b(:)       !< (entries) rate of the step's coordinate per unit rate
   end type jacobian_type
 

@@ -39,6 +39,8 @@ contains
     allocate (work%view%links(plan%n_links))
     allocate (work%view%q(plan%n_coordinates), work%view%dq(plan%n_coordinates), source=0.0_wp)
     work%sum = new_force_sum(plan%n_links, plan%n_coordinates)
-    call dynamics%arithmetic%make_work(plan, dynamics, work)
+    do b = 1, size(dynamics%arithmetics)
+      call dynamics%arithmetics(b)%kind%make_work(plan, dynamics, work)
+    end do
   end function new_lagrange_work
 end module mech9_lagrange_work

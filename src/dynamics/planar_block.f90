@@ -66,7 +66,7 @@ contains
         flat%given_units = plan%unit_of(flat%given)
         do c = block%first_closure, block%last_closure
           part%row = 3*(c - block%first_closure)
-          part%base = plan%closures(c)%base
+          part%base = plan%planar%closures(c)%base
           do i = 1, size(plan%closures(c)%part%steps)
             part%frame = plan%closures(c)%part%steps(i)
             part%weight = plan%closures(c)%part%signs(i)

@@ -6,7 +6,7 @@ module mech9_planar_cluster
   use mech9_planar_articulated, only: add_to_parent
   implicit none
   private
-  public :: eliminate_cluster, move_cluster
+  public :: eliminate_cluster, move_cluster, add_column
 
 contains
 
@@ -34,8 +34,8 @@ contains
     real(wp), intent(inout) :: rest(n)             !< Q in, z out
     real(wp), intent(out) :: rigid(n)              !< bound of the diagonal of A, if all links beyond were rigid
     logical, intent(out) :: found                  !< whether the coordinates have inertia
-    real(wp) :: u(3), x, y
-    integer :: i, k, e, d, j
+    real(wp) :: x, y
+    integer :: i, k, e, j
 
     factors = 0.0_wp
     column = 0.0_wp
@@ -46,19 +46,8 @@ contains
       y = f(4, k) - f(4, base)
       do e = first(k), first(k + 1) - 1
         j = local(e)
-        u(1) = inertia(1, k)*s(1, e) + inertia(2, k)*s(2, e) + inertia(3, k)*s(3, e)
-        u(2) = inertia(2, k)*s(1, e) + inertia(4, k)*s(2, e) + inertia(5, k)*s(3, e)
-        u(3) = inertia(3, k)*s(1, e) + inertia(5, k)*s(2, e) + inertia(6, k)*s(3, e)
-        rest(j) = rest(j) - s(1, e)*wrench(1, k) - s(2, e)*wrench(2, k) - s(3, e)*wrench(3, k)
-        rigid(j) = rigid(j) + amount(4, k)*s(1, e)**2 + amount(1, k)*(s(2, e)**2 + s(3, e)**2) &
-                   + 2.0_wp*abs(s(1, e)*(amount(2, k)*s(3, e) - amount(3, k)*s(2, e)))
-        do d = e, first(k + 1) - 1
-          factors(local(d), j) = factors(local(d), j) + s(1, d)*u(1) + s(2, d)*u(2) + s(3, d)*u(3)
-        end do
-        if (base == 0) cycle
-        column(1, j) = column(1, j) + u(1) + x*u(3) - y*u(2)
-        column(2, j) = column(2, j) + u(2)
-        column(3, j) = column(3, j) + u(3)
+        call add_column(n, j, e, first(k + 1) - 1, n_entries, local, s, inertia(:, k), wrench(:, k), amount(:, k), x, y, &
+                        factors, column(:, j), rest(j), rigid(j))
       end do
       if (base == 0) cycle
       call add_to_parent(x, y, inertia(:, k), wrench(:, k), amount(:, k), inertia(:, base), wrench(:, base), amount(:, base))
@@ -74,6 +63,41 @@ contains
       wrench(:, base) = wrench(:, base) + column(:, j)*rest(j)
     end do
   end subroutine eliminate_cluster
+
+  !> Add what a frame contributes to the sums for one coordinate of its cluster.
+  pure subroutine add_column(n, j, e, last, n_entries, local, s, inertia, wrench, amount, x, y, factors, column, rest, rigid)
+    integer, intent(in) :: n                   !< number of independent coordinates of the cluster
+    integer, intent(in) :: j                   !< number of the coordinate among them
+    integer, intent(in) :: e                   !< entry of the frame for it
+    integer, intent(in) :: last                !< last entry of the frame
+    integer, intent(in) :: n_entries           !< number of entries of all frames
+    integer, intent(in) :: local(n_entries)    !< place of each entry's coordinate in the cluster
+    real(wp), intent(in) :: s(3, n_entries)    !< angular velocity, velocity of the origin per unit rate, relative to the base
+    real(wp), intent(in) :: inertia(6)         !< J, H, M of the frame with all links beyond it outside the cluster
+    real(wp), intent(in) :: wrench(3)          !< torque_0 and force_0 in the same way [N m, N]
+    real(wp), intent(in) :: amount(4)          !< mass, moment and inertia in the same way, as if rigid
+    real(wp), intent(in) :: x                  !< from the base's origin to the frame's, along the first axis [m]
+    real(wp), intent(in) :: y                  !< the same along the second axis [m]
+    real(wp), intent(inout) :: factors(n, n)   !< A, lower triangle
+    real(wp), intent(inout) :: column(3)       !< U of the coordinate
+    real(wp), intent(inout) :: rest            !< Q - S^T p of the coordinate
+    real(wp), intent(inout) :: rigid           !< bound of A_jj as if rigid
+    real(wp) :: u(3)
+    integer :: d
+
+    u(1) = inertia(1)*s(1, e) + inertia(2)*s(2, e) + inertia(3)*s(3, e)
+    u(2) = inertia(2)*s(1, e) + inertia(4)*s(2, e) + inertia(5)*s(3, e)
+    u(3) = inertia(3)*s(1, e) + inertia(5)*s(2, e) + inertia(6)*s(3, e)
+    rest = rest - s(1, e)*wrench(1) - s(2, e)*wrench(2) - s(3, e)*wrench(3)
+    rigid = rigid + amount(4)*s(1, e)**2 + amount(1)*(s(2, e)**2 + s(3, e)**2) &
+            + 2.0_wp*abs(s(1, e)*(amount(2)*s(3, e) - amount(3)*s(2, e)))
+    do d = e, last
+      factors(local(d), j) = factors(local(d), j) + s(1, d)*u(1) + s(2, d)*u(2) + s(3, d)*u(3)
+    end do
+    column(1) = column(1) + u(1) + x*u(3) - y*u(2)
+    column(2) = column(2) + u(2)
+    column(3) = column(3) + u(3)
+  end subroutine add_column
 
   !> Move the frames of a cluster on which others stand by the accelerations of its base and of its coordinates.
   pure subroutine move_cluster(n, n_feet, feet, base, m, n_entries, first, local, s, f, ddq, motion)

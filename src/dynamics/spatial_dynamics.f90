@@ -5,9 +5,12 @@ module mech9_spatial_dynamics
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: solver_factorize => factorize_block
-  use mech9_articulated_bodies, only: articulated_type, new_articulated, new_articulated_work, add_to_frame, set_bodies, &
-    go_inward, go_outward, pass_inward, pass_outward
-  use mech9_cluster_bodies, only: find_rest, eliminate_cluster, find_accelerations, move_cluster
+  use mech9_articulated_bodies, only: articulated_type, articulated_work_type, new_articulated, new_articulated_work, &
+    add_to_frame, set_bodies, go_inward, go_outward, pass_inward, pass_outward
+  use mech9_cluster_bodies, only: cluster_work_type, find_rest, add_frames, eliminate_cluster, find_accelerations, move_cluster
+  use mech9_planar_view, only: plane_in_space
+  use mech9_moving_plane, only: seen_motion, gather_bodies
+  use mech9_tree_stages, only: stage_type
   use mech9_tree_coefficients, only: accelerate_in_space, collect_in_space
   use mech9_spatial_lagrange, only: spread_columns, add_body
   use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type, lagrange_work_type, dynamics_arithmetic_type
@@ -192,18 +195,23 @@ contains
     found = .true.
     call set_applied(plan, dynamics, state, work)
     associate (chains => self%articulated, own => work%articulated, jacobian => work%jacobian)
-      call set_bodies(m, chains%mass, chains%moment, chains%inertia, dynamics%gravity, state%r, state%omega, state%alpha, &
-                      state%a, own%applied, own%inertia, own%wrench, own%amount)
+      call set_bodies(m, dynamics%in_space, chains%mass, chains%moment, chains%inertia, dynamics%gravity, state%r, state%omega, &
+                      state%alpha, state%a, own%applied, own%inertia, own%wrench, own%amount)
       do i = size(dynamics%stages), 1, -1
         associate (stage => dynamics%stages(i), cluster => work%clusters(i))
           if (stage%closed) then
+            cluster%factors = 0.0_wp
+            cluster%column = 0.0_wp
             cluster%rest = 0.0_wp
+            cluster%rigid = 0.0_wp
             if (work%sum%any_generalized) call find_rest(stage%steps, stage%coordinates, dynamics%first, dynamics%local, &
                                                          jacobian%b, work%sum%generalized, cluster%rest)
-            call eliminate_cluster(size(stage%places), size(stage%held), stage%held, size(stage%frames), stage%frames, &
-                                   stage%base, m, n_entries, dynamics%first, dynamics%local, jacobian%w, jacobian%v, state%p, &
-                                   own%inertia, own%wrench, own%amount, cluster%factors, cluster%column, cluster%rest, &
-                                   cluster%rigid, found)
+            if (stage%plane > 0) call gather_in_plane(plan, dynamics, stage, state, jacobian, own, cluster)
+            call add_frames(size(stage%places), size(stage%frames), stage%frames, stage%base, m, n_entries, dynamics%first, &
+                            dynamics%local, jacobian%w, jacobian%v, state%p, own%inertia, own%wrench, own%amount, &
+                            cluster%factors, cluster%column, cluster%rest, cluster%rigid)
+            call eliminate_cluster(m, size(stage%places), size(stage%held), stage%held, stage%base, own%inertia(:, :, stage%base), &
+                                   own%wrench(:, stage%base), cluster%factors, cluster%column, cluster%rest, cluster%rigid, found)
           else if (stage%driven) then
             call pass_inward(stage%first_step, stage%last_step, m, chains%parent, state%p, own%inertia, own%wrench, own%amount)
           else
@@ -232,6 +240,27 @@ contains
     end associate
   end subroutine solve_tree
 
+  !> Add the bodies of a cluster that move in its plane only.
+  pure subroutine gather_in_plane(plan, dynamics, stage, state, jacobian, own, cluster)
+    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics       !< the plan of dynamics
+    type(stage_type), intent(in) :: stage                  !< the cluster
+    type(state_type), intent(in) :: state                  !< with the accelerations that rates alone give
+    type(jacobian_type), intent(in) :: jacobian            !< with the columns of its frames
+    type(articulated_work_type), intent(inout) :: own      !< inertia and wrench of the cluster's base grow
+    type(cluster_work_type), intent(inout) :: cluster      !< its sums grow
+
+    associate (planar => plan%planar, motion => state%planar, support => plan%planar%planes(stage%plane)%base)
+      call gather_bodies(size(stage%places), size(stage%flat), stage%flat, stage%bodies, &
+                         seen_motion(plane_in_space(plan, state, stage%first_step), state%omega(:, support), &
+                                     state%alpha(:, support), state%a(:, support), dynamics%gravity), &
+                         stage%base, stage%place, plan%n_coordinates, size(dynamics%column), dynamics%first, dynamics%local, &
+                         jacobian%flat, motion%pose, planar%height, motion%velocity, motion%acceleration, &
+                         own%inertia(:, :, stage%base), own%wrench(:, stage%base), own%amount(:, stage%base), cluster%factors, &
+                         cluster%column, cluster%rest, cluster%rigid)
+    end associate
+  end subroutine gather_in_plane
+
   !> The wrenches of the loads on the frames of their links.
   pure subroutine set_applied(plan, dynamics, state, work)
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
@@ -256,8 +285,10 @@ contains
     type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
     type(lagrange_work_type), intent(inout) :: work    !< with the columns of closed clusters; gets the results
     real(wp) :: whole(size(work%forces))
+    logical :: all_frames(0:plan%n_coordinates)
     integer :: i, m, n, n_entries
 
+    all_frames = .true.
     m = plan%n_coordinates
     n = size(work%forces)
     n_entries = size(dynamics%column)
@@ -268,12 +299,12 @@ contains
     end do
     associate (chains => self%articulated, own => work%articulated, jacobian => work%jacobian)
       call set_applied(plan, dynamics, state, work)
-      call set_bodies(m, chains%mass, chains%moment, chains%inertia, dynamics%gravity, state%r, state%omega, state%alpha, &
-                      state%a, own%applied, own%inertia, own%wrench, own%amount)
+      call set_bodies(m, all_frames, chains%mass, chains%moment, chains%inertia, dynamics%gravity, state%r, state%omega, &
+                      state%alpha, state%a, own%applied, own%inertia, own%wrench, own%amount)
       call collect_in_space(m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, state%p, &
                             own%wrench, n, whole)
       own%applied = 0.0_wp
-      call set_bodies(m, chains%mass, chains%moment, chains%inertia, 0.0_wp*dynamics%gravity, state%r, state%omega, &
+      call set_bodies(m, all_frames, chains%mass, chains%moment, chains%inertia, 0.0_wp*dynamics%gravity, state%r, state%omega, &
                       state%alpha, state%a, own%applied, own%inertia, own%wrench, own%amount)
       call collect_in_space(m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, state%p, &
                             own%wrench, n, work%velocity_terms)

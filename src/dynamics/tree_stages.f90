@@ -6,9 +6,10 @@
 module mech9_tree_stages
   use mech9_plan, only: plan_type
   use mech9_clusters, only: clusters_type
+  use mech9_moving_plane, only: plane_body_type
   implicit none
   private
-  public :: stage_type, find_stages
+  public :: stage_type, find_stages, find_plane
 
   !> A run of open steps with successive numbers, each a cluster by itself, or one closed cluster.
   type :: stage_type
@@ -23,6 +24,11 @@ module mech9_tree_stages
     integer, allocatable :: held(:)     !< those of them that are driven, as their numbers in `places`
     integer, allocatable :: frames(:)   !< frames of the cluster with bodies or loads, or on which other stages stand
     integer, allocatable :: feet(:)     !< those on which other stages stand
+    integer :: plane = 0                !< the plane in which all links of the cluster move; 0 for none
+    integer :: place = 0                !< the number of its base in the plane, 0 for the base of the plane
+    !> Frames of a cluster in a plane with nothing but bodies. These are not among `frames`.
+    integer, allocatable :: flat(:)
+    type(plane_body_type), allocatable :: bodies(:)   !< the bodies of these frames
   end type stage_type
 
 contains
@@ -108,6 +114,27 @@ contains
     stage%places = sorted(place_of(pack(stage%coordinates, .not. plan%steps(stage%steps)%dependent)))
     stage%held = pack([(s, s=1, size(stage%places))], plan%driven(plan%independent(stage%places)))
   end subroutine list_cluster
+
+  !> Find the plane of a closed cluster in a spatial mechanism, if there is one, and the frames that move in the plane only.
+  pure subroutine find_plane(plan, loaded, stage)
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+    logical, intent(in) :: loaded(0:)          !< (0:M) loads depend on the frame
+    type(stage_type), intent(inout) :: stage   !< with its lists; gets plane and `flat`
+    integer :: i, plane
+
+    associate (planar => plan%planar)
+      plane = planar%plane_of(stage%first_step)
+      if (plane == 0 .or. any(planar%plane_of(stage%steps) /= plane)) return
+      if (stage%base /= planar%planes(plane)%base .and. planar%plane_of(stage%base) /= plane) return
+      stage%plane = plane
+      stage%place = merge(0, stage%base, stage%base == planar%planes(plane)%base)
+    end associate
+    associate (outer => [(loaded(stage%frames(i)) .or. any(stage%feet == stage%frames(i)), i=1, size(stage%frames))])
+      stage%flat = pack(stage%frames, .not. outer)
+      stage%frames = pack(stage%frames, outer)
+    end associate
+    allocate (stage%bodies(size(stage%flat)))
+  end subroutine find_plane
 
   !> Numbers in ascending order.
   pure function sorted(numbers)

@@ -94,7 +94,8 @@ contains
     needed = matmul(a, work%accelerations) + work%velocity_terms - work%forces
     if (dynamics%articulated) then
       do i = 1, size(plan%blocks)
-        call dynamics%arithmetic%spread_jacobian(plan, dynamics, plan%blocks(i), state, .true., work%jacobian)
+        call dynamics%arithmetics(dynamics%arithmetic_of(i))%kind%spread_jacobian(plan, dynamics, plan%blocks(i), state, .true., &
+                                                                                  work%jacobian)
       end do
     end if
     call complete_accelerations(plan, dynamics, work, state)

@@ -28,11 +28,12 @@ contains
     type(cluster_case_type) :: flat, space
     type(random_type) :: random
     type(structure_type) :: structure
-    integer :: trial, compared, literal
+    integer :: trial, compared, literal, in_planes
     logical :: planar, found, by_differences
 
     compared = 0
     literal = 0
+    in_planes = 0
     do trial = 1, 120
       planar = mod(trial, 2) == 0
       call random_structure(random, planar, 2 + mod(trial, 6), structure)
@@ -46,8 +47,8 @@ contains
         call check_literally(test, flat, flat%model, 'a structure', by_differences)
         if (by_differences) literal = literal + 1
       end if
-      if (.not. planar) cycle
-      call test%is_true(flat%plan%planar%used, 'a structure in the plane takes planar arithmetic')
+      if (planar) call test%is_true(flat%plan%planar%used, 'a structure in the plane takes planar arithmetic')
+      if (.not. planar) in_planes = in_planes + count(flat%dynamics%stages%plane > 0)
       space%model = flat%model
       call prepare(space, .true., found)
       call test%is_true(found, 'the same structure in space has a position')
@@ -57,6 +58,7 @@ contains
                      'planar and spatial arithmetic give the same accelerations')
     end do
     call test%is_true(compared > 60, 'most of the random positions are regular')
+    call test%is_true(in_planes > 40, 'many clusters of the spatial structures move in planes of their own')
     call test%is_true(literal == 12, 'twelve positions are compared with the literal equations')
   end subroutine random_structures
 

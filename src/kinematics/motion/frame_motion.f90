@@ -140,14 +140,15 @@ contains
     end do
   end subroutine spread_all_accelerations
 
-  !> Poses and velocities in space of all frames of planar blocks, those included that no block reads there.
+  !> The motion in space of all frames of planar blocks, those included that no block reads there.
   pure subroutine show_all_frames(plan, state)
     type(plan_type), intent(in) :: plan        !< the plan of the mechanism
-    type(state_type), intent(inout) :: state   !< poses and velocities in the planes in; those in space out
+    type(state_type), intent(inout) :: state   !< the motion in the planes in; that in space out
 
     if (.not. allocated(plan%planar%planes)) return
     call show_poses(plan, plan%planar%plane_of > 0, 1, plan%n_coordinates, state)
     call show_velocities(plan, plan%planar%plane_of > 0, 1, plan%n_coordinates, state)
+    call show_accelerations(plan, plan%planar%plane_of > 0, 1, plan%n_coordinates, state)
   end subroutine show_all_frames
 
   !> The last of the blocks from b on whose steps follow each other in one arithmetic, so that one call serves them all.
