@@ -244,8 +244,8 @@ def check_mistakes(checks, folder, mech9k, mech9d):
     refused(drive([0, 0.5], [0, 0], ['dwell'], 1.0), 'the segments last 0.5 s, which leaves a gap in a period of 1 s', 'a gap')
     refused(drive([0, 0.5], [0, 0], ['dwell'], 0.2), 'the segments last 0.5 s, longer than a period of 0.2 s', 'a short period')
     refused(drive([0, 0.5], [0, 1], ['harmonik']), "did you mean 'harmonic'", 'an unknown law')
-    refused(drive([0, 0.5], [0, 1], ['harmonic']), 'the segments of the drive of coordinate 1 cover t = 0 to 0.5, and t = ',
-            'segments that end too early')
+    refused(drive([0, 0.5], [0, 1], ['harmonic']), 'the law in segments of the drive of coordinate 1 has no value after t = 0.5 s, '
+            'and the run goes on to t = 1 s', 'segments that end too early')
     start = '&initial coordinate=1, position=0 /\n'
     refused("&load kind='force', link=2, force=1,0,0, amplitude=2 /", "'amplitude' needs law='harmonic'", 'a name without its law',
             mech9d, start)
@@ -255,7 +255,7 @@ def check_mistakes(checks, folder, mech9k, mech9d):
             "'times' does not belong to loads of kind 'force' with law='harmonic'", 'a name of another law', mech9d, start)
     refused("&load kind='user', law='constant' /", "'law' does not belong to loads of kind 'user'", 'a law of a user load', mech9d, start)
     refused("&load kind='force', link=2, force=1,0,0, law='segments', times=0,0.5, values=0,1, laws='harmonic' /",
-            'the segments of the load cover t = 0 to 0.5', 'a load whose law ends too early', mech9d, start)
+            'the law in segments of the load has no value after t = 0.5 s', 'a load whose law ends too early', mech9d, start)
 
 
 def main():
