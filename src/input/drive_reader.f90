@@ -3,6 +3,7 @@ module mech9_drive_reader
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type, to_text, starts_with
+  use mech9_counted, only: counted
   use mech9_spline, only: build_spline
   use mech9_explanation, only: explain
   use mech9_partition, only: partition_type, driven_coordinate
@@ -187,7 +188,7 @@ contains
                            to_text(n + 1)//' times; give one for each time')
     if (count_values(group, 'laws') /= n .and. count_values(group, 'laws') /= 1) &
       call diagnostics%add(span_of(group, 'laws'), 'there are '//to_text(count_values(group, 'laws'))//' laws for '// &
-                           to_text(n)//' segments; give one for each segment, or one for all')
+                           counted(n, 'segment')//'; give one for each segment, or one for all')
     if (has_name(group, 'period')) call check_period(group, segments%times, diagnostics)
     if (diagnostics%known() > known) return
     segments%repeats = has_name(group, 'period')
@@ -216,7 +217,7 @@ contains
                            'period of '//to_text(period)//' s; add a segment, for instance a dwell')
     else
       call diagnostics%add(span_of(group, 'period', 1), 'the segments last '//to_text(span)//' s, longer than a period of '// &
-                           to_text(period)//' s')
+                           to_text(period)//' s; give the period that they last, or leave out segments')
     end if
   end subroutine check_period
 

@@ -3,7 +3,7 @@ module mech9_output_reader
   use mech9_text, only: to_text
   use mech9_request, only: output_settings_type
   use mech9_document, only: document_type, group_type
-  use mech9_lookup, only: group_or_empty, get_integer, get_integers, get_logical, get_text, span_of
+  use mech9_lookup, only: group_or_empty, get_integer, get_integers, get_logical, get_text, has_name, span_of
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
@@ -33,6 +33,8 @@ contains
     output%energies = get_logical(group, 'energies')
     output%reaction_pairs = get_integers(group, 'reaction_pairs')
     output%reactions = get_logical(group, 'reactions') .or. size(output%reaction_pairs) > 0
+    if (has_name(group, 'reactions') .and. .not. get_logical(group, 'reactions') .and. size(output%reaction_pairs) > 0) &
+      call diagnostics%add(span_of(group, 'reaction_pairs'), 'reactions=.false. contradicts reaction_pairs; leave one of them out')
     output%drive_forces = get_logical(group, 'drive_forces')
     output%force_arrows = get_logical(group, 'force_arrows')
     if (output%compression > 9) &

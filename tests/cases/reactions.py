@@ -181,6 +181,8 @@ def requests(checks, mech9k, mech9d):
                     'forces do not depend on what else is recorded')
         done = ask(mech9k, 'output.reaction_pairs=4,5')
         checks.true(done.returncode == 3 and 'there is no pair 5; they are 1 to 4' in done.stderr, 'a pair that is not there', done.stderr)
+        done = ask(mech9k, 'output.reaction_pairs=4', 'output.reactions=.false.')
+        checks.true(done.returncode == 3 and 'contradicts reaction_pairs' in done.stderr, 'pairs without reactions', done.stderr)
         done = ask(mech9k, 'output.reaction_pairs=4,4')
         checks.true(done.returncode == 3 and 'pair 4 is there already' in done.stderr, 'a pair that is named twice', done.stderr)
         done = run(mech9k, path, '--check', '--set', 'output.reactions=.true.', folder=folder)

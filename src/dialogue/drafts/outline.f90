@@ -70,7 +70,7 @@ contains
     character(len=12), parameter :: names(3) = [character(len=12) :: 'reactions', 'drive_forces', 'force_arrows']
     integer :: i
 
-    wants_forces = .false.
+    wants_forces = draft%has('output', 1, 'reaction_pairs')
     do i = 1, size(names)
       if (draft%has('output', 1, trim(names(i)))) &
         wants_forces = wants_forces .or. scan(draft%value('output', 1, trim(names(i)))//' ', 'tT') > 0
