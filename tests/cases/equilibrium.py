@@ -15,7 +15,7 @@ import numpy as np
 from mech9_cases import Checks, read_table, run, text_of
 
 G = 9.81
-USAGE, DATA, ASSEMBLY = 2, 3, 5
+USAGE, DATA, ASSEMBLY, SINGULAR = 2, 3, 5, 6
 GRAVITY = f'&gravity acceleration=0,{-G},0 /\n'
 # Eigenvalues come from matrices exact to round-off; those of unbalanced problems lose some hundred units more.
 EXACT = 1e-12
@@ -92,6 +92,9 @@ def check_pendulum(checks, case):
     checks.near(roots.real, [omega, -omega], EXACT, 'a growth and a decay are two modes')
     degrees = pendulum(30.0).replace('links=2,', "links=2, angle_unit='deg',", 1)
     near_roots(checks, case.roots(degrees), [1j * omega], EXACT, 'degrees change nothing')
+    for length in (1e-9, 1e9):
+        far = mechanism(2, 1, [1], pair(1, '1,2'), body(2, 1e-30, f'{length!r},0,0'), GRAVITY, initial(1, 0.5))
+        near_roots(checks, case.roots(far), [1j * np.sqrt(G / length)], EXACT, f'a pendulum of {length} m and 1e-30 kg')
 
 
 def check_damped_mass(checks, case):
@@ -377,6 +380,15 @@ def check_failures(checks, case):
     result = case(slide, '--modes')
     checks.equal(result.returncode, ASSEMBLY, 'a weight on a slide has none')
     checks.true('-19.62' in result.stderr, 'its weight is left', result.stderr)
+    # a parallelogram in one line, pulled along it: it rests there, and two branches meet, with vibrations of their own
+    flat = mechanism(4, 4, [1], pair(1, '1,2'), pair(2, '2,3', point='0.4,0,0', more=', moving_point=0,0,0'),
+                     pair(3, '3,4', point='1,0,0', more=', moving_point=0.4,0,0'),
+                     pair(4, '1,4', point='1,0,0', more=', moving_point=0,0,0'), body(2, 1.0, '0.2,0,0'),
+                     f'&gravity acceleration={G},0,0 /', initial(1, 0))
+    for options in (('--equilibrium',), ('--equilibrium', '--starts', '5'), ('--modes',), ('--linear', 'l.h5')):
+        result = case(flat, *options)
+        checks.equal(result.returncode, SINGULAR, f'{options}: where branches meet, there is no one linearised motion')
+        checks.true('is in a singular position' in result.stderr, f'{options}: told', result.stderr)
     for options, words in ((('--modes', '--equilibrium'), 'different tables'), (('--mode', '1'), 'give all three'),
                            (('--modes', '--animate', 'a.svg'), '--mode K')):
         result = case(pendulum(), *options)

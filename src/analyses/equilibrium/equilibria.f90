@@ -1,7 +1,7 @@
 !> Positions of equilibrium of a mechanism, with their linearised equations of motion and modes.
 module mech9_equilibria
   use mech9_kinds, only: wp, pi
-  use mech9_error, only: error_type, raise, exit_assembly, exit_interrupted
+  use mech9_error, only: error_type, raise, exit_assembly, exit_singular, exit_interrupted
   use mech9_random, only: random_type
   use mech9_mechanism, only: mechanism_type
   use mech9_partition, only: partition_type
@@ -30,8 +30,9 @@ module mech9_equilibria
 
 contains
 
-  !> The equilibrium to which an assembled position leads. Fails with exit_assembly where there is none, with exit_data where a free
-  !> coordinate has no inertia although it has some in other positions (gimbal lock), and where a load fails.
+  !> The equilibrium to which an assembled position leads. Fails with exit_assembly where there is none, with exit_singular where
+  !> branches meet in it, with exit_data where a free coordinate has no inertia although it has some in other positions (gimbal
+  !> lock), and where a load fails.
   subroutine find_equilibrium(mechanism, partition, plan, assembled, found, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(partition_type), intent(in) :: partition       !< driven, free and dependent coordinates
@@ -46,8 +47,8 @@ contains
   end subroutine find_equilibrium
 
   !> All equilibria to which an assembled position and random ones lead, sorted by their coordinates. The random positions are
-  !> the same in every run. Fails as find_equilibrium does, but with exit_assembly only where none is found. Fails with
-  !> exit_interrupted where it shall stop, with the equilibria that were found before.
+  !> the same in every run. Fails as find_equilibrium does, but with exit_assembly and exit_singular only where none is found.
+  !> Fails with exit_interrupted where it shall stop, with the equilibria that were found before.
   subroutine find_equilibria(mechanism, partition, plan, assembled, n_starts, list, err, interruption)
     type(mechanism_type), intent(in) :: mechanism                     !< the mechanism
     type(partition_type), intent(in) :: partition                     !< driven, free and dependent coordinates
@@ -68,7 +69,7 @@ contains
     n = 0
     call find_equilibrium(mechanism, partition, plan, assembled, found, failure)
     if (allocated(failure)) then
-      if (failure%code /= exit_assembly) call move_alloc(failure, err)
+      if (failure%code /= exit_assembly .and. failure%code /= exit_singular) call move_alloc(failure, err)
       if (allocated(err)) return
     else
       call add_new(found, slots, n)

@@ -11,7 +11,7 @@ module mech9_linearised_equilibrium
   use mech9_mechanism, only: mechanism_type
   use mech9_partition, only: partition_type
   use mech9_linearisation, only: find_matrix, by_rate, by_acceleration
-  use mech9_resting_mechanism, only: resting_type, find_stiffness, try_step, return_to_coordinates
+  use mech9_resting_mechanism, only: resting_type, find_stiffness, try_step, return_to_coordinates, refuse_singular
   implicit none
   private
   public :: equilibrium_type, linearise, copy_equilibrium
@@ -37,7 +37,8 @@ module mech9_linearised_equilibrium
 
 contains
 
-  !> Linearise the equations of motion in an equilibrium and find their modes.
+  !> Linearise the equations of motion in an equilibrium and find their modes. Fails with exit_singular where branches meet in this
+  !> position, and with exit_data where a coordinate has no inertia in this position alone.
   subroutine linearise(mechanism, partition, found, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(partition_type), intent(in) :: partition       !< with the coordinates of the data file
@@ -49,7 +50,8 @@ contains
 
     call return_to_coordinates(mechanism, partition, fair_conditioning, found%resting, err)
     if (allocated(err)) return
-    call find_stiffness(mechanism, found%resting, err)
+    call refuse_singular(found%resting, err)
+    if (.not. allocated(err)) call find_stiffness(mechanism, found%resting, err)
     if (allocated(err)) return
     associate (resting => found%resting)
       n = size(resting%free)

@@ -2,8 +2,9 @@
 !> its position, their stiffness, and motions to other positions on the same branch.
 module mech9_resting_mechanism
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: doubtful_conditioning, worthwhile_improvement
-  use mech9_error, only: error_type
+  use mech9_tolerances, only: doubtful_conditioning, worthwhile_improvement, singular_conditioning
+  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_failure, only: failure_singular_start_block
   use mech9_mechanism, only: mechanism_type
   use mech9_partition, only: partition_type, free_coordinate, driven_coordinate
   use mech9_law, only: drive_slot_type
@@ -16,8 +17,8 @@ module mech9_resting_mechanism
   use mech9_coordinate_choice, only: best_independent
   implicit none
   private
-  public :: resting_type, put_to_rest, find_stiffness, try_step, choose_coordinates, return_to_coordinates, is_balanced, &
-    is_zero_force, stand_at, copy_resting
+  public :: resting_type, put_to_rest, find_stiffness, try_step, choose_coordinates, return_to_coordinates, refuse_singular, &
+    is_balanced, is_zero_force, stand_at, copy_resting
 
   !> A mechanism at rest. Forces and stiffnesses of the free coordinates count in units of the plan (rad, or lengths of the
   !> mechanism), so that all are energies.
@@ -163,6 +164,22 @@ contains
       conditioning = min(conditioning, resting%linearisation%motion%blocks(b)%equations%conditioning())
     end do
   end function conditioning_of
+
+  !> Fail with exit_singular where a block is in a singular position: branches meet there, and motions differ between them.
+  subroutine refuse_singular(resting, err)
+    type(resting_type), intent(inout) :: resting        !< the mechanism at rest, in the best coordinates
+    type(error_type), allocatable, intent(out) :: err   !< allocated if there is one
+    integer :: b
+
+    do b = 1, size(resting%plan%blocks)
+      if (resting%plan%blocks(b)%equations == 0) cycle
+      if (resting%linearisation%motion%blocks(b)%equations%conditioning() >= singular_conditioning) cycle
+      call raise(err, exit_singular, failure_singular_start_block)
+      err%failure%chains = resting%plan%blocks(b)%chains
+      err%failure%coordinates = resting%plan%blocks(b)%coordinates
+      return
+    end do
+  end subroutine refuse_singular
 
   !> Take other free coordinates near a singular position of the present ones. Driven coordinates stay driven. Nothing is changed
   !> where others do not serve clearly better.

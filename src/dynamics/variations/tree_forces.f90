@@ -106,7 +106,7 @@ contains
       end if
       forces%force(:, f) = forces%force(:, f) + force
       forces%moment(:, f) = forces%moment(:, f) + couple + cross(arm, force)
-      forces%magnitude = forces%magnitude + body%mass*norm2(gravity)*length + norm2(force)*length + norm2(couple)
+      forces%magnitude = forces%magnitude + (body%mass*norm2(gravity) + norm2(force))*(length + norm2(arm)) + norm2(couple)
     end associate
   end subroutine add_body
 
@@ -242,7 +242,7 @@ contains
       forces%moment_change(:, f) = forces%moment_change(:, f) + couple_change + cross(arm_change, force) &
                                    + cross(arm, force_change)
       forces%magnitude_change = forces%magnitude_change + norm2(couple_change) &
-                                + norm2(force_change)*length + norm2(force)*norm2(arm_change)
+                                + norm2(force_change)*(length + norm2(arm)) + norm2(force)*norm2(arm_change)
     end associate
   end subroutine vary_body
 
