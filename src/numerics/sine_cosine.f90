@@ -1,6 +1,6 @@
 !> Cosines and sines of many angles at once.
 !>
-!> The intrinsic functions are called for one angle after the other. Here the loop runs over all angles without a
+!> The intrinsic functions are called for one angle after the other. Here angles are taken in groups of a fixed size, without a
 !> branch, so that the compiler can compute several at once: whole quarter turns are subtracted, and the series of sine
 !> and cosine are taken at the rest, at most half a quarter turn.
 module mech9_sine_cosine
@@ -16,6 +16,8 @@ module mech9_sine_cosine
   real(wp), parameter :: per_quarter = 0.636619772367581343076_wp
   !> A number of this size has no room for a fraction: adding it and taking it away again rounds to whole numbers.
   real(wp), parameter :: whole = 1.5_wp*2.0_wp**52
+  !> Number of angles in a group.
+  integer, parameter :: group = 4
 
 contains
 
@@ -24,19 +26,40 @@ contains
     integer, intent(in) :: n                !< number of angles
     real(wp), intent(in) :: angles(n)       !< [rad]
     real(wp), intent(out) :: turned(2, n)   !< cosine and sine of each angle
-    real(wp) :: quarters, x, left, z, most, c, s
+    real(wp) :: some(group), some_turned(2, group)
     integer :: i, k
 
+    do i = 1, n - group + 1, group
+      call find_group(angles(i:i + group - 1), turned(:, i:i + group - 1))
+    end do
+    if (i > n) return
+    ! the last group is filled up with the last angle
+    do k = 1, group
+      some(k) = angles(min(i + k - 1, n))
+    end do
+    call find_group(some, some_turned)
+    do k = 1, group - 1
+      if (i + k - 1 <= n) turned(:, i + k - 1) = some_turned(:, k)
+    end do
+  end subroutine cosines_and_sines
+
+  !> Cosines and sines of a group of angles.
+  pure subroutine find_group(angles, turned)
+    real(wp), intent(in) :: angles(group)       !< [rad]
+    real(wp), intent(out) :: turned(2, group)   !< cosine and sine of each angle
+    real(wp) :: quarters, x, left, z, most, c, s
+    logical :: exchanged
+    integer :: i
+
     if (.not. all(abs(angles) <= largest_angle)) then
-      do i = 1, n
+      do i = 1, group
         turned(1, i) = cos(angles(i))
         turned(2, i) = sin(angles(i))
       end do
       return
     end if
-    do i = 1, n
+    do i = 1, group
       quarters = (angles(i)*per_quarter + whole) - whole
-      k = int(quarters)
       ! the rest x, and its round-off error `left`
       z = angles(i) - quarters*quarter(1)
       most = z - quarters*quarter(2)
@@ -51,8 +74,11 @@ contains
       c = most + (((1.0_wp - most) - 0.5_wp*z) - x*left + z**2*(1.0_wp/24.0_wp + z*(-1.0_wp/720.0_wp + z*(1.0_wp/40320.0_wp &
           + z*(-1.0_wp/3628800.0_wp + z*(1.0_wp/479001600.0_wp + z*(-1.0_wp/87178291200.0_wp &
           + z*(1.0_wp/20922789888000.0_wp))))))))
-      turned(1, i) = merge(c, s, iand(k, 1) == 0)*merge(1.0_wp, -1.0_wp, iand(k + 1, 2) == 0)
-      turned(2, i) = merge(s, c, iand(k, 1) == 0)*merge(1.0_wp, -1.0_wp, iand(k, 2) == 0)
+      ! quarter turns without whole turns: -2 ... 2
+      quarters = quarters - 4.0_wp*((0.25_wp*quarters + whole) - whole)
+      exchanged = abs(abs(quarters) - 1.0_wp) < 0.5_wp
+      turned(1, i) = merge(s, c, exchanged)*merge(-1.0_wp, 1.0_wp, quarters > 0.5_wp .or. quarters < -1.5_wp)
+      turned(2, i) = merge(c, s, exchanged)*merge(-1.0_wp, 1.0_wp, quarters > 1.5_wp .or. quarters < -0.5_wp)
     end do
-  end subroutine cosines_and_sines
+  end subroutine find_group
 end module mech9_sine_cosine
