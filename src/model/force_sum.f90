@@ -21,7 +21,7 @@ module mech9_force_sum
     procedure :: add_force
     procedure :: add_torque
     procedure :: add_generalized
-    procedure, private :: has_link
+    procedure, private, non_overridable :: has_link
   end type force_sum_type
 
 contains

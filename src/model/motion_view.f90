@@ -38,7 +38,7 @@ module mech9_motion_view
     procedure :: position
     procedure :: velocity
     procedure :: turned
-    procedure, private :: has_link
+    procedure, private, non_overridable :: has_link
   end type motion_view_type
 
 contains

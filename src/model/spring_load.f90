@@ -24,9 +24,9 @@ module mech9_spring_load
     procedure :: apply
     procedure :: potential
     procedure :: vary
-    procedure, private :: span
-    procedure, private :: span_rate
-    procedure, private :: pull
+    procedure, private, non_overridable :: span
+    procedure, private, non_overridable :: span_rate
+    procedure, private, non_overridable :: pull
   end type spring_load_type
 
 contains
@@ -93,11 +93,14 @@ contains
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
     type(force_sum_type), intent(inout) :: sum          !< forces so far; the load is added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp) :: force(3), factor
+    real(wp) :: d(3), rate(3), force(3), factor
 
     factor = 1.0_wp
     if (allocated(self%law)) call self%find_factor(state%t, factor, err)
-    if (.not. allocated(err)) call self%pull(self%span(state), self%span_rate(state), force, err)
+    if (allocated(err)) return
+    d = self%span(state)
+    rate = self%span_rate(state)
+    call self%pull(d, rate, force, err)
     if (allocated(err)) return
     force = factor*force
     call sum%add_force(state, self%links(1), self%positions(:, 1), force)
