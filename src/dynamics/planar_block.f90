@@ -10,11 +10,12 @@ module mech9_planar_block
   use mech9_state, only: state_type
   use mech9_planar_plan, only: planar_step_type
   use mech9_planar_motion, only: planar_accelerations
+  use mech9_planar_chain, only: planar_chain_type, new_planar_chain
   use mech9_planar_formulas, only: step_column, step_velocity, step_acceleration
   use mech9_planar_lagrange, only: carry_columns
   implicit none
   private
-  public :: planar_block_type, loop_part_type, list_loops, fill_columns, add_earlier, take_rates, move_frames, &
+  public :: planar_block_type, loop_part_type, list_loops, fill_columns, add_earlier, add_part, take_rates, move_frames, &
     move_with_drives
 
   !> A step in a loop, or a frame of an earlier block from which the loop starts.
@@ -30,6 +31,7 @@ module mech9_planar_block
 
   !> The loops of a block.
   type :: planar_block_type
+    type(planar_chain_type) :: chain                     !< the block as a planar chain, if it is one
     logical :: driven = .false.                          !< a coordinate of the block is driven
     integer :: columns = 0                               !< number of independent coordinates on which the block depends
     type(loop_part_type), allocatable :: unknowns(:)     !< steps with the unknowns of the block
@@ -59,6 +61,8 @@ contains
       flat%first_entries = first(block%unknowns)
       flat%units = plan%unit_of(block%coordinates)
       if (size(block%unknowns) == 0) return
+      flat%chain = new_planar_chain(plan, block)
+      flat%chain%last_moved = block%last_step
       flat%driven = any(plan%driven(plan%steps(block%first_step:block%last_step)%coordinate))
       flat%columns = first(block%unknowns(1) + 1) - first(block%unknowns(1))
       associate (columns => column(first(block%unknowns(1)):first(block%unknowns(1) + 1) - 1))
@@ -169,21 +173,29 @@ contains
     integer, intent(in) :: rows                        !< number of rows of the matrix
     integer, intent(in) :: columns                     !< number of its columns
     real(wp), intent(inout) :: matrix(rows, columns)   !< rows in rad or parts of length, columns per rad or per length
-    real(wp) :: per_length, w, x, y
-    integer :: i, row, j
+    real(wp) :: per_length
+    integer :: i, row
 
     per_length = 1.0_wp/length
     do i = 1, n
       row = parts(i)%row
-      j = parts(i)%column
-      w = entries(1, parts(i)%entry)
-      x = entries(2, parts(i)%entry) - w*(f(4, parts(i)%base) - f(4, parts(i)%frame))
-      y = entries(3, parts(i)%entry) + w*(f(3, parts(i)%base) - f(3, parts(i)%frame))
-      matrix(row + 1, j) = matrix(row + 1, j) + parts(i)%weight*w
-      matrix(row + 2, j) = matrix(row + 2, j) + parts(i)%weight*per_length*x
-      matrix(row + 3, j) = matrix(row + 3, j) + parts(i)%weight*per_length*y
+      call add_part(parts(i), per_length, f(3:4, parts(i)%base) - f(3:4, parts(i)%frame), entries(:, parts(i)%entry), &
+                    matrix(row + 1:row + 3, parts(i)%column))
     end do
   end subroutine add_earlier
+
+  !> Add the contribution of a frame of an earlier block, from one of its columns.
+  pure subroutine add_part(part, per_length, arm, column, rows)
+    type(loop_part_type), intent(in) :: part   !< the frame in the loop
+    real(wp), intent(in) :: per_length         !< one over the mechanism's size [1/m]
+    real(wp), intent(in) :: arm(2)             !< from the frame's origin to that of the closure's base [m]
+    real(wp), intent(in) :: column(3)          !< angular velocity and velocity of the origin per unit rate, plane's axes
+    real(wp), intent(inout) :: rows(3)         !< of the closure, in rad or parts of length, per rad or per length
+
+    rows(1) = rows(1) + part%weight*column(1)
+    rows(2) = rows(2) + part%weight*per_length*(column(2) - column(1)*arm(2))
+    rows(3) = rows(3) + part%weight*per_length*(column(3) + column(1)*arm(1))
+  end subroutine add_part
 
   !> Take the entries of the unknowns' steps for one independent coordinate, and add its share to the rates of the unknowns.
   pure subroutine take_rates(n, change, units, coordinates, first_entries, j, given, unit, n_b, m, b, dq)

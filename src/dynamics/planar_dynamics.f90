@@ -7,11 +7,13 @@ module mech9_planar_dynamics
   use mech9_state, only: state_type, planar_motion_type
   use mech9_planar_motion, only: to_plane, planar_accelerations
   use mech9_planar_closure, only: planar_bias_rates, planar_difference
+  use mech9_planar_chain, only: chain_jacobian, chain_accelerations
   use mech9_block_solver, only: block_work_type
   use mech9_planar_lagrange, only: planar_body_type, planar_body, spread_columns, add_bodies => add_inertia, &
     planar_wrench, add_force => add_link_force
   use mech9_planar_block, only: planar_block_type, list_loops, fill_columns, add_earlier, take_rates, move_frames, &
     move_with_drives
+  use mech9_planar_chain_columns, only: chain_columns
   use mech9_planar_articulated, only: new_planar_work, set_bodies, go_inward, go_outward, &
     pass_inward, pass_outward
   use mech9_cluster_bodies, only: find_rest, find_accelerations
@@ -100,9 +102,32 @@ contains
     logical, intent(out) :: moved                      !< whether the block is conditioned well enough
 
     moved = conditioning >= nearly_dependent
-    if (moved) call move_in_plane(plan, dynamics, plan%blocks(b), dynamics%first_closed(b), self%blocks(b), state, &
-                                  work%jacobian, work%sides, work%blocks(b))
+    if (.not. moved) return
+    if (self%blocks(b)%chain%used .and. work%blocks(b)%equations%by_cofactors) then
+      call move_chain(plan, dynamics, self%blocks(b), work%blocks(b)%equations%inverse, state, work%jacobian)
+    else
+      call move_in_plane(plan, dynamics, plan%blocks(b), dynamics%first_closed(b), self%blocks(b), state, work%jacobian, &
+                         work%sides, work%blocks(b))
+    end if
   end subroutine move_regular_block
+
+  !> Move a well conditioned chain that determines three coordinates by itself.
+  pure subroutine move_chain(plan, dynamics, flat, inverse, state, jacobian)
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(planar_block_type), intent(in) :: flat        !< the chain
+    real(wp), intent(in) :: inverse(3, 3)              !< inverse of its Jacobian
+    type(state_type), intent(inout) :: state           !< with poses and independent rates; gets the motion of the chain
+    type(jacobian_type), intent(inout) :: jacobian     !< with the entries of earlier blocks; gets those of this one
+    real(wp) :: bias(2)
+
+    associate (planar => plan%planar, chain => flat%chain, motion => state%planar)
+      call chain_columns(flat, chain%first_step, chain%last_step, chain%signs, inverse, planar%length, plan%n_coordinates, &
+                         planar%steps, motion%pose, motion%slide, size(jacobian%b), dynamics%first, dynamics%parent_entry, &
+                         dynamics%carries_columns, jacobian%flat, jacobian%b, state%dq, motion%velocity, bias)
+      call chain_accelerations(planar, chain, inverse, bias, state%dq, state%ddq, motion)
+    end associate
+  end subroutine move_chain
 
   !> Form the Jacobian of a block in planar arithmetic and factorize it.
   subroutine factorize_in_plane(plan, flat, motion, equations)
@@ -111,8 +136,12 @@ contains
     type(planar_motion_type), intent(in) :: motion         !< with the poses of the frames
     type(least_squares_type), intent(inout) :: equations   !< gets the Jacobian and its factors
 
-    call fill_columns(size(flat%unknowns), flat%unknowns, plan%n_coordinates, plan%planar%steps, motion%pose, &
-                      motion%slide, plan%length, equations%m, equations%n, equations%a)
+    if (flat%chain%used) then
+      call chain_jacobian(plan%planar, flat%chain, motion, equations%a)
+    else
+      call fill_columns(size(flat%unknowns), flat%unknowns, plan%n_coordinates, plan%planar%steps, motion%pose, &
+                        motion%slide, plan%length, equations%m, equations%n, equations%a)
+    end if
     call equations%factorize()
   end subroutine factorize_in_plane
 

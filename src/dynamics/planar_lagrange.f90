@@ -10,6 +10,7 @@ module mech9_planar_lagrange
   use mech9_plan, only: plan_type
   use mech9_planar_plan, only: planar_plan_type, planar_step_type
   use mech9_planar_motion, only: to_plane
+  use mech9_planar_formulas, only: step_velocity
   implicit none
   private
   public :: planar_body_type, planar_body, spread_columns, carry_columns, add_inertia, planar_wrench, add_link_force
@@ -75,20 +76,13 @@ contains
     real(wp), intent(in) :: y                    !< the same along the second axis [m]
     real(wp), intent(in) :: b(n)                 !< B, rate of the step's coordinate per unit rate of an independent one
     real(wp), intent(inout) :: columns(3, n)     !< with those of the parent; gets those of the frame
-    real(wp) :: w
-    integer :: e, p
+    real(wp) :: carried(3)
+    integer :: e
 
     do e = first, last
-      columns(1, e) = b(e)*step%turn
-      columns(2, e) = 0.0_wp
-      columns(3, e) = 0.0_wp
-      if (.not. step%turns) columns(2:3, e) = b(e)*slide
-      p = parent_entry(e)
-      if (p == 0) cycle
-      w = columns(1, p)
-      columns(1, e) = columns(1, e) + w
-      columns(2, e) = columns(2, e) + columns(2, p) - w*y
-      columns(3, e) = columns(3, e) + columns(3, p) + w*x
+      carried = 0.0_wp
+      if (parent_entry(e) > 0) carried = columns(:, parent_entry(e))
+      call step_velocity(step, b(e), x, y, slide, carried, columns(:, e))
     end do
   end subroutine carry_columns
 

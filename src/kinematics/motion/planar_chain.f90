@@ -12,7 +12,7 @@ module mech9_planar_chain
   use mech9_state, only: planar_motion_type
   implicit none
   private
-  public :: planar_chain_type, new_planar_chain, chain_jacobian, chain_rates, chain_motion
+  public :: planar_chain_type, new_planar_chain, chain_jacobian, chain_rates, chain_motion, chain_accelerations
 
   !> A block of one planar closed chain with three unknowns.
   type :: planar_chain_type
@@ -82,9 +82,11 @@ contains
     type(planar_motion_type), intent(inout) :: motion   !< poses in; velocities of these frames out
     real(wp) :: bias(2)
 
-    call move(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
-              chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
-              last, dq, motion%velocity, bias)
+    call find_rates(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
+                    chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
+                    motion%velocity, dq)
+    call find_velocities(chain%first_step, last, chain%signs, size(planar%steps), planar%steps, motion%pose, motion%slide, &
+                         dq, motion%velocity, bias)
   end subroutine chain_rates
 
   !> Rates and accelerations of the three coordinates, velocities and accelerations of the frames, from the motion of the
@@ -98,13 +100,29 @@ contains
     type(planar_motion_type), intent(inout) :: motion   !< poses in; velocities and accelerations out
     real(wp) :: bias(2)
 
-    call move(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
-              chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
-              chain%last_step, dq, motion%velocity, bias)
+    call find_rates(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
+                    chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
+                    motion%velocity, dq)
+    call find_velocities(chain%first_step, chain%last_step, chain%signs, size(planar%steps), planar%steps, motion%pose, &
+                         motion%slide, dq, motion%velocity, bias)
+    call chain_accelerations(planar, chain, inverse, bias, dq, ddq, motion)
+  end subroutine chain_motion
+
+  !> Accelerations of the three coordinates and of the frames, from the velocities, the accelerations of the given coordinates
+  !> and those of the frames of earlier blocks.
+  pure subroutine chain_accelerations(planar, chain, inverse, bias, dq, ddq, motion)
+    type(planar_plan_type), intent(in) :: planar        !< the plan in planar arithmetic
+    type(planar_chain_type), intent(in) :: chain        !< the chain
+    real(wp), intent(in) :: inverse(3, 3)               !< inverse of the Jacobian
+    real(wp), intent(in) :: bias(2)                     !< bias acceleration of the loop [m/s^2]
+    real(wp), intent(in), contiguous :: dq(:)           !< (M) rates of all coordinates [rad/s, m/s]
+    real(wp), intent(inout), contiguous :: ddq(:)       !< (M) given accelerations in; all of the chain out [rad/s^2, m/s^2]
+    type(planar_motion_type), intent(inout) :: motion   !< poses and velocities in; accelerations out
+
     call accelerate(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
                     chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
                     dq, bias, motion%velocity, ddq, motion%acceleration)
-  end subroutine chain_motion
+  end subroutine chain_accelerations
 
   ! The following procedures take arrays of known shape beside their types, so that the compiler keeps their addresses in
   ! registers.
@@ -130,9 +148,8 @@ contains
     end do
   end subroutine fill
 
-  !> Rates of the three coordinates and velocities of the frames.
-  pure subroutine move(chain, closure, first, last, signs, n_given, given, per_length, inverse, m, steps, f, slide, &
-                       last_moved, dq, v, bias)
+  !> Rates of the three coordinates, by which the loop stays closed.
+  pure subroutine find_rates(chain, closure, first, last, signs, n_given, given, per_length, inverse, m, steps, f, slide, v, dq)
     type(planar_chain_type), intent(in) :: chain       !< the chain
     type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
     integer, intent(in) :: first                       !< first step of the chain
@@ -140,23 +157,20 @@ contains
     integer, intent(in) :: n_given                     !< number of given steps
     integer, intent(in) :: given(n_given)              !< steps of the loop whose coordinates are given
     integer, intent(in) :: m                           !< number of steps of the plan
-    integer, intent(in) :: last_moved                  !< last frame whose velocity is found
     real(wp), intent(in) :: signs(first:last)          !< of each step in the loop: 1 or -1; 0: not in it
     real(wp), intent(in) :: per_length                 !< one over the mechanism's size [1/m]
     real(wp), intent(in) :: inverse(3, 3)              !< inverse of the chain's Jacobian
     real(wp), intent(in) :: f(4, 0:m)                  !< (cosine, sine, x, y) pose of each frame [m]
     real(wp), intent(in) :: slide(2, m)                !< velocity of each frame's origin per unit rate
     type(planar_step_type), intent(in) :: steps(m)     !< steps of the plan
+    real(wp), intent(in) :: v(3, 0:m)                  !< velocity of each frame of earlier blocks [rad/s, m/s]
     real(wp), intent(inout) :: dq(m)                   !< rates of all coordinates [rad/s, m/s]
-    real(wp), intent(inout) :: v(3, 0:m)               !< velocity of each frame [rad/s, m/s]
-    real(wp), intent(out) :: bias(2)                   !< bias acceleration of the loop, by the steps up to `last_moved` [m/s^2]
     real(wp) :: opening(3)
 
     call stem_difference(m, chain%stems, f(3:4, closure%closing), f, v, opening)
     call add_given(n_given, given, first, last, signs, f(3:4, closure%closing), m, steps, f, slide, dq, opening)
     call close_rates(chain, closure, per_length, inverse, m, f, opening, dq)
-    call find_velocities(first, last_moved, signs, m, steps, f, slide, dq, v, bias)
-  end subroutine move
+  end subroutine find_rates
 
   !> Accelerations of the three coordinates and of the frames.
   pure subroutine accelerate(chain, closure, first, last, signs, n_given, given, per_length, inverse, m, steps, f, slide, &
