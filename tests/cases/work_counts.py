@@ -13,6 +13,7 @@ import tempfile
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from n_four_bar import data_file
 from mech9_cases import REFERENCE, TREE, Checks, run, table_and_report, table_of, text_of, without_drives
 
 FIVE_BAR = os.path.join(REFERENCE, 'dynamics_fivebar.nml')
@@ -320,6 +321,18 @@ def test_changed_coordinates(case):
                 [report['frames_placed'], report['steps']])
 
 
+def test_windows(case):
+    """The work for each of N windows side by side does not depend on N, through the flat position, where other independent
+    coordinates are looked for."""
+    checks = case.checks
+    few, many = (table_and_report(case.dynamics, case.file(data_file(n, 2.0)))[1] for n in (8, 40))
+    for count in 'steps', 'evaluations':
+        checks.near(many[count], few[count], 0.02*few[count], f'{count} of 8 and 40 windows')
+    # frames and loops are counted for a window; links that all windows share, and a step more or less, are a few per cent
+    for count in 'frames_placed', 'factorizations':
+        checks.near(many[count]/40, few[count]/8, 0.05*few[count]/8, f'{count} for each of 8 and 40 windows')
+
+
 def test_chain_beside(case):
     """Two links without mass beside the five-bar, with the frame a chain, change nothing, recorded or not: that they were
     not followed for a while must not hinder a change of coordinates."""
@@ -362,6 +375,7 @@ def main():
         test_open_chains(case)
         test_dynamics(case)
         test_changed_coordinates(case)
+        test_windows(case)
         test_chain_beside(case)
         test_refused(case)
     checks.finish()
