@@ -29,6 +29,13 @@ contains
     real(wp) :: some(group), some_turned(2, group)
     integer :: i, k
 
+    if (.not. all(abs(angles) <= largest_angle)) then
+      do i = 1, n
+        turned(1, i) = cos(angles(i))
+        turned(2, i) = sin(angles(i))
+      end do
+      return
+    end if
     do i = 1, n - group + 1, group
       call find_group(angles(i:i + group - 1), turned(:, i:i + group - 1))
     end do
@@ -43,7 +50,7 @@ contains
     end do
   end subroutine cosines_and_sines
 
-  !> Cosines and sines of a group of angles.
+  !> Cosines and sines of a group of angles, none of them too large.
   pure subroutine find_group(angles, turned)
     real(wp), intent(in) :: angles(group)       !< [rad]
     real(wp), intent(out) :: turned(2, group)   !< cosine and sine of each angle
@@ -51,13 +58,6 @@ contains
     logical :: exchanged
     integer :: i
 
-    if (.not. all(abs(angles) <= largest_angle)) then
-      do i = 1, group
-        turned(1, i) = cos(angles(i))
-        turned(2, i) = sin(angles(i))
-      end do
-      return
-    end if
     do i = 1, group
       quarters = (angles(i)*per_quarter + whole) - whole
       ! the rest x, and its round-off error `left`
