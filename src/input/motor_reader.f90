@@ -57,8 +57,30 @@ contains
         call move_alloc(motor, all(n + i)%load)
       end associate
     end do
+    call check_integrals(document, numbers, all(n + 1:), diagnostics)
     call move_alloc(all, loads)
   end subroutine read_motors
+
+  !> Report two controllers with integral parts on one coordinate: neither would come to rest.
+  subroutine check_integrals(document, numbers, motors, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    integer, intent(in) :: numbers(:)                     !< groups of the motors
+    type(load_slot_type), intent(in) :: motors(:)         !< the motors
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    integer :: coordinates(size(motors)), i
+
+    coordinates = 0
+    do i = 1, size(motors)
+      select type (motor => motors(i)%load)
+      type is (pid_motor_type)
+        if (.not. motor%has_state()) cycle
+        if (any(coordinates(:i - 1) == motor%coordinate)) &
+          call diagnostics%add(span_of(document%groups(numbers(i)), 'integral', 1), 'coordinate '//to_text(motor%coordinate)// &
+                               ' has a controller with an integral part already, and two never come to rest; leave integral= out')
+        coordinates(i) = motor%coordinate
+      end select
+    end do
+  end subroutine check_integrals
 
   !> A direct-current motor.
   subroutine read_dc_motor(document, group, angle_unit, motor, diagnostics)

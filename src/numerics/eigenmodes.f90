@@ -11,7 +11,7 @@ module mech9_eigenmodes
   use mech9_singular_values, only: decompose, null_vector
   implicit none
   private
-  public :: eigenmodes_type, find_eigenmodes
+  public :: eigenmodes_type, find_eigenmodes, add_mode, sort_modes
 
   !> One mode for each conjugate pair of roots, for each other real root, and for each null vector of K.
   type :: eigenmodes_type

@@ -394,6 +394,86 @@ def controllers(runs):
     runs.checks.true(np.abs(one['M1.torque']).max() == 2.0, 'the limit is reached exactly')
 
 
+PENDULUM = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&initial coordinate=1, position=0.3 /
+&body link=2, mass=2, centre=0.4,0,0, inertia=0,0,0.1,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+"""
+
+
+def roots_of(table):
+    """All roots of a table of modes, conjugate ones too."""
+    roots = [complex(re, im) for re, im in zip(table['eigenvalue.re'], table['eigenvalue.im'])]
+    roots += [root.conjugate() for root in roots if root.imag > 0]
+    return np.array(sorted(roots, key=lambda z: (round(z.real, 6), z.imag)))
+
+
+def at_rest(runs):
+    """Equilibria, modes and linearised equations of motion with motors."""
+    def same_roots(table, matrix, why):
+        roots = np.array(sorted(np.linalg.eigvals(matrix), key=lambda z: (round(z.real, 6), z.imag)))
+        found = roots_of(table)
+        if runs.checks.equal(len(found), len(roots), f'{why}: number of roots'):
+            runs.checks.near(np.abs(found - roots), 0, 1e-9*np.abs(roots).max(), f'{why}: roots', scale=1.0)
+
+    motor = "&motor coordinate=1, kind='dc', voltage=10, resistance=2, inductance=0.1, constant=3 /\n"
+    table = runs.table(SLIDE + motor, '--equilibrium')
+    runs.checks.near([table['q1'][0], table['M1.current'][0], table['M1.torque'][0], table['stable'][0]], [0.3, 5, 15, 1], 1e-12,
+                     'a linear motor against a spring')
+    matrix = dc_matrix(10, 2, 0.1, 3, 2, 50, 1)[:3, :3]
+    same_roots(runs.table(SLIDE + motor, '--modes'), matrix, 'a linear motor against a spring')
+    quasi = motor.replace('inductance=0.1, ', '')
+    same_roots(runs.table(SLIDE + quasi, '--modes'), [[0, 1], [-25, -(1 + 9/2)/2]], 'without inductance')
+    still = FLYWHEEL + "&motor coordinate=1, kind='dc', voltage=0, resistance=0.6, inductance=0.01, constant=0.3 /\n"
+    table = runs.table(still, '--modes')
+    same_roots(table, dc_matrix(0, 0.6, 0.01, 0.3, 0.02)[:3, :3], 'a flywheel without voltage')
+    runs.checks.true(0.0 in table['eigenvalue.re'], 'its place does not matter: a root is zero', table['eigenvalue.re'])
+    runs.checks.equal(runs.table(still, '--equilibrium')['stable'][0], 1.0, 'it is stable, neutral included')
+    done = run(runs.mech9d, runs.path(still.replace('voltage=0', 'voltage=24')), '--equilibrium', folder=runs.folder)
+    runs.checks.equal(done.returncode, 5, 'a motor that nothing holds has no place of rest')
+    # m l^2 + J = 0.42; held at 0.5 by the integral alone
+    pid = "&motor coordinate=1, kind='pid', proportional=40, integral=30, derivative=6, limit={}, setpoint=0.5 /\n"
+    weight = 2*9.81*0.4
+    for more in ('', "&motor coordinate=1, kind='dc', voltage=3, resistance=0.6, inductance=0.02, constant=0.3 /\n"):
+        held = weight*math.cos(0.5) - (0.3*3/0.6 if more else 0)
+        table = runs.table(PENDULUM + pid.format(50) + more, '--equilibrium')
+        runs.checks.near([table['q1'][0], table['M1.torque'][0], table['M1.integral'][0]], [0.5, held, held/30], 1e-12,
+                         'a controller holds a pendulum')
+        matrix = np.zeros((4, 4))
+        matrix[0, 1] = 1
+        matrix[1] = np.array([weight*math.sin(0.5) - 40, -6, 30, 0.3])/0.42
+        matrix[2, 0] = -1
+        matrix[3] = [0, -0.3/0.02, 0, -0.6/0.02]
+        n = 4 if more else 3
+        same_roots(runs.table(PENDULUM + pid.format(50) + more, '--modes'), matrix[:n, :n], 'a held pendulum')
+    done = run(runs.mech9d, runs.path(PENDULUM + pid.format(2)), '--equilibrium', folder=runs.folder)
+    runs.checks.equal(done.returncode, 5, 'a controller that is too weak')
+    # the modes of a four-bar with a motor are the roots of its motion: a small deviation decays with the slowest
+    text = FOUR_BAR.format(a=1, b=2, c=3, d=4).replace('voltage=12', 'voltage=0')
+    one = runs.table(text, '--equilibrium')
+    two = runs.table(text.split('&motor')[0], '--equilibrium')
+    runs.checks.near(one['q1'], two['q1'], 1e-9, 'a motor without voltage does not move the place of rest')
+    try:
+        import h5py
+    except ImportError:
+        runs.checks.left_out('h5py is not installed (Debian: python3-h5py)')
+        return
+    path = os.path.join(runs.folder, 'linear.h5')
+    done = run(runs.mech9d, runs.path(SLIDE + motor), '--linear', path, folder=runs.folder)
+    runs.checks.equal(done.returncode, 0, '--linear with a motor')
+    with h5py.File(path, 'r') as file:
+        space = file['state_space']
+        runs.checks.near(space['A'][:], dc_matrix(10, 2, 0.1, 3, 2, 50, 1)[:3, :3], 1e-12, 'A has the current')
+        runs.checks.near(space['B'][:], [[0, 0], [0.5, 0], [0, 10]], 1e-12, 'B has the voltage')
+        runs.checks.near(space['C'][:], [[1, 0, 0], [0, 1, 0], [-25, -0.5, 1.5]], 1e-12, 'C has the current')
+        runs.checks.near(space['D'][:], [[0, 0], [0, 0], [0.5, 0]], 1e-12, 'D has the voltage')
+        names = [name.decode() if hasattr(name, 'decode') else str(name) for name in space['state'][:]]
+        runs.checks.equal(names, ['q1', 'dq1', 'M1.current'], 'names of the states')
+        names = [name.decode() if hasattr(name, 'decode') else str(name) for name in space['input'][:]]
+        runs.checks.equal(names, ['Q1', 'M1.voltage'], 'names of the inputs')
+
+
 def refusals(runs):
     dc = "&motor coordinate={k}, kind='dc', voltage={u}, resistance={r}, inductance={l}, constant={c} /\n"
     good = {'k': 1, 'u': 12, 'r': 0.6, 'l': 0.01, 'c': 0.3}
@@ -415,6 +495,7 @@ def refusals(runs):
     for limit in (0, -3):
         runs.refused(FLYWHEEL + pid.format(more=f'setpoint=1, proportional=1, limit={limit}'), ["'limit' must be >0"],
                      f'limit {limit}')
+    runs.refused(FLYWHEEL + 2*pid.format(more='setpoint=1, integral=1'), ['two never come to rest'], 'two integral parts')
     runs.refused(FLYWHEEL + pid.format(more='setpoint=1, integral=1, limit=3'), ['integral part alone'], 'integral part with limit')
     done = run(runs.mech9d, runs.path(FLYWHEEL + pid.format(more="proportional=1, law='segments', times=0,1, values=0,1, "
                                                                  "laws='harmonic'") + time(2.0)), '--no-write', folder=runs.folder)
@@ -460,7 +541,7 @@ def main():
     checks = Checks()
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(checks, sys.argv[1], sys.argv[2], folder)
-        for part in (direct_current, voltages, four_bar, work, as_spring, controllers, refusals, other_outputs):
+        for part in (direct_current, voltages, four_bar, work, as_spring, controllers, at_rest, refusals, other_outputs):
             part(runs)
     checks.finish()
 

@@ -4,7 +4,7 @@ module mech9_equilibria
   use mech9_error, only: error_type, raise, exit_assembly, exit_singular, exit_interrupted
   use mech9_random, only: random_type
   use mech9_mechanism, only: mechanism_type
-  use mech9_partition, only: partition_type
+  use mech9_partition, only: partition_type, free_coordinate
   use mech9_plan, only: plan_type, step_type
   use mech9_state, only: state_type
   use mech9_assemblies, only: close_from
@@ -12,6 +12,7 @@ module mech9_equilibria
   use mech9_failure, only: failure_interrupted_starts
   use mech9_simulation, only: interruption_type
   use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, is_balanced, copy_resting
+  use mech9_resting_motors, only: hold_setpoints
   use mech9_linearised_equilibrium, only: equilibrium_type, linearise, copy_equilibrium
   use mech9_equilibrium_search, only: settle, find_any
   implicit none
@@ -41,8 +42,14 @@ contains
     type(equilibrium_type), intent(out) :: found        !< the equilibrium
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call put_to_rest(mechanism, partition, plan, assembled, found%resting, err)
-    if (.not. allocated(err)) call settle(mechanism, found%resting, err)
+    type(partition_type) :: held
+    type(plan_type) :: held_plan
+    type(state_type) :: position
+
+    call hold_setpoints(mechanism, partition, plan, assembled, held, held_plan, position, err)
+    if (.not. allocated(err)) call put_to_rest(mechanism, held, held_plan, position, found%resting, err)
+    if (allocated(err)) return
+    if (size(found%resting%free) > 0) call settle(mechanism, found%resting, err)
     if (.not. allocated(err)) call linearise(mechanism, partition, found, err)
   end subroutine find_equilibrium
 
@@ -62,6 +69,9 @@ contains
     type(equilibrium_slot_type), allocatable :: slots(:)
     type(random_type) :: random
     type(error_type), allocatable :: failure
+    type(partition_type) :: held
+    type(plan_type) :: held_plan
+    type(state_type) :: position
     integer :: i, n
     logical :: reached
 
@@ -74,9 +84,14 @@ contains
     else
       call add_new(found, slots, n)
     end if
+    call hold_setpoints(mechanism, partition, plan, assembled, held, held_plan, position, err)
+    if (allocated(err)) return
     do i = 1, n_starts
+      ! setpoints may hold all coordinates, and there is one position then
+      if (.not. any(held%kind == free_coordinate)) exit
       if (present(interruption)) call stop_if_interrupted(interruption, i - 1, n_starts, err)
-      if (.not. allocated(err)) call try_anywhere(mechanism, partition, plan, assembled, random, found, reached, err)
+      if (.not. allocated(err)) call try_anywhere(mechanism, partition, held, held_plan, position, random, found, &
+                                                   reached, err)
       if (allocated(err)) exit
       if (reached) call add_new(found, slots, n)
     end do
@@ -102,9 +117,10 @@ contains
   end subroutine stop_if_interrupted
 
   !> The equilibrium to which one random position leads. `reached` is false where there is none.
-  subroutine try_anywhere(mechanism, partition, plan, assembled, random, found, reached, err)
+  subroutine try_anywhere(mechanism, partition, held, plan, assembled, random, found, reached, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(partition_type), intent(in) :: partition       !< driven, free and dependent coordinates
+    type(partition_type), intent(in) :: held            !< the same with driven setpoints
     type(plan_type), intent(in) :: plan                 !< its plan, in space
     type(state_type), intent(in) :: assembled           !< closed, with the motion of the driven coordinates
     type(random_type), intent(inout) :: random          !< source of random numbers
@@ -114,7 +130,7 @@ contains
     type(resting_type) :: resting
     type(error_type), allocatable :: at_lock
 
-    call start_anywhere(mechanism, partition, plan, assembled, random, resting, reached)
+    call start_anywhere(mechanism, held, plan, assembled, random, resting, reached)
     if (.not. reached) return
     call find_any(mechanism, resting, reached, err)
     if (allocated(err) .or. .not. reached) return

@@ -5,12 +5,14 @@ module mech9_linearised_equilibrium
   use mech9_error, only: error_type, raise, exit_data
   use mech9_failure, only: failure_no_inertia
   use mech9_lapack, only: dsyev
-  use mech9_cholesky, only: cholesky_factorize
+  use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_tolerances, only: negligible_inertia
   use mech9_eigenmodes, only: eigenmodes_type, find_eigenmodes
   use mech9_mechanism, only: mechanism_type
   use mech9_partition, only: partition_type
   use mech9_linearisation, only: find_matrix, by_rate, by_acceleration
+  use mech9_resting_motors, only: motor_coupling_type, release_setpoints, couple_motors
+  use mech9_motor_modes, only: find_motor_modes
   use mech9_resting_mechanism, only: resting_type, find_stiffness, try_step, return_to_coordinates, refuse_singular
   implicit none
   private
@@ -27,6 +29,7 @@ module mech9_linearised_equilibrium
     logical :: is_stable = .false.
     !> A free coordinate that moves no mass in any position; 0: none. There are no modes then, and the growth has no value.
     integer :: without_inertia = 0
+    type(motor_coupling_type) :: motors         !< with the states of motors, where there are motors
     integer :: found = 1                        !< number of starts that led to it
   end type equilibrium_type
 
@@ -48,7 +51,9 @@ contains
     real(wp) :: c_magnitude
     integer :: i, n, massless
 
-    call return_to_coordinates(mechanism, partition, fair_conditioning, found%resting, err)
+    call release_setpoints(mechanism, partition, found%resting, err)
+    if (.not. allocated(err)) &
+      call return_to_coordinates(mechanism, partition, fair_conditioning, found%resting, err)
     if (allocated(err)) return
     call refuse_singular(found%resting, err)
     if (.not. allocated(err)) call find_stiffness(mechanism, found%resting, err)
@@ -68,6 +73,8 @@ contains
         call judge_statics(mechanism, resting%free(massless), found, err)
         return
       end if
+      if (mechanism%n_motors > 0) call add_motors(mechanism, m, c, found, err)
+      if (allocated(err)) return
       found%without_inertia = 0
       found%is_stable = .not. found%modes%growth > 0.0_wp
       allocate (per_unit(n, n))
@@ -80,6 +87,44 @@ contains
       found%stiffness = per_unit*resting%stiffness
     end associate
   end subroutine linearise
+
+  !> Couple the motors with the motion, and find the modes again where these have states.
+  subroutine add_motors(mechanism, m, c, found, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    real(wp), intent(in) :: m(:, :)                     !< (n,n) inertia [J s^2]
+    real(wp), intent(in) :: c(:, :)                     !< (n,n) damping [J s]
+    type(equilibrium_type), intent(inout) :: found      !< with its stiffness; gets coupling and modes
+    type(error_type), allocatable, intent(out) :: err   !< allocated if the law of a motor has no value
+    real(wp), dimension(size(m, 1), size(m, 1)) :: factors, k, damping
+    real(wp), allocatable :: force(:, :), by_position(:, :), by_rate(:, :)
+    integer :: failed_at, i
+
+    call couple_motors(mechanism, found%resting, found%motors, err)
+    if (allocated(err) .or. size(found%motors%states) == 0) return
+    associate (unit => found%resting%plan%unit_of(found%resting%free), motors => found%motors)
+      force = motors%force_by_state
+      by_position = motors%rate_by_q
+      by_rate = motors%rate_by_dq
+      do i = 1, size(m, 1)
+        force(i, :) = force(i, :)*unit(i)
+        by_position(:, i) = by_position(:, i)*unit(i)
+        by_rate(:, i) = by_rate(:, i)*unit(i)
+      end do
+    end associate
+    factors = 0.5_wp*(m + transpose(m))
+    k = found%resting%stiffness
+    where (abs(k) <= round_off*found%resting%stiffness_magnitude) k = 0.0_wp
+    damping = c
+    call cholesky_factorize(size(m, 1), factors, failed_at)
+    do i = 1, size(m, 1)
+      call cholesky_solve(size(m, 1), factors, k(:, i))
+      call cholesky_solve(size(m, 1), factors, damping(:, i))
+    end do
+    do i = 1, size(force, 2)
+      call cholesky_solve(size(m, 1), factors, force(:, i))
+    end do
+    call find_motor_modes(k, damping, force, by_position, by_rate, found%motors%rate_by_state, found%modes)
+  end subroutine add_motors
 
   !> The inertia of the free coordinates, and one that moves no mass.
   subroutine find_inertia(mechanism, resting, m, massless, err)

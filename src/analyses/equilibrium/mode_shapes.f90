@@ -30,6 +30,8 @@ contains
       end do
     end associate
     largest = maxloc(abs(shape), dim=1)
+    ! the root of a motor that moves nothing
+    if (.not. abs(shape(largest)) > 0.0_wp) return
     shape = shape/shape(largest)
     shape(largest) = (1.0_wp, 0.0_wp)
   end subroutine shape_of_mode
@@ -45,7 +47,7 @@ contains
     associate (x => equilibrium%modes%shapes(:, mode), free => equilibrium%resting%free)
       momenta = matmul(equilibrium%inertia, x)
       shares(free) = real(conjg(x)*momenta, wp)
-      shares(free) = shares(free)/sum(shares(free))
+      if (sum(shares(free)) > 0.0_wp) shares(free) = shares(free)/sum(shares(free))
     end associate
   end subroutine energy_shares
 

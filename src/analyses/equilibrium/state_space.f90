@@ -1,7 +1,8 @@
 !> The linearised equations of motion in the form x' = A x + B u, y = C x + D u.
 !>
-!> The state x holds the deviations of the free coordinates from equilibrium, then their rates. Inputs u are additional
-!> generalized forces on the free coordinates; outputs y are deviations of coordinates, points, and their derivatives in time.
+!> The state x holds the deviations of the free coordinates from equilibrium, then their rates, then the deviations of the motors'
+!> states. Inputs u are additional generalized forces on the free coordinates, then additional voltages of motors;
+!> outputs y are deviations of coordinates, points, and their derivatives in time.
 module mech9_state_space
   use mech9_kinds, only: wp
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
@@ -9,6 +10,7 @@ module mech9_state_space
   use mech9_pose, only: transformed
   use mech9_mechanism, only: mechanism_type
   use mech9_motion_variation, only: vary_motion
+  use mech9_resting_motors, only: motor_coupling_type
   use mech9_linearised_equilibrium, only: equilibrium_type
   implicit none
   private
@@ -16,10 +18,10 @@ module mech9_state_space
 
   !> The matrices, in the units of the results.
   type :: state_space_type
-    real(wp), allocatable :: a(:, :)   !< (2n,2n) [1/s], in the units of the states
-    real(wp), allocatable :: b(:, :)   !< (2n,n) states per N m or N
-    real(wp), allocatable :: c(:, :)   !< (outputs,2n) outputs per state
-    real(wp), allocatable :: d(:, :)   !< (outputs,n) outputs per N m or N
+    real(wp), allocatable :: a(:, :)   !< (m,m) [1/s], in the units of the states; m = 2n and the states of motors
+    real(wp), allocatable :: b(:, :)   !< (m,inputs) states per N m, N or V
+    real(wp), allocatable :: c(:, :)   !< (outputs,m) outputs per state
+    real(wp), allocatable :: d(:, :)   !< (outputs,inputs) outputs per N m, N or V
   end type state_space_type
 
 contains
@@ -34,27 +36,36 @@ contains
     type(state_space_type), intent(out) :: space           !< the matrices
     real(wp), allocatable, dimension(:, :) :: by_position, by_rate, by_acceleration, accelerate
     real(wp) :: unit
-    integer :: n, outputs, i
+    integer :: n, m, states, voltages, outputs, i
 
     n = size(equilibrium%resting%free)
     outputs = (derivatives + 1)*(size(recorded) + 3*size(mechanism%points))
-    allocate (by_position(outputs, n), by_rate(outputs, n), by_acceleration(outputs, n), accelerate(n, 3*n))
+    states = 0
+    voltages = 0
+    if (mechanism%n_motors > 0) then
+      states = size(equilibrium%motors%states)
+      voltages = size(equilibrium%motors%inputs)
+    end if
+    allocate (by_position(outputs, n), by_rate(outputs, n), by_acceleration(outputs, n))
     do i = 1, n
       call outputs_of(mechanism, recorded, derivatives, equilibrium, i, 0, by_position(:, i))
       call outputs_of(mechanism, recorded, derivatives, equilibrium, i, 1, by_rate(:, i))
       call outputs_of(mechanism, recorded, derivatives, equilibrium, i, 2, by_acceleration(:, i))
     end do
-    call find_accelerations(equilibrium, accelerate)
-    allocate (space%a(2*n, 2*n), space%b(2*n, n), space%c(outputs, 2*n), space%d(outputs, n), source=0.0_wp)
+    m = 2*n + states
+    allocate (accelerate(n, m + n + voltages))
+    call find_accelerations(equilibrium, states, voltages, accelerate)
+    allocate (space%a(m, m), space%b(m, n + voltages), space%c(outputs, m), space%d(outputs, n + voltages), source=0.0_wp)
     do i = 1, n
       space%a(i, n + i) = 1.0_wp
     end do
-    space%a(n + 1:, :) = accelerate(:, :2*n)
-    space%b(n + 1:, :) = accelerate(:, 2*n + 1:)
+    space%a(n + 1:2*n, :) = accelerate(:, :m)
+    space%b(n + 1:2*n, :) = accelerate(:, m + 1:)
+    if (states > 0) call set_motors(equilibrium%motors, n, space)
     space%c(:, :n) = by_position
-    space%c(:, n + 1:) = by_rate
-    space%c = space%c + matmul(by_acceleration, accelerate(:, :2*n))
-    space%d = matmul(by_acceleration, accelerate(:, 2*n + 1:))
+    space%c(:, n + 1:2*n) = by_rate
+    space%c = space%c + matmul(by_acceleration, accelerate(:, :m))
+    space%d = matmul(by_acceleration, accelerate(:, m + 1:))
     do i = 1, n
       unit = equilibrium%resting%plan%result_unit(equilibrium%resting%free(i))
       space%c(:, i) = space%c(:, i)*unit
@@ -67,23 +78,43 @@ contains
     end do
   end subroutine find_state_space
 
-  !> Accelerations of the free coordinates per position, rate and force: M^-1 (-K, -C, 1).
-  subroutine find_accelerations(equilibrium, accelerate)
+  !> Set the rates of the motors' states.
+  pure subroutine set_motors(motors, n, space)
+    type(motor_coupling_type), intent(in) :: motors   !< with states
+    integer, intent(in) :: n                          !< number of free coordinates
+    type(state_space_type), intent(inout) :: space    !< gets its last rows
+    integer :: i
+
+    space%a(2*n + 1:, :n) = motors%rate_by_q
+    space%a(2*n + 1:, n + 1:2*n) = motors%rate_by_dq
+    do i = 1, size(motors%states)
+      space%a(2*n + i, 2*n + i) = motors%rate_by_state(i)
+    end do
+    space%b(2*n + 1:, n + 1:) = motors%rate_by_input
+  end subroutine set_motors
+
+  !> Accelerations of the free coordinates per position, rate, state of a motor, force and voltage: M^-1 (-K, -C, G, 1, F).
+  subroutine find_accelerations(equilibrium, states, voltages, accelerate)
     type(equilibrium_type), intent(in) :: equilibrium   !< linearised
-    real(wp), intent(out) :: accelerate(:, :)           !< (n,3n) in SI units
+    integer, intent(in) :: states                       !< number of states of motors
+    integer, intent(in) :: voltages                     !< number of voltages
+    real(wp), intent(out) :: accelerate(:, :)           !< (n,3n+states+voltages) in SI units
     real(wp) :: factors(size(accelerate, 1), size(accelerate, 1))
-    integer :: n, i, failed_at
+    integer :: n, m, i, failed_at
 
     n = size(accelerate, 1)
+    m = 2*n + states
     accelerate(:, :n) = -equilibrium%stiffness
     accelerate(:, n + 1:2*n) = -equilibrium%damping
-    accelerate(:, 2*n + 1:) = 0.0_wp
+    if (states > 0) accelerate(:, 2*n + 1:m) = equilibrium%motors%force_by_state
+    accelerate(:, m + 1:m + n) = 0.0_wp
     do i = 1, n
-      accelerate(i, 2*n + i) = 1.0_wp
+      accelerate(i, m + i) = 1.0_wp
     end do
+    if (voltages > 0) accelerate(:, m + n + 1:) = equilibrium%motors%force_by_input
     factors = equilibrium%inertia
     call cholesky_factorize(n, factors, failed_at)
-    do i = 1, 3*n
+    do i = 1, size(accelerate, 2)
       call cholesky_solve(n, factors, accelerate(:, i))
     end do
   end subroutine find_accelerations

@@ -38,6 +38,7 @@ contains
     end do
     columns%motion = columns%count
     call forces%begin(model, columns)
+    call columns%append_motors(model%mechanism)
     call columns%append('stable', '', '1 where no small deviation grows, else 0')
     call columns%append('growth', '1/s', 'largest real part of the eigenvalues of the linearised equations of motion')
   end function columns_of_equilibria
@@ -59,6 +60,7 @@ contains
         rows(1 + k, i) = list(i)%resting%state%q(k)/unit_of(model%mechanism, k)
       end do
       if (columns%forces() > 0) call fill_forces(model, columns, list(i), rows(:, i), err)
+      if (.not. allocated(err)) call columns%fill_motors(model%mechanism, list(i)%resting%state, rows(:, i), err)
       if (allocated(err)) return
       rows(columns%count - 1, i) = merge(1.0_wp, 0.0_wp, list(i)%is_stable)
       rows(columns%count, i) = list(i)%modes%growth

@@ -2,6 +2,8 @@
 module mech9_linear_file
   use mech9_kinds, only: wp
   use mech9_text, only: string_type, to_text
+  use mech9_pid_motor, only: pid_motor_type
+  use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
   use mech9_result_units, only: unit_name
   use mech9_columns, only: columns_type, kinematic_columns
@@ -31,7 +33,7 @@ contains
       call put_square(file, 'second_order/C', equilibrium%damping, 'damping, with gyroscopic terms, in SI units')
       call put_square(file, 'second_order/K', equilibrium%stiffness, 'stiffness, in SI units')
       call find_state_space(model%mechanism, columns%coordinates, columns%derivatives, equilibrium, space)
-      call put_names(file, model, free, columns)
+      call put_names(file, model, equilibrium, columns)
     end associate
     call put_matrix(file, 'state_space/A', space%a, 'x'' = A x + B u')
     call file%attach_scales('state_space/A', ['/state_space/state', '/state_space/state'])
@@ -68,29 +70,54 @@ contains
   end subroutine put_matrix
 
   !> Put the names of states, inputs and outputs as scales, and their units.
-  subroutine put_names(file, model, free, columns)
-    type(hdf5_file_type), intent(inout) :: file   !< the open file
-    type(model_type), intent(in) :: model         !< the model
-    integer, intent(in) :: free(:)                !< numbers of the free coordinates
-    type(columns_type), intent(in) :: columns     !< recorded ones, the time first
-    type(string_type) :: states(2*size(free)), state_units(2*size(free)), inputs(size(free)), input_units(size(free))
-    integer :: i, n
+  subroutine put_names(file, model, equilibrium, columns)
+    type(hdf5_file_type), intent(inout) :: file          !< the open file
+    type(model_type), intent(in) :: model                !< the model
+    type(equilibrium_type), intent(in) :: equilibrium    !< linearised
+    type(columns_type), intent(in) :: columns            !< recorded ones, the time first
+    type(columns_type) :: states, inputs
+    integer :: i
 
-    n = size(free)
-    do i = 1, n
-      states(i)%text = 'q'//to_text(free(i))
-      states(n + i)%text = 'dq'//to_text(free(i))
-      state_units(i)%text = trim(unit_name(model%mechanism, free(i)))
-      state_units(n + i)%text = state_units(i)%text//'/s'
-      inputs(i)%text = 'Q'//to_text(free(i))
-      input_units(i)%text = 'N'
-      if (model%mechanism%pairs(free(i))%pair%angular) input_units(i)%text = 'N m'
-    end do
-    call put_scale(file, 'state', states, state_units, 'deviations from equilibrium, and their rates')
-    call put_scale(file, 'input', inputs, input_units, 'additional forces on the free coordinates')
+    allocate (states%names(0), states%units(0), states%long_names(0), inputs%names(0), inputs%units(0), inputs%long_names(0))
+    associate (free => equilibrium%resting%free, mechanism => model%mechanism)
+      do i = 1, size(free)
+        call states%append('q'//to_text(free(i)), trim(unit_name(mechanism, free(i))))
+        call inputs%append('Q'//to_text(free(i)), trim(merge('N m', 'N  ', mechanism%pairs(free(i))%pair%angular)))
+      end do
+      do i = 1, size(free)
+        call states%append('dq'//to_text(free(i)), trim(unit_name(mechanism, free(i)))//'/s')
+      end do
+      if (mechanism%n_motors > 0) then
+        do i = 1, size(equilibrium%motors%states)
+          call append_motor_state(mechanism, equilibrium%motors%states(i), states)
+        end do
+        do i = 1, size(equilibrium%motors%inputs)
+          call inputs%append('M'//to_text(equilibrium%motors%inputs(i))//'.voltage', 'V')
+        end do
+      end if
+    end associate
+    call put_scale(file, 'state', states%names(:states%count), states%units(:states%count), &
+                   'deviations from equilibrium: coordinates, their rates, states of motors')
+    call put_scale(file, 'input', inputs%names(:inputs%count), inputs%units(:inputs%count), &
+                   'additional forces on the free coordinates, and voltages of motors')
     call put_scale(file, 'output', columns%names(2:columns%motion), columns%units(2:columns%motion), &
                    'deviations of the recorded columns')
   end subroutine put_names
+
+  !> Append the name of a motor's state, in SI units.
+  subroutine append_motor_state(mechanism, i, states)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: i                        !< number of the motor
+    type(columns_type), intent(inout) :: states     !< gets the name and the unit
+
+    select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
+    type is (pid_motor_type)
+      call states%append('M'//to_text(i)//'.integral', &
+                         trim(merge('rad', 'm  ', mechanism%pairs(motor%coordinate)%pair%angular))//' s')
+    class default
+      call states%append('M'//to_text(i)//'.current', 'A')
+    end select
+  end subroutine append_motor_state
 
   !> Put one scale of the state space and its units.
   subroutine put_scale(file, name, texts, units, long_name)

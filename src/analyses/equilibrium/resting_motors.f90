@@ -1,0 +1,219 @@
+!> Motors of a mechanism at rest: steady currents, integrals that hold their setpoints, and the coupling of motors with the
+!> linearised motion.
+!>
+!> An integral part of a controller is at rest at its setpoint only. For the search of an equilibrium its coordinate is driven
+!> there; the force of this drive is then that of the controller.
+module mech9_resting_motors
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_assembly
+  use mech9_failure, only: failure_no_equilibrium
+  use mech9_mechanism, only: mechanism_type
+  use mech9_motor, only: motor_type, motor_action_type
+  use mech9_pid_motor, only: pid_motor_type
+  use mech9_motor_states, only: start_motors, find_limits, find_action
+  use mech9_partition, only: partition_type, driven_coordinate
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_motion_variation, only: vary_motion
+  use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at
+  implicit none
+  private
+  public :: motor_coupling_type, hold_setpoints, release_setpoints, couple_motors
+
+  !> Derivatives of forces and of the rates of motors' states, in SI units.
+  type :: motor_coupling_type
+    integer, allocatable :: states(:)               !< (s) numbers of the motors with a state
+    integer, allocatable :: inputs(:)               !< (v) numbers of the motors with a voltage
+    real(wp), allocatable :: force_by_state(:, :)   !< (n,s) of the forces on the free coordinates
+    real(wp), allocatable :: force_by_input(:, :)   !< (n,v)
+    real(wp), allocatable :: rate_by_q(:, :)        !< (s,n) of the rates of the states, by the free coordinates
+    real(wp), allocatable :: rate_by_dq(:, :)       !< (s,n)
+    real(wp), allocatable :: rate_by_state(:)       !< (s) each by its own state [1/s]
+    real(wp), allocatable :: rate_by_input(:, :)    !< (s,v)
+  end type motor_coupling_type
+
+contains
+
+  !> Drive the coordinates of controllers with an integral part to their setpoints. Without such controllers all stays as it is.
+  !> Fails where the mechanism cannot be assembled there.
+  subroutine hold_setpoints(mechanism, partition, plan, assembled, held, held_plan, position, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(partition_type), intent(in) :: partition       !< driven, free and dependent coordinates
+    type(plan_type), intent(in) :: plan                 !< its plan, in space
+    type(state_type), intent(in) :: assembled           !< closed, with rates and accelerations of the driven coordinates
+    type(partition_type), intent(out) :: held           !< with driven coordinates in place of those with setpoints
+    type(plan_type), intent(out) :: held_plan           !< its plan, in space
+    type(state_type), intent(out) :: position           !< closed, with these coordinates at their setpoints
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: q(size(assembled%q)), rate, acceleration
+    logical :: is_held(size(assembled%q))
+    integer :: i
+
+    held = partition
+    q = assembled%q
+    is_held = .false.
+    do i = size(mechanism%loads) - mechanism%n_motors + 1, size(mechanism%loads)
+      select type (motor => mechanism%loads(i)%load)
+      type is (pid_motor_type)
+        if (.not. motor%has_state()) cycle
+        call motor%law%evaluate(assembled%t, q(motor%coordinate), rate, acceleration, err)
+        if (allocated(err)) return
+        is_held(motor%coordinate) = .true.
+      end select
+    end do
+    held_plan = plan
+    position = assembled
+    if (.not. any(is_held)) return
+    where (is_held) held%kind = driven_coordinate
+    call make_plan(mechanism, held, q, held_plan, position, err, in_space=.true.)
+    if (allocated(err)) return
+    position%t = assembled%t
+    where (partition%kind == driven_coordinate)
+      position%dq = assembled%dq
+      position%ddq = assembled%ddq
+    end where
+  end subroutine hold_setpoints
+
+  !> Give the motors of a mechanism at rest their states, and make the coordinates free again that were driven to setpoints.
+  !> Fails with exit_assembly where a controller would need a force beyond its limit.
+  subroutine release_setpoints(mechanism, partition, resting, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(partition_type), intent(in) :: partition       !< driven, free and dependent coordinates
+    type(resting_type), intent(inout) :: resting        !< in equilibrium with driven setpoints; then without
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(resting_type) :: other
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(motor_action_type) :: action
+    real(wp) :: forces(size(resting%state%q)), values(mechanism%n_motors)
+    integer :: i
+    logical :: is_held
+
+    if (mechanism%n_motors == 0) return
+    forces = resting%linearisation%forces
+    is_held = .false.
+    do i = 1, mechanism%n_motors
+      call find_action(mechanism, i, resting%state, action, err)
+      if (allocated(err)) return
+      values(i) = action%value
+      select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
+      type is (pid_motor_type)
+        if (.not. motor%has_state()) cycle
+        values(i) = forces(motor%coordinate)/motor%integral
+        is_held = .true.
+      end select
+    end do
+    state = resting%state
+    if (is_held) then
+      call make_plan(mechanism, partition, resting%state%q, plan, state, err, in_space=.true.)
+      if (allocated(err)) return
+      state%t = resting%state%t
+      where (partition%kind == driven_coordinate)
+        state%dq = resting%state%dq
+        state%ddq = resting%state%ddq
+      end where
+    end if
+    call start_motors(mechanism, state)
+    state%motor = values
+    call find_limits(mechanism, state, err)
+    if (allocated(err)) return
+    call refuse_limits(mechanism, forces, state, err)
+    if (allocated(err)) return
+    if (is_held) then
+      call put_to_rest(mechanism, partition, plan, state, other, err)
+      if (.not. allocated(err)) resting = other
+    else
+      call stand_at(mechanism, state, resting, err)
+    end if
+  end subroutine release_setpoints
+
+  !> Fail where a controller with an integral part works at its limit.
+  subroutine refuse_limits(mechanism, forces, state, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    real(wp), intent(in) :: forces(:)                   !< (M) that hold the setpoints [N m, N]
+    type(state_type), intent(in) :: state               !< with the limits at which the motors work
+    type(error_type), allocatable, intent(out) :: err   !< the failure
+    integer :: i
+
+    do i = 1, mechanism%n_motors
+      select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
+      type is (pid_motor_type)
+        if (.not. motor%has_state() .or. state%limited(i) == 0) cycle
+        call raise(err, exit_assembly, failure_no_equilibrium)
+        err%failure%coordinates = [motor%coordinate]
+        err%failure%values = reshape([forces(motor%coordinate) - sign(motor%limit, forces(motor%coordinate)), &
+                                      state%q(motor%coordinate)], [1, 2])
+        return
+      end select
+    end do
+  end subroutine refuse_limits
+
+  !> The coupling of the motors with the motion about an equilibrium. Fails where a law has no value.
+  subroutine couple_motors(mechanism, resting, coupling, err)
+    type(mechanism_type), intent(in) :: mechanism           !< the mechanism
+    type(resting_type), intent(inout) :: resting            !< with the states of its motors; its last variation changes
+    type(motor_coupling_type), intent(out) :: coupling      !< the coupling
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(motor_action_type) :: action
+    real(wp), dimension(size(resting%free), size(resting%state%q)) :: by_position, rate_by_position, by_rate
+    integer :: i, n, s, v
+
+    call find_slopes(resting, by_position, rate_by_position, by_rate)
+    n = size(resting%free)
+    allocate (coupling%states(0), coupling%inputs(0))
+    do i = 1, mechanism%n_motors
+      select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
+      class is (motor_type)
+        if (motor%has_state()) coupling%states = [coupling%states, i]
+        if (motor%has_input()) coupling%inputs = [coupling%inputs, i]
+      end select
+    end do
+    s = size(coupling%states)
+    v = size(coupling%inputs)
+    allocate (coupling%force_by_state(n, s), coupling%force_by_input(n, v), coupling%rate_by_q(s, n), coupling%rate_by_dq(s, n), &
+              coupling%rate_by_state(s), coupling%rate_by_input(s, v), source=0.0_wp)
+    do i = 1, mechanism%n_motors
+      call find_action(mechanism, i, resting%state, action, err)
+      if (allocated(err)) return
+      s = findloc(coupling%states, i, dim=1)
+      v = findloc(coupling%inputs, i, dim=1)
+      select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
+      class is (motor_type)
+        associate (k => motor%coordinate)
+          if (v > 0) coupling%force_by_input(:, v) = action%force_by_input*by_rate(:, k)
+          if (s > 0) then
+            coupling%force_by_state(:, s) = action%force_by_value*by_rate(:, k)
+            coupling%rate_by_q(s, :) = action%rate_by_q*by_position(:, k) + action%rate_by_dq*rate_by_position(:, k)
+            coupling%rate_by_dq(s, :) = action%rate_by_dq*by_rate(:, k)
+            coupling%rate_by_state(s) = action%rate_by_value
+            if (v > 0) coupling%rate_by_input(s, v) = action%rate_by_input
+          end if
+        end associate
+      end select
+    end do
+  end subroutine couple_motors
+
+  !> Derivatives of all coordinates and rates by the free coordinates and their rates.
+  subroutine find_slopes(resting, by_position, rate_by_position, by_rate)
+    type(resting_type), intent(inout) :: resting        !< its last variation changes
+    real(wp), intent(out) :: by_position(:, :)          !< (n,M) of coordinates by free coordinates
+    real(wp), intent(out) :: rate_by_position(:, :)     !< (n,M) of rates by free coordinates
+    real(wp), intent(out) :: by_rate(:, :)              !< (n,M) of rates by the rates of free coordinates
+    integer :: i
+
+    associate (variation => resting%linearisation%variation)
+      do i = 1, size(resting%free)
+        call variation%clear()
+        variation%q(resting%free(i)) = 1.0_wp
+        call vary_motion(resting%plan, resting%state, resting%linearisation%motion, variation)
+        by_position(i, :) = variation%q
+        rate_by_position(i, :) = variation%dq
+        call variation%clear()
+        variation%dq(resting%free(i)) = 1.0_wp
+        call vary_motion(resting%plan, resting%state, resting%linearisation%motion, variation)
+        by_rate(i, :) = variation%dq
+      end do
+    end associate
+  end subroutine find_slopes
+end module mech9_resting_motors
