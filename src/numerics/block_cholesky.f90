@@ -27,6 +27,7 @@ module mech9_block_cholesky
   contains
     procedure :: clear
     procedure :: place_of
+    procedure :: find_blocks
     procedure :: factorize
     procedure :: solve
   end type block_cholesky_type
@@ -140,6 +141,25 @@ contains
 
     e = block_at(self, max(self%position(a), self%position(b)), min(self%position(a), self%position(b)))
   end function place_of
+
+  !> The block of each edge, and whose rows it stands for.
+  pure subroutine find_blocks(self, edges, block_of, turned)
+    class(block_cholesky_type), intent(in) :: self        !< the matrix
+    integer, intent(in) :: edges(:, :)                    !< (2,edges) nodes that each joins
+    integer, allocatable, intent(out) :: block_of(:)      !< (edges) number of the block; 0 for an edge that counts nothing
+    logical, allocatable, intent(out) :: turned(:)        !< (edges) the block's rows are those of the second node
+    integer :: i
+
+    allocate (block_of(size(edges, 2)), source=0)
+    allocate (turned(size(edges, 2)), source=.false.)
+    do i = 1, size(edges, 2)
+      associate (a => edges(1, i), b => edges(2, i))
+        if (min(a, b) == 0 .or. a == b) cycle
+        block_of(i) = self%place_of(a, b)
+        turned(i) = self%position(b) > self%position(a)
+      end associate
+    end do
+  end subroutine find_blocks
 
   !> Make the matrix zero.
   pure subroutine clear(self)

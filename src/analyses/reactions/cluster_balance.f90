@@ -37,21 +37,13 @@ contains
     type(reaction_plan_type), intent(in) :: reactions   !< the plan of inverse dynamics
     type(joined_cluster_type), intent(in) :: cluster    !< the cluster
     type(cluster_balance_type) :: self
-    integer :: i, n
+    integer :: n
 
     n = size(cluster%pairs)
     self%factors = new_block_cholesky(6, size(cluster%links), cluster%nodes)
-    allocate (self%block_of(n), source=0)
-    allocate (self%turned(n), source=.false.)
+    call self%factors%find_blocks(cluster%nodes, self%block_of, self%turned)
     self%held = reactions%pairs(cluster%pairs)%dependent
     allocate (self%axis(6, n), self%arm(3, 2, n), source=0.0_wp)
-    do i = 1, n
-      associate (a => cluster%nodes(1, i), b => cluster%nodes(2, i))
-        if (min(a, b) == 0 .or. a == b) cycle
-        self%block_of(i) = self%factors%place_of(a, b)
-        self%turned(i) = self%factors%position(b) > self%factors%position(a)
-      end associate
-    end do
   end function new_cluster_balance
 
   !> The equations of a position, factorized. `regular` is false where M^T M is singular but for round-off.

@@ -32,21 +32,13 @@ contains
   pure function new_planar_balance(cluster) result(self)
     type(joined_cluster_type), intent(in) :: cluster    !< the cluster
     type(planar_balance_type) :: self
-    integer :: i, n, m
+    integer :: n, m
 
     m = size(cluster%pairs)
     n = size(cluster%links)
     self%factors = new_block_cholesky(3, n, cluster%nodes)
-    allocate (self%block_of(m), source=0)
-    allocate (self%turned(m), source=.false.)
+    call self%factors%find_blocks(cluster%nodes, self%block_of, self%turned)
     allocate (self%axis(3, m), self%arm(2, 2, m), self%wrenches(3, m), self%required(3, n), self%lacking(3, n), source=0.0_wp)
-    do i = 1, m
-      associate (a => cluster%nodes(1, i), b => cluster%nodes(2, i))
-        if (min(a, b) == 0 .or. a == b) cycle
-        self%block_of(i) = self%factors%place_of(a, b)
-        self%turned(i) = self%factors%position(b) > self%factors%position(a)
-      end associate
-    end do
   end function new_planar_balance
 
   !> Form M^T M from the axes and arms of the pairs, and factorize it.
