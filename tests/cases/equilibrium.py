@@ -6,6 +6,7 @@ coordinates and units (which compares the program with itself), and vibrations m
 usage: equilibrium.py MECH9D
 """
 import os
+import re
 import sys
 import tempfile
 
@@ -85,7 +86,9 @@ def check_pendulum(checks, case):
     for start in (np.pi / 2, 2.0, -2.5, 1.0, 0.0):
         down = case.table(pendulum(start), '--equilibrium')
         checks.near([down['q1'][0], down['stable'][0], down['growth'][0]], [0, 1, 0], EXACT, f'from {start:.2f} it falls to its rest')
-    both = case.table(pendulum(), '--equilibrium', '--starts', '20')
+    both = case.table(pendulum(), '--equilibrium', '--starts', '20', '--table', '-', '--report', 'both.json')
+    reached = re.findall(r'"starts": (\d+)', text_of(os.path.join(case.folder, 'both.json')))
+    checks.equal(sum(map(int, reached)), 21, 'each start, and the initial position, leads to one of the equilibria')
     checks.near(both['q1'], [0, np.pi], EXACT, 'random starts find both equilibria, each once')
     checks.near(both['stable'], [1, 0], 0.0, 'and tell which is stable')
     roots = case.roots(pendulum(3.1))
@@ -95,6 +98,17 @@ def check_pendulum(checks, case):
     for length in (1e-9, 1e9):
         far = mechanism(2, 1, [1], pair(1, '1,2'), body(2, 1e-30, f'{length!r},0,0'), GRAVITY, initial(1, 0.5))
         near_roots(checks, case.roots(far), [1j * np.sqrt(G / length)], EXACT, f'a pendulum of {length} m and 1e-30 kg')
+
+
+def check_wound_pendulum(checks, case):
+    """A torsion spring that knows whole turns: every angle that is found is a root of m g a sin q + k q."""
+    stiffness = 1.0
+    data = pendulum(0.5, f"&load kind='coordinate', coordinate=1, stiffness={stiffness} /")
+    table = case.table(data, '--equilibrium', '--starts', '60')
+    q = table['q1']
+    checks.near(2.0 * G * 0.5 * np.sin(q) + stiffness * q, 0, 1e-12, 'a wound pendulum rests at roots of its torque', scale=G)
+    checks.true(max(abs(q - 0.5)) > np.pi, 'one of them beyond half a turn from the start', str(q))
+    checks.near(table['stable'], G * np.cos(q) + stiffness > 0, 0.0, 'and stays where the torque rises')
 
 
 def check_damped_mass(checks, case):
@@ -335,6 +349,85 @@ def check_linear(checks, case):
     checks.near([matrices['D'][outputs.index('P.ax')][0]], [row['P.x'][0] * matrices['B'][1, 0]], 1e-12, 'and accelerations')
 
 
+def state_space(checks, case, data, why):
+    """The matrices of --linear, with the names of the outputs; None without h5py."""
+    try:
+        import h5py
+    except ImportError:
+        checks.left_out('no h5py')
+        return None
+    checks.equal(case(data, '--linear', 'linear.h5').returncode, 0, f'{why}: --linear')
+    with h5py.File(os.path.join(case.folder, 'linear.h5')) as file:
+        found = {name: file['state_space'][name][()] for name in 'ABCD'}
+        found['outputs'] = [name.decode() for name in file['state_space/output'][()]]
+    return found
+
+
+def check_linear_units(checks, case):
+    """In degrees, inputs give degrees, and angles among the outputs count in them."""
+    data = four_bar(1) + "&point name='P', link=3, position=0.5,0.2,0 /\n"
+    degree = np.pi / 180
+    in_degrees = data.replace('links=4,', "links=4, angle_unit='deg',", 1).replace('rest=0.4', f'rest={0.4 / degree!r}')
+    in_degrees = re.sub(r'position=(-?[\d.]+) /', lambda found: f'position={float(found[1]) / degree!r} /', in_degrees)
+    one, other = state_space(checks, case, data, 'radians'), state_space(checks, case, in_degrees, 'degrees')
+    if one is None:
+        return
+    size = np.where([name.startswith('P.') for name in one['outputs']], 1.0, 1 / degree)[:, None]
+    for name, expected in (('A', one['A']), ('B', one['B'] / degree), ('C', one['C'] * size * degree), ('D', one['D'] * size)):
+        checks.near(other[name], expected, 1e-9, f'{name} in degrees', scale=np.abs(expected).max())
+
+
+def check_linear_rotating(checks, case):
+    """Outputs beside a relative equilibrium: a bead on a turning hoop, whose place is known."""
+    fast = 1.6 * np.sqrt(G / 0.5)
+    space = state_space(checks, case, hoop(fast, 0.8) + "&point name='P', link=3, position=0,-0.5,0 /\n", 'a hoop')
+    if space is None:
+        return
+    angle, h = np.arccos(G / 0.5 / fast**2), 1e-3
+
+    def place(t, q, dq, ddq):
+        """The bead at a time, for an angle q + dq t + ddq t^2/2."""
+        now, turn = angle + q + dq * t + ddq * t**2 / 2, 0.3 + fast * t
+        return 0.5 * np.array([np.sin(now) * np.cos(turn), -np.cos(now), -np.sin(now) * np.sin(turn)])
+
+    def motion(*change):
+        """Position, velocity and acceleration by differences of fourth order."""
+        p = [place(k * h, *change) for k in (-2, -1, 0, 1, 2)]
+        return np.array([p[2], (p[0] - 8 * p[1] + 8 * p[3] - p[4]) / (12 * h),
+                         (-p[0] + 16 * p[1] - 30 * p[2] + 16 * p[3] - p[4]) / (12 * h**2)])
+
+    by = [(motion(*change) - motion(*-change)) / 2e-3 for change in 1e-3 * np.eye(3)]
+    for order, letter in enumerate(('', 'v', 'a')):
+        rows = [space['outputs'].index(f'P.{letter}{axis}') for axis in 'xyz']
+        for column in range(2):
+            expected = by[column][order] + by[2][order] * space['A'][1, column]
+            # differences of fourth order at 1e-3 err by 1e-6 of the sixth derivative in time, those by the angle by 1e-6
+            checks.near(space['C'][rows, column], expected, 1e-5, f'P.{letter} on a turning hoop by state {column + 1}',
+                        scale=np.abs(by[0][order]).max())
+        checks.near(space['D'][rows, 0], by[2][order] * space['B'][1, 0], 1e-5, f'P.{letter} on a turning hoop by the input', scale=10.0)
+
+
+def check_shares(checks, case):
+    """Two masses that a spring and a damper join: their shares of the energy are those of m |x|^2."""
+    masses = (1.0, 3.0)
+    data = mechanism(3, 2, [1, 2], pair(1, '1,2', 'prismatic', axis='1,0,0'), pair(2, '1,3', 'prismatic', point='0,1,0', axis='1,0,0'),
+                     *(body(k + 2, mass, '0,0,0') for k, mass in enumerate(masses)), initial(1, 0.0), initial(2, 0.0),
+                     "&load kind='coordinate', coordinate=1, stiffness=20, damping=4 /",
+                     "&load kind='coordinate', coordinate=2, stiffness=5 /",
+                     "&load kind='spring', links=2,3, position=0,0,0, second_position=3,1,0, stiffness=9, free_length=3.1, damping=0.5 /")
+    try:
+        import h5py
+    except ImportError:
+        checks.left_out('no h5py')
+        return
+    checks.equal(case(data, '--modes', '--hdf5', 'shares.h5').returncode, 0, 'two damped masses')
+    with h5py.File(os.path.join(case.folder, 'shares.h5')) as file:
+        shapes, shares = file['q_re'][()] + 1j * file['q_im'][()], file['kinetic_share'][()]
+    energy = masses * abs(shapes)**2
+    checks.true(np.max(abs(shapes.imag)) > 0.05, 'the masses move with different phases', str(shapes))
+    checks.near(shares, energy / energy.sum(axis=1, keepdims=True), 1e-12, 'shares of the kinetic energy')
+
+
 def check_files(checks, case):
     result = case(pendulum(), '--modes', '--hdf5', 'modes.h5', '--report', 'modes.json', '--table', 'modes.dat')
     checks.equal((result.returncode, result.stdout), (0, ''), 'results go to the files that are named')
@@ -402,9 +495,9 @@ def main():
     checks = Checks()
     with tempfile.TemporaryDirectory() as folder:
         case = Case(sys.argv[1], folder)
-        for check in (check_pendulum, check_damped_mass, check_double_pendulum, check_bar_in_slots, check_four_bar, check_limit,
-                      check_hoop, check_forces, check_balanced_beam, check_statics, check_many_starts, check_free_body, check_linear,
-                      check_files, check_failures):
+        for check in (check_pendulum, check_wound_pendulum, check_damped_mass, check_double_pendulum, check_bar_in_slots,
+                      check_four_bar, check_limit, check_hoop, check_forces, check_balanced_beam, check_statics, check_many_starts, check_free_body, check_linear,
+                      check_linear_units, check_linear_rotating, check_shares, check_files, check_failures):
             check(checks, case)
     checks.finish()
 
