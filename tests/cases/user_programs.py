@@ -8,13 +8,15 @@ usage: user_programs.py FOLDER      FOLDER holds trammel_k, trammel_values_k, ca
                                     cycloidal_drive_k, cycloidal_drive_values_k, air_drag_d
 """
 import os
+import re
 import sys
+import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
 
 from jets import Jet, arccos, arcsin, check_coordinate, check_point, cos, sin, sqrt
-from mech9_cases import TREE, Checks, table_of, tolerance_of
+from mech9_cases import TREE, Checks, table_of, text_of, tolerance_of
 
 
 def check_trammel(checks, table, why):
@@ -74,6 +76,27 @@ def check_air(checks, table, why):
     checks.near(lost, work, 1e-8, f'{why}: the energy falls by the work of the drag')
 
 
+def check_air_forces(checks, program, data):
+    """Forces in pairs and of drives beside those of a user procedure, by hand: free, and driven."""
+    settings = ('--set', 'output.reactions=.true.', '--set', 'output.drive_forces=.true.')
+    free = table_of(program, data, *settings)
+    zero = [free[f'R1.{c}'] for c in ('fx', 'fy', 'fz', 'mx', 'my', 'mz')] + [free[f'R2.{c}'] for c in ('fx', 'fy', 'mx', 'my', 'mz')]
+    checks.near(zero, 0, 1e-12, 'air drag: what falls and turns freely needs no force along its axis', scale=20.0)
+    checks.near(free['R2.fz'], 9.81, 1e-14, 'air drag: the wheel is carried')
+    text = re.sub(r'&initial.*\n', '', text_of(data))
+    text += "&drive coordinate=1, kind='polynomial', coefficients=0,1,0.5 /\n&drive coordinate=2, kind='polynomial', coefficients=0,20,-2 /\n"
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'driven.nml')
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        table = table_of(program, path, *settings)
+    drag, brake = 0.10 * table['dq1']**2, 2 * 0.04 * 0.3**3 * table['dq2'] * abs(table['dq2'])
+    checks.near(table['F1'], 2.0 * (table['ddq1'] - 9.81) + drag, 1e-13, 'air drag: the force that drives the weight', scale=20.0)
+    checks.near(table['R1.fz'], -table['F1'], 1e-14, 'air drag: it is that of the pair', scale=20.0)
+    checks.near(table['F2'], 0.05 * table['ddq2'] + brake, 1e-13, 'air drag: the torque that drives the wheel', scale=1.0)
+    checks.near(table['R2.mz'], table['F2'], 1e-14, 'air drag: it is that of the pair', scale=1.0)
+
+
 def check_same(checks, first, second, why):
     for column in first:
         if column != 'closure':
@@ -94,6 +117,7 @@ def main():
         check(checks, forms[program], program)
     air = table_of(os.path.join(folder, 'air_drag_d'), os.path.join(TREE, 'user_procs', 'air_drag', 'air_drag.nml'))
     check_air(checks, air, 'air drag')
+    check_air_forces(checks, os.path.join(folder, 'air_drag_d'), os.path.join(TREE, 'user_procs', 'air_drag', 'air_drag.nml'))
     for name in ('trammel', 'cycloidal_drive'):
         check_same(checks, forms[name], forms[name + '_values'], f'{name}: Taylor arithmetic and plain values agree')
     checks.finish()
