@@ -16,10 +16,44 @@ module mech9_loaded_mechanisms
   use mech9_curved_pair, only: curved_pair_type
   implicit none
   private
-  public :: open_chain, loaded_fig1, five_bar, loaded_loop, two_loops
+  public :: open_chain, loaded_fig1, five_bar, loaded_loop, two_loops, known_count, known_mechanism
   public :: without_loads, load_everything, add_body, add_load, add_point_masses
 
+  !> Number of mechanisms that known_mechanism gives.
+  integer, parameter :: known_count = 7
+
 contains
+
+  !> One of the mechanisms of this module, with all loads, and its name.
+  subroutine known_mechanism(number, model, name)
+    integer, intent(in) :: number                          !< from 1 to known_count
+    type(model_type), intent(out) :: model                 !< the mechanism
+    character(len=:), allocatable, intent(out) :: name     !< for the report of a failure
+
+    select case (number)
+    case (1)
+      call open_chain(model)
+      name = 'open chain'
+    case (2)
+      call loaded_fig1(5, model)
+      name = 'Fig. 1'
+    case (3)
+      call loaded_fig1(1, model)
+      name = 'Fig. 1 in its other coordinate, both chains solved together'
+    case (4)
+      call five_bar(model)
+      name = 'five-bar'
+    case (5)
+      call loaded_loop(model)
+      name = 'general loop'
+    case (6)
+      call two_loops([1, 5], model)
+      name = 'two loops and a branch, with pairs that have no fixed axis'
+    case default
+      call two_loops([1, 11], model)
+      name = 'two loops solved together, and a branch'
+    end select
+  end subroutine known_mechanism
 
   !> Three moving links: revolute, prismatic (its links given the other way round), helical; all loads.
   subroutine open_chain(model)

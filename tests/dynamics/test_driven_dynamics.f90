@@ -6,30 +6,14 @@ program test_driven_dynamics
   use mech9_error, only: error_type
   use mech9_random, only: random_type
   use mech9_partition, only: driven_coordinate
-  use mech9_model, only: model_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
-  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
-  use mech9_dynamics_plan, only: make_dynamics_plan
-  use mech9_lagrange_work, only: new_lagrange_work
-  use mech9_lagrange, only: find_motion, find_equations, complete_accelerations
+  use mech9_lagrange, only: find_motion, complete_accelerations
   use mech9_block_equations, only: block_rates
   use mech9_literal_lagrange, only: literal_type, literal_equations
+  use mech9_cluster_case, only: cluster_case_type, prepare
   use mech9_mixed_structures, only: structure_type, random_structure, add_ladder, finished, below
   use mech9_testing, only: tester_type
   use mech9_counted_memory, only: calls
   implicit none
-
-  !> A mechanism and all that its motion needs.
-  type :: case_type
-    type(model_type) :: model
-    type(plan_type) :: plan
-    type(state_type) :: state
-    type(dynamics_plan_type) :: dynamics
-    type(lagrange_work_type) :: work
-    real(wp) :: conditioning = 0.0_wp   !< the worst of all blocks
-  end type case_type
 
   type(tester_type) :: test
 
@@ -41,7 +25,7 @@ contains
 
   !> Structures of 2 to 7 pieces, in each of which some independent coordinates are driven.
   subroutine random_structures()
-    type(case_type) :: free
+    type(cluster_case_type) :: free
     type(random_type) :: random
     type(structure_type) :: structure
     integer :: trial, compared, literal
@@ -64,7 +48,7 @@ contains
 
   !> A ladder on link 1 has its accelerations from the coefficients.
   subroutine one_cluster()
-    type(case_type) :: free
+    type(cluster_case_type) :: free
     type(random_type) :: random
     type(structure_type) :: structure
     integer :: trial, literal
@@ -82,38 +66,15 @@ contains
     end do
   end subroutine one_cluster
 
-  !> Plan, and some rates.
-  subroutine prepare(this, in_space, found)
-    type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
-    logical, intent(in) :: in_space          !< spatial arithmetic, also where the mechanism is planar
-    logical, intent(out) :: found            !< the mechanism moves
-    type(error_type), allocatable :: err
-    integer :: i
-
-    call make_plan(this%model%mechanism, this%model%problem%partition, this%model%problem%initial%position, this%plan, &
-                   this%state, err, in_space=in_space)
-    found = .not. allocated(err)
-    if (.not. found) return
-    call make_dynamics_plan(this%model%mechanism, this%plan, this%dynamics)
-    this%work = new_lagrange_work(this%plan, this%dynamics)
-    this%state%dq(this%plan%independent) = [(1.3_wp*cos(2.0_wp*i), i=1, size(this%plan%independent))]
-    call find_equations(this%model%mechanism, this%plan, this%dynamics, this%state, this%work, err)
-    found = .not. allocated(err)
-    this%conditioning = 1.0_wp
-    do i = 1, size(this%work%blocks)
-      this%conditioning = min(this%conditioning, this%work%blocks(i)%equations%conditioning())
-    end do
-  end subroutine prepare
-
   !> Drive some of the independent coordinates, and compare with the equations of the mechanism without drives. Sums over all
   !> links along a chain lose some hundreds of units of round-off; literal equations lose 1e-9 of the largest number.
   subroutine compare(free, random, in_space, why, literal)
-    type(case_type), intent(inout) :: free       !< without drives, with its equations
+    type(cluster_case_type), intent(inout) :: free       !< without drives, with its equations
     type(random_type), intent(inout) :: random   !< source of the random numbers
     logical, intent(in) :: in_space              !< spatial arithmetic
     character(len=*), intent(in) :: why          !< the statement that is checked, printed where it is wrong
     integer, intent(inout) :: literal            !< number of comparisons with literal equations so far
-    type(case_type) :: driven
+    type(cluster_case_type) :: driven
     type(literal_type) :: equations
     type(error_type), allocatable :: err
     real(wp), allocatable :: a(:, :), given(:)
@@ -154,7 +115,7 @@ contains
 
   !> The equations of the free coordinates hold.
   subroutine check_equations(driven, a, forces, velocity_terms, tolerance, why)
-    type(case_type), intent(in) :: driven         !< with all accelerations
+    type(cluster_case_type), intent(in) :: driven         !< with all accelerations
     real(wp), intent(in) :: a(:, :)               !< coefficients of motion [kg m^2, kg m, kg]
     real(wp), intent(in) :: forces(:)             !< generalized forces [N m, N]
     real(wp), intent(in) :: velocity_terms(:)     !< terms of the rates [N m, N]
@@ -171,7 +132,7 @@ contains
 
   !> The accelerations keep the chains closed.
   subroutine check_chains(driven, conditioning, why)
-    type(case_type), intent(inout) :: driven   !< with all accelerations
+    type(cluster_case_type), intent(inout) :: driven   !< with all accelerations
     real(wp), intent(in) :: conditioning       !< of the worst block
     character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     real(wp), allocatable :: right(:)
@@ -189,7 +150,7 @@ contains
 
   !> Evaluations with drives allocate nothing.
   subroutine check_memory(this)
-    type(case_type), intent(inout) :: this   !< mechanism, plans, state and equations
+    type(cluster_case_type), intent(inout) :: this   !< mechanism, plans, state and equations
     type(error_type), allocatable :: err
     integer :: i, before
 

@@ -13,26 +13,18 @@ program test_lagrange
   use mech9_lagrange, only: find_equations
   use mech9_energy, only: kinetic_energy
   use mech9_literal_lagrange, only: literal_type, literal_equations
-  use mech9_loaded_mechanisms, only: open_chain, loaded_fig1, five_bar, loaded_loop, two_loops
+  use mech9_loaded_mechanisms, only: known_count, known_mechanism
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
   type(model_type) :: model
+  character(len=:), allocatable :: name
+  integer :: number
 
-  call open_chain(model)
-  call compare(test, model, 'open chain')
-  call loaded_fig1(5, model)
-  call compare(test, model, 'Fig. 1')
-  call loaded_fig1(1, model)
-  call compare(test, model, 'Fig. 1 in its other coordinate, both chains solved together')
-  call five_bar(model)
-  call compare(test, model, 'five-bar')
-  call loaded_loop(model)
-  call compare(test, model, 'general loop')
-  call two_loops([1, 5], model)
-  call compare(test, model, 'two loops and a branch')
-  call two_loops([1, 11], model)
-  call compare(test, model, 'two loops solved together, and a branch')
+  do number = 1, known_count
+    call known_mechanism(number, model, name)
+    call compare(test, model, name)
+  end do
   call test%finish()
 
 contains

@@ -18,22 +18,18 @@ program test_motion
   use mech9_lagrange, only: find_equations, find_motion, complete_accelerations
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_literal_lagrange, only: close_chains
-  use mech9_loaded_mechanisms, only: open_chain, loaded_fig1, five_bar, loaded_loop, two_loops
+  use mech9_loaded_mechanisms, only: known_count, known_mechanism
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
   type(model_type) :: model
+  character(len=:), allocatable :: name
+  integer :: number
 
-  call open_chain(model)
-  call check_all(test, model, 'open chain')
-  call loaded_fig1(1, model)
-  call check_all(test, model, 'Fig. 1 driven in its second chain')
-  call five_bar(model)
-  call check_all(test, model, 'five-bar')
-  call loaded_loop(model)
-  call check_all(test, model, 'general loop')
-  call two_loops([1, 5], model)
-  call check_all(test, model, 'two loops and a branch')
+  do number = 1, known_count
+    call known_mechanism(number, model, name)
+    call check_all(test, model, name)
+  end do
   call test%finish()
 
 contains

@@ -16,27 +16,19 @@ program test_variations
   use mech9_linearisation, only: linearisation_type, new_linearisation, find_forces, find_matrix, &
     by_position, by_rate, by_acceleration
   use mech9_literal_lagrange, only: close_chains
-  use mech9_loaded_mechanisms, only: open_chain, loaded_fig1, five_bar, loaded_loop, two_loops, add_load
+  use mech9_loaded_mechanisms, only: known_count, known_mechanism, add_load
   use mech9_unknown_load, only: unknown_load_type
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
   type(model_type) :: model
+  character(len=:), allocatable :: name
+  integer :: number
 
-  call open_chain(model)
-  call compare(test, model, 'open chain')
-  call loaded_fig1(5, model)
-  call compare(test, model, 'Fig. 1')
-  call loaded_fig1(1, model)
-  call compare(test, model, 'Fig. 1 in its other coordinate, both chains solved together')
-  call five_bar(model)
-  call compare(test, model, 'five-bar')
-  call loaded_loop(model)
-  call compare(test, model, 'general loop')
-  call two_loops([1, 5], model)
-  call compare(test, model, 'two loops and a branch, with pairs that have no fixed axis')
-  call two_loops([1, 11], model)
-  call compare(test, model, 'two loops solved together, and a branch')
+  do number = 1, known_count
+    call known_mechanism(number, model, name)
+    call compare(test, model, name)
+  end do
   call test%finish()
 
 contains
