@@ -26,9 +26,12 @@ program test_reactions
   implicit none
 
   type(tester_type) :: test
+  integer :: determined   !< clusters that equilibrium determines
 
+  determined = 0
   call known_mechanisms()
   call random_mechanisms()
+  call test%is_true(determined > 30, 'equilibrium determines many clusters')
   call test%finish()
 
 contains
@@ -57,8 +60,33 @@ contains
       call random_structure(random, mod(trial, 2) == 0, 2 + below(random, 5), structure)
       call finished(random, structure, model)
       call check(random, model, 'a random mechanism')
+      if (.not. structure%planar) cycle
+      call lay_flat(model)
+      call check(random, model, 'a flat mechanism')
     end do
   end subroutine random_mechanisms
+
+  !> Leave nothing that acts across the x-y plane: bodies in the plane, gravity along it, and loads on coordinates only.
+  subroutine lay_flat(model)
+    type(model_type), intent(inout) :: model   !< a planar mechanism; its bodies, gravity and loads are changed
+    logical :: marked(model%mechanism%structure%n_links)
+    integer, allocatable :: kept(:)
+    integer :: i
+
+    model%mechanism%gravity(3) = 0.0_wp
+    do i = 1, size(model%mechanism%bodies)
+      model%mechanism%bodies(i)%centre(3) = 0.0_wp
+      model%mechanism%bodies(i)%inertia(1:2, 3) = 0.0_wp
+      model%mechanism%bodies(i)%inertia(3, 1:2) = 0.0_wp
+    end do
+    allocate (kept(0))
+    do i = 1, size(model%mechanism%loads)
+      marked = .false.
+      call model%mechanism%loads(i)%load%mark_links(marked)
+      if (.not. any(marked)) kept = [kept, i]
+    end do
+    model%mechanism%loads = model%mechanism%loads(kept)
+  end subroutine lay_flat
 
   !> Compare at random rates and accelerations.
   subroutine check(random, model, why)
@@ -113,6 +141,7 @@ contains
     call test%near(maxval(abs(reactions%needed(plan%independent) - needed))/scale, 0.0_wp, 1.0e-13_wp/conditioning**2, &
                    why//': independent coordinates need a ddq + h - Q')
     call check_balance(model, plan, reaction_plan, state, reactions, scale, why)
+    if (conditioning > 1.0e-3_wp) call check_cost(plan, reaction_plan, reactions, why)
     call find_unique(plan, reaction_plan, state, unique)
     call test%is_true(all(unique(:, pack([(i, i=1, plan%n_coordinates)], reaction_plan%alone(plan%step_of)))), &
                       why//': all components of open chains are unique')
@@ -121,6 +150,26 @@ contains
     call find_reactions(model%mechanism, plan, reaction_plan, state, reactions, err)
     call test%is_true(calls == before .and. before > 0, why//': nothing is allocated')
   end subroutine check
+
+  !> The balance of all links of a cluster at once, whose cost is a multiple of that of the motion, is not solved where the
+  !> transposed equations of the motion serve: its matrices are still zero.
+  subroutine check_cost(plan, reaction_plan, reactions, why)
+    type(plan_type), intent(in) :: plan                     !< the plan of the mechanism
+    type(reaction_plan_type), intent(in) :: reaction_plan   !< its plan of inverse dynamics
+    type(reactions_type), intent(in) :: reactions           !< the forces
+    character(len=*), intent(in) :: why                     !< name of the mechanism
+    integer :: c
+
+    do c = 1, size(reaction_plan%clusters)
+      if (.not. reaction_plan%clusters(c)%determined) cycle
+      if (plan%planar%used .and. .not. reaction_plan%flat) cycle
+      determined = determined + 1
+      call test%is_true(.not. any(abs(reactions%balances(c)%factors%diagonal) > 0.0_wp), &
+                        why//': a cluster that equilibrium determines is not solved as a whole')
+      if (plan%planar%used) call test%is_true(.not. any(abs(reactions%in_plane(c)%factors%diagonal) > 0.0_wp), &
+                                              why//': nor in the plane')
+    end do
+  end subroutine check_cost
 
   !> Each link but link 1 receives from its pairs what it requires.
   subroutine check_balance(model, plan, reaction_plan, state, reactions, scale, why)

@@ -26,6 +26,8 @@ def gallery(checks, mech9k, mech9d):
     for name in ('fig1', 'slider_crank', 'watt_parallel_motion', 'peaucellier', 'jansen_leg', 'whitworth', 'class_three_group', 'bennett',
                  'sarrus', 'double_hooke', 'rsur', 'stewart_gough', 'palletising_arm'):
         compare(checks, mech9k, with_masses(rng, example(name)), name, intervals=3)
+    for name in ('fig1', 'slider_crank', 'peaucellier', 'jansen_leg', 'whitworth', 'class_three_group', 'palletising_arm'):
+        compare(checks, mech9k, with_masses(rng, example(name), flat=True), f'{name}, flat', intervals=2)
 
 
 def uniqueness(checks, mech9k, mech9d):

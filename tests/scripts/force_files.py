@@ -84,20 +84,37 @@ def example(name, file=None):
     return parse(text.replace('.true.', '1').replace('.false.', '0'))
 
 
-def with_masses(rng, groups):
-    """Bodies on all links, gravity across no axis, and some loads."""
+def with_masses(rng, groups, flat=False):
+    """Bodies on all links, gravity across no axis, and some loads; `flat`: none acts across the x-y plane."""
     links = max(max(items['links']) for group, items in groups if group == 'pair')
     groups = [(group, items) for group, items in groups if group not in ('body', 'gravity', 'load')]
     for link in range(2, links + 1):
         groups.append(('body', {'link': [link], 'mass': [float(rng.uniform(0.5, 2))], 'centre': list(map(float, rng.uniform(-0.3, 0.3, 3))),
                                 'inertia': [0.3, 0.4, 0.5, 0.02, -0.03, 0.01]}))
     groups.append(('gravity', {'acceleration': [1.0, -9.0, 3.0]}))
+    groups.append(('load', {'kind': ['torque'], 'link': [2], 'torque': [0.3, -0.2, 0.7]}))
     groups.append(('load', {'kind': ['force'], 'link': [links], 'position': [0.1, 0.2, 0.3], 'force': [3.0, -2.0, 1.0], 'frame': ['link']}))
     groups.append(('load', {'kind': ['spring'], 'links': [1, 2], 'position': [0.5, 0.1, 0.2], 'second_position': [0.1, 0.4, -0.2],
                             'stiffness': [20.0], 'free_length': [0.3], 'damping': [0.5]}))
     for k in (1, max(items['coordinate'][0] for group, items in groups if group == 'pair')):
         groups.append(('load', {'kind': ['coordinate'], 'coordinate': [k], 'stiffness': [2.0], 'damping': [0.7], 'force': [1.5]}))
-    return groups
+    return in_plane(groups) if flat else groups
+
+
+def in_plane(groups):
+    """Bodies, gravity and loads without what acts across the x-y plane."""
+    changed = []
+    for group, items in groups:
+        items = {name: list(values) for name, values in items.items()}
+        for name in {'body': ('centre',), 'gravity': ('acceleration',), 'load': ('position', 'second_position', 'force')}.get(group, ()):
+            if len(items.get(name, ())) == 3:
+                items[name][2] = 0.0
+        if 'torque' in items:
+            items['torque'][:2] = [0.0, 0.0]
+        if 'inertia' in items:
+            items['inertia'][4:] = [0.0, 0.0]
+        changed.append((group, items))
+    return changed
 
 
 def revolute(k, links, point, axis='0,0,1'):
