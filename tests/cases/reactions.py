@@ -28,6 +28,11 @@ def gallery(checks, mech9k, mech9d):
         compare(checks, mech9k, with_masses(rng, example(name)), name, intervals=3)
     for name in ('fig1', 'slider_crank', 'peaucellier', 'jansen_leg', 'whitworth', 'class_three_group', 'palletising_arm'):
         compare(checks, mech9k, with_masses(rng, example(name), flat=True), f'{name}, flat', intervals=2)
+    for name, load in (('force', {'kind': ['force'], 'link': [3], 'force': [0.0, 0.0, 2.0]}),
+                       ('torque', {'kind': ['torque'], 'link': [3], 'torque': [1.5, 0.0, 0.0]}),
+                       ('place of a force', {'kind': ['force'], 'link': [3], 'position': [0.1, 0.2, 0.3], 'force': [2.0, 1.0, 0.0]})):
+        compare(checks, mech9k, with_masses(rng, example('fig1'), flat=True) + [('load', load)], f'fig1, flat but for the {name} of one load',
+                intervals=1)
 
 
 def uniqueness(checks, mech9k, mech9d):
