@@ -33,6 +33,16 @@ def gallery(checks, mech9k, mech9d):
                        ('place of a force', {'kind': ['force'], 'link': [3], 'position': [0.1, 0.2, 0.3], 'force': [2.0, 1.0, 0.0]})):
         compare(checks, mech9k, with_masses(rng, example('fig1'), flat=True) + [('load', load)], f'fig1, flat but for the {name} of one load',
                 intervals=1)
+    flat = with_masses(rng, example('fig1'), flat=True)
+    for name, group, changes in (('product of inertia', 'body', {'inertia': [0.3, 0.4, 0.5, 0.02, 0.1, 0.0]}),
+                                 ('centre', 'body', {'centre': [0.1, 0.2, 0.15]}), ('gravity', 'gravity', {'acceleration': [1.0, -9.0, 2.0]})):
+        number = next(i for i, (other, _) in enumerate(flat) if other == group)
+        groups = flat[:number] + [(group, {**flat[number][1], **changes})] + flat[number + 1:]
+        compare(checks, mech9k, groups, f'fig1, flat but for one {name}', intervals=1)
+    # the same pairs at different heights
+    raised = [(group, {**items, 'point': [*items['point'][:2], 0.2], 'moving_point': [*items.get('moving_point', items['point'])[:2], 0.2]}
+               if group == 'pair' and items['coordinate'] == [2] and 'point' in items else items) for group, items in flat]
+    compare(checks, mech9k, raised, 'fig1, flat but for the height of one pair', intervals=1)
 
 
 def uniqueness(checks, mech9k, mech9d):
