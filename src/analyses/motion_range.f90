@@ -1,10 +1,10 @@
 !> The range of motion of an independent coordinate while the others are held.
 module mech9_motion_range
-  use mech9_kinds, only: wp, pi
+  use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_law, only: drive_slot_type
   use mech9_polynomial_law, only: polynomial_law_type
-  use mech9_plan, only: plan_type
+  use mech9_plan, only: plan_type, without_periods
   use mech9_state, only: state_type
   use mech9_special_position, only: dead_point
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
@@ -70,17 +70,15 @@ contains
     type(drive_slot_type), allocatable :: drives(:)
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
-    logical :: turns
+    real(wp) :: period
     integer :: turn
 
     call drive_one(plan, start, coordinate, direction, drives)
     call start_driven_motion(drives, plan, start, 0.0_wp, driven, err)
-    associate (step => plan%steps(plan%step_of(coordinate)))
-      turns = step%is_screw .and. .not. abs(step%slide) > 0.0_wp
-    end associate
-    if (turns) then
+    period = plan%steps(plan%step_of(coordinate))%period/plan%unit_of(coordinate)
+    if (period > 0.0_wp) then
       do turn = 1, most_turns
-        if (.not. allocated(err)) call advance(drives, plan, driven, 2.0_wp*pi*turn, err)
+        if (.not. allocated(err)) call advance(drives, plan, driven, period*turn, err)
         if (allocated(err)) exit
         if (.not. has_come_round(plan, start, driven%state, coordinate)) cycle
         found%kind = ends_round
@@ -120,7 +118,7 @@ contains
     end do
   end subroutine drive_one
 
-  !> Whether all other coordinates have their values at the start again, except for whole turns of revolute pairs.
+  !> Whether all other coordinates have their values at the start again, except for whole turns.
   pure logical function has_come_round(plan, start, state, coordinate)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start   !< the assembled start
@@ -132,11 +130,8 @@ contains
     has_come_round = .false.
     do k = 1, plan%n_coordinates
       if (k == coordinate) cycle
-      change = (state%q(k) - start%q(k))/plan%unit_of(k)
-      associate (step => plan%steps(plan%step_of(k)))
-        if (step%is_screw .and. .not. abs(step%slide) > 0.0_wp) change = change - 2.0_wp*pi*anint(change/(2.0_wp*pi))
-      end associate
-      if (abs(change) > same) return
+      change = without_periods(plan%steps(plan%step_of(k)), state%q(k) - start%q(k))
+      if (abs(change) > same*plan%unit_of(k)) return
     end do
     has_come_round = .true.
   end function has_come_round

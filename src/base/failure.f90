@@ -20,7 +20,7 @@ module mech9_failure
   public :: failure_no_initial_position, failure_not_started, failure_backwards, failure_interrupted
   public :: failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
     failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve, &
-    failure_interrupted_starts, last_failure
+    failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
@@ -153,7 +153,11 @@ module mech9_failure
 
   !> A curve through points turns back on itself: number (of the point before the place).
   integer, parameter :: failure_sharp_curve = 59
-  integer, parameter :: last_failure = 59
+  !> A coordinate goes beyond an end of its curve: coordinates, values (the coordinate, the length of the curve [m]), t.
+  integer, parameter :: failure_off_curve = 60
+  !> Planar arithmetic does not know a pair without a fixed axis: coordinates.
+  integer, parameter :: failure_no_fixed_axis = 61
+  integer, parameter :: last_failure = 61
 
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type

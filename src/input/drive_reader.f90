@@ -2,7 +2,7 @@
 module mech9_drive_reader
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_text, only: string_type, to_text, starts_with
+  use mech9_text, only: string_type, to_text
   use mech9_counted, only: counted
   use mech9_spline, only: build_spline
   use mech9_explanation, only: explain
@@ -18,7 +18,7 @@ module mech9_drive_reader
   use mech9_source, only: span_type
   use mech9_document, only: document_type, group_type, item_type
   use mech9_lookup, only: groups_named, get_integer, get_real, get_reals, get_text, count_values, get_word, has_name, span_of
-  use mech9_table_file, only: read_table_file
+  use mech9_table_file, only: read_table_file, beside
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
@@ -221,7 +221,7 @@ contains
     end if
   end subroutine check_period
 
-  !> The files that drives and laws of loads and motors are read from, in a document that may be unchecked yet.
+  !> The files that drives, laws of loads and motors and curves of pairs are read from, in a document that may be unchecked yet.
   pure subroutine files_of_drives(document, paths)
     type(document_type), intent(in) :: document              !< the data file as groups and items
     type(string_type), allocatable, intent(out) :: paths(:)  !< path of each file, from the working directory
@@ -233,14 +233,14 @@ contains
     n = 0
     do i = 1, size(paths)
       associate (group => document%groups(i))
-        if (all(group%name /= ['drive', 'load ', 'motor']) .or. .not. allocated(group%items)) cycle
+        if (all(group%name /= ['drive', 'load ', 'motor', 'pair ']) .or. .not. allocated(group%items)) cycle
         call take_file(document%source%name, group%items, paths, n)
       end associate
     end do
     paths = paths(:n)
   end subroutine files_of_drives
 
-  !> Append the file that a drive names; if it names several, the last one counts.
+  !> Append the file that a group names; if it names several, the last one counts.
   pure subroutine take_file(data_file, items, paths, n)
     character(len=*), intent(in) :: data_file     !< path of the data file
     type(item_type), intent(in) :: items(:)       !< items of the group
@@ -257,22 +257,4 @@ contains
       return
     end do
   end subroutine take_file
-
-  !> Length of the part of the data file's path that a relative name is appended to; 0 for an absolute name.
-  pure integer function start_length(data_file, name)
-    character(len=*), intent(in) :: data_file  !< path of the data file
-    character(len=*), intent(in) :: name       !< path as the data file gives it
-
-    start_length = index(data_file, '/', back=.true.)
-    if (starts_with(name, '/')) start_length = 0
-  end function start_length
-
-  !> Path of a file named in a data file: relative names start from the data file's folder.
-  pure function beside(data_file, name) result(path)
-    character(len=*), intent(in) :: data_file  !< path of the data file
-    character(len=*), intent(in) :: name       !< path as the data file gives it
-    character(len=start_length(data_file, name) + len(name)) :: path
-
-    path = data_file(:start_length(data_file, name))//name
-  end function beside
 end module mech9_drive_reader

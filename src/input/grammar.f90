@@ -99,8 +99,8 @@ module mech9_grammar
                   'number of its coordinate', '5'), &
     item_row_type('pair', 'links', 'integer', 2, 2, '', needed, '', '>=1', '', '', &
                   'the reference link and the moving link', '1, 2'), &
-    item_row_type('pair', 'kind', 'text', 1, 1, '', needed, '', '', screws//' user', '', &
-                  'it turns, slides, does both as a screw, or moves by a user''s procedure', '''revolute'''), &
+    item_row_type('pair', 'kind', 'text', 1, 1, '', needed, '', '', screws//' path user', '', &
+                  'it turns, slides, does both as a screw, follows a curve, or moves by a user''s procedure', '''revolute'''), &
     item_row_type('pair', 'point', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', screws, &
                   'a point of the axis, in the reference link', '0, 0, 0'), &
     item_row_type('pair', 'axis', 'real', 3, 3, '', optional, '(needed unless dh)', '', '', screws, &
@@ -118,7 +118,28 @@ module mech9_grammar
                   'advance per turn', '0.005'), &
     item_row_type('pair', 'dh', 'real', 4, 4, 'm, angle', optional, '(point, axis, ...)', '', '', screws, &
                   'Denavit-Hartenberg a, alpha, d, theta instead of point, axis and so on; q adds to theta or d', &
-                  '0.3, 1.57, 0, 0', seldom=.true.)]
+                  '0.3, 1.57, 0, 0', seldom=.true.), &
+    item_row_type('pair', 'file', 'text', 1, 1, 'm', needed, '', '', '', 'path', &
+                  'a text file with x, y and in space z in each line, beside the data file; a smooth curve joins the points', &
+                  '''curve.dat'''), &
+    item_row_type('pair', 'orientation', 'text', 1, 1, '', optional, '''fixed''', '', 'fixed tangent', 'path', &
+                  'fixed: the moving link keeps its orientation; tangent: it turns with the tangent of the curve', '''tangent'''), &
+    item_row_type('pair', 'closed', 'logical', 1, 1, '', optional, '(where ends meet)', '', '', 'path', &
+                  'the curve has no ends and repeats; by default where the last point of its file is the first one again', &
+                  '.true.', seldom=.true.), &
+    item_row_type('pair', 'point', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', 'path', &
+                  'origin of the coordinates in the file, in the reference link', '0, 0.2, 0', seldom=.true.), &
+    item_row_type('pair', 'axis', 'real', 3, 3, '', optional, '0, 0, 1', '', '', 'path', &
+                  'z axis of the coordinates in the file, in the reference link; of any length', '0, 1, 0', seldom=.true.), &
+    item_row_type('pair', 'zero', 'real', 3, 3, '', optional, '(x, y or z axis)', '', '', 'path', &
+                  'x axis of the coordinates in the file; by default the first axis at 45 degrees or more to axis', &
+                  '1, 0, 0', seldom=.true.), &
+    item_row_type('pair', 'moving_point', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', 'path', &
+                  'the point of the moving link that follows the curve', '0.1, 0, 0', seldom=.true.), &
+    item_row_type('pair', 'moving_axis', 'real', 3, 3, '', optional, '0, 0, 1', '', '', 'path', &
+                  'direction in the moving link along axis, or across the tangent', '0, 0, 1', seldom=.true.), &
+    item_row_type('pair', 'moving_zero', 'real', 3, 3, '', optional, '(x, y or z axis)', '', '', 'path', &
+                  'direction in the moving link along zero, or along the tangent', '1, 0, 0', seldom=.true.)]
 
   type(item_row_type), parameter :: motion_items(*) = [ &
     item_row_type('initial', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &

@@ -2,18 +2,29 @@
 module mech9_pair_reader
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_failure, only: failure_sharp_curve
   use mech9_text, only: to_text
   use mech9_pose, only: pose_type, pose_from_axis, default_zero
+  use mech9_space_curve, only: space_curve_type, build_curve
   use mech9_pair, only: pair_slot_type
   use mech9_screw_pair, only: screw_pair_type, revolute_pair, prismatic_pair, helical_pair, &
                               revolute_pair_dh, prismatic_pair_dh, helical_pair_dh
+  use mech9_path_pair, only: path_pair_type, path_pair
   use mech9_procedure_pair, only: procedure_pair_type, make_procedure_pair
+  use mech9_source, only: span_type
   use mech9_document, only: document_type, group_type
-  use mech9_lookup, only: groups_named, has_name, get_integer, get_integers, get_real, get_reals, get_text, span_of
+  use mech9_lookup, only: groups_named, has_name, get_integer, get_integers, get_real, get_reals, get_text, &
+                          get_logical, span_of
+  use mech9_table_file, only: read_curve_file, beside
+  use mech9_explanation, only: explain
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
   public :: read_pairs
+
+  !> The ends of a curve meet where their distance is this part of the size of the curve. Where it is this part of the mean distance
+  !> of neighbours, they probably should.
+  real(wp), parameter :: ends_meet = 1.0e-9_wp, ends_nearly_meet = 1.0e-2_wp
 
 contains
 
@@ -34,7 +45,7 @@ contains
     numbers = groups_named(document, 'pair')
     do i = 1, size(numbers)
       associate (group => document%groups(numbers(i)))
-        call read_pair(group, angle_unit, parameters, slot, diagnostics)
+        call read_pair(document%source%name, group, angle_unit, parameters, slot, diagnostics)
         k = get_integer(group, 'coordinate')
         if (k <= n_coordinates .and. allocated(slot%pair)) call move_alloc(slot%pair, pairs(k)%pair)
       end associate
@@ -42,13 +53,15 @@ contains
   end subroutine read_pairs
 
   !> One pair; the slot stays empty where something was reported.
-  subroutine read_pair(group, angle_unit, parameters, slot, diagnostics)
+  subroutine read_pair(data_file, group, angle_unit, parameters, slot, diagnostics)
+    character(len=*), intent(in) :: data_file             !< path of the data file
     type(group_type), intent(in) :: group                 !< the group of the data file
     real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
     real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
     type(pair_slot_type), intent(out) :: slot             !< gets the pair; stays empty where an error was reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(screw_pair_type) :: screw
+    type(path_pair_type) :: path
     type(procedure_pair_type) :: procedure_pair
     type(error_type), allocatable :: err
     integer :: links(2), found
@@ -61,6 +74,10 @@ contains
         return
       end if
       allocate (slot%pair, source=procedure_pair)
+    else if (get_text(group, 'kind') == 'path') then
+      call read_path(data_file, group, path, diagnostics)
+      if (diagnostics%count > found) return
+      allocate (slot%pair, source=path)
     else
       if (has_name(group, 'dh')) then
         call read_dh(group, angle_unit, screw, diagnostics)
@@ -141,6 +158,96 @@ contains
       pair = helical_pair(reference, moving, get_real(group, 'pitch'))
     end select
   end subroutine read_frames
+
+  !> A pair along the curve through the points of a file.
+  subroutine read_path(data_file, group, pair, diagnostics)
+    character(len=*), intent(in) :: data_file             !< path of the data file
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(path_pair_type), intent(out) :: pair             !< the pair along a curve
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(space_curve_type) :: curve
+    type(pose_type) :: reference, moving
+    type(span_type), allocatable :: spans(:)
+    real(wp), allocatable :: points(:, :)
+    real(wp) :: axis(3), zero(3)
+    integer :: found
+    logical :: ok
+
+    found = diagnostics%count
+    axis = real_or(group, 'axis', [0.0_wp, 0.0_wp, 1.0_wp])
+    zero = real_or(group, 'zero', default_zero(axis))
+    call make_frame(group, '', real_or(group, 'point', [0.0_wp, 0.0_wp, 0.0_wp]), axis, zero, reference, diagnostics)
+    axis = real_or(group, 'moving_axis', [0.0_wp, 0.0_wp, 1.0_wp])
+    zero = real_or(group, 'moving_zero', default_zero(axis))
+    call make_frame(group, 'moving_', real_or(group, 'moving_point', [0.0_wp, 0.0_wp, 0.0_wp]), axis, zero, moving, diagnostics)
+    call read_curve_file(beside(data_file, get_text(group, 'file')), span_of(group, 'file', 1), points, spans, ok, diagnostics)
+    if (ok) call read_curve(group, points, spans, curve, diagnostics)
+    if (diagnostics%count == found) pair = path_pair(curve, get_text(group, 'orientation') == 'tangent', reference, moving)
+  end subroutine read_path
+
+  !> The curve through points. Points that repeat their neighbour, and ends that do not meet though they should, are reported.
+  subroutine read_curve(group, points, spans, curve, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    real(wp), intent(inout) :: points(:, :)               !< (3,n) the points, at least four; ends that meet are made equal [m]
+    type(span_type), intent(in) :: spans(:)               !< (n) their places in the file
+    type(space_curve_type), intent(out) :: curve          !< the curve
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(error_type), allocatable :: err
+    real(wp) :: size_of_curve, distance
+    integer :: i, n, found
+    logical :: closed
+
+    found = diagnostics%count
+    n = size(spans)
+    size_of_curve = norm2(maxval(points, dim=2) - minval(points, dim=2))
+    do i = 2, n
+      if (norm2(points(:, i) - points(:, i - 1)) > ends_meet*size_of_curve) cycle
+      call diagnostics%add(spans(i), 'this point repeats the one before it; a curve needs different points, leave one of them out')
+    end do
+    if (diagnostics%count > found) return
+    distance = norm2(points(:, n) - points(:, 1))
+    closed = distance <= ends_meet*size_of_curve
+    if (has_name(group, 'closed')) then
+      if (get_logical(group, 'closed') .and. .not. closed) &
+        call diagnostics%add(span_of(group, 'closed', 1), 'the ends of the curve are '//to_text(distance, 4)// &
+                             ' m apart; repeat the first point at the end of its file, or leave ''closed'' out')
+      closed = get_logical(group, 'closed')
+    else if (.not. closed .and. distance <= ends_nearly_meet*length_of(points)/(n - 1)) then
+      call diagnostics%add(spans(n), 'the last point misses the first one by '//to_text(distance, 4)//' m; for a closed curve '// &
+                           'repeat the first point with all its digits, or give closed=.false. in the data file')
+    end if
+    if (diagnostics%count > found) return
+    if (closed) points(:, n) = points(:, 1)
+    call build_curve(points, closed, curve, err)
+    if (allocated(err)) call report_curve(group, spans, err, diagnostics)
+  end subroutine read_curve
+
+  !> Report that no curve could be made, at the point near which it fails.
+  subroutine report_curve(group, spans, err, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(span_type), intent(in) :: spans(:)               !< (n) places of the points in the file
+    type(error_type), intent(inout) :: err                !< the failure
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the message
+    type(span_type) :: span
+
+    span = span_of(group, 'file', 1)
+    if (allocated(err%failure)) then
+      if (err%failure%kind == failure_sharp_curve) span = spans(err%failure%number)
+    end if
+    call explain(err)
+    call diagnostics%add(span, err%message, err%code)
+  end subroutine report_curve
+
+  !> Length of the straight lines between points.
+  pure real(wp) function length_of(points)
+    real(wp), intent(in) :: points(:, :)   !< (3,n) [m]
+    integer :: i
+
+    length_of = 0.0_wp
+    do i = 2, size(points, 2)
+      length_of = length_of + norm2(points(:, i) - points(:, i - 1))
+    end do
+  end function length_of
 
   !> The three numbers of a name, or a default.
   pure function real_or(group, name, otherwise) result(vector)

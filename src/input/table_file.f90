@@ -1,7 +1,7 @@
-!> The file of a table drive: lines with t and q.
+!> Files of points: lines with t and q of a law of time, or with x, y and z of a curve.
 !>
-!> Each line holds two numbers, with blanks or a comma between; `#` begins a comment. A line of names may stand before
-!> the first point.
+!> Each line holds two numbers, those of a curve in space three, with blanks or a comma between; `#` begins a comment. A
+!> line of names may stand before the first point.
 module mech9_table_file
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -12,7 +12,7 @@ module mech9_table_file
   use mech9_diagnostics, only: diagnostics_type, printable
   implicit none
   private
-  public :: read_table_file
+  public :: read_table_file, read_curve_file, beside
 
   character(len=*), parameter :: gaps = ' ,'//achar(9)//achar(13)
   integer, parameter :: fewest_points = 4  !< fewest points of a cubic spline
@@ -66,42 +66,134 @@ contains
     real(wp), intent(inout) :: q(:)                       !< values, in the unit of the file; the first n are in use
     integer, intent(inout) :: n                           !< how many points are in use
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-    type(span_type) :: fields(2)
-    type(numeral_type) :: numerals(2)
-    integer :: first, last, count, i
+    type(span_type) :: fields(2), whole
+    real(wp) :: numbers(2)
+    integer :: count
+    logical :: ok
 
-    call source%line_bounds(line, first, last)
-    call split(source%text, first, last, number, fields, count)
+    call find_words(source, number, line, may_be_names, fields, count, whole)
     if (count == 0) return
-    if (may_be_names) then
-      may_be_names = .false.
-      if (are_names(source%text(first:last))) return
-    end if
     if (count /= 2) then
-      call diagnostics%add(span_type(number, first, max(first, last)), 'each line holds two numbers, t and q; this one has '// &
-                           to_text(count))
+      call diagnostics%add(whole, 'each line holds two numbers, t and q; this one has '//to_text(count))
       return
     end if
-    do i = 1, 2
-      call read_numeral(source%text(fields(i)%first:fields(i)%last), numerals(i))
-      if (.not. allocated(numerals(i)%problem)) then
-        if (is_sensible(numerals(i)%number)) cycle
-        numerals(i)%problem = 'is too large or too small; numbers are 0 or between 1e-100 and 1e100'
-      end if
-      call diagnostics%add(fields(i), ''''//diagnostics%text_of(fields(i))//''' '//numerals(i)%problem)
-      return
-    end do
+    call read_words(source, fields, numbers, ok, diagnostics)
+    if (.not. ok) return
     if (n > 0) then
       ! between nearer points a slope would be round-off only
-      if (numerals(1)%number - t(n) <= 1.0e-13_wp*max(abs(numerals(1)%number), abs(t(n)))) then
+      if (numbers(1) - t(n) <= 1.0e-13_wp*max(abs(numbers(1)), abs(t(n)))) then
         call diagnostics%add(fields(1), 't must increase from line to line')
         return
       end if
     end if
     n = n + 1
-    t(n) = numerals(1)%number
-    q(n) = numerals(2)%number
+    t(n) = numbers(1)
+    q(n) = numbers(2)
   end subroutine read_point
+
+  !> Read the points of a curve: x and y in each line, or x, y and z. Errors are reported with their places in that file; `ok` is
+  !> false where there are any.
+  subroutine read_curve_file(path, asked_at, points, spans, ok, diagnostics)
+    character(len=*), intent(in) :: path                  !< path of the file
+    type(span_type), intent(in) :: asked_at               !< place of its name in the data file
+    real(wp), allocatable, intent(out) :: points(:, :)    !< (3,n) [m]; z is 0 in a plane
+    type(span_type), allocatable, intent(out) :: spans(:) !< (n) places of the points in the file
+    logical, intent(out) :: ok                            !< whether no error was reported
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(source_type) :: source
+    type(span_type) :: fields(3), whole
+    type(error_type), allocatable :: err
+    integer :: number, line, n, found, count, columns
+    logical :: may_be_names, readable
+
+    ok = .false.
+    allocate (points(3, 0), spans(0))
+    call read_source(path, source, err)
+    if (allocated(err)) then
+      call diagnostics%add(asked_at, 'the curve '''//printable(path)//''': '//err%message, err%code)
+      return
+    end if
+    call diagnostics%add_source(source, number)
+    found = diagnostics%count
+    deallocate (points, spans)
+    allocate (points(3, size(source%line_start)), source=0.0_wp)
+    allocate (spans(size(source%line_start)))
+    n = 0
+    columns = 0
+    may_be_names = .true.
+    do line = 1, size(source%line_start)
+      call find_words(source, number, line, may_be_names, fields, count, whole)
+      if (count == 0) cycle
+      if (columns == 0 .and. (count == 2 .or. count == 3)) columns = count
+      if (count /= columns) then
+        call diagnostics%add(whole, 'each line holds the coordinates of a point, x and y in a plane or x, y and z in space; '// &
+                             'this one has '//to_text(count)//' numbers'//the_others(columns))
+        cycle
+      end if
+      call read_words(source, fields(:count), points(:count, n + 1), readable, diagnostics)
+      if (.not. readable) cycle
+      n = n + 1
+      spans(n) = whole
+    end do
+    points = points(:, :n)
+    spans = spans(:n)
+    if (diagnostics%count == found .and. n < fewest_points) &
+      call diagnostics%add(span_type(number, 0, 0), 'a smooth curve needs at least '//to_text(fewest_points)// &
+                           ' points, and the file has '//to_text(n))
+    ok = diagnostics%count == found
+  end subroutine read_curve_file
+
+  !> How many numbers the lines before have: " and those before it have 2"; empty where there are none.
+  pure function the_others(columns) result(text)
+    integer, intent(in) :: columns   !< numbers in the lines before; 0: there are none
+    character(len=merge(27, 0, columns > 0)) :: text
+
+    text = ' and those before it have '//achar(iachar('0') + columns)
+  end function the_others
+
+  !> The words of a line, but those of a line of names before the first point.
+  pure subroutine find_words(source, number, line, may_be_names, fields, count, whole)
+    type(source_type), intent(in) :: source         !< the text of the file
+    integer, intent(in) :: number                   !< number of the file as a source, for spans
+    integer, intent(in) :: line                     !< number of the line, from 1
+    logical, intent(inout) :: may_be_names          !< whether no earlier line held a name or a number
+    type(span_type), intent(out) :: fields(:)       !< places of the first words
+    integer, intent(out) :: count                   !< how many words the line has
+    type(span_type), intent(out) :: whole           !< place of the line
+    integer :: first, last
+
+    call source%line_bounds(line, first, last)
+    whole = span_type(number, first, max(first, last))
+    call split(source%text, first, last, number, fields, count)
+    if (count == 0 .or. .not. may_be_names) return
+    may_be_names = .false.
+    if (are_names(source%text(first:last))) count = 0
+  end subroutine find_words
+
+  !> The numbers that words mean; the first word that means none is reported.
+  pure subroutine read_words(source, fields, numbers, ok, diagnostics)
+    type(source_type), intent(in) :: source               !< the text of the file
+    type(span_type), intent(in) :: fields(:)              !< places of the words
+    real(wp), intent(out) :: numbers(:)                   !< (words) the numbers
+    logical, intent(out) :: ok                            !< whether no error was reported
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(numeral_type) :: numeral
+    integer :: i
+
+    ok = .false.
+    numbers = 0.0_wp
+    do i = 1, size(fields)
+      call read_numeral(source%text(fields(i)%first:fields(i)%last), numeral)
+      if (.not. allocated(numeral%problem)) then
+        numbers(i) = numeral%number
+        if (is_sensible(numeral%number)) cycle
+        numeral%problem = 'is too large or too small; numbers are 0 or between 1e-100 and 1e100'
+      end if
+      call diagnostics%add(fields(i), ''''//diagnostics%text_of(fields(i))//''' '//numeral%problem)
+      return
+    end do
+    ok = .true.
+  end subroutine read_words
 
   !> Whether a line holds names of columns: none of its words begins as a number does, or means one that is not finite.
   pure logical function are_names(line)
@@ -124,13 +216,13 @@ contains
     are_names = .true.
   end function are_names
 
-  !> Find the words of a line up to its comment; words after the second are only counted.
+  !> Find the words of a line up to its comment; words for which there is no room are only counted.
   pure subroutine split(text, first, last, source, fields, count)
     character(len=*), intent(in) :: text       !< the whole text of the table
     integer, intent(in) :: first               !< number of the line's first byte
     integer, intent(in) :: last                !< number of the line's last byte
     integer, intent(in) :: source              !< number of the table as a source, for spans
-    type(span_type), intent(out) :: fields(2)  !< places of the first two words
+    type(span_type), intent(out) :: fields(:)  !< places of the first words
     integer, intent(out) :: count              !< how many words the line has
     integer :: at, start
 
@@ -149,7 +241,24 @@ contains
         at = at + 1
       end do
       count = count + 1
-      if (count <= 2) fields(count) = span_type(source, start, at - 1)
+      if (count <= size(fields)) fields(count) = span_type(source, start, at - 1)
     end do
   end subroutine split
+  !> Length of the part of the data file's path that a relative name is appended to; 0 for an absolute name.
+  pure integer function start_length(data_file, name)
+    character(len=*), intent(in) :: data_file  !< path of the data file
+    character(len=*), intent(in) :: name       !< path as the data file gives it
+
+    start_length = index(data_file, '/', back=.true.)
+    if (starts_with(name, '/')) start_length = 0
+  end function start_length
+
+  !> Path of a file named in a data file: relative names start from the data file's folder.
+  pure function beside(data_file, name) result(path)
+    character(len=*), intent(in) :: data_file  !< path of the data file
+    character(len=*), intent(in) :: name       !< path as the data file gives it
+    character(len=start_length(data_file, name) + len(name)) :: path
+
+    path = data_file(:start_length(data_file, name))//name
+  end function beside
 end module mech9_table_file

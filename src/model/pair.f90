@@ -1,8 +1,8 @@
 !> A pair is a joint of two links with one degree of freedom; all kinds of pairs have this interface.
 !>
-!> A pair is any one-parameter motion of its moving link in its reference link. Most pairs turn
+!> A pair is any one-parameter motion of a frame of its moving link in a frame of its reference link. Most pairs turn
 !> about or slide along one fixed axis, or both in proportion: `as_screw` tells their axis,
-!> and the plan then never calls `evaluate` for them.
+!> and the plan then never calls `evaluate` for them. Others may lead the moving link along a curve: `guide` tells it.
 module mech9_pair
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_type
@@ -10,29 +10,36 @@ module mech9_pair
   use mech9_rotation, only: turn, cross
   implicit none
   private
-  public :: pair_type, pair_slot_type, pair_motion_type, screw_factors_type, kind_name_length, reversed_motion
+  public :: pair_type, pair_slot_type, pair_motion_type, pair_guide_type, screw_factors_type, kind_name_length, reversed_motion
 
   integer, parameter :: kind_name_length = 9   !< letters of the longest name of a kind, prismatic
 
-  !> The pose that a pair gives its moving link at one value of q, and its derivatives in q.
-  !> All vectors are in the axes of the reference link.
+  !> The pose that a pair gives its frame in the moving link, seen from its frame in the reference link, at one value of q,
+  !> and its derivatives in q. All vectors are in the axes of the frame in the reference link.
   type :: pair_motion_type
-    type(pose_type) :: pose          !< of the moving link in the reference link
+    type(pose_type) :: pose          !< of the moving frame in the reference frame
     real(wp) :: w(3) = 0.0_wp        !< angular rate: vee(A' A^T)
-    real(wp) :: v(3) = 0.0_wp        !< rate of the moving link's origin, U'
+    real(wp) :: v(3) = 0.0_wp        !< rate of the moving frame's origin, U'
     real(wp) :: w_rate(3) = 0.0_wp   !< derivative of w in q
     real(wp) :: v_rate(3) = 0.0_wp   !< derivative of v in q, U''
   end type pair_motion_type
 
-  !> A pair with a fixed axis as factors: pose = before * (turn by `turn`*(q + offset) about z and
-  !> slide by `slide`*(q + offset) along z) * after.
+  !> The frames of a pair, and the factors of one with a fixed axis: pose = before * (turn by `turn`*(q + offset) about z and
+  !> slide by `slide`*(q + offset) along z) * after. Without a fixed axis, what `evaluate` gives stands between the frames.
   type :: screw_factors_type
-    type(pose_type) :: before     !< pose of the axis (its z) in the reference link
-    type(pose_type) :: after      !< pose of the moving link in the frame of the axis, where q + offset is zero
+    type(pose_type) :: before     !< pose of the axis (its z), or of the pair's frame, in the reference link
+    type(pose_type) :: after      !< pose of the moving link in the frame of the axis where q + offset is zero, or in the pair's frame
     real(wp) :: turn = 0.0_wp     !< 1, or 0 for a prismatic pair
     real(wp) :: slide = 0.0_wp    !< length per unit of q [m/rad, 1]
     real(wp) :: offset = 0.0_wp   !< added to q [rad, m]
   end type screw_factors_type
+
+  !> The curve along which a pair leads its moving link.
+  type :: pair_guide_type
+    logical :: closed = .false.             !< the pair repeats its poses after `length`; else q goes from 0 to `length`
+    real(wp) :: length = 0.0_wp             !< greatest q, or change of q after which poses repeat [m]; 0: there is no curve
+    real(wp), allocatable :: points(:, :)   !< (3,n) places of the moving frame in the reference frame, for sizes and pictures [m]
+  end type pair_guide_type
 
   !> A pair of any kind.
   type, abstract :: pair_type
@@ -46,6 +53,7 @@ module mech9_pair
     procedure(as_screw_interface), deferred :: as_screw
     procedure(kind_name_interface), deferred :: kind_name
     procedure(calls_interface), deferred :: user_calls
+    procedure :: guide => no_guide
   end type pair_type
 
   !> One of several pairs of different kinds.
@@ -54,17 +62,17 @@ module mech9_pair
   end type pair_slot_type
 
   abstract interface
-    !> Motion of the moving link in the reference link at q, with two derivatives in q.
-    !> Fails where the pair has no pose: collinear characteristic points, values that are not finite.
+    !> Motion of the moving frame in the reference frame at q, with two derivatives in q.
+    !> Fails where the pair has no pose: collinear characteristic points, values that are not finite, an end of a curve.
     subroutine evaluate_interface(self, q, motion, err)
       import :: pair_type, pair_motion_type, error_type, wp
       class(pair_type), intent(in) :: self                !< the pair
       real(wp), intent(in) :: q                           !< value of the coordinate [rad, m, or the user's own unit]
-      type(pair_motion_type), intent(out) :: motion       !< pose of the moving link and its derivatives in q
+      type(pair_motion_type), intent(out) :: motion       !< pose of the moving frame and its derivatives in q
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine evaluate_interface
 
-    !> The factors of a pair with a fixed axis; `is_screw` is false for any other pair.
+    !> The factors of a pair with a fixed axis; `is_screw` is false for any other pair, of which only the frames count.
     pure subroutine as_screw_interface(self, factors, is_screw)
       import :: pair_type, screw_factors_type
       class(pair_type), intent(in) :: self               !< the pair
@@ -87,6 +95,14 @@ module mech9_pair
   end interface
 
 contains
+
+  !> A pair without a curve along which it leads its moving link.
+  pure subroutine no_guide(self, guide)
+    class(pair_type), intent(in) :: self         !< the pair
+    type(pair_guide_type), intent(out) :: guide  !< without points
+
+    allocate (guide%points(3, 0))
+  end subroutine no_guide
 
   !> The motion of the reference link in the moving link, from that of the moving in the reference link.
   pure function reversed_motion(motion) result(back)

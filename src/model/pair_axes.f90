@@ -1,23 +1,24 @@
 !> The axes of pairs in both of their links, as the data file gives them.
 module mech9_pair_axes
   use mech9_kinds, only: wp
-  use mech9_pose, only: pose_type, compose, inverse, pose_from_dh
-  use mech9_pair, only: pair_slot_type, screw_factors_type
+  use mech9_pose, only: pose_type, compose, inverse, transformed, pose_from_dh
+  use mech9_pair, only: pair_slot_type, pair_guide_type, screw_factors_type
   implicit none
   private
   public :: pair_axes_type, pair_axes, turning, sliding, screwing, free
 
-  !> The motion that a pair allows: it turns about its axis, slides along it, does both as a screw, or moves as its
-  !> user's procedure says.
+  !> The motion that a pair allows: it turns about its axis, slides along it, does both as a screw, or moves along a curve or as
+  !> its user's procedure says.
   integer, parameter :: turning = 1, sliding = 2, screwing = 3, free = 4
 
   !> One pair. Side 1 is its reference link, side 2 its moving link; each vector is in that link's system.
   type :: pair_axes_type
     integer :: kind = turning           !< turning, sliding, screwing or free
     integer :: links(2) = 0             !< numbers of the reference link and of the moving link; 0 for a pair that is missing
-    real(wp) :: points(3, 2) = 0.0_wp   !< of the axis [m]; of a free pair the moving link's origin (side 2)
+    real(wp) :: points(3, 2) = 0.0_wp   !< of the axis [m]; of a free pair that of the moving link that is led (side 2)
     real(wp) :: axes(3, 2) = 0.0_wp     !< its direction, of length 1; zero for a free pair
     type(pose_type) :: home             !< pose of the moving link in the reference link at q = 0; not known for a free pair
+    real(wp), allocatable :: guide(:, :)   !< (3,n) places of the curve along which it leads, in the reference link [m]; none: n = 0
   end type pair_axes_type
 
 contains
@@ -27,26 +28,33 @@ contains
     type(pair_slot_type), intent(in) :: pairs(:)   !< (M)
     type(pair_axes_type), allocatable :: all(:)    !< (M)
     type(screw_factors_type) :: factors
+    type(pair_guide_type) :: guide
     type(pose_type) :: in_moving
     logical :: is_screw
-    integer :: k
+    integer :: k, i
 
     allocate (all(size(pairs)))
     do k = 1, size(all)
-      is_screw = allocated(pairs(k)%pair)
-      if (is_screw) then
-        all(k)%links = [pairs(k)%pair%reference, pairs(k)%pair%moving]
-        call pairs(k)%pair%as_screw(factors, is_screw)
-      end if
+      all(k)%kind = free
+      allocate (all(k)%guide(3, 0))
+      if (.not. allocated(pairs(k)%pair)) cycle
+      all(k)%links = [pairs(k)%pair%reference, pairs(k)%pair%moving]
+      call pairs(k)%pair%as_screw(factors, is_screw)
+      in_moving = inverse(factors%after)
+      all(k)%points(:, 2) = in_moving%p
       if (.not. is_screw) then
-        all(k)%kind = free
+        call pairs(k)%pair%guide(guide)
+        all(k)%guide = guide%points
+        do i = 1, size(guide%points, 2)
+          all(k)%guide(:, i) = transformed(factors%before, guide%points(:, i))
+        end do
+        if (size(guide%points, 2) > 0) all(k)%points(:, 1) = all(k)%guide(:, 1)
         cycle
       end if
-      in_moving = inverse(factors%after)
+      all(k)%kind = turning
       all(k)%home = compose(compose(factors%before, pose_from_dh(0.0_wp, 0.0_wp, factors%slide*factors%offset, &
                                                                  factors%turn*factors%offset)), factors%after)
       all(k)%points(:, 1) = factors%before%p
-      all(k)%points(:, 2) = in_moving%p
       all(k)%axes(:, 1) = factors%before%r(:, 3)
       all(k)%axes(:, 2) = in_moving%r(:, 3)
       if (abs(factors%turn) <= 0.0_wp) then

@@ -51,14 +51,13 @@ contains
     poses%carrier = poses%vertex_link
     do k = 1, m
       call mechanism%pairs(k)%pair%as_screw(factors, is_screw)
-      if (is_screw) then
-        in_moving = inverse(factors%after)
-        poses%local(:, 2*k - 1) = factors%before%p
-        poses%local(:, 2*k) = in_moving%p
-      else
-        ! a pair of any motion has no axis: the origin of the moving link is its vertex for both links
-        poses%carrier(2*k - 1) = poses%carrier(2*k)
-      end if
+      in_moving = inverse(factors%after)
+      poses%local(:, 2*k - 1) = factors%before%p
+      poses%local(:, 2*k) = in_moving%p
+      if (is_screw) cycle
+      ! a pair of any motion has no axis: the point of the moving link that is led is its vertex for both links
+      poses%carrier(2*k - 1) = poses%carrier(2*k)
+      poses%local(:, 2*k - 1) = in_moving%p
     end do
     poses%lines = lines_through(poses%n_links, poses%vertex_link)
   end function poses_of

@@ -6,8 +6,8 @@
 !> curve would else end with other axes than those at its beginning.
 module mech9_space_curve
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_data
-  use mech9_failure, only: failure_sharp_curve
+  use mech9_error, only: error_type, raise, exit_data, exit_singular
+  use mech9_failure, only: failure_sharp_curve, failure_off_curve
   use mech9_rotation, only: cross, unit, combine, about_axis
   use mech9_quintic_spline, only: quintic_spline_type, build_quintic
   implicit none
@@ -26,6 +26,7 @@ module mech9_space_curve
     real(wp), allocatable :: s(:)         !< (0:parts) arc length between the parts [m]
     real(wp), allocatable :: r(:, :, :)   !< (3,3,0:parts) frames between the parts
   contains
+    procedure :: check_ends
     procedure :: locate
     procedure :: frame_at
   end type space_curve_type
@@ -43,6 +44,7 @@ module mech9_space_curve
 
   integer, parameter :: order = 10   !< places of Gauss's rule
   integer, parameter :: refits = 2   !< times that the spline is laid again over the arc lengths of the one before
+  real(wp), parameter :: at_end = 1.0e-9_wp   !< part of its length by which an arc length may miss an end, for lack of digits
   integer, parameter :: most_halvings = 12   !< of a piece into parts; more are needed only where the curve turns back
   !> Places and weights of Gauss's rule on 0 .. 1; the other half lies symmetrically.
   real(wp), parameter :: half_places(5) = [0.013046735741414139961_wp, 0.067468316655507744634_wp, 0.16029521585048779688_wp, &
@@ -229,6 +231,17 @@ contains
     end do
     r = frame_of(tangent, r(:, 3))
   end function carried
+
+  !> Fail for an arc length beyond an end, by more than round-off. The caller adds the coordinate and the time.
+  pure subroutine check_ends(self, s, err)
+    class(space_curve_type), intent(in) :: self         !< the curve
+    real(wp), intent(in) :: s                           !< arc length [m]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if there is no curve
+
+    if (self%closed .or. (s >= -at_end*self%length .and. s <= (1.0_wp + at_end)*self%length)) return
+    call raise(err, exit_singular, failure_off_curve)
+    err%failure%values = reshape([s, self%length], [2, 1])
+  end subroutine check_ends
 
   !> The place at an arc length from the first point, with its derivatives. Those of a closed curve repeat; an open one is continued
   !> by its end pieces, which is meant for round-off only.

@@ -17,7 +17,7 @@ module mech9_explanation
     failure_chain_off_plane, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
     failure_interrupted, failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
     failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve, &
-    failure_interrupted_starts
+    failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_choice_words, only: explain_choice, longest_list
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
@@ -288,6 +288,11 @@ contains
              to_text(failure%t_stop, 10)//' s; start it anew'
     case (failure_interrupted)
       text = 'interrupted before t = '//to_text(failure%t, 10)//' s'
+    case (failure_off_curve)
+      text = 'coordinate '//to_text(failure%coordinates)//' comes to an end of its curve at t = '//to_text(failure%t, 10)// &
+             ' s: it would go on to '//to_text(failure%values(1, 1), 10)//' m, and the curve leads from 0 to '// &
+             to_text(failure%values(2, 1), 10)//' m. Start elsewhere on the curve, end the motion earlier, or give points of a '// &
+             'longer curve'
     case (failure_accuracy)
       text = 'the motion is not as accurate as was asked for at t = '//to_text(failure%t, 10)//' s: with the least '// &
              'tolerances its error is about '//to_text(failure%deviation, 2)//', and '// &
@@ -352,6 +357,8 @@ contains
       text = 'no pair turns'
     case (failure_pair_off_plane)
       text = 'pair '//to_text(failure%coordinates)//' neither turns about the plane''s normal nor slides across it'
+    case (failure_no_fixed_axis)
+      text = 'pair '//to_text(failure%coordinates)//' has no fixed axis'
     case (failure_chain_off_plane)
       text = chain_names(failure%chains)//' does not close in a plane'
     end select

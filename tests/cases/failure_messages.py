@@ -32,7 +32,6 @@ UNREACHABLE = {
     'step_memory': 'the memory of an integration is small beside that of the mechanism',
     'step_settings': 'an error of the program itself',
     'few_points': 'the reader of tables refuses the file',
-    'sharp_curve': 'no group of the data file reads curves yet',
     'points_order': 'the reader of tables refuses the line with its place',
     'drive_jumps': 'drives of the data file are continuous',
     'lost_inertia': 'only steps to positions beyond all sense lose it: tests/simulation/test_simulation.f90',
@@ -192,6 +191,10 @@ TABLE = """&structure cq=1 /
 &drive coordinate=1, kind='table', file='table.dat' /
 &time start=-1, end=1, intervals=2 /
 """
+PATH = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='path', file='curve.dat' /
+&drive coordinate=1, kind='polynomial', coefficients=1, 5 /
+"""
 
 
 # --- failures -------------------------------------------------------------------------------------------------------
@@ -266,6 +269,12 @@ def driven_cases():
          ['the mechanism starts in a singular position and cannot be followed off it with certainty; start a little beside it']),
         ('no_spline', TABLE, {'table.dat': '-1 0\n0 1\n1e-17 1\n1 4\n'}, DATA,
          ['case.nml:3:41: no smooth curve runs through these points: some are too close together; leave those out']),
+        ('sharp_curve', PATH, {'curve.dat': '0 0\n1 0\n2 0\n3 0\n2 0\n1 0\n'}, DATA,
+         ['curve.dat:4:1: the smooth curve through these points turns back on itself after point 4; put the points there closer '
+          'together, round a corner, or leave out a point that goes back']),
+        ('off_curve', PATH, {'curve.dat': '0 0\n1 0\n2 0\n3 0\n'}, SINGULAR,
+         ['case.nml:2:1: coordinate 1 comes to an end of its curve at t = ', ' s: it would go on to 3', ' m, and the curve leads from 0 '
+          'to 3 m. Start elsewhere on the curve, end the motion earlier, or give points of a longer curve']),
         # why a mechanism is not planar
         ('chain_dimensions', text_of(os.path.join(TREE, 'examples', 'double_hooke', 'double_hooke.nml')), ('--plan',), DONE,
          ['spatial arithmetic: the motions of closed chain 1 have 6 dimensions, not 3\n']),
@@ -273,6 +282,9 @@ def driven_cases():
         ('pair_off_plane', four_bar(FLAT, turned(60), drive(1, '60'), drive(5), revolute(5, (2, 5), axis='1,0,0'), cq=(1, 5)).replace(
             'links=4, coordinates=4', 'links=5, coordinates=5'), ('--plan',), DONE,
          ["spatial arithmetic: pair 5 neither turns about the plane's normal nor slides across it\n"]),
+        ('no_fixed_axis', "&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /\n" + PATH.replace('cq=1', 'cq=1,2')
+         + "&drive coordinate=2, kind='polynomial', coefficients=1 /\n", {'--plan': '', 'curve.dat': '0 0\n1 0\n2 0\n9 0\n'},
+         DONE, ['spatial arithmetic: pair 1 has no fixed axis\n']),
         ('chain_off_plane', four_bar(FLAT, turned(60), drive(1, '60'), offset='1e-11'), ('--plan',), DONE,
          ['spatial arithmetic: closed chain 1 does not close in a plane\n']),
     ]
@@ -347,14 +359,16 @@ def digits(value):
 
 
 def check_cases(checks, program, cases):
-    """Run each case, and compare its exit code and what was printed."""
+    """Run each case, with further files or options, and compare its exit code and what was printed."""
     for kind, text, options, code, words in cases:
         files = {'case.nml': text, **(options if isinstance(options, dict) else {})}
+        options = [name for name in options if name.startswith('--')] if isinstance(options, dict) else options
+        files = {name: content for name, content in files.items() if not name.startswith('--')}
         with tempfile.TemporaryDirectory() as folder:
             for name, content in files.items():
                 with open(os.path.join(folder, name), 'w', encoding='utf-8') as file:
                     file.write(content)
-            done = run(program, 'case.nml', '--quiet', '--no-write', *([] if isinstance(options, dict) else options), folder=folder)
+            done = run(program, 'case.nml', '--quiet', '--no-write', *options, folder=folder)
         said = done.stderr if code else done.stdout
         checks.equal(done.returncode, code, f'{kind}: exit code; {done.stderr}')
         for part in words:

@@ -87,6 +87,8 @@ contains
       write (number, '(i1)') i
       call draft%give('pair', i, 'coordinate', number)
       call draft%give('pair', i, 'kind', ''''//trim(pairs(i))//'''')
+      ! there are more kinds of pairs than pairs in a four-bar
+      if (i == 2 .and. drive == 'table') call draft%give('pair', i, 'kind', '''path''')
       if (way == 'pairs') call draft%give('pair', i, 'links', trim(links(i)))
     end do
     if (program_name == 'mech9k') then

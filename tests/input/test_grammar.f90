@@ -73,6 +73,8 @@ contains
     call tester%is_true(find_group_row(row%group) > 0, label(row)//': the name belongs to a group')
     call tester%is_true(row%low >= 1 .and. row%high >= row%low, label(row)//': the bounds of the number of values are right')
     call tester%is_true(row%help /= '' .and. len_trim(row%help) < len(row%help), label(row)//': the help fits its field')
+    call tester%is_true(len_trim(row%default) < len(row%default) .and. len_trim(row%example) < len(row%example), &
+                        label(row)//': default and example fit their fields')
     call tester%is_true(len_trim(row%words) < len(row%words) .and. len_trim(row%kinds) < len(row%kinds), &
                         label(row)//': words and kinds fit their fields')
     call tester%is_true(.not. (row%needed .and. row%default /= ''), label(row)//': a name that is needed has no default')

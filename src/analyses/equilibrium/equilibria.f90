@@ -5,7 +5,7 @@ module mech9_equilibria
   use mech9_random, only: random_type
   use mech9_mechanism, only: mechanism_type
   use mech9_partition, only: partition_type, free_coordinate
-  use mech9_plan, only: plan_type, step_type
+  use mech9_plan, only: plan_type, within_range
   use mech9_state, only: state_type
   use mech9_assemblies, only: close_from
   use mech9_frame_motion, only: place_all
@@ -152,6 +152,7 @@ contains
     logical, intent(out) :: reached                   !< the chains close
     type(state_type) :: position
     type(error_type), allocatable :: err
+    real(wp) :: change
     integer :: trial, i, k
 
     reached = .false.
@@ -161,7 +162,11 @@ contains
       position = assembled
       do i = 1, size(resting%free)
         k = resting%free(i)
-        position%q(k) = position%q(k) + merge(pi, 1.0_wp, turns(plan%steps(plan%step_of(k))))*plan%unit_of(k)*random%symmetric()
+        associate (step => plan%steps(plan%step_of(k)))
+          ! half a turn, or the size of the mechanism, in each direction
+          change = merge(0.5_wp*step%period, plan%unit_of(k), step%period > 0.0_wp)
+          position%q(k) = within_range(step, position%q(k) + change*random%symmetric())
+        end associate
       end do
       call place_all(plan, position, err)
       if (.not. allocated(err)) call close_from(plan, plan%blocks, pi, random, position, reached)
@@ -181,13 +186,14 @@ contains
     type(resting_type) :: other
     type(state_type) :: position
     type(error_type), allocatable :: err
-    real(wp) :: turned
+    real(wp) :: period, turned
     integer :: k
 
     call copy_resting(resting, other)
     do k = 1, size(resting%state%q)
-      if (.not. turns(resting%plan%steps(resting%plan%step_of(k)))) cycle
-      turned = 2.0_wp*pi*ceiling((resting%state%q(k) - assembled%q(k) - same_position)/(2.0_wp*pi) - 0.5_wp)
+      period = resting%plan%steps(resting%plan%step_of(k))%period
+      if (.not. period > 0.0_wp) cycle
+      turned = period*ceiling((resting%state%q(k) - assembled%q(k) - same_position*resting%plan%unit_of(k))/period - 0.5_wp)
       if (.not. abs(turned) > 0.0_wp) cycle
       position = resting%state
       position%q(k) = position%q(k) - turned
@@ -262,11 +268,4 @@ contains
       return
     end do
   end function comes_before
-
-  !> Whether a full turn of a step's coordinate gives the same position.
-  pure logical function turns(step)
-    type(step_type), intent(in) :: step   !< the step
-
-    turns = step%is_screw .and. abs(step%turn) > 0.0_wp .and. .not. abs(step%slide) > 0.0_wp
-  end function turns
 end module mech9_equilibria

@@ -54,7 +54,7 @@ contains
         geometry%slide(:, s) = v
         if (plan%frame_of(plan%steps(s)%link) == s) geometry%place(:, plan%steps(s)%link) = place
         point = place
-        if (pair%direction < 0.0_wp) call move_to_start(plan, state, s, v, point)
+        if (pair%direction < 0.0_wp) call move_to_start(plan, state, s, v, pair%frame%p, point)
         screw(1:3) = pair%direction*(v + cross(w, point - place))
         screw(4:6) = (pair%direction*reactions%length)*w
         geometry%length(k) = norm2(screw)
@@ -65,11 +65,12 @@ contains
   end subroutine find_geometry
 
   !> The origin of the pair's frame in the moving link, from which a reversed step leads.
-  pure subroutine move_to_start(plan, state, s, v, point)
+  pure subroutine move_to_start(plan, state, s, v, in_link, point)
     type(plan_type), intent(in) :: plan     !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< with the poses of the frames
     integer, intent(in) :: s                !< number of the step
     real(wp), intent(in) :: v(3)            !< velocity of the new frame's origin per unit rate
+    real(wp), intent(in) :: in_link(3)      !< origin of the pair's frame in the moving link [m]
     real(wp), intent(inout) :: point(3)     !< origin of the frame that the step reaches; the point [m]
     real(wp) :: r(3, 3), p(3), omega(3), v_link(3)
     integer :: link
@@ -81,7 +82,7 @@ contains
         link = 1
         if (step%parent > 0) link = plan%steps(step%parent)%link
         call link_motion(plan, state, link, r, p, omega, v_link)
-        point = p - plan%origin
+        point = p + matmul(r, in_link) - plan%origin
       end if
     end associate
   end subroutine move_to_start

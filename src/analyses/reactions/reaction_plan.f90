@@ -118,7 +118,7 @@ contains
     end do
   end subroutine lay_flat
 
-  !> A pair as inverse dynamics sees it. The frame of a pair without a fixed axis is that of its moving link.
+  !> A pair as inverse dynamics sees it.
   function joined_pair(pair, plan, coordinate) result(joined)
     class(pair_type), intent(in) :: pair    !< the pair
     type(plan_type), intent(in) :: plan     !< the plan of the mechanism
@@ -132,7 +132,7 @@ contains
     joined%direction = merge(-1.0_wp, 1.0_wp, plan%steps(joined%step)%reversed)
     joined%dependent = plan%steps(joined%step)%dependent
     call pair%as_screw(factors, is_screw)
-    if (is_screw) joined%frame = inverse(factors%after)
+    joined%frame = inverse(factors%after)
   end function joined_pair
 
   !> The length by which moments are divided: the largest distance between the points of two pairs on one link or, if that is zero,
@@ -150,7 +150,6 @@ contains
       associate (pair => mechanism%pairs(k)%pair)
         links(2*k - 1:2*k) = [pair%reference, pair%moving]
         call pair%as_screw(factors, is_screw)
-        if (.not. is_screw) factors = screw_factors_type()
         in_moving = inverse(factors%after)
         points(:, 2*k - 1) = factors%before%p
         points(:, 2*k) = in_moving%p

@@ -69,8 +69,9 @@ module mech9_explanations
                   'system the pair is described; the second is the moving link. A positive coordinate moves the second '// &
                   'against the first.', '1-2 (the same as 1, 2: link 2 moves against the frame)'), &
     explanation_type('pair', 'kind', '', &
-                  'A revolute pair is a hinge, a prismatic pair is a slide, a helical pair is a screw, and a user pair '// &
-                  'moves as a procedure of your own says. The first letters will do.', 'rev'), &
+                  'A revolute pair is a hinge, a prismatic pair is a slide, a helical pair is a screw, a path pair leads '// &
+                  'its moving link along a curve, and a user pair moves as a procedure of your own says. The first '// &
+                  'letters will do.', 'rev'), &
     explanation_type('pair', 'point', 'revolute prismatic helical', &
                   'Give any point of the axis by its coordinates in the reference link. Where the mechanism is described '// &
                   'in one position, in which all link systems coincide, these are coordinates in the frame. The '// &
@@ -101,7 +102,34 @@ module mech9_explanations
                   'is turned by theta about z, moved by d along z, moved by a along x, and turned by alpha about x. They '// &
                   'stand instead of point, axis and the other directions.', &
                   '0.3, 1.5708, 0, 0 (0.3 m along x, then the next axis at a right angle)', &
-                  '0.3, 90, 0, 0 (0.3 m along x, then the next axis at a right angle)')]
+                  '0.3, 90, 0, 0 (0.3 m along x, then the next axis at a right angle)'), &
+    explanation_type('pair', 'file', 'path', &
+                  'Name a text file that has the coordinates of a point in each line, beside the data file: x and y, or x, y '// &
+                  'and z. A smooth curve is laid through them; there must be at least four. If the last point is the first '// &
+                  'one again, the curve is closed.', 'curve.dat (with lines such as: 0.1 0.25)'), &
+    explanation_type('pair', 'orientation', 'path', &
+                  'The moving link can keep its orientation while one of its points follows the curve, or turn with the '// &
+                  'tangent of the curve, as a train does on its rails.', 'tangent'), &
+    explanation_type('pair', 'closed', 'path', &
+                  'A closed curve repeats: the coordinate, a length along it, may grow beyond its length. The file says it by '// &
+                  'its last point, which is the first one again; this name is for those that are to be read otherwise.', &
+                  '.false.'), &
+    explanation_type('pair', 'point', 'path', &
+                  'This is the origin of the coordinates in the file of the curve, given in the reference link.', '0, 0.2, 0'), &
+    explanation_type('pair', 'axis', 'path', &
+                  'This direction of the reference link is the z axis of the coordinates in the file of the curve. The letters '// &
+                  'x, y, z and -x, -y, -z will do.', 'z'), &
+    explanation_type('pair', 'zero', 'path', &
+                  'This direction of the reference link is the x axis of the coordinates in the file of the curve; it is made '// &
+                  'perpendicular to axis.', 'x'), &
+    explanation_type('pair', 'moving_point', 'path', &
+                  'This point of the moving link follows the curve.', '0.1, 0, 0'), &
+    explanation_type('pair', 'moving_axis', 'path', &
+                  'This direction of the moving link stays along axis where the link keeps its orientation or the '// &
+                  'curve lies in a plane; else it stays across the tangent.', 'z'), &
+    explanation_type('pair', 'moving_zero', 'path', &
+                  'This direction of the moving link stays along zero, or along the tangent where the link turns with the '// &
+                  'curve.', 'x')]
 
   type(explanation_type), parameter :: motion_texts(*) = [ &
     explanation_type('initial', 'coordinate', '', &

@@ -121,7 +121,7 @@ contains
     associate (explanation => explanations(place))
       text = trim(explanation%example)
       if (angle == 'deg' .and. explanation%degrees /= '') text = trim(explanation%degrees)
-      if (kind == 'prismatic' .and. explanation%length /= '') text = trim(explanation%length)
+      if ((kind == 'prismatic' .or. kind == 'path') .and. explanation%length /= '') text = trim(explanation%length)
     end associate
   end function example_of
 

@@ -218,7 +218,7 @@ contains
     unit = trim(item_table(question%row)%unit)
     kind = coordinate_kind(question, draft)
     q = angle_unit(draft)
-    if (kind == 'prismatic') q = 'm'
+    if (kind == 'prismatic' .or. kind == 'path') q = 'm'
     if (kind == 'user') q = ''
     if (item_table(question%row)%group == 'load' .and. item_table(question%row)%kinds == 'coordinate') &
       unit = unit_of_load(unit, kind)
@@ -243,7 +243,7 @@ contains
       next = gap + 4
     end if
     if (gap == 0) return
-    if (kind == 'prismatic') unit = both(:gap - 1)
+    if (kind == 'prismatic' .or. kind == 'path') unit = both(:gap - 1)
     if (kind == 'revolute' .or. kind == 'helical') unit = both(next:)
   end function unit_of_load
 

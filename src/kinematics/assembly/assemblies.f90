@@ -5,7 +5,7 @@ module mech9_assemblies
   use mech9_tolerances, only: same_assembly
   use mech9_error, only: error_type
   use mech9_random, only: random_type
-  use mech9_plan, only: plan_type, block_type, step_type
+  use mech9_plan, only: plan_type, block_type, within_range, without_periods
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type, new_block_work
   use mech9_assembly, only: assemble_block, assembly_outcome_type
@@ -91,7 +91,7 @@ contains
     do b = 1, size(blocks)
       do i = 1, size(blocks(b)%unknowns)
         k = blocks(b)%coordinates(i)
-        state%q(k) = state%q(k) + amount*plan%unit_of(k)*random%symmetric()
+        state%q(k) = within_range(plan%steps(blocks(b)%unknowns(i)), state%q(k) + amount*plan%unit_of(k)*random%symmetric())
       end do
       work = new_block_work(blocks(b))
       call assemble_block(plan, blocks(b), state, work, .false., outcome, err)
@@ -112,8 +112,7 @@ contains
     n = size(list%found)
     do i = 1, n
       do k = 1, size(q)
-        difference = q(k) - list%q(k, i)
-        if (turns(plan%steps(plan%step_of(k)))) difference = within_half_a_turn(difference)
+        difference = without_periods(plan%steps(plan%step_of(k)), q(k) - list%q(k, i))
         if (abs(difference) > same_assembly*plan%unit_of(k)) exit
       end do
       if (k <= size(q)) cycle
@@ -124,24 +123,9 @@ contains
     longer(:, :n) = list%q
     longer(:, n + 1) = q
     do k = 1, size(q)
-      if (plan%steps(plan%step_of(k))%dependent .and. turns(plan%steps(plan%step_of(k)))) &
-        longer(k, n + 1) = within_half_a_turn(q(k))
+      if (plan%steps(plan%step_of(k))%dependent) longer(k, n + 1) = without_periods(plan%steps(plan%step_of(k)), q(k))
     end do
     call move_alloc(longer, list%q)
     list%found = [list%found, 1]
   end subroutine count_assembly
-
-  !> Whether a full turn of a step's coordinate gives the same position.
-  pure logical function turns(step)
-    type(step_type), intent(in) :: step   !< the step
-
-    turns = step%is_screw .and. abs(step%turn) > 0.0_wp .and. .not. abs(step%slide) > 0.0_wp
-  end function turns
-
-  !> An angle without whole turns, from -pi to pi.
-  pure real(wp) function within_half_a_turn(angle)
-    real(wp), intent(in) :: angle   !< an angle [rad]
-
-    within_half_a_turn = angle - 2.0_wp*pi*anint(angle/(2.0_wp*pi))
-  end function within_half_a_turn
 end module mech9_assemblies

@@ -9,7 +9,7 @@ module mech9_assembly
   use mech9_error, only: error_type
   use mech9_least_squares, only: least_squares_type
   use mech9_random, only: random_type
-  use mech9_plan, only: plan_type, block_type
+  use mech9_plan, only: plan_type, block_type, within_range, without_periods
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type, newton_outcome_type, close_block, apply_change
   use mech9_frame_motion, only: place_frames
@@ -59,7 +59,8 @@ contains
       do i = 1, size(guess)
         k = block%coordinates(i)
         state%q(k) = guess(i)
-        if (restart > 0) state%q(k) = guess(i) + plan%unit_of(k)*random%symmetric()*pi*restart/restarts
+        if (restart > 0) state%q(k) = within_range(plan%steps(block%unknowns(i)), &
+                                                   guess(i) + plan%unit_of(k)*random%symmetric()*pi*restart/restarts)
       end do
       call close_from_guess(plan, block, state, work, outcome, err)
       if (allocated(err)) then
@@ -221,7 +222,7 @@ contains
     end do
   end subroutine find_worst_closure
 
-  !> Take full turns off the coordinates of revolute pairs, so that each is within half a turn of its guess.
+  !> Take full turns off the coordinates of pairs whose positions repeat, so that each is within half a turn of its guess.
   subroutine remove_full_turns(plan, block, guess, state, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
@@ -234,10 +235,8 @@ contains
     changed = .false.
     do i = 1, size(block%unknowns)
       associate (step => plan%steps(block%unknowns(i)))
-        if (.not. step%is_screw .or. abs(step%slide) > 0.0_wp) cycle
-        if (abs(state%q(step%coordinate) - guess(i)) <= pi) cycle
-        state%q(step%coordinate) = state%q(step%coordinate) &
-                                   - 2.0_wp*pi*anint((state%q(step%coordinate) - guess(i))/(2.0_wp*pi))
+        if (abs(state%q(step%coordinate) - guess(i)) <= 0.5_wp*step%period .or. .not. step%period > 0.0_wp) cycle
+        state%q(step%coordinate) = guess(i) + without_periods(step, state%q(step%coordinate) - guess(i))
         changed = .true.
       end associate
     end do

@@ -7,7 +7,7 @@ module mech9_diagnosis
     failure_nearly_closed_chain, failure_locked_chain, failure_nearly_moving_chain
   use mech9_masks, only: numbers_of
   use mech9_random, only: random_type
-  use mech9_plan, only: plan_type
+  use mech9_plan, only: plan_type, within_range
   use mech9_state, only: state_type
   use mech9_assembly, only: assembly_outcome_type
   use mech9_finite_motion, only: locked_chain_type
@@ -85,13 +85,13 @@ contains
     integer :: i, k, n
 
     n = 0
-    returns = plan%steps(plan%step_of)%is_screw
+    returns = plan%steps(plan%step_of)%roams
     trial = state
     do i = 1, size(amounts)
       trial%q = state%q
       do k = 1, plan%n_coordinates
-        if (plan%steps(plan%step_of(k))%is_screw) &
-          trial%q(k) = state%q(k) + amounts(i)*plan%unit_of(k)*random%symmetric()
+        if (plan%steps(plan%step_of(k))%roams) &
+          trial%q(k) = within_range(plan%steps(plan%step_of(k)), state%q(k) + amounts(i)*plan%unit_of(k)*random%symmetric())
       end do
       call close_free(plan, trial, .false., outcome, err)
       if (allocated(err)) cycle

@@ -15,7 +15,7 @@ module mech9_finite_motion
   use mech9_lapack, only: dgesvd
   use mech9_random, only: random_type
   use mech9_rotation, only: cross
-  use mech9_plan, only: plan_type, block_type, new_state
+  use mech9_plan, only: plan_type, block_type, new_state, within_range
   use mech9_state, only: state_type
   use mech9_arithmetics, only: set_in_space
   use mech9_spatial_closure, only: reduced_screw
@@ -94,11 +94,13 @@ contains
       do i = 1, size(plan%independent)
         k = plan%independent(i)
         change = random%symmetric()
-        state%q(k) = home%q(k) + amount*plan%unit_of(k)*(0.5_wp*change + sign(0.5_wp, change))
+        state%q(k) = within_range(plan%steps(plan%step_of(k)), &
+                                  home%q(k) + amount*plan%unit_of(k)*(0.5_wp*change + sign(0.5_wp, change)))
       end do
       do i = 1, plan%n_coordinates
         k = plan%steps(i)%coordinate
-        if (trial > sizes .and. plan%steps(i)%dependent) state%q(k) = home%q(k) + amount*plan%unit_of(k)*random%symmetric()
+        if (trial > sizes .and. plan%steps(i)%dependent) &
+          state%q(k) = within_range(plan%steps(i), home%q(k) + amount*plan%unit_of(k)*random%symmetric())
       end do
       call close_in_order(plan, amount, state, moves, nearest, locked)
       if (locked%exists .or. all(moves)) return
@@ -179,7 +181,8 @@ contains
       state = home
       do k = 1, size(block%coordinates)
         associate (c => block%coordinates(k))
-          state%q(c) = home%q(c) + first_displacement/2.0_wp**(trial - 1)*plan%unit_of(c)*random%symmetric()
+          state%q(c) = within_range(plan%steps(block%unknowns(k)), &
+                                    home%q(c) + first_displacement/2.0_wp**(trial - 1)*plan%unit_of(c)*random%symmetric())
         end associate
       end do
       call assemble_block(plan, block, state, work, .false., outcome, err)

@@ -4,7 +4,7 @@ module mech9_generic_position
   use mech9_tolerances, only: least_movement
   use mech9_error, only: error_type
   use mech9_random, only: random_type
-  use mech9_plan, only: plan_type, block_type
+  use mech9_plan, only: plan_type, block_type, within_range
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type, new_block_work
   use mech9_assembly, only: assemble_block, assembly_outcome_type
@@ -87,7 +87,8 @@ contains
       k = plan%independent(i)
       change = generic%random%symmetric()
       ! a change that is too small would let contradicting chains seem closed
-      generic%state%q(k) = start%q(k) + amount*plan%unit_of(k)*(change + sign(0.5_wp, change))
+      generic%state%q(k) = within_range(plan%steps(plan%step_of(k)), &
+                                        start%q(k) + amount*plan%unit_of(k)*(change + sign(0.5_wp, change)))
     end do
     do i = 1, size(blocks)
       call close_next_block(plan, blocks(i), start, amount, generic, closed)
@@ -111,7 +112,8 @@ contains
     work = new_block_work(block)
     do i = 1, size(block%unknowns)
       k = block%coordinates(i)
-      generic%state%q(k) = start%q(k) + amount*plan%unit_of(k)*generic%random%symmetric()
+      generic%state%q(k) = within_range(plan%steps(block%unknowns(i)), &
+                                        start%q(k) + amount*plan%unit_of(k)*generic%random%symmetric())
     end do
     call assemble_block(plan, block, generic%state, work, .false., outcome, err)
     closed = outcome%closed .and. .not. allocated(err)

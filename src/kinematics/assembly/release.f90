@@ -3,10 +3,10 @@
 !> A position in which all chains close is found more easily if every coordinate may change. The mobility can be judged
 !> there, and the given values may be reached from there by a motion.
 module mech9_release
-  use mech9_kinds, only: wp, pi
+  use mech9_kinds, only: wp
   use mech9_tolerances, only: least_part_of_carrying
   use mech9_error, only: error_type
-  use mech9_plan, only: plan_type, block_type
+  use mech9_plan, only: plan_type, block_type, without_periods
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block
   use mech9_assembly, only: assemble_block, assembly_outcome_type
@@ -58,7 +58,7 @@ contains
     distance = target(plan%independent) - from
     do s = 1, size(distance)
       associate (step => plan%steps(plan%step_of(plan%independent(s))))
-        if (step%is_screw .and. .not. abs(step%slide) > 0.0_wp) distance(s) = distance(s) - 2.0_wp*pi*anint(distance(s)/(2.0_wp*pi))
+        distance(s) = without_periods(step, distance(s))
       end associate
     end do
     done = 0.0_wp

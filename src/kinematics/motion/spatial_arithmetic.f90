@@ -146,7 +146,10 @@ contains
 
     associate (step => plan%steps(s))
       call plan%pairs(step%coordinate)%pair%evaluate(state%q(step%coordinate), motion, err)
-      if (allocated(err)) return
+      if (allocated(err)) then
+        if (allocated(err%failure)) err%failure%t = state%t
+        return
+      end if
       if (step%reversed) motion = reversed_motion(motion)
       r_departing = combine(state%r(:, :, step%parent), step%before%r)
       p_departing = state%p(:, step%parent) + turn(state%r(:, :, step%parent), step%before%p)

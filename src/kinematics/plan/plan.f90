@@ -18,7 +18,7 @@ module mech9_plan
   implicit none
   private
   public :: plan_type, step_type, closure_type, loop_type, block_type, arithmetic_type, arithmetic_slot_type, &
-    constraint_type, constraint_slot_type, new_state
+    constraint_type, constraint_slot_type, new_state, within_range, without_periods
 
   !> One step: from frame `parent` through pair `coordinate` to the frame of the step's own number.
   type :: step_type
@@ -29,10 +29,13 @@ module mech9_plan
     logical :: reversed = .false.   !< the step leads from the moving link of the pair to its reference link
     logical :: is_screw = .true.    !< the axis is fixed; otherwise plan%pairs(coordinate) gives the motion
     logical :: dependent = .true.   !< the coordinate is dependent
-    type(pose_type) :: before       !< pose of the axis (of the link before a user pair) in the parent frame
+    type(pose_type) :: before       !< pose of the axis, or of the pair's frame from which the step leads, in the parent frame
     real(wp) :: turn = 0.0_wp       !< rotation about z per unit of q, sign by direction
     real(wp) :: slide = 0.0_wp      !< advance along z per unit of q, sign by direction
     real(wp) :: offset = 0.0_wp     !< added to q [rad, m]
+    real(wp) :: period = 0.0_wp     !< change of q that leads to the same position: a full turn [rad], a closed curve [m]; 0: none
+    logical :: roams = .true.       !< q can be changed in a search; a user's pair may have no pose elsewhere
+    real(wp) :: range(2) = [-huge(1.0_wp), huge(1.0_wp)]   !< least and greatest q [rad, m]
   end type step_type
 
   !> Steps of a loop, in ascending order.
@@ -292,6 +295,28 @@ module mech9_plan
   end interface
 
 contains
+
+  !> A value of a step's coordinate that a search has changed, thrown back from the ends of its range into it.
+  pure real(wp) function within_range(step, q) result(inside)
+    type(step_type), intent(in) :: step   !< the step
+    real(wp), intent(in) :: q             !< value of its coordinate [rad, m]
+    real(wp) :: width
+
+    inside = q
+    if (q >= step%range(1) .and. q <= step%range(2)) return
+    width = step%range(2) - step%range(1)
+    inside = modulo(q - step%range(1), 2.0_wp*width)
+    inside = step%range(1) + min(inside, 2.0_wp*width - inside)
+  end function within_range
+
+  !> A difference of values of a step's coordinate without whole periods, at most half a period.
+  pure real(wp) function without_periods(step, difference) result(rest)
+    type(step_type), intent(in) :: step       !< the step
+    real(wp), intent(in) :: difference        !< of two values of its coordinate [rad, m]
+
+    rest = difference
+    if (step%period > 0.0_wp) rest = difference - step%period*anint(difference/step%period)
+  end function without_periods
 
   !> A state with room for all frames of a plan; all its numbers are zero, and nothing is known.
   pure function new_state(plan) result(state)

@@ -1,5 +1,6 @@
 !> The coordinates and links whose motion is requested, and the blocks of a plan that can be left out.
 module mech9_requested
+  use mech9_kinds, only: wp
   use mech9_request, only: output_settings_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
@@ -75,6 +76,10 @@ contains
     do b = size(plan%blocks), 1, -1
       associate (block => plan%blocks(b))
         needed(b) = any(frames(block%first_step:block%last_step)) .or. any(requested%coordinates(block%coordinates))
+        ! a given coordinate must not leave its curve
+        associate (steps => plan%steps(block%first_step:block%last_step))
+          needed(b) = needed(b) .or. any(requested%coordinates(steps%coordinate) .and. steps%range(2) < huge(1.0_wp))
+        end associate
         if (needed(b)) call mark_outer_frames(plan, block, frames)
       end associate
     end do

@@ -8,7 +8,7 @@ module mech9_loop_rank
   use mech9_tolerances, only: rank_tolerance_for
   use mech9_error, only: error_type
   use mech9_random, only: random_type
-  use mech9_plan, only: plan_type, closure_type, block_type, new_state
+  use mech9_plan, only: plan_type, closure_type, block_type, new_state, within_range
   use mech9_state, only: state_type
   use mech9_arithmetics, only: set_in_space
   use mech9_block_solver, only: block_work_type, new_block_work, factorize_block
@@ -62,7 +62,8 @@ contains
     do trial = 1, size(amounts)
       state%q = guess
       do k = 1, size(guess)
-        if (loop%steps(k)%is_screw) state%q(k) = guess(k) + amounts(trial)*loop%unit_of(k)*random%symmetric()
+        if (loop%steps(k)%roams) &
+          state%q(k) = within_range(loop%steps(k), guess(k) + amounts(trial)*loop%unit_of(k)*random%symmetric())
       end do
       call assemble_block(loop, loop%blocks(1), state, work, trial == 1, outcome, err)
       ! a user's pair may have no pose here; the other trials may succeed

@@ -3,7 +3,8 @@
 module mech9_planar_layout
   use mech9_kinds, only: wp
   use mech9_tolerances, only: planar_round_off
-  use mech9_failure, only: failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, failure_chain_off_plane
+  use mech9_failure, only: failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, &
+    failure_no_fixed_axis, failure_chain_off_plane
   use mech9_rotation, only: identity
   use mech9_pose, only: pose_type, pose_from_axis, default_zero
   use mech9_plan, only: plan_type, step_type
@@ -46,7 +47,7 @@ contains
     do s = 1, plan%n_coordinates
       call lay_out_step(plan%steps(s), plan%steps(s)%parent, frames(plan%steps(s)%parent), planar%steps(s), frames(s), fits)
       if (fits) cycle
-      call refuse(failure_pair_off_plane, plan%planar)
+      call refuse(merge(failure_pair_off_plane, failure_no_fixed_axis, plan%steps(s)%is_screw), plan%planar)
       plan%planar%why_not%coordinates = [plan%steps(s)%coordinate]
       return
     end do

@@ -5,9 +5,9 @@
 !> steps as possible from the frame of link 1; the last step reaches a link that is known already and makes a second frame of
 !> it. A later chain may start from either frame of a link: the one is taken that makes the loop short.
 module mech9_spanning_tree
-  use mech9_kinds, only: wp
-  use mech9_pose, only: pose_type, compose, inverse, identity_pose
-  use mech9_pair, only: screw_factors_type
+  use mech9_kinds, only: wp, pi
+  use mech9_pose, only: pose_type, compose, inverse
+  use mech9_pair, only: screw_factors_type, pair_guide_type
   use mech9_structural_vectors, only: chain_type, chains_of
   use mech9_partition, only: partition_type
   use mech9_mechanism, only: mechanism_type
@@ -211,6 +211,7 @@ contains
     type(step_type), intent(out) :: step   !< the step
     type(pose_type), intent(out) :: after   !< the reached link's system in the new frame
     type(screw_factors_type) :: factors
+    type(pair_guide_type) :: guide
     real(wp) :: direction
 
     associate (pair => mechanism%pairs(coordinate)%pair)
@@ -219,22 +220,25 @@ contains
       step%reversed = pair%reference /= from
       step%dependent = .not. partition%is_independent(coordinate)
       call pair%as_screw(factors, step%is_screw)
+      if (step%reversed) then
+        step%before = compose(link_in_frame, inverse(factors%after))
+        after = inverse(factors%before)
+      else
+        step%before = compose(link_in_frame, factors%before)
+        after = factors%after
+      end if
       if (step%is_screw) then
         direction = merge(-1.0_wp, 1.0_wp, step%reversed)
         step%turn = direction*factors%turn
         step%slide = direction*factors%slide
         step%offset = factors%offset
-        if (step%reversed) then
-          step%before = compose(link_in_frame, inverse(factors%after))
-          after = inverse(factors%before)
-        else
-          step%before = compose(link_in_frame, factors%before)
-          after = factors%after
-        end if
+        if (abs(step%turn) > 0.0_wp .and. .not. abs(step%slide) > 0.0_wp) step%period = 2.0_wp*pi
       else
         allocate (plan%pairs(coordinate)%pair, source=pair)
-        step%before = link_in_frame
-        after = identity_pose
+        call pair%guide(guide)
+        step%roams = guide%length > 0.0_wp
+        if (guide%closed) step%period = guide%length
+        if (step%roams .and. .not. guide%closed) step%range = [0.0_wp, guide%length]
       end if
     end associate
   end subroutine make_step

@@ -90,7 +90,7 @@ contains
           side = place%carrier
           call enclose(view, film%position(frame, place%links(side), place%points(:, side)), box)
           if (place%telescopic) cycle
-          if (place%kind == free) call enclose_curve(film, view, place%links, frame, box)
+          if (place%kind == free) call enclose_curve(film, view, place, frame, box)
           ! the guide reaches to every place of the block
           side = 3 - side
           call enclose(view, film%position(frame, place%links(side), &
@@ -120,18 +120,22 @@ contains
     end do
   end subroutine enclose_motion
 
-  !> The box is enlarged by the curve on which the first link guides the origin of the second one, at the place that the
-  !> curve has in a frame.
-  pure subroutine enclose_curve(film, view, links, frame, box)
+  !> The box is enlarged by the curve on which a pair guides its moving link, at the place that the curve has in a frame.
+  pure subroutine enclose_curve(film, view, place, frame, box)
     type(film_type), intent(in) :: film   !< poses and values at the outputs of the run
     type(view_type), intent(in) :: view   !< direction from which the mechanism is seen
-    integer, intent(in) :: links(2)       !< the link that guides and the link that is guided
+    type(place_type), intent(in) :: place !< place of the pair
     integer, intent(in) :: frame          !< number of the frame in the film
     type(box_type), intent(inout) :: box  !< bounds of what is seen, in the directions of the view [m]
     integer :: other
 
+    do other = 1, size(place%guide, 2)
+      call enclose(view, film%position(frame, place%links(1), place%guide(:, other)), box)
+    end do
+    if (size(place%guide, 2) > 0) return
     do other = 1, film%n_frames, max(1, film%n_frames/most_looked_at)
-      call enclose(view, film%position(frame, links(1), film%local(other, links(1), film%p(:, links(2), other))), box)
+      call enclose(view, film%position(frame, place%links(1), &
+                                       film%local(other, place%links(1), film%p(:, place%links(2), other))), box)
     end do
   end subroutine enclose_curve
 

@@ -47,7 +47,7 @@ contains
 
     call prepare_symbols(film, skeleton, projection, planar, scene, symbols)
     call add_paths(mechanism, film, 1.0_wp/projection%scale, scene)
-    call add_curves(film, skeleton, scene, cams)
+    call add_curves(film, skeleton, 1.0_wp/projection%scale, scene, cams)
     call add_guides(skeleton, projection, scene, symbols)
     call add_stands(film, skeleton, projection, scene, symbols)
     shapes = 0

@@ -76,20 +76,22 @@ contains
     distance = norm2(point - from - part*along)
   end function distance
 
-  !> The curves on which users' pairs guide the origins of their moving links are added. A closed curve is the edge of a
-  !> cam.
-  subroutine add_curves(film, skeleton, scene, cams)
+  !> The curves on which pairs guide their moving links are added: those of path pairs as a whole, those of users' pairs as far as
+  !> the origins of their moving links come. A closed curve of a moving link is the edge of a cam.
+  subroutine add_curves(film, skeleton, px, scene, cams)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn
+    real(wp), intent(in) :: px                   !< length of 1 px in the mechanism [m]
     type(scene_type), intent(inout) :: scene     !< nodes and items of the picture
-    logical, intent(out) :: cams(:)              !< (M) the pair runs around a cam
+    logical, intent(out) :: cams(:)              !< (M) the pair runs around a cam, or along a curve that is drawn whole
     integer :: nodes(film%n_frames), k, frame
 
     cams = .false.
-    if (film%n_frames < 2) return
     do k = 1, size(skeleton%places)
       associate (place => skeleton%places(k))
-        if (place%kind /= free) cycle
+        if (size(place%guide, 2) > 0) call add_guide(place%guide, place%links(1), px, scene)
+        cams(k) = size(place%guide, 2) > 0
+        if (place%kind /= free .or. cams(k) .or. film%n_frames < 2) cycle
         do frame = 1, film%n_frames
           call scene%add_node(place%links(1), film%local(frame, place%links(1), film%p(:, place%links(2), frame)), &
                               nodes(frame))
@@ -103,6 +105,23 @@ contains
       end associate
     end do
   end subroutine add_curves
+
+  !> The curve of a path pair is added.
+  subroutine add_guide(guide, link, px, scene)
+    real(wp), intent(in) :: guide(:, :)       !< (3,n) places of the curve, in the link [m]
+    integer, intent(in) :: link               !< number of the link to which it belongs
+    real(wp), intent(in) :: px                !< length of 1 px in the mechanism [m]
+    type(scene_type), intent(inout) :: scene  !< nodes and items of the picture
+    integer, allocatable :: chosen(:), nodes(:)
+    integer :: i
+
+    chosen = bends_of(guide, straight*px)
+    allocate (nodes(size(chosen)))
+    do i = 1, size(chosen)
+      call scene%add_node(link, guide(:, chosen(i)), nodes(i))
+    end do
+    call scene%add_item(open_path, in_curve, nodes, link)
+  end subroutine add_guide
 
   !> Whether a curve ends within two of its mean steps from where it began.
   pure logical function closes(curve)

@@ -46,12 +46,15 @@ contains
     type(film_type), intent(in) :: film            !< poses of the run; only the first frame is used
     type(skeleton_type), intent(out) :: skeleton   !< places at which the pairs are drawn
     type(pair_axes_type), allocatable :: axes(:)
+    integer :: k
 
     axes = pair_axes(mechanism%pairs)
     skeleton%graph = graph_from_structure(mechanism%structure)
     allocate (skeleton%places(size(axes)))
-    skeleton%places%pair_axes_type = axes
-    where (axes%kind == free) skeleton%places%carrier = 2
+    do k = 1, size(axes)
+      skeleton%places(k)%pair_axes_type = axes(k)
+      if (axes(k)%kind == free) skeleton%places(k)%carrier = 2
+    end do
     call draw_near(film, skeleton)
     skeleton%size = size_of(mechanism, film, skeleton%places)
   end subroutine make_skeleton

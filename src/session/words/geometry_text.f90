@@ -1,8 +1,9 @@
-!> The dimensions of links in words, for --check.
+!> The dimensions of links and curves in words, for --check.
 module mech9_geometry_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_counted, only: counted
+  use mech9_pair, only: pair_guide_type
   use mech9_mechanism, only: mechanism_type
   use mech9_link_dimensions, only: link_dimension_type, link_dimensions
   implicit none
@@ -28,6 +29,7 @@ contains
     logical :: given(3)
     integer :: i
 
+    call print_curves(unit, mechanism)
     call link_dimensions(mechanism, dimensions)
     if (size(dimensions) == 0) return
     angle_name = merge('rad', 'deg', abs(mechanism%angle_unit - 1.0_wp) <= 0.0_wp)
@@ -45,6 +47,21 @@ contains
     end do
     if (size(dimensions) > most_lines) write (unit, '(a)') '  and '//counted(size(dimensions) - most_lines, 'more line')
   end subroutine print_dimensions
+
+  !> Write the length of each curve along which a pair leads its moving link.
+  subroutine print_curves(unit, mechanism)
+    integer, intent(in) :: unit                    !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(pair_guide_type) :: guide
+    integer :: k
+
+    do k = 1, size(mechanism%pairs)
+      call mechanism%pairs(k)%pair%guide(guide)
+      if (.not. guide%length > 0.0_wp) cycle
+      write (unit, '(a)') 'curve of pair '//to_text(k)//': '//trim(merge('closed', 'open  ', guide%closed))// &
+        ', length '//to_text(guide%length, 13)//' m'
+    end do
+  end subroutine print_curves
 
   !> A text at the left of a column.
   pure character(len=12) function left(text)
