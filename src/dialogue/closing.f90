@@ -148,7 +148,7 @@ contains
         cycle
       end if
       if (is_read(conversation%interview%draft, path)) then
-        call conversation%say(path//' holds the table of a drive; give another name.')
+        call conversation%say(path//' holds points that this mechanism reads; give another name.')
         cycle
       end if
       call agree_to_overwrite(conversation, path, agreed)
@@ -163,20 +163,23 @@ contains
     call conversation%say('Saved in '//path//'; '//conversation%program_name//' '//path//' runs it again.')
   end subroutine save
 
-  !> Whether a data file of this name would be written over the table of one of its drives.
+  !> Whether a data file of this name would be written over the table of a drive or load, or the curve of a pair.
   logical function is_read(draft, path)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     character(len=*), intent(in) :: path   !< name of the data file
     character(len=:), allocatable :: table
-    integer :: i
+    character(len=5), parameter :: groups(4) = [character(len=5) :: 'drive', 'load', 'motor', 'pair']
+    integer :: g, i
 
     is_read = .true.
-    do i = 1, draft%count_of('drive')
-      table = unquoted(draft%value('drive', i, 'file'))
-      if (table == '') cycle
-      ! the data file names its tables from its own folder on
-      if (table(1:1) /= '/') table = folder_of(path)//table
-      if (same_file(table, path)) return
+    do g = 1, size(groups)
+      do i = 1, draft%count_of(trim(groups(g)))
+        table = unquoted(draft%value(trim(groups(g)), i, 'file'))
+        if (table == '') cycle
+        ! the data file names its tables from its own folder on
+        if (table(1:1) /= '/') table = folder_of(path)//table
+        if (same_file(table, path)) return
+      end do
     end do
     is_read = .false.
   end function is_read

@@ -22,7 +22,7 @@ module mech9_drive_reader
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_drives, read_law, files_of_drives, unit_of_coordinate
+  public :: read_drives, read_law, files_of_groups, unit_of_coordinate
 
   !> A period is that of the segments where it differs by no more than this part.
   real(wp), parameter :: same_period = 1.0e-9_wp
@@ -222,7 +222,7 @@ contains
   end subroutine check_period
 
   !> The files that drives, laws of loads and motors and curves of pairs are read from, in a document that may be unchecked yet.
-  pure subroutine files_of_drives(document, paths)
+  pure subroutine files_of_groups(document, paths)
     type(document_type), intent(in) :: document              !< the data file as groups and items
     type(string_type), allocatable, intent(out) :: paths(:)  !< path of each file, from the working directory
     integer :: i, n
@@ -238,7 +238,7 @@ contains
       end associate
     end do
     paths = paths(:n)
-  end subroutine files_of_drives
+  end subroutine files_of_groups
 
   !> Append the file that a group names; if it names several, the last one counts.
   pure subroutine take_file(data_file, items, paths, n)

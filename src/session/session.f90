@@ -11,7 +11,7 @@ module mech9_session
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: read_document
   use mech9_setting, only: apply_setting
-  use mech9_drive_reader, only: files_of_drives
+  use mech9_drive_reader, only: files_of_groups
   use mech9_reader, only: read_structure_only, read_model
   use mech9_data_help, only: write_data_help
   use mech9_structure, only: structure_type
@@ -137,19 +137,19 @@ contains
     call diagnostics%report(error_unit)
   end subroutine run_file
 
-  !> The files that are read: the data file, and those of drives.
+  !> The files that are read: the data file, and those that its groups name.
   pure subroutine list_inputs(path, document, inputs)
     character(len=*), intent(in) :: path                       !< of the data file
     type(document_type), intent(in) :: document                !< its groups and items
     type(string_type), allocatable, intent(out) :: inputs(:)   !< paths of the files that are read
-    type(string_type), allocatable :: of_drives(:)
+    type(string_type), allocatable :: of_groups(:)
     integer :: i
 
-    call files_of_drives(document, of_drives)
-    allocate (inputs(1 + size(of_drives)))
+    call files_of_groups(document, of_groups)
+    allocate (inputs(1 + size(of_groups)))
     inputs(1)%text = path
-    do i = 1, size(of_drives)
-      inputs(1 + i)%text = of_drives(i)%text
+    do i = 1, size(of_groups)
+      inputs(1 + i)%text = of_groups(i)%text
     end do
   end subroutine list_inputs
 

@@ -310,7 +310,8 @@ contains
         change = (wanted - arc_length(self%spline, piece, from, u))/norm2(self%spline%velocity(piece, u))
         change = max(-width, min(width, change))
         u = u + change
-        if (abs(change) <= 4.0_wp*epsilon(u)*width) exit
+        ! Newton's method squares the error: the next change would be round-off
+        if (abs(change) <= 1.0e-9_wp*width) exit
       end do
     end associate
   end function parameter_at

@@ -99,6 +99,16 @@ def drives(checks, program):
     folder.does('a drive that is not read', 'mine.nml', '--set', 'drive.file=motion.txt', '--table', 'a.dat')
 
 
+def curves(checks, program):
+    """The file of a curve."""
+    folder = Folder(checks, program, text="&pair coordinate=1, links=1,2, kind='path', file='curve.txt' /\n&structure cq=1 /\n"
+                    "&drive coordinate=1, kind='polynomial', coefficients=0.5 /\n")
+    folder.write('curve.txt', '0 0\n1 0\n2 0\n3 1\n')
+    folder.does('a curve from a file', 'mine.nml', '--no-write')
+    for words in (('--table', 'curve.txt'), ('--report', 'curve.txt', '--check')):
+        folder.refuses(f'{words} over a curve', 'mine.nml', *words, names=('curve.txt',))
+
+
 def each_other(checks, program):
     """Results over results."""
     for words in (('--table', 'a', '--hdf5', 'a'), ('--table', 'a', '--hdf5', './a'), ('--table', 'a', '--report', 'a'),
@@ -137,7 +147,7 @@ def harmless(checks, program):
 def main():
     program = sys.argv[1]
     checks = Checks()
-    for part in (inputs, drives, each_other, harmless):
+    for part in (inputs, drives, curves, each_other, harmless):
         part(checks, program)
     checks.finish()
 

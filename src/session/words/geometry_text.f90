@@ -59,7 +59,7 @@ contains
       call mechanism%pairs(k)%pair%guide(guide)
       if (.not. guide%length > 0.0_wp) cycle
       write (unit, '(a)') 'curve of pair '//to_text(k)//': '//trim(merge('closed', 'open  ', guide%closed))// &
-        ', length '//to_text(guide%length, 13)//' m'
+        ', length '//to_text(guide%length, 10)//' m'
     end do
   end subroutine print_curves
 
