@@ -41,7 +41,7 @@ SPRING_AT_PIN = """
 
 def scaled(groups, s):
     """The groups with lengths that are s times as large: kg and s stay, so that forces are s times as large and moments s^2."""
-    slides = {pair['coordinate'][0] for group, pair in groups if group == 'pair' and pair['kind'] == ['prismatic']}
+    slides = {pair['coordinate'][0] for group, pair in groups if group == 'pair' and pair['kind'][0] in ('prismatic', 'path')}
     powers = {'point': {'position': 1}, 'body': {'centre': 1, 'inertia': 2}, 'gravity': {'acceleration': 1},
               'pair': {'point': 1, 'moving_point': 1, 'pitch': 1},
               'spring': {'position': 1, 'second_position': 1, 'free_length': 1},
@@ -66,7 +66,7 @@ def scaled(groups, s):
 
 def in_degrees(groups):
     """The groups with angles in degrees, by the rules of the data file: forces and stiffnesses stay those per rad."""
-    slides = {pair['coordinate'][0] for group, pair in groups if group == 'pair' and pair['kind'] == ['prismatic']}
+    slides = {pair['coordinate'][0] for group, pair in groups if group == 'pair' and pair['kind'][0] in ('prismatic', 'path')}
     always = {'drive': ['angular_frequency', 'phase']}
     of_turns = {'initial': ['position', 'velocity'], 'drive': ['coefficients', 'mean', 'amplitude', 'values'],
                 'coordinate': ['rest']}
@@ -169,6 +169,7 @@ class Units:
         for s in (1.0, *UNITS):
             groups = data_file.parse(text)
             slides = scaled(groups, s)
+            self.scale_curves(groups, s)
             runs.append(self.look(program, data_file.write(groups), *options))
         self.checks.true(runs[0][2] is not None, f'{path}: it runs', runs[0][1])
         for s, other in zip(UNITS, runs[1:]):
@@ -180,6 +181,16 @@ class Units:
         slides = in_degrees(groups)
         self.compare(f'{os.path.basename(path)}, in degrees', runs[0], self.look(program, data_file.write(groups), *options),
                      lambda column: degrees_in(column, slides))
+
+    def scale_curves(self, groups, s):
+        """Curves with lengths that are s times as large, in files of their own."""
+        for group, items in groups:
+            if group != 'pair' or items['kind'] != ['path']:
+                continue
+            with open(items['file'][0], encoding='utf-8') as file:
+                points = np.array([[float(word) for word in line.split()] for line in file if re.match(r'\s*[-+.\d]', line)])
+            items['file'] = [os.path.join(self.folder, f'curve{items["coordinate"][0]}.dat')]
+            np.savetxt(items['file'][0], s * points, fmt='%.17g')
 
     def families(self, mech9k, members):
         """Members of families, right ones and wrong ones."""
