@@ -5,6 +5,7 @@ module mech9_motion
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_model, only: model_type
   use mech9_point, only: point_type
+  use mech9_partition, only: free_coordinate
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: point_motion
@@ -51,6 +52,17 @@ contains
     type(checked_mechanism_type), intent(in) :: mechanism            !< with a drive for each independent coordinate
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
+
+    call start_driven(self, mechanism, .false., err, interruption)
+  end subroutine start_kinematics
+
+  !> Start a motion that drives determine.
+  subroutine start_driven(self, mechanism, with_masses, err, interruption)
+    class(motion_type), intent(inout) :: self                        !< the motion; one that it held is closed
+    type(checked_mechanism_type), intent(in) :: mechanism            !< with a drive for each independent coordinate
+    logical, intent(in) :: with_masses                               !< bodies count, for energies
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
     type(driven_simulation_type), allocatable :: simulation
     type(plan_type) :: plan
     type(state_type) :: assembled
@@ -60,7 +72,7 @@ contains
     call mechanism%take(.true., self%model, err)
     if (.not. allocated(err)) call assemble_driven_start(self%model, plan, assembled, err)
     if (.not. allocated(err)) then
-      call new_driven_simulation(self%model, plan, assembled, simulation, pictures=.true.)
+      call new_driven_simulation(self%model, plan, assembled, simulation, .true., with_masses)
       call simulation%start(err, interruption)
     end if
     call mechanism%point_at(err)
@@ -69,10 +81,11 @@ contains
     else
       call move_alloc(simulation, self%simulation)
     end if
-  end subroutine start_kinematics
+  end subroutine start_driven
 
   !> Start a motion under forces from the initial positions and rates of the free coordinates. Those with drives move as these
-  !> say. Fails as start_kinematics does, with exit_data also where a free coordinate has no initial position.
+  !> say; where all are driven nothing is integrated. Fails as start_kinematics does, with exit_data also where a free coordinate
+  !> has no initial position.
   subroutine start_dynamics(self, mechanism, err, interruption)
     class(motion_type), intent(inout) :: self                        !< the motion; one that it held is closed
     type(checked_mechanism_type), intent(in) :: mechanism            !< with bodies, loads and gravity
@@ -85,6 +98,12 @@ contains
     call self%close()
     allocate (simulation, self%model)
     call mechanism%take(.false., self%model, err)
+    if (.not. allocated(err)) then
+      if (all(self%model%problem%partition%kind /= free_coordinate)) then
+        call start_driven(self, mechanism, .true., err, interruption)
+        return
+      end if
+    end if
     if (.not. allocated(err)) call assemble_free_start(self%model, plan, assembled, err)
     if (.not. allocated(err)) call take_accuracy(self%model, plan, assembled, err, interruption)
     if (.not. allocated(err)) call new_free_simulation(self%model, plan, assembled, simulation, err, pictures=.true.)

@@ -14,6 +14,7 @@ program test_library
 
   call check_nothing_started()
   call check_driven_energies()
+  call check_all_driven()
   call check_one_after_the_other()
   call check_accuracy()
   call test%finish()
@@ -74,6 +75,26 @@ contains
     call test%near(motion%q(1), 1.7_wp, 1e-15_wp, 'the motion stays where it is when an earlier time is refused')
     call motion%close()
   end subroutine check_driven_energies
+
+  !> Dynamics of a body whose only coordinate is driven: it has the motion of the drive, its energies, and no steps of an integrator.
+  subroutine check_all_driven()
+    type(mechanism_type) :: mechanism
+    type(motion_type) :: motion
+    type(error_type), allocatable :: err
+    type(simulation_statistics_type) :: counts
+    real(wp) :: kinetic, potential
+
+    call read_text(driven, mechanism, err)
+    call motion%start_dynamics(mechanism, err)
+    call motion%advance(1.0_wp, err)
+    call test%no_error(err, 'a motion starts that drives determine')
+    call test%near(motion%q(1), 2.2_wp, 1e-15_wp, 'it is that of its drive')
+    call motion%energies(kinetic, potential)
+    call test%near(kinetic, 0.5_wp*0.85_wp*4.0_wp, 1e-14_wp, 'it has its kinetic energy')
+    counts = motion%statistics()
+    call test%is_true(counts%evaluations == 0, 'nothing is integrated where all is driven')
+    call motion%close()
+  end subroutine check_all_driven
 
   !> One variable holds a driven motion, then a free one, then nothing.
   subroutine check_one_after_the_other()
