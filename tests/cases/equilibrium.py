@@ -16,7 +16,7 @@ import numpy as np
 from mech9_cases import Checks, read_table, run, text_of
 
 G = 9.81
-USAGE, DATA, ASSEMBLY, SINGULAR = 2, 3, 5, 6
+USAGE, DATA, ASSEMBLY, SINGULAR, FILE = 2, 3, 5, 6, 8
 GRAVITY = f'&gravity acceleration=0,{-G},0 /\n'
 # Eigenvalues come from matrices exact to round-off; those of unbalanced problems lose some hundred units more.
 EXACT = 1e-12
@@ -294,8 +294,11 @@ def check_statics(checks, case):
     # a ball joint of three hinges in gimbal lock: the forces do not tell whether it rests, although it has inertia elsewhere
     ball = mechanism(4, 3, [1, 2, 3], *[pair(k, f'{k},{k + 1}', axis=axis) for k, axis in enumerate(('1,0,0', '0,1,0', '0,0,1'), 1)],
                      *[initial(k, np.pi / 2 if k == 2 else 0) for k in (1, 2, 3)], body(4, 1.0, '0,0,0', 1.0))
-    result = case(ball, '--equilibrium')
-    checks.equal(result.returncode, DATA, 'no equilibrium is told in gimbal lock')
+    for options in (('--equilibrium',), ('--modes',)):
+        result = case(ball, *options)
+        checks.equal(result.returncode, SINGULAR, f'{options}: no equilibrium is told in gimbal lock')
+        checks.true('gimbal lock' in result.stderr and 'coordinates 1, 3 can move together' in result.stderr, f'{options}: it is named',
+                    result.stderr)
 
 
 def check_many_starts(checks, case):
@@ -487,6 +490,12 @@ def check_failures(checks, case):
         result = case(pendulum(), *options)
         checks.equal(result.returncode, USAGE, f'{options} is refused')
         checks.true(words in result.stderr, f'{options}: with its remedy', result.stderr)
+    if checks.has_full_disk():
+        for options in (('--equilibrium', '--table', '/dev/full'), ('--modes', '--table', '/dev/full'), ('--linear', '/dev/full'),
+                        ('--equilibrium', '--hdf5', '/dev/full'), ('--modes', '--report', '/dev/full')):
+            result = case(pendulum(), *options)
+            checks.equal(result.returncode, FILE, f'{options}: a full disk')
+            checks.true('No space left on device' in result.stderr, f'{options}: a full disk is told', result.stderr)
     result = case(pendulum(), '--modes', '--mode', '7', '--animate', 'a.svg')
     checks.equal(result.returncode, USAGE, 'a mode that is not there is refused')
 

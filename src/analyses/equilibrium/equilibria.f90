@@ -32,8 +32,7 @@ module mech9_equilibria
 contains
 
   !> The equilibrium to which an assembled position leads. Fails with exit_assembly where there is none, with exit_singular where
-  !> branches meet in it, with exit_data where a free coordinate has no inertia although it has some in other positions (gimbal
-  !> lock), and where a load fails.
+  !> branches meet in it, or coordinates have no inertia in this position alone (gimbal lock), and where a load fails.
   subroutine find_equilibrium(mechanism, partition, plan, assembled, found, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(partition_type), intent(in) :: partition       !< driven, free and dependent coordinates

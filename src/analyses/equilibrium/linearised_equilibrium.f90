@@ -2,8 +2,8 @@
 module mech9_linearised_equilibrium
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_data
-  use mech9_failure, only: failure_no_inertia
+  use mech9_error, only: error_type, raise, exit_data, exit_singular
+  use mech9_failure, only: failure_no_inertia, failure_gimbal_lock
   use mech9_lapack, only: dsyev
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_tolerances, only: negligible_inertia
@@ -13,6 +13,7 @@ module mech9_linearised_equilibrium
   use mech9_linearisation, only: find_matrix, by_rate, by_acceleration
   use mech9_resting_motors, only: motor_coupling_type, release_setpoints, couple_motors
   use mech9_motor_modes, only: find_motor_modes
+  use mech9_stopped_motion, only: find_lock
   use mech9_resting_mechanism, only: resting_type, find_stiffness, try_step, return_to_coordinates, refuse_singular
   implicit none
   private
@@ -41,7 +42,7 @@ module mech9_linearised_equilibrium
 contains
 
   !> Linearise the equations of motion in an equilibrium and find their modes. Fails with exit_singular where branches meet in this
-  !> position, and with exit_data where a coordinate has no inertia in this position alone.
+  !> position, or where coordinates have no inertia in this position alone.
   subroutine linearise(mechanism, partition, found, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(partition_type), intent(in) :: partition       !< with the coordinates of the data file
@@ -70,7 +71,7 @@ contains
         massless = found%modes%without_inertia
       end if
       if (massless > 0) then
-        call judge_statics(mechanism, resting%free(massless), found, err)
+        call judge_statics(mechanism, massless, m, found, err)
         return
       end if
       if (mechanism%n_motors > 0) call add_motors(mechanism, m, c, found, err)
@@ -145,46 +146,65 @@ contains
     end do
   end subroutine find_inertia
 
-  !> Judge an equilibrium in which a coordinate moves no mass by its stiffness alone. Fails with exit_data where the coordinate
-  !> does so in this position only: the forces then say nothing about it.
-  subroutine judge_statics(mechanism, coordinate, found, err)
+  !> Judge an equilibrium in which a coordinate moves no mass by its stiffness alone. Fails with exit_singular where it does so in
+  !> this position only (gimbal lock): the forces then say nothing about it.
+  subroutine judge_statics(mechanism, massless, m, found, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
-    integer, intent(in) :: coordinate                   !< the coordinate
+    integer, intent(in) :: massless                     !< place of the coordinate among the free ones
+    real(wp), intent(in) :: m(:, :)                     !< (n,n) inertia of the free coordinates [J s^2]
     type(equilibrium_type), intent(inout) :: found      !< with its position and stiffness; gets its stability
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp), dimension(size(found%resting%free), size(found%resting%free)) :: vectors
-    real(wp) :: values(size(found%resting%free)), work(34*size(found%resting%free))
+    real(wp), dimension(size(m, 1), size(m, 1)) :: elsewhere, vectors
+    real(wp) :: values(size(m, 1)), work(34*size(m, 1))
     integer :: info
     logical :: has_inertia
 
-    call look_elsewhere(mechanism, found%resting, has_inertia, err)
+    call look_elsewhere(mechanism, found%resting, elsewhere, has_inertia, err)
     if (allocated(err)) return
     if (has_inertia) then
-      call raise(err, exit_data, failure_no_inertia)
-      err%failure%coordinates = [coordinate]
+      call refuse_lock(found%resting, massless, find_lock(m, elsewhere), err)
       return
     end if
     vectors = 0.5_wp*(found%resting%stiffness + transpose(found%resting%stiffness))
     call dsyev('N', 'L', size(values), vectors, size(values), values, work, size(work), info)
     found%is_stable = all(values >= -round_off*found%resting%stiffness_magnitude)
-    found%without_inertia = coordinate
+    found%without_inertia = found%resting%free(massless)
     found%modes%count = 0
     found%modes%growth = ieee_value(found%modes%growth, ieee_quiet_nan)
   end subroutine judge_statics
 
-  !> Whether all free coordinates have inertia in another position near by. Where the mechanism cannot move, they have not.
-  subroutine look_elsewhere(mechanism, resting, has_inertia, err)
+  !> Fail because coordinates have no inertia in this position alone.
+  subroutine refuse_lock(resting, massless, is_locked, err)
+    type(resting_type), intent(in) :: resting           !< the mechanism at rest
+    integer, intent(in) :: massless                     !< place of a coordinate without inertia among the free ones
+    logical, intent(in) :: is_locked(:)                 !< (n) the free coordinate can move with others without moving any mass
+    type(error_type), allocatable, intent(out) :: err   !< the failure
+
+    if (any(is_locked)) then
+      call raise(err, exit_singular, failure_gimbal_lock)
+      err%failure%coordinates = pack(resting%free, is_locked)
+      err%failure%t = resting%state%t
+    else
+      call raise(err, exit_data, failure_no_inertia)
+      err%failure%coordinates = [resting%free(massless)]
+    end if
+  end subroutine refuse_lock
+
+  !> Inertia in another position near by. Where the mechanism cannot move, there is none.
+  subroutine look_elsewhere(mechanism, resting, m, has_inertia, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(resting_type), intent(in) :: resting           !< the mechanism at rest
-    logical, intent(out) :: has_inertia                 !< they have
+    real(wp), intent(out) :: m(:, :)                    !< (n,n) inertia of the free coordinates there [J s^2]
+    logical, intent(out) :: has_inertia                 !< no motion of them moves no mass
     type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
     real(wp), parameter :: steps(3) = [0.3_wp, 0.1_wp, 0.01_wp]   ! [rad, lengths of the mechanism]
     type(resting_type) :: other
-    real(wp) :: m(size(resting%free), size(resting%free)), step(size(resting%free))
+    real(wp) :: factors(size(m, 1), size(m, 1)), step(size(m, 1))
     integer :: i, k, massless, failed_at
     logical :: moved
 
     has_inertia = .false.
+    m = 0.0_wp
     do i = 1, size(steps)
       step = [(steps(i)*(0.7_wp + 0.3_wp*sin(real(k, wp))), k=1, size(step))]
       call try_step(mechanism, resting, step, other, moved, err)
@@ -194,7 +214,8 @@ contains
     if (.not. moved) return
     call find_inertia(mechanism, other, m, massless, err)
     if (allocated(err) .or. massless > 0) return
-    call cholesky_factorize(size(step), m, failed_at)
+    factors = m
+    call cholesky_factorize(size(step), factors, failed_at)
     has_inertia = failed_at == 0
   end subroutine look_elsewhere
 
