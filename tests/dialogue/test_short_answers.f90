@@ -32,6 +32,8 @@ contains
 
     call becomes(tester, 'pair', 'kind', '', 'rev', 'revolute')
     call becomes(tester, 'pair', 'kind', '', 'P', 'prismatic')
+    call becomes(tester, 'pair', 'kind', '', 'pa', 'path')
+    call becomes(tester, 'pair', 'kind', '', 'Wire', 'path')
     call becomes(tester, 'pair', 'kind', '', 'hinge', 'revolute')
     call becomes(tester, 'pair', 'kind', '', 'Slider', 'prismatic')
     call becomes(tester, 'pair', 'kind', '', 'screw', 'helical')

@@ -48,10 +48,13 @@ contains
     select case (lower(line))
     case ('hinge', 'pin')
       kind = 'revolute'
-    case ('slide', 'slider')
+    case ('slide', 'slider', 'p')
+      ! the letter with which textbooks name it, though a path begins with it, too
       kind = 'prismatic'
     case ('screw')
       kind = 'helical'
+    case ('curve', 'wire', 'rail')
+      kind = 'path'
     case default
       kind = ''
     end select
