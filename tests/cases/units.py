@@ -106,6 +106,13 @@ def power_of(column, slides):
     return 1 if '.' in column else 0
 
 
+def largest_like(column, table):
+    """The largest magnitude in a column; of a force in a pair, or a moment, that in all of them, whose round-off each contains."""
+    of_pair = re.fullmatch(r'R\d+\.([fm])[xyz]', column)
+    alike = [name for name in table if re.fullmatch(rf'R\d+\.{of_pair[1]}[xyz]', name)] if of_pair else [column]
+    return max(np.max(np.abs(table[name])) for name in alike)
+
+
 class Units:
     def __init__(self, folder):
         self.folder, self.checks = folder, Checks()
@@ -157,7 +164,7 @@ class Units:
             # beside a singular position each solution loses as much as its matrix is ill conditioned
             lost = max(1.0, 0.01 / least) ** (1 + column.count('d'))
             # relative to the largest number of the column, unless they all are zeros but for round-off
-            largest = np.max(np.abs(values))
+            largest = largest_like(column, table)
             self.checks.near(found, values, tolerance_of(column) * lost, f'{why}: {column}',
                              scale=largest if largest > tolerance_of(column) else 1.0)
 

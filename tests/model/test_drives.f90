@@ -175,9 +175,9 @@ contains
     call table%evaluate(3.001_wp, q, dq, ddq, err)
     call test%has_error(err, exit_data, 'a time after the end of a table is refused')
     call test%is_true(err%place%line == 12, 'the error of a time outside a table tells where the drive is written')
-    call test%is_true(index(err%message, 'coordinate 7') > 0 .and. index(err%message, '1 to 3') > 0 .and. &
-                      index(err%message, '3.001') > 0, &
-                      'the message about a time outside a table names the coordinate, the range and the time')
+    call test%is_true(index(err%message, 'coordinate 7') > 0 .and. index(err%message, 'after t = 3 s') > 0 .and. &
+                      index(err%message, 't = 3.001 s') > 0, &
+                      'the message about a time outside a table names the coordinate, the last time and the time')
     call table%evaluate(0.999_wp, q, dq, ddq, err)
     call test%has_error(err, exit_data, 'a time before the beginning of a table is refused')
   end subroutine ends_of_table
