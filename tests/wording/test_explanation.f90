@@ -61,7 +61,7 @@ contains
     failure%chains = [2]
     failure%coordinates = [4]
     failure%others = [1]
-    allocate (failure%idle(0), failure%replaces(6, 1), failure%values(1, 2))
+    allocate (failure%idle(0), failure%replaces(6, 1), failure%values(2, 2))
     failure%replaces = .false.
     failure%values = 1.5_wp
     failure%name = 'bdg'
