@@ -17,7 +17,8 @@ module mech9_free_simulation
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_integrator, only: integration_statistics_type
   use mech9_integrated_vector, only: unpack_state
-  use mech9_motion_system, only: set_motion_system, find_coefficients
+  use mech9_motion_system, only: set_motion_system
+  use mech9_motion_coefficients, only: find_coefficients
   use mech9_integrated_motion, only: integrated_motion_type
   use mech9_limit_passing, only: stop_at_limits
   use mech9_stopped_motion, only: name_cause, name_cause_at_start
@@ -142,7 +143,7 @@ contains
           if (allocated(err)) return
         end do
         if (.not. abs(t - motion%t) > 0.0_wp) then
-          if (motion%system%is_at_joint(t)) call motion%pass_joint(err)
+          if (motion%system%interval%is_end(t)) call motion%pass_joint(err)
           if (allocated(err)) return
           exit
         end if
@@ -216,7 +217,7 @@ contains
     real(wp) :: target, farthest
     logical :: changed, is_regular
 
-    if (self%motion%system%is_at_joint(self%motion%t)) call self%motion%pass_joint(err)
+    if (self%motion%system%interval%is_end(self%motion%t)) call self%motion%pass_joint(err)
     if (.not. allocated(err)) call self%change_angles(err)
     if (allocated(err)) return
     associate (motion => self%motion)
@@ -233,9 +234,9 @@ contains
       if (motion%conditioning_here > regular_conditioning .and. .not. self%steps_onto .and. &
         (self%end - t)*(t - motion%t) > 0.0_wp) &
         farthest = self%end
-      if (motion%system%has_joints) then
-        target = nearer(target, motion%system%joint_ahead, motion%t)
-        farthest = nearer(farthest, motion%system%joint_ahead, motion%t)
+      if (motion%system%interval%ends) then
+        target = nearer(target, motion%system%interval%ahead, motion%t)
+        farthest = nearer(farthest, motion%system%interval%ahead, motion%t)
       end if
       call motion%integrator%step(target, motion%t, motion%y, failure, farthest)
       if (.not. allocated(failure)) then

@@ -2,7 +2,7 @@
 !> change to other coordinates.
 module mech9_integrated_motion
   use mech9_kinds, only: wp, long
-  use mech9_tolerances, only: doubtful_conditioning, worthwhile_improvement
+  use mech9_tolerances, only: doubtful_conditioning, worthwhile_improvement, third_derivative_step
   use mech9_error, only: error_type
   use mech9_partition, only: partition_type
   use mech9_plan, only: plan_type
@@ -13,6 +13,7 @@ module mech9_integrated_motion
   use mech9_ode_system, only: is_recoverable
   use mech9_integrator, only: integrator_type, integration_statistics_type
   use mech9_coordinate_choice, only: best_independent, carry_over
+  use mech9_integrated_vector, only: pack_rates
   use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_ball_angles, only: ball_angles_type
   use mech9_dense_output, only: dense_output_type
@@ -22,8 +23,7 @@ module mech9_integrated_motion
   private
   public :: integrated_motion_type
 
-
-  !> It must not be copied: the integrator keeps hold of the system.
+  !> A free motion under integration. It must not be copied: the integrator keeps hold of the system.
   type :: integrated_motion_type
     type(motion_system_type), pointer :: system => null()   !< owned
     type(ball_angles_type) :: angles              !< of ball joints, as in the data file
@@ -156,9 +156,33 @@ contains
     if (.not. self%angles%in_use()) return
     call self%angles%continue_to(self%system%state)
     dddq = 0.0_wp
-    if (self%angles%in_lock()) call self%system%third_derivatives(dddq, err)
+    if (self%angles%in_lock()) call find_third_derivatives(self%system, dddq, err)
     if (.not. allocated(err)) call self%angles%show(self%system%state, dddq, err)
   end subroutine show_angles
+
+  !> The third derivatives of the independent coordinates at the present state, to about 1e-10, by a central difference of the
+  !> accelerations; those of the others are zero. The system stands at the same state afterwards.
+  subroutine find_third_derivatives(system, dddq, err)
+    type(motion_system_type), intent(inout) :: system  !< the motion system, with the motion of its state
+    real(wp), intent(out) :: dddq(:)                    !< (M) [rad/s^3, m/s^3]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp), dimension(system%size_of_vector()) :: y, ydot
+    real(wp) :: t, dt
+
+    t = system%state%t
+    y = system%vector()
+    dddq = 0.0_wp
+    call pack_rates(system%plan, system%state, system%state%ddq(system%plan%independent), ydot)
+    dt = third_derivative_step/max(maxval(abs(system%state%dq)/system%plan%unit_of), &
+                                   sqrt(maxval(abs(system%state%ddq)/system%plan%unit_of)), tiny(dt)/epsilon(dt))
+    call system%move_to(t + dt, y + dt*ydot, err)
+    if (allocated(err)) return
+    dddq(system%plan%independent) = system%state%ddq(system%plan%independent)
+    call system%move_to(t - dt, y - dt*ydot, err)
+    if (allocated(err)) return
+    dddq(system%plan%independent) = (dddq(system%plan%independent) - system%state%ddq(system%plan%independent))/(2.0_wp*dt)
+    call system%move_to(t, y, err)
+  end subroutine find_third_derivatives
 
   !> Whether there is a failure. One that has nothing to do with the choice of coordinates is handed on.
   logical function gives_up(failure, err)

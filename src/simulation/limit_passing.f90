@@ -25,7 +25,7 @@ contains
 
     if (.not. motion%limits%is_needed(motion%system)) return
     call motion%system%move_to(motion%t, motion%y, err)
-    if (allocated(err) .or. motion%system%is_at_joint(motion%t)) return
+    if (allocated(err) .or. motion%system%interval%is_end(motion%t)) return
     call motion%dense_output%start_of_step(from, y)
     call motion%limits%find_passing(motion%system, motion%t - from, motor, part, err)
     if (allocated(err)) return
@@ -34,7 +34,7 @@ contains
     if (allocated(err)) return
     if (passed) then
       call motion%step_back(t, err)
-      call motion%system%stop_at_limit(t, motor)
+      call motion%system%interval%end_at_limit(t, motor)
     else
       if (motor > 0) call motion%system%move_to(motion%t, motion%y, err)
       if (.not. allocated(err)) call motion%limits%note(motion%system, err)

@@ -1,21 +1,18 @@
 !> The motion as differential equations for an integrator.
 !>
 !> The vector that is integrated holds all coordinates, the rates of the free ones and the states of motors; the motion of driven
-!> coordinates is that of their drives. An
-!> evaluation takes the positions as they are, and the chains are closed after each accepted step:
-!> half the cost of closing them in every evaluation, at the same error (docs/design-decisions.md).
+!> coordinates is that of their drives. An evaluation takes the positions as they are, and the chains are closed after each
+!> accepted step: half the cost of closing them in every evaluation, at the same error (docs/design-decisions.md).
 module mech9_motion_system
   use mech9_kinds, only: wp, long
-  use mech9_tolerances, only: trusted_between_steps, trusted_closing, third_derivative_step
+  use mech9_tolerances, only: trusted_between_steps, trusted_closing
   use mech9_error, only: error_type, raise, exit_singular, exit_integrator
   use mech9_failure, only: failure_singular_step, failure_unclosed_step, failure_drive_jumps, failure_no_inertia, &
     failure_lost_inertia, failure_infinite_rate
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
-  use mech9_law, only: law_type, from_inside
   use mech9_driven_equations, only: hold
   use mech9_partition, only: partition_type
   use mech9_motor, only: motor_action_type
-  use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -31,11 +28,12 @@ module mech9_motion_system
   use mech9_motor_states, only: start_motors, find_motor_rates, find_limits, find_action
   use mech9_frame_motion, only: place_all
   use mech9_branch_stepping, only: set_inputs
+  use mech9_smooth_interval, only: smooth_interval_type
   implicit none
   private
-  public :: motion_system_type, set_motion_system, find_coefficients
+  public :: motion_system_type, set_motion_system
 
-
+  !> The equations of motion of a model in its present coordinates, with the state of the last evaluation.
   type, extends(ode_system_type) :: motion_system_type
     type(model_type), pointer :: model => null()     !< constant, the same for all systems of a motion
     type(partition_type) :: partition                !< of the coordinates, as they are now
@@ -48,10 +46,7 @@ module mech9_motion_system
     real(wp) :: refuse_below = 0.0_wp
     logical, private :: just_settled = .false.
     logical, private :: has_inertia = .false.        !< all free coordinates had inertia in the position with which it was made
-    logical :: has_joints = .false.                  !< a law of time has joints, where its derivatives may jump
-    real(wp) :: joint_behind = 0.0_wp                !< laws are smooth from this time, which was passed last [s]
-    real(wp) :: joint_ahead = 0.0_wp                 !< to this one, which comes next [s]
-    integer, private :: passing = 0                  !< motor that passes its limit there; 0: none does
+    type(smooth_interval_type) :: interval           !< in which the present steps lie
   contains
     procedure :: size_of_vector
     procedure :: vector
@@ -60,13 +55,10 @@ module mech9_motion_system
     procedure :: close_near
     procedure :: move_to
     procedure :: resume
-    procedure :: third_derivatives
     procedure :: present
     procedure :: conditioning
     procedure :: signs
-    procedure :: is_at_joint
     procedure :: pass_joint
-    procedure :: stop_at_limit
     procedure :: pass_limits
   end type motion_system_type
 
@@ -91,7 +83,7 @@ contains
     system%state = start
     call place_motors(system, err)
     if (allocated(err)) return
-    call find_joints(system, start%t)
+    call system%interval%begin(model, start%t)
     ! reports show the coefficients of the start; articulated bodies do without
     if (system%dynamics%articulated) &
       call find_equations(model%mechanism, plan, system%dynamics, system%state, system%work, err)
@@ -132,24 +124,6 @@ contains
     call find_limits(self%model%mechanism, self%state, err)
   end subroutine place_motors
 
-  !> The coefficients of motion in a position.
-  subroutine find_coefficients(mechanism, plan, assembled, coefficients, err)
-    type(mechanism_type), intent(in) :: mechanism            !< the mechanism
-    type(plan_type), intent(in) :: plan                      !< its plan
-    type(state_type), intent(in) :: assembled                !< the position, with rates
-    real(wp), allocatable, intent(out) :: coefficients(:, :) !< a_pr, lower triangle [kg m^2, kg m, kg]
-    type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
-    type(dynamics_plan_type) :: dynamics
-    type(lagrange_work_type) :: work
-    type(state_type) :: state
-
-    call make_dynamics_plan(mechanism, plan, dynamics)
-    work = new_lagrange_work(plan, dynamics)
-    state = assembled
-    call find_equations(mechanism, plan, dynamics, state, work, err)
-    if (.not. allocated(err)) coefficients = work%coefficients
-  end subroutine find_coefficients
-
   !> Length of the vector that is integrated.
   pure integer function size_of_vector(self)
     class(motion_system_type), intent(in) :: self   !< the motion system
@@ -174,63 +148,9 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call unpack_state(self%plan, t, y, self%state)
-    if (self%has_joints) self%state%t = between_joints(self, t)
+    self%state%t = self%interval%time_inside(t)
     call set_inputs(self%model%problem%drives, self%state%t, self%state%q, self%state%dq, self%state%ddq, err)
   end subroutine take_vector
-
-  !> Find the joints of the laws of drives and loads around a time, at which the smooth interval begins.
-  subroutine find_joints(self, t)
-    class(motion_system_type), intent(inout) :: self    !< the motion system; gets the interval
-    real(wp), intent(in) :: t                           !< time [s]
-    real(wp) :: direction
-    integer :: i
-
-    associate (drives => self%model%problem%drives, loads => self%model%mechanism%loads)
-      direction = sign(1.0_wp, self%model%request%time%end - self%model%request%time%start)
-      self%joint_behind = t
-      self%joint_ahead = sign(huge(t), direction)
-      self%has_joints = .false.
-      do i = 1, size(drives)
-        call take_law(drives(i)%drive)
-      end do
-      do i = 1, size(loads)
-        if (allocated(loads(i)%load%law)) call take_law(loads(i)%load%law)
-      end do
-    end associate
-  contains
-    !> Take the next joint of a law into account.
-    subroutine take_law(law)
-      class(law_type), intent(in) :: law   !< the law
-      real(wp) :: joint
-
-      joint = law%next_joint(t, direction)
-      self%has_joints = self%has_joints .or. abs(joint) < huge(t) .or. abs(law%next_joint(t, -direction)) < huge(t)
-      if ((self%joint_ahead - joint)*direction > 0.0_wp) self%joint_ahead = joint
-    end subroutine take_law
-  end subroutine find_joints
-
-  !> A time at which laws have the derivatives of the smooth interval: at its ends a little more than round-off inside.
-  pure real(wp) function between_joints(self, t)
-    class(motion_system_type), intent(in) :: self   !< the motion system
-    real(wp), intent(in) :: t                       !< time within the interval [s]
-    real(wp) :: direction, first, last
-
-    direction = sign(1.0_wp, self%joint_ahead - self%joint_behind)
-    first = from_inside(self%joint_behind, direction)
-    last = self%joint_ahead
-    if (abs(last) < huge(last)) last = from_inside(last, -direction)
-    between_joints = t
-    if ((t - first)*direction < 0.0_wp) between_joints = first
-    if ((last - t)*direction < 0.0_wp) between_joints = last
-  end function between_joints
-
-  !> Whether the end of the smooth interval is reached.
-  pure logical function is_at_joint(self, t)
-    class(motion_system_type), intent(in) :: self   !< the motion system
-    real(wp), intent(in) :: t                       !< time [s]
-
-    is_at_joint = self%has_joints .and. abs(t - self%joint_ahead) <= 64.0_wp*spacing(t)
-  end function is_at_joint
 
   !> Pass a joint of the laws. Where rates of driven coordinates jump, those of the free ones change by the impulse of the drives:
   !> a_ff (change of dq_f) = -a_fd (change of dq_d).
@@ -245,7 +165,7 @@ contains
     call take_vector(self, t, y, err)
     if (allocated(err)) return
     jump = -self%state%dq
-    call find_joints(self, t)
+    call self%interval%begin(self%model, t)
     call take_vector(self, t, y, err)
     if (allocated(err)) return
     where (self%plan%driven)
@@ -262,17 +182,6 @@ contains
     end do
   end subroutine pass_joint
 
-  !> A motor passes its limit at a time ahead, at which steps end as at a joint of the laws.
-  pure subroutine stop_at_limit(self, t, motor)
-    class(motion_system_type), intent(inout) :: self   !< the motion system
-    real(wp), intent(in) :: t                          !< when [s]
-    integer, intent(in) :: motor                       !< number of the motor
-
-    self%has_joints = .true.
-    self%joint_ahead = t
-    self%passing = motor
-  end subroutine stop_at_limit
-
   !> Let the motors work at other limits behind a joint: the one that passes its limit there, and all whose forces jump.
   subroutine pass_limits(self, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system behind the joint, with all rates
@@ -281,16 +190,16 @@ contains
     integer :: before
 
     if (self%model%mechanism%n_motors == 0) return
-    if (self%passing > 0) before = self%state%limited(self%passing)
+    if (self%interval%motor > 0) before = self%state%limited(self%interval%motor)
     call find_limits(self%model%mechanism, self%state, err)
     if (allocated(err)) return
-    if (self%passing > 0) then
+    if (self%interval%motor > 0) then
       ! the demand is the limit but for round-off, which must not decide
-      self%state%limited(self%passing) = 0
-      call find_action(self%model%mechanism, self%passing, self%state, action, err)
+      self%state%limited(self%interval%motor) = 0
+      call find_action(self%model%mechanism, self%interval%motor, self%state, action, err)
       if (allocated(err)) return
-      if (before == 0) self%state%limited(self%passing) = nint(sign(1.0_wp, action%demand))
-      self%passing = 0
+      if (before == 0) self%state%limited(self%interval%motor) = nint(sign(1.0_wp, action%demand))
+      self%interval%motor = 0
     end if
     call self%present(err)
   end subroutine pass_limits
@@ -449,30 +358,6 @@ contains
     if (.not. allocated(err)) call self%present(err)
     self%state%t = t
   end subroutine move_to
-
-  !> The third derivatives of the independent coordinates at the present state, to about 1e-10, by a central difference of the
-  !> accelerations; those of the others are zero. The system stands at the same state afterwards.
-  subroutine third_derivatives(self, dddq, err)
-    class(motion_system_type), intent(inout) :: self    !< the motion system, with the motion of its state
-    real(wp), intent(out) :: dddq(:)                    !< (M) [rad/s^3, m/s^3]
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp), dimension(self%size_of_vector()) :: y, ydot
-    real(wp) :: t, dt
-
-    t = self%state%t
-    y = self%vector()
-    dddq = 0.0_wp
-    call pack_rates(self%plan, self%state, self%state%ddq(self%plan%independent), ydot)
-    dt = third_derivative_step/max(maxval(abs(self%state%dq)/self%plan%unit_of), &
-                                   sqrt(maxval(abs(self%state%ddq)/self%plan%unit_of)), tiny(dt)/epsilon(dt))
-    call self%move_to(t + dt, y + dt*ydot, err)
-    if (allocated(err)) return
-    dddq(self%plan%independent) = self%state%ddq(self%plan%independent)
-    call self%move_to(t - dt, y - dt*ydot, err)
-    if (allocated(err)) return
-    dddq(self%plan%independent) = (dddq(self%plan%independent) - self%state%ddq(self%plan%independent))/(2.0_wp*dt)
-    call self%move_to(t, y, err)
-  end subroutine third_derivatives
 
   !> Go on with the expectation that held before side steps.
   pure subroutine resume(self, expectation)

@@ -23,7 +23,8 @@ module mech9_stopped_motion
   use mech9_coordinate_choice, only: best_independent
   use mech9_integrated_vector, only: coordinate_of
   use mech9_motor_states, only: coordinate_of_motor
-  use mech9_motion_system, only: motion_system_type, find_coefficients
+  use mech9_motion_system, only: motion_system_type
+  use mech9_motion_coefficients, only: find_coefficients
   implicit none
   private
   public :: name_cause, name_cause_at_start, find_lock

@@ -1,0 +1,94 @@
+!> The interval of time in which the laws of a motion are smooth and its motors work as they do now.
+!>
+!> Laws of time have joints, where their derivatives may jump, and the forces of motors have kinks at their limits. Steps of the
+!> integration end there, so that no step contains such a place.
+module mech9_smooth_interval
+  use mech9_kinds, only: wp
+  use mech9_law, only: law_type, from_inside
+  use mech9_model, only: model_type
+  implicit none
+  private
+  public :: smooth_interval_type
+
+  !> The interval around the present time.
+  type :: smooth_interval_type
+    logical :: ends = .false.     !< a law of time has a joint, or a motor passes its limit ahead
+    real(wp) :: behind = 0.0_wp   !< beginning of the interval, which was passed last [s]
+    real(wp) :: ahead = 0.0_wp    !< its end, which comes next; the largest number, with the direction's sign, if none comes [s]
+    integer :: motor = 0          !< number of the motor that passes its limit at the end; 0: none does
+  contains
+    procedure :: begin
+    procedure :: time_inside
+    procedure :: is_end
+    procedure :: end_at_limit
+  end type smooth_interval_type
+
+contains
+
+  !> Begin the interval at a time, up to the next joint of the laws of drives and loads.
+  subroutine begin(self, model, t)
+    class(smooth_interval_type), intent(inout) :: self   !< gets its two ends
+    type(model_type), intent(in) :: model                !< the model with the laws
+    real(wp), intent(in) :: t                            !< time at which the interval begins [s]
+    real(wp) :: direction
+    integer :: i
+
+    direction = sign(1.0_wp, model%request%time%end - model%request%time%start)
+    self%behind = t
+    self%ahead = sign(huge(t), direction)
+    self%ends = .false.
+    associate (drives => model%problem%drives, loads => model%mechanism%loads)
+      do i = 1, size(drives)
+        call take_law(drives(i)%drive)
+      end do
+      do i = 1, size(loads)
+        if (allocated(loads(i)%load%law)) call take_law(loads(i)%load%law)
+      end do
+    end associate
+  contains
+    !> Take the next joint of a law into account.
+    subroutine take_law(law)
+      class(law_type), intent(in) :: law   !< the law
+      real(wp) :: joint
+
+      joint = law%next_joint(t, direction)
+      self%ends = self%ends .or. abs(joint) < huge(t) .or. abs(law%next_joint(t, -direction)) < huge(t)
+      if ((self%ahead - joint)*direction > 0.0_wp) self%ahead = joint
+    end subroutine take_law
+  end subroutine begin
+
+  !> A time at which laws have the derivatives of the interval: at its ends a little more than round-off inside.
+  pure real(wp) function time_inside(self, t)
+    class(smooth_interval_type), intent(in) :: self   !< the interval
+    real(wp), intent(in) :: t                         !< time within the interval, or at one of its ends [s]
+    real(wp) :: direction, first, last
+
+    time_inside = t
+    if (.not. self%ends) return
+    direction = sign(1.0_wp, self%ahead - self%behind)
+    first = from_inside(self%behind, direction)
+    last = self%ahead
+    if (abs(last) < huge(last)) last = from_inside(last, -direction)
+    if ((t - first)*direction < 0.0_wp) time_inside = first
+    if ((last - t)*direction < 0.0_wp) time_inside = last
+  end function time_inside
+
+  !> Whether the end of the interval is reached.
+  pure logical function is_end(self, t)
+    class(smooth_interval_type), intent(in) :: self   !< the interval
+    real(wp), intent(in) :: t                         !< time [s]
+
+    is_end = self%ends .and. abs(t - self%ahead) <= 64.0_wp*spacing(t)
+  end function is_end
+
+  !> End the interval where a motor passes its limit.
+  pure subroutine end_at_limit(self, t, motor)
+    class(smooth_interval_type), intent(inout) :: self   !< the interval
+    real(wp), intent(in) :: t                            !< time of the passage, ahead [s]
+    integer, intent(in) :: motor                         !< number of the motor
+
+    self%ends = .true.
+    self%ahead = t
+    self%motor = motor
+  end subroutine end_at_limit
+end module mech9_smooth_interval
