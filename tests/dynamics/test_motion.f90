@@ -22,17 +22,24 @@ program test_motion
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
-  type(model_type) :: model
-  character(len=:), allocatable :: name
-  integer :: number
 
-  do number = 1, known_count
-    call known_mechanism(number, model, name)
-    call check_all(test, model, name)
-  end do
+  call each_mechanism(test)
   call test%finish()
 
 contains
+
+  !> Check all known mechanisms.
+  subroutine each_mechanism(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type) :: model
+    character(len=:), allocatable :: name
+    integer :: number
+
+    do number = 1, known_count
+      call known_mechanism(number, model, name)
+      call check_all(test, model, name)
+    end do
+  end subroutine each_mechanism
 
   subroutine check_all(test, model, why)
     type(tester_type), intent(inout) :: test        !< counts the checks
