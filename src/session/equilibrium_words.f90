@@ -44,8 +44,22 @@ contains
       words = 'a stable equilibrium; neighbouring positions are as good in '// &
               counted(count(abs(found%modes%roots(:found%modes%count)) <= 0.0_wp), 'direction')
     else
-      words = 'a stable equilibrium; its lowest frequency is '// &
-              to_text(minval(abs(aimag(found%modes%roots(:found%modes%count))))/(2.0_wp*pi), 6)//' Hz'
+      words = 'a stable equilibrium; '//words_about_return(found%modes%roots(:found%modes%count))
     end if
   end function words_about
+
+  !> How a mechanism comes back to a stable equilibrium in which each direction has stiffness.
+  function words_about_return(roots) result(words)
+    complex(wp), intent(in) :: roots(:)   !< of the linearised equations of motion, none of them zero [1/s]
+    character(len=:), allocatable :: words
+    real(wp) :: frequency
+
+    frequency = minval(abs(aimag(roots)), mask=abs(aimag(roots)) > 0.0_wp)/(2.0_wp*pi)
+    if (any(abs(aimag(roots)) > 0.0_wp)) then
+      words = 'its lowest frequency is '//to_text(frequency, 6)//' Hz'
+    else
+      words = 'it does not oscillate: deviations shrink by the factor e within '// &
+              to_text(1.0_wp/minval(-real(roots)), 4)//' s'
+    end if
+  end function words_about_return
 end module mech9_equilibrium_words

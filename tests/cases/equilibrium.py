@@ -256,6 +256,33 @@ def check_forces(checks, case):
                 [0, 0.7 * G, 0.7 * speed**2 * radius], 1e-11, 'the hoop carries the weight and the centripetal force')
 
 
+def slide_with(loads, start=0.0):
+    """A mass on a slide without friction."""
+    return mechanism(2, 1, [1], pair(1, '1,2', 'prismatic', axis='1,0,0'), initial(1, start), body(2, 1, '0,0,0'), *loads)
+
+
+def check_cancelling(checks, case):
+    """Forces that cancel each other, within one load or among several, leave round-off of their parts."""
+    free = '&load kind=\'spring\', links=1,2, position=-0.13,0,0, second_position=0.1,0,0, stiffness=1234.567, free_length=0.3333 /'
+    for loads, start, expected, why in (
+            (["&load kind='coordinate', coordinate=1, stiffness=20, rest=-1, force=3 /"], 0.0, -0.85, 'a spring and a force in one load'),
+            ([f"&load kind='coordinate', coordinate=1, force={force} /" for force in (0.1, 0.2, -0.3)], 0.0, 0.0, 'three forces'),
+            ([free], 0.2, 0.1033, 'a spring of its free length')):
+        found = case.table(slide_with(loads, start), '--equilibrium')
+        checks.near(found['q1'], [expected], EXACT, f'{why} that cancel: the position')
+
+
+def check_words(checks, case):
+    """The way in which a mass returns: its frequency, or the slower of two rates beyond critical damping."""
+    for damping, words in ((0.0, 'its lowest frequency is 1.59155 Hz'),
+                           (40.0, f'it does not oscillate: deviations shrink by the factor e within {1 / (20 - 300 ** 0.5):.4g} s')):
+        load = f"&load kind='coordinate', coordinate=1, stiffness=100, damping={damping} /"
+        with open(os.path.join(case.folder, 'case.nml'), 'w', encoding='utf-8') as file:
+            file.write(slide_with([load]))
+        said = run(case.program, 'case.nml', '--equilibrium', folder=case.folder)
+        checks.true(words in said.stdout + said.stderr, f'damping {damping}: how it returns', said.stdout + said.stderr)
+
+
 def balanced_beam(start):
     """Mass 2 at 0.6 m on a beam, and a spring without free length from 0.8 m above the pivot to 0.5 m on the beam."""
     stiffness = 2.0 * G * 0.6 / (0.8 * 0.5)
@@ -505,8 +532,9 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         case = Case(sys.argv[1], folder)
         for check in (check_pendulum, check_wound_pendulum, check_damped_mass, check_double_pendulum, check_bar_in_slots,
-                      check_four_bar, check_limit, check_hoop, check_forces, check_balanced_beam, check_statics, check_many_starts, check_free_body, check_linear,
-                      check_linear_units, check_linear_rotating, check_shares, check_files, check_failures):
+                      check_four_bar, check_limit, check_hoop, check_forces, check_cancelling, check_words, check_balanced_beam,
+                      check_statics, check_many_starts, check_free_body, check_linear, check_linear_units,
+                      check_linear_rotating, check_shares, check_files, check_failures):
             check(checks, case)
     checks.finish()
 

@@ -36,6 +36,9 @@ module mech9_resting_mechanism
   !> Forces below this part of the sum of all magnitudes are zero: round-off of some hundred terms times the conditioning of
   !> closed chains.
   real(wp), parameter :: zero_force = 1.0e-11_wp
+  !> Forces below this part of the stiffness are zero: the round-off of a coordinate, about 32 units in the last place, changes
+  !> the force of a spring by as much, also where the parts of this force cancel each other.
+  real(wp), parameter :: round_off_of_position = 32.0_wp*epsilon(1.0_wp)
   !> Other independent coordinates keep the position to this, in units of the coordinates.
   real(wp), parameter :: same_position = 1.0e-6_wp
 
@@ -89,12 +92,13 @@ contains
     is_balanced = all(is_zero_force(resting, resting%forces))
   end function is_balanced
 
-  !> Whether a force is zero beyond round-off.
+  !> Whether a force is zero beyond round-off, with the stiffness that was found last.
   elemental logical function is_zero_force(resting, force)
     type(resting_type), intent(in) :: resting   !< the mechanism at rest
     real(wp), intent(in) :: force               !< in units of the plan [J]
 
-    is_zero_force = abs(force) <= zero_force*resting%linearisation%tree%magnitude
+    is_zero_force = abs(force) <= max(zero_force*resting%linearisation%tree%magnitude, &
+                                      round_off_of_position*resting%stiffness_magnitude)
   end function is_zero_force
 
   !> Find the stiffness. Fails where a load does.

@@ -14,7 +14,7 @@ module mech9_tree_forces
   use mech9_force_sum, only: force_sum_type, new_force_sum
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type, frame_body_type
   use mech9_lagrange_work, only: new_lagrange_work
-  use mech9_generalized_forces, only: collect_loads, show_state
+  use mech9_generalized_forces, only: collect_loads, sum_loads, show_state
   use mech9_variation, only: variation_type
   implicit none
   private
@@ -79,7 +79,8 @@ contains
     do i = 1, size(dynamics%bodies)
       call add_body(dynamics%bodies(i), dynamics%gravity, state, plan%length, forces)
     end do
-    call collect_loads(mechanism, plan, dynamics, state, forces%loads, err)
+    call add_magnitudes(mechanism, plan, dynamics, state, forces, err)
+    if (.not. allocated(err)) call collect_loads(mechanism, plan, dynamics, state, forces%loads, err)
     if (allocated(err)) return
     if (size(dynamics%acting) > 0) call add_loads(plan, dynamics, state, forces)
     if (present(wrenches)) call add_wrenches(plan, state, wrenches, forces)
@@ -138,11 +139,33 @@ contains
         arm = turn(state%r(:, :, f), plan%link_in_frame(k)%p)
         forces%force(:, f) = forces%force(:, f) - force
         forces%moment(:, f) = forces%moment(:, f) - torque - cross(arm, force)
-        forces%magnitude = forces%magnitude + norm2(force)*plan%length + norm2(torque)
       end associate
     end do
-    forces%magnitude = forces%magnitude + sum(abs(forces%loads%sum%generalized)*plan%unit_of)
   end subroutine add_loads
+
+  !> Add the magnitude of each load by itself, since loads may cancel each other in their sums.
+  subroutine add_magnitudes(mechanism, plan, dynamics, state, forces, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism, in space
+    type(dynamics_plan_type), intent(in) :: dynamics    !< the plan of dynamics
+    type(state_type), intent(in) :: state               !< position and motion of the mechanism
+    type(tree_forces_type), intent(inout) :: forces     !< gets the magnitudes; its sums of the loads are overwritten
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
+    integer :: i, j
+
+    associate (loads => forces%loads%sum)
+      do i = 1, size(dynamics%acting)
+        call sum_loads(mechanism, plan, dynamics%acting(i:i), dynamics%loaded, state, forces%loads%view, loads, err)
+        if (allocated(err)) return
+        do j = 1, size(dynamics%loaded)
+          associate (k => dynamics%loaded(j))
+            forces%magnitude = forces%magnitude + norm2(loads%force(:, k))*plan%length + norm2(loads%torque(:, k))
+          end associate
+        end do
+        forces%magnitude = forces%magnitude + sum(abs(loads%generalized)*plan%unit_of)
+      end do
+    end associate
+  end subroutine add_magnitudes
 
   !> Subtract the forces of closed chains.
   pure subroutine add_wrenches(plan, state, wrenches, forces)
