@@ -88,7 +88,7 @@ contains
       call conversation%keep()
       call conversation%say(name//' is left out.')
     else
-      call conversation%say('Nothing can be left out here; a body, a load or a point can, while it is asked about.')
+      call conversation%say('Nothing can be left out here; a body, a load, a motor or a point can, while it is asked about.')
     end if
   end subroutine leave_out
 

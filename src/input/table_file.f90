@@ -6,6 +6,7 @@ module mech9_table_file
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text, lower, starts_with
+  use mech9_counted, only: counted
   use mech9_source, only: source_type, span_type, read_source
   use mech9_numeral, only: numeral_type, read_numeral
   use mech9_item_check, only: is_sensible
@@ -127,7 +128,7 @@ contains
       if (columns == 0 .and. (count == 2 .or. count == 3)) columns = count
       if (count /= columns) then
         call diagnostics%add(whole, 'each line holds the coordinates of a point, x and y in a plane or x, y and z in space; '// &
-                             'this one has '//to_text(count)//' numbers'//the_others(columns))
+                             'this one has '//counted(count, 'number')//the_others(columns))
         cycle
       end if
       call read_words(source, fields(:count), points(:count, n + 1), readable, diagnostics)

@@ -323,7 +323,7 @@ def refusals(s):
             ('0 0\n1 0\n1 x\n0 1\n', '', DATA, "curve.dat:3:3: 'x' is not a number"),
             ('0 0\n1 nan\n1 1\n0 1\n', '', DATA, "curve.dat:2:3: 'nan'"),
             ('0 0\n1 0 0\n1 1\n0 1\n', '', DATA, 'this one has 3 numbers and those before it have 2'),
-            ('0\n1\n2\n3\n', '', DATA, 'x and y in a plane or x, y and z in space; this one has 1 numbers'),
+            ('0\n1\n2\n3\n', '', DATA, 'x and y in a plane or x, y and z in space; this one has 1 number'),
             ('0 0\n1 0\n1e200 1\n0 1\n', '', DATA, 'is too large or too small'),
             (square, ', closed=.true.', DATA, 'the ends of the curve are 1 m apart; repeat the first point at the end of its file'),
             (square + '0 0.001\n', '', DATA, 'curve.dat:5:1: the last point misses the first one by 0.001 m'),
