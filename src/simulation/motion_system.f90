@@ -190,6 +190,7 @@ contains
     integer :: before
 
     if (self%model%mechanism%n_motors == 0) return
+    before = 0
     if (self%interval%motor > 0) before = self%state%limited(self%interval%motor)
     call find_limits(self%model%mechanism, self%state, err)
     if (allocated(err)) return
