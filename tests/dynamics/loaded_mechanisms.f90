@@ -14,15 +14,40 @@ module mech9_loaded_mechanisms
   use mech9_sample_mechanisms, only: new_mechanism, add_revolute, add_prismatic, frame, fig1, general_loop
   use mech9_random_geometry, only: random_vector, random_unit
   use mech9_curved_pair, only: curved_pair_type
+  use mech9_testing, only: tester_type
   implicit none
   private
-  public :: open_chain, loaded_fig1, five_bar, loaded_loop, two_loops, known_count, known_mechanism
+  public :: open_chain, loaded_fig1, five_bar, loaded_loop, two_loops, check_each_mechanism
   public :: without_loads, load_everything, add_body, add_load, add_point_masses
 
-  !> Number of mechanisms that known_mechanism gives.
+  !> Number of the mechanisms of known_mechanism.
   integer, parameter :: known_count = 7
 
+  abstract interface
+    !> Checks of one mechanism.
+    subroutine check_interface(test, model, why)
+      import :: tester_type, model_type
+      type(tester_type), intent(inout) :: test   !< counts the checks
+      type(model_type), intent(inout) :: model   !< the mechanism, which may be changed
+      character(len=*), intent(in) :: why        !< its name, for the report of a failure
+    end subroutine check_interface
+  end interface
+
 contains
+
+  !> Make the checks for each known mechanism.
+  subroutine check_each_mechanism(test, check)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    procedure(check_interface) :: check        !< the checks of one mechanism
+    type(model_type) :: model
+    character(len=:), allocatable :: name
+    integer :: number
+
+    do number = 1, known_count
+      call known_mechanism(number, model, name)
+      call check(test, model, name)
+    end do
+  end subroutine check_each_mechanism
 
   !> One of the mechanisms of this module, with all loads, and its name.
   subroutine known_mechanism(number, model, name)

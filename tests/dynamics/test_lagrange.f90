@@ -13,35 +13,22 @@ program test_lagrange
   use mech9_lagrange, only: find_equations
   use mech9_energy, only: kinetic_energy
   use mech9_literal_lagrange, only: literal_type, literal_equations
-  use mech9_loaded_mechanisms, only: known_count, known_mechanism
+  use mech9_loaded_mechanisms, only: check_each_mechanism
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
 
-  call each_mechanism(test)
+  call check_each_mechanism(test, compare)
   call test%finish()
 
 contains
-
-  !> Check all known mechanisms.
-  subroutine each_mechanism(test)
-    type(tester_type), intent(inout) :: test   !< counts the checks
-    type(model_type) :: model
-    character(len=:), allocatable :: name
-    integer :: number
-
-    do number = 1, known_count
-      call known_mechanism(number, model, name)
-      call compare(test, model, name)
-    end do
-  end subroutine each_mechanism
 
   !> Differences of closed positions lose 2/h = 128 units of round-off, those of their differences the
   !> square of that, 16,000 units, both times the conditioning of the chains, some hundreds: 1e-11 and
   !> 1e-9 of the largest number are left.
   subroutine compare(test, model, why)
     type(tester_type), intent(inout) :: test        !< counts the checks
-    type(model_type), intent(in) :: model           !< the model
+    type(model_type), intent(inout) :: model        !< the model
     character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     type(plan_type) :: plan
     type(state_type) :: state

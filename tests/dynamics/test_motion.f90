@@ -18,32 +18,19 @@ program test_motion
   use mech9_lagrange, only: find_equations, find_motion, complete_accelerations
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_literal_lagrange, only: close_chains
-  use mech9_loaded_mechanisms, only: known_count, known_mechanism
+  use mech9_loaded_mechanisms, only: check_each_mechanism
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
 
-  call each_mechanism(test)
+  call check_each_mechanism(test, check_all)
   call test%finish()
 
 contains
 
-  !> Check all known mechanisms.
-  subroutine each_mechanism(test)
-    type(tester_type), intent(inout) :: test   !< counts the checks
-    type(model_type) :: model
-    character(len=:), allocatable :: name
-    integer :: number
-
-    do number = 1, known_count
-      call known_mechanism(number, model, name)
-      call check_all(test, model, name)
-    end do
-  end subroutine each_mechanism
-
   subroutine check_all(test, model, why)
     type(tester_type), intent(inout) :: test        !< counts the checks
-    type(model_type), intent(in) :: model           !< the model
+    type(model_type), intent(inout) :: model        !< the model
     character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     type(model_type) :: conservative
 

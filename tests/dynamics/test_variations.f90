@@ -16,29 +16,16 @@ program test_variations
   use mech9_linearisation, only: linearisation_type, new_linearisation, find_forces, find_matrix, &
     by_position, by_rate, by_acceleration
   use mech9_literal_lagrange, only: close_chains
-  use mech9_loaded_mechanisms, only: known_count, known_mechanism, add_load
+  use mech9_loaded_mechanisms, only: check_each_mechanism, add_load
   use mech9_unknown_load, only: unknown_load_type
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
 
-  call each_mechanism(test)
+  call check_each_mechanism(test, compare)
   call test%finish()
 
 contains
-
-  !> Check all known mechanisms.
-  subroutine each_mechanism(test)
-    type(tester_type), intent(inout) :: test   !< counts the checks
-    type(model_type) :: model
-    character(len=:), allocatable :: name
-    integer :: number
-
-    do number = 1, known_count
-      call known_mechanism(number, model, name)
-      call compare(test, model, name)
-    end do
-  end subroutine each_mechanism
 
   !> Differences of sixteenth order over steps of 1/64 lose 2/h = 128 units of round-off times the conditioning of the chains,
   !> some hundreds, and the velocity terms that they differentiate as much again: 1e-9 of the largest number is left.
