@@ -15,7 +15,7 @@ module mech9_load_reader
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_loads
+  public :: read_loads, check_coordinate
 
 contains
 
@@ -101,7 +101,7 @@ contains
     if (pairs(load%coordinate)%pair%angular) load%rest = load%rest*angle_unit
   end function coordinate_load
 
-  !> Report a load on a coordinate that does not exist.
+  !> Report a load, or a motor, on a coordinate that does not exist.
   pure subroutine check_coordinate(group, n_coordinates, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     integer, intent(in) :: n_coordinates                  !< how many coordinates there are; 0: unknown

@@ -12,6 +12,7 @@ module mech9_motor_reader
   use mech9_lookup, only: groups_named, has_name, get_integer, get_real, get_text, span_of
   use mech9_drive_reader, only: read_law, unit_of_coordinate
   use mech9_diagnostics, only: diagnostics_type
+  use mech9_load_reader, only: check_coordinate
   implicit none
   private
   public :: read_motors
@@ -160,15 +161,4 @@ contains
                            'the time in which the integral is led back follows from the other gains; give proportional='// &
                            ' or derivative= too')
   end subroutine check_pid_motor
-
-  !> Report a motor on a coordinate that does not exist.
-  pure subroutine check_coordinate(group, n_coordinates, diagnostics)
-    type(group_type), intent(in) :: group                 !< the group of the data file
-    integer, intent(in) :: n_coordinates                  !< how many coordinates there are; 0: unknown
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-
-    if (n_coordinates > 0 .and. get_integer(group, 'coordinate') > n_coordinates) &
-      call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '// &
-                           to_text(get_integer(group, 'coordinate'))//'; they are 1 to '//to_text(n_coordinates))
-  end subroutine check_coordinate
 end module mech9_motor_reader
