@@ -13,7 +13,7 @@ from mech9_cases import TREE, Checks, text_of
 FLOORS = ['base', 'system', 'numerics', 'spatial', 'structure', 'model/laws', 'model', 'user',
           'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
           'ode', 'dynamics', 'dynamics/variations', 'simulation', 'analyses/reactions', 'analyses/equilibrium',
-          'analyses', 'wording', 'input', 'output', 'pictures/plots', 'pictures/scene', 'pictures/films',
+          'analyses', 'wording', 'input/document', 'input', 'output', 'pictures/plots', 'pictures/scene', 'pictures/films',
           'terminal', 'session/command', 'session/words', 'facade', 'session/results', 'session', 'dialogue/drafts', 'dialogue',
           'programs']
 MOST_FILES = 25            # in one folder: more are hard to find one's way in
