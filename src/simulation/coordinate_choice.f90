@@ -5,19 +5,26 @@
 !> is treated as by QR of all its closures.
 module mech9_coordinate_choice
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: worthwhile_improvement
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly, exit_singular
   use mech9_failure, only: failure_other_branch
   use mech9_lapack, only: dgeqp3
+  use mech9_householder, only: householder
   use mech9_partition, only: partition_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_clusters, only: clusters_type, find_clusters
   use mech9_state, only: state_type
   use mech9_requested, only: requested_type
+  use mech9_block_solver, only: block_work_type
   use mech9_planning, only: make_plan
+  use mech9_replanning, only: replanning_type, wanted_type, replan
   implicit none
   private
-  public :: best_independent, carry_over
+  public :: best_independent, carry_over, worth_taking
+
+  !> From this number of columns on LAPACK is called.
+  integer, parameter :: lapack_from = 24
 
 contains
 
@@ -88,18 +95,53 @@ contains
     integer, intent(in) :: place(:)             !< (M) place of a step among those of the cluster
     integer, intent(inout) :: free(:)           !< (k) steps of the free coordinates
     real(wp), intent(inout) :: rates(:, :)      !< (steps of the cluster, k) rates per rate of the free coordinates, in their units
-    real(wp) :: a(block%equations, size(free) + size(block%unknowns)), old(size(rates, 1), size(free))
-    real(wp) :: tau(min(size(a, 1), size(a, 2))), work(2*size(a, 2) + (size(a, 2) + 1)*32)
-    real(wp) :: by_free(size(block%unknowns), size(free))
-    integer :: pivot(size(a, 2)), candidates(size(a, 2)), info, i, j, k, n
+    real(wp) :: a(block%equations, size(free) + size(block%unknowns)), by_free(size(block%unknowns), size(free))
+    integer :: pivot(size(a, 2)), candidates(size(a, 2)), i, j, k, n
 
     k = size(free)
     n = size(block%unknowns)
     candidates = [free, block%unknowns]
     call set_equations(plan, state, block, place, rates, a)
-    pivot = 0
-    call dgeqp3(size(a, 1), size(a, 2), a, size(a, 1), pivot, tau, work, size(work), info)
+    call factorize_by_pivots(a, pivot)
     call divide(n, a, by_free)
+    if (all(pivot(n + 1:) <= k)) then
+      do i = 1, n
+        do j = 1, k
+          rates(place(candidates(pivot(i))), pivot(n + j)) = -by_free(i, j)
+        end do
+      end do
+      return
+    end if
+    call exchange_rates(pivot, place(candidates), by_free, rates)
+    free = candidates(pivot(n + 1:))
+  end subroutine exchange
+
+  !> QR with column pivoting: R in the upper triangle of the matrix, and the column of the matrix at each place.
+  subroutine factorize_by_pivots(a, pivot)
+    real(wp), intent(inout), contiguous :: a(:, :)   !< (m,n) the matrix; its factors afterwards
+    integer, intent(out) :: pivot(:)                 !< (n)
+    real(wp) :: tau(size(a, 2)), norms(size(a, 2)), work(2*size(a, 2) + (size(a, 2) + 1)*32)
+    integer :: sign_of_det, info
+
+    if (size(a, 2) < lapack_from) then
+      call householder(size(a, 1), size(a, 2), a, pivot, tau, sign_of_det, norms)
+    else
+      pivot = 0
+      call dgeqp3(size(a, 1), size(a, 2), a, size(a, 1), pivot, tau, work, size(work), info)
+    end if
+  end subroutine factorize_by_pivots
+
+  !> Rates of all coordinates per rate of the free ones after an exchange.
+  pure subroutine exchange_rates(pivot, places, by_free, rates)
+    integer, intent(in) :: pivot(:)          !< (n + k) column of each candidate: n unknowns first, then k free coordinates
+    integer, intent(in) :: places(:)         !< (k + n) of the candidates: k coordinates that were free, then n unknowns
+    real(wp), intent(in) :: by_free(:, :)    !< (n, k) negative rates of the unknowns
+    real(wp), intent(inout) :: rates(:, :)   !< (steps of the cluster, k) rates per rate of the free coordinates, in their units
+    real(wp) :: old(size(rates, 1), size(rates, 2))
+    integer :: i, j, k, n
+
+    n = size(by_free, 1)
+    k = size(by_free, 2)
     old = rates
     rates = 0.0_wp
     do i = 1, k
@@ -107,7 +149,7 @@ contains
     end do
     do i = 1, n
       if (pivot(i) > k) then
-        rates(place(candidates(pivot(i))), :) = -by_free(i, :)
+        rates(places(pivot(i)), :) = -by_free(i, :)
       else
         do j = 1, k
           rates(:, j) = rates(:, j) - old(:, pivot(i))*by_free(i, j)
@@ -115,10 +157,9 @@ contains
       end if
     end do
     do i = 1, k
-      if (pivot(n + i) > k) rates(place(candidates(pivot(n + i))), i) = 1.0_wp
+      if (pivot(n + i) > k) rates(places(pivot(n + i)), i) = 1.0_wp
     end do
-    free = candidates(pivot(n + 1:))
-  end subroutine exchange
+  end subroutine exchange_rates
 
   !> The equations of a block: derivatives by the free coordinates, then by its unknowns.
   subroutine set_equations(plan, state, block, place, rates, a)
@@ -172,9 +213,10 @@ contains
     end do
   end subroutine divide
 
-  !> The plan and the state in other independent coordinates. Fails with exit_singular where these cannot serve or the
-  !> state cannot be carried over, and with the code of the failure where a pair or the program itself fails.
-  subroutine carry_over(mechanism, partition, plan, state, requested, new_plan, new_state, err)
+  !> The plan and the state in other independent coordinates. Blocks that do not change are taken over; where that cannot be, the
+  !> plan is made from the beginning. Fails with exit_singular where these coordinates cannot serve or the state cannot be
+  !> carried over, and with the code of the failure where a pair or the program itself fails.
+  subroutine carry_over(mechanism, partition, plan, state, requested, new_plan, new_state, err, wanted, in_vain)
     type(mechanism_type), intent(in) :: mechanism        !< the mechanism
     type(partition_type), intent(in) :: partition        !< with the other independent coordinates
     type(plan_type), intent(in) :: plan                  !< the present plan
@@ -183,20 +225,18 @@ contains
     type(plan_type), intent(out) :: new_plan             !< the plan in the other coordinates
     type(state_type), intent(out) :: new_state           !< the same position and motion, for the new plan
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
-    integer :: k
+    type(wanted_type), intent(in), optional :: wanted    !< conditioning for which the change is worthwhile; any unless given
+    logical, intent(out), optional :: in_vain            !< it is not worthwhile, and no plan was made
+    type(replanning_type) :: replanning
+    type(wanted_type) :: enough
 
-    call make_plan(mechanism, partition, state%q, new_plan, new_state, err, requested=requested, known=plan)
-    if (allocated(err)) then
-      if (err%code == exit_structure .or. err%code == exit_assembly) err%code = exit_singular
-      return
-    end if
-    ! chains that were left out so far close anywhere
-    k = maxloc(abs(new_state%q - state%q)/new_plan%unit_of, dim=1, mask=requested%coordinates)
-    if (abs(new_state%q(k) - state%q(k)) > 1.0e-6_wp*new_plan%unit_of(k)) then
-      call raise(err, exit_singular, failure_other_branch)
-      err%failure%coordinates = [k]
-      return
-    end if
+    if (present(wanted)) enough = wanted
+    call replan(plan, state, partition%independent(), partition%driven(), requested, enough, new_plan, new_state, replanning, err)
+    if (present(in_vain)) in_vain = replanning%in_vain
+    if (allocated(err) .or. replanning%in_vain) return
+    if (.not. replanning%serves) &
+      call plan_from_beginning(mechanism, partition, plan, state, requested, new_plan, new_state, err)
+    if (allocated(err)) return
     new_state%t = state%t
     new_state%dq = state%dq
     if (.not. allocated(state%motor)) return
@@ -204,4 +244,44 @@ contains
     new_state%motor_rate = state%motor_rate
     new_state%limited = state%limited
   end subroutine carry_over
+
+  !> The plan and the position in other independent coordinates, made from the beginning.
+  subroutine plan_from_beginning(mechanism, partition, plan, state, requested, new_plan, new_state, err)
+    type(mechanism_type), intent(in) :: mechanism        !< the mechanism
+    type(partition_type), intent(in) :: partition        !< with the other independent coordinates
+    type(plan_type), intent(in) :: plan                  !< the present plan
+    type(state_type), intent(in) :: state                !< closed
+    type(requested_type), intent(in) :: requested        !< requested quantities; blocks that do not serve them are left out
+    type(plan_type), intent(out) :: new_plan             !< the plan in the other coordinates
+    type(state_type), intent(out) :: new_state           !< the same position, for the new plan
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    type(partition_type) :: ordered
+    integer :: k
+
+    call partition%with_independent(mechanism%structure, partition%independent(), ordered)
+    call make_plan(mechanism, ordered, state%q, new_plan, new_state, err, requested=requested, known=plan)
+    if (allocated(err)) then
+      if (err%code == exit_structure .or. err%code == exit_assembly) err%code = exit_singular
+      return
+    end if
+    ! chains that were left out so far close anywhere
+    k = maxloc(abs(new_state%q - state%q)/new_plan%unit_of, dim=1, mask=requested%coordinates)
+    if (abs(new_state%q(k) - state%q(k)) <= 1.0e-6_wp*new_plan%unit_of(k)) return
+    call raise(err, exit_singular, failure_other_branch)
+    err%failure%coordinates = [k]
+  end subroutine plan_from_beginning
+
+  !> The conditioning for which other coordinates are worth taking, in the position for which the blocks are factorized.
+  function worth_taking(present_conditioning, work) result(wanted)
+    real(wp), intent(in) :: present_conditioning      !< pivot ratio of the worst block
+    type(block_work_type), intent(inout) :: work(:)   !< scratch of the blocks, with their factors
+    type(wanted_type) :: wanted
+    integer :: b
+
+    wanted%least = worthwhile_improvement*present_conditioning
+    allocate (wanted%conditioning(size(work)))
+    do b = 1, size(work)
+      wanted%conditioning(b) = work(b)%equations%conditioning()
+    end do
+  end function worth_taking
 end module mech9_coordinate_choice

@@ -9,10 +9,11 @@ module mech9_integrated_motion
   use mech9_state, only: state_type
   use mech9_block_solver, only: work_count_type, work_of
   use mech9_requested, only: requested_type
+  use mech9_replanning, only: wanted_type
   use mech9_expectation, only: expectation_type
   use mech9_ode_system, only: is_recoverable
   use mech9_integrator, only: integrator_type, integration_statistics_type
-  use mech9_coordinate_choice, only: best_independent, carry_over
+  use mech9_coordinate_choice, only: best_independent, carry_over, worth_taking
   use mech9_integrated_vector, only: pack_rates
   use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_ball_angles, only: ball_angles_type
@@ -78,9 +79,10 @@ contains
     type(ball_angles_type) :: angles
     type(error_type), allocatable :: failure
     type(partition_type) :: partition
+    type(wanted_type) :: wanted
     type(plan_type) :: plan
     type(state_type) :: state
-    logical :: independent(self%system%plan%n_coordinates)
+    logical :: independent(self%system%plan%n_coordinates), in_vain
 
     changed = .false.
     self%system%refuse_below = 0.0_wp
@@ -93,15 +95,22 @@ contains
       self%look_below = self%system%conditioning()/worthwhile_improvement
       return
     end if
-    call self%system%partition%with_independent(self%system%model%mechanism%structure, independent, partition)
+    partition = self%system%partition%in_same_order(independent)
+    wanted = worth_taking(self%system%conditioning(), self%system%work%blocks)
     if (self%angles%in_use()) then
       call self%show_angles(err)
       if (allocated(err)) return
-      call carry_over(self%system%model%mechanism, partition, self%system%plan, self%angles%state, requested, plan, state, failure)
+      call carry_over(self%system%model%mechanism, partition, self%angles%plan, self%angles%state, requested, plan, state, &
+                      failure, wanted, in_vain)
     else
-      call carry_over(self%system%model%mechanism, partition, self%system%plan, self%system%state, requested, plan, state, failure)
+      call carry_over(self%system%model%mechanism, partition, self%system%plan, self%system%state, requested, plan, state, &
+                      failure, wanted, in_vain)
     end if
     if (gives_up(failure, err)) return
+    if (in_vain) then
+      self%look_below = self%system%conditioning()/worthwhile_improvement
+      return
+    end if
     call angles%begin(self%system%model, partition, plan, state, failure)
     if (gives_up(failure, err)) return
     allocate (other)

@@ -19,6 +19,7 @@ module mech9_partition
     procedure :: independent
     procedure :: driven
     procedure :: with_independent
+    procedure :: in_same_order
   end type partition_type
 
 contains
@@ -67,4 +68,16 @@ contains
     call new_partition(structure, independent, other)
     where (independent .and. self%kind == driven_coordinate) other%kind = driven_coordinate
   end subroutine with_independent
+
+  !> The partition with other independent coordinates in the same order of computation: its chains are those of the first
+  !> choice. Coordinates that are driven now stay driven.
+  pure function in_same_order(self, independent) result(other)
+    class(partition_type), intent(in) :: self   !< the partition
+    logical, intent(in) :: independent(:)       !< (M) the coordinate is independent
+    type(partition_type) :: other
+
+    other%vectors = self%vectors
+    other%kind = merge(free_coordinate, dependent_coordinate, independent)
+    where (independent .and. self%kind == driven_coordinate) other%kind = driven_coordinate
+  end function in_same_order
 end module mech9_partition

@@ -14,12 +14,11 @@ program test_coordinate_choice
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
-  type(model_type) :: model
+  logical :: broken = .false.
 
-  call new_four_bar(model)
   call choose([.false., .true., .false., .false.], 0, 'another coordinate serves')
   call choose([.true., .true., .false., .false.], exit_singular, 'two of one degree of freedom cannot serve')
-  call break_pair(model)
+  broken = .true.
   call choose([.false., .true., .false., .false.], exit_data, 'a pair without a value is no matter of the choice')
   call test%finish()
 
@@ -47,11 +46,12 @@ contains
     call new_four_bar(whole)
     call make_plan(whole%mechanism, whole%problem%partition, whole%problem%initial%position, plan, state, err)
     call test%no_error(err, 'a four-bar has a plan')
+    if (broken) call break_pair(plan)
     state%t = 7.0_wp
     state%dq = [1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp]
     requested = requested_by_results(whole%mechanism, whole%request%output)
     call whole%problem%partition%with_independent(whole%mechanism%structure, independent, partition)
-    call carry_over(model%mechanism, partition, plan, state, requested, other_plan, other_state, err)
+    call carry_over(whole%mechanism, partition, plan, state, requested, other_plan, other_state, err)
     if (code == 0) then
       call test%no_error(err, why//': the coordinates are accepted')
       if (allocated(err)) return
@@ -66,15 +66,16 @@ contains
   end subroutine choose
 
   !> Put a pair in the place of the third one whose procedure has no value anywhere.
-  subroutine break_pair(model)
-    type(model_type), intent(inout) :: model       !< the model
-    type(curved_pair_type) :: broken
+  subroutine break_pair(plan)
+    type(plan_type), intent(inout) :: plan   !< the plan of the four-bar, in space from now on
+    type(curved_pair_type) :: pair
 
-    broken%broken = .true.
-    broken%coordinate = model%mechanism%pairs(3)%pair%coordinate
-    broken%reference = model%mechanism%pairs(3)%pair%reference
-    broken%moving = model%mechanism%pairs(3)%pair%moving
-    deallocate (model%mechanism%pairs(3)%pair)
-    allocate (model%mechanism%pairs(3)%pair, source=broken)
+    pair%broken = .true.
+    pair%coordinate = 3
+    pair%reference = 1
+    pair%moving = 4
+    allocate (plan%pairs(3)%pair, source=pair)
+    plan%steps(plan%step_of(3))%is_screw = .false.
+    plan%planar%used = .false.
   end subroutine break_pair
 end program test_coordinate_choice

@@ -33,7 +33,7 @@ module mech9_planning
   use mech9_finite_motion, only: locked_chain_type, find_locked_chain
   implicit none
   private
-  public :: make_plan
+  public :: make_plan, plan_blocks_in_planes, find_constants
 
   !> Largest number of unknowns of one block, whose equations are a full matrix: more would need too much memory and time.
   integer, parameter :: most_unknowns = 3000
