@@ -72,6 +72,17 @@ else()
   endforeach()
 endif()
 
+# expat reads XML, for the import of robots; without it a program says so.
+if(MECH9_IMPORT)
+  find_library(MECH9_EXPAT NAMES libexpat.a expat DOC "expat (Debian: libexpat1-dev)")
+  mark_as_advanced(MECH9_EXPAT)
+  if(MECH9_EXPAT)
+    set(MECH9_XML_LIBRARY "${MECH9_EXPAT}")
+  else()
+    message(STATUS "expat was not found: no import of robots")
+  endif()
+endif()
+
 # The same libraries as files or linker options, for mech9-link, which works without CMake.
 set(MECH9_LINK_LIBRARIES ${MECH9_HDF5_LIBRARIES} ${MECH9_SUNDIALS_LIBRARIES} ${LAPACK_LIBRARIES} ${LAPACK_LINKER_FLAGS}
-  ${MECH9_LINE_EDITING_LIBRARIES})
+  ${MECH9_LINE_EDITING_LIBRARIES} ${MECH9_XML_LIBRARY})

@@ -1,4 +1,5 @@
-!> A program, from the words of its command line to its exit code. It runs a data file or holds a conversation.
+!> A program, from the words of its command line to its exit code. It runs a data file, makes one of a robot, or holds
+!> a conversation.
 module mech9_program
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type
@@ -7,6 +8,7 @@ module mech9_program
   use mech9_system, only: exit_program, leave_quit_alone
   use mech9_session, only: carry_out, asks_for_text
   use mech9_task, only: task_type
+  use mech9_importing, only: import_robot
   use mech9_converse, only: converse
   implicit none
   private
@@ -40,12 +42,16 @@ contains
     type(string_type), intent(in) :: words(:)  !< words of the command line without the program's name
     integer, intent(out) :: code               !< exit code of the program
     type(command_line_type) :: options
+    type(string_type), allocatable :: inputs(:)
     type(error_type), allocatable :: err
 
     call parse_command_line(words, task%program_name, options, err)
     if (allocated(err)) then
       write (error_unit, '(3a)') task%program_name, ': ', err%message
       code = err%code
+    else if (options%has('import') .and. .not. asks_for_text(options)) then
+      call options%arguments('import', inputs)
+      call import_robot(task%program_name, inputs, options%argument('out'), options%has('quiet'), code)
     else if (options%converses() .and. .not. asks_for_text(options)) then
       call converse(task, options, code)
     else

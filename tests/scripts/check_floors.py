@@ -14,7 +14,8 @@ FLOORS = ['base', 'system', 'numerics', 'spatial', 'structure', 'model/laws', 'm
           'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
           'ode', 'dynamics', 'dynamics/variations', 'simulation', 'analyses/reactions', 'analyses/equilibrium',
           'analyses', 'wording', 'input/document', 'input', 'output', 'pictures/plots', 'pictures/scene', 'pictures/films',
-          'terminal', 'session/command', 'session/words', 'facade', 'session/results', 'session', 'dialogue/drafts', 'dialogue',
+          'terminal', 'session/command', 'session/words', 'facade', 'session/results', 'session', 'dialogue/drafts',
+          'interchange/xml', 'interchange', 'dialogue',
           'programs']
 MOST_FILES = 25            # in one folder: more are hard to find one's way in
 MOST_KINEMATICS = 14       # files of the kinematics that Lagrange's equations depend on, directly and through others

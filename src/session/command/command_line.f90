@@ -204,8 +204,26 @@ contains
       end if
     end if
     call judge_argument(options_table(place), argument, has_argument, options, err)
-    if (.not. allocated(err)) call append(options%given, options_table(place)%name, argument)
+    if (allocated(err)) return
+    call append(options%given, options_table(place)%name, argument)
+    call take_further(words, i, options_table(place), options)
   end subroutine read_option
+
+  !> Take the further arguments of an option that has several: words that follow it and are no options.
+  pure subroutine take_further(words, i, option, options)
+    type(string_type), intent(in) :: words(:)          !< the words of the command line
+    integer, intent(inout) :: i                        !< position behind its first argument; afterwards that of the next word
+    type(option_type), intent(in) :: option            !< the option, as a row of its table
+    type(command_line_type), intent(inout) :: options  !< gets the arguments
+    integer :: n
+
+    do n = 2, option%most
+      if (i > size(words)) return
+      if (is_option(words(i)%text)) return
+      call append(options%given, option%name, words(i)%text)
+      i = i + 1
+    end do
+  end subroutine take_further
 
   !> Fail because of an unknown option, with the nearest known one.
   pure subroutine raise_unknown(name, program_name, err)
@@ -309,7 +327,7 @@ contains
     if (place > 0) text = self%given(place)%argument
   end function argument
 
-  !> The arguments of an option that may be repeated, in their order.
+  !> The arguments of an option that may be repeated, or has several, in their order.
   pure subroutine arguments(self, name, texts)
     class(command_line_type), intent(in) :: self             !< the command line
     character(len=*), intent(in) :: name                     !< name of the option, without the dashes
@@ -378,6 +396,7 @@ contains
   pure logical function converses(self)
     class(command_line_type), intent(in) :: self  !< the command line
 
-    converses = self%file == '' .or. self%has('dialogue') .or. self%has('edit') .or. self%has('resume')
+    converses = (self%file == '' .and. .not. self%has('import')) .or. self%has('dialogue') .or. self%has('edit') &
+                .or. self%has('resume')
   end function converses
 end module mech9_command_line

@@ -55,7 +55,9 @@ contains
     type(error_type), allocatable, intent(out) :: err  !< allocated if they do
 
     if (has('help') .or. has('version') .or. has('help-data')) return
-    if (has('quiet') .and. has('verbose')) then
+    if (has('import') .or. has('out')) then
+      call judge_import(given, has_file, err)
+    else if (has('quiet') .and. has('verbose')) then
       call raise(err, exit_usage, '--quiet and --verbose contradict each other')
     else if (has('no-write') .and. (has('table') .or. has('hdf5') .or. has('plot') .or. has('linear'))) then
       call raise(err, exit_usage, '--no-write contradicts --table, --hdf5, --plot and --linear')
@@ -79,6 +81,26 @@ contains
       has = any(given == name)
     end function has
   end subroutine judge_options
+
+  !> Check the options of an import: it makes a data file of another file, and no run.
+  pure subroutine judge_import(given, has_file, err)
+    character(len=*), intent(in) :: given(:)           !< names of the options that are given, without the dashes
+    logical, intent(in) :: has_file                    !< a data file is given beside the options
+    type(error_type), allocatable, intent(out) :: err  !< allocated if they contradict it
+    integer :: i
+
+    if (.not. any(given == 'import')) then
+      call raise(err, exit_usage, '--out names the data file that --import FILE writes; give both')
+    else if (has_file) then
+      call raise(err, exit_usage, 'a data file is given beside --import, which makes one; leave it out, or write the file of '// &
+                 'loops directly behind that of the robot')
+    end if
+    do i = 1, size(given)
+      if (allocated(err)) return
+      if (all(given(i) /= [character(len=6) :: 'import', 'out', 'quiet'])) &
+        call raise(err, exit_usage, '--import makes a data file and no run; leave --'//trim(given(i))//' out')
+    end do
+  end subroutine judge_import
 
   !> Fail because of --modes with --animate and without --mode, or the other way round.
   pure subroutine judge_mode(has_mode, err)

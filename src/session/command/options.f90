@@ -18,6 +18,7 @@ module mech9_options
     logical :: repeats = .false.  !< whether it may be given more than once
     character(len=13) :: programs = ''    !< the programs that have it
     character(len=72) :: help = ''        !< its explanation, in one line
+    integer :: most = 1           !< largest number of its arguments
   end type option_type
 
   character(len=*), parameter :: both = 'mech9k mech9d'
@@ -69,6 +70,10 @@ module mech9_options
                 'open a data file in the conversation'), &
     option_type('resume', needed_argument, 'FILE', any_text, .false., both, &
                 'continue a conversation that was left or interrupted'), &
+    option_type('import', needed_argument, 'FILE [LOOPS]', any_text, .false., both, &
+                'make a data file of a robot in URDF; LOOPS: joints that close chains', 2), &
+    option_type('out', needed_argument, 'FILE.nml', any_text, .false., both, &
+                'the data file that --import writes; standard output without it'), &
     option_type('quiet', no_argument, '', any_text, .false., both, &
                 'print only errors'), &
     option_type('verbose', no_argument, '', any_text, .false., both, &
