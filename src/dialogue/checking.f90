@@ -109,6 +109,6 @@ contains
     if (size(plan%closures) > 0) text = text//' (Another assembly? Go back and give guesses.)'
     call conversation%say(text)
     call report_mobility(model%mechanism, plan, start, report)
-    call print_mobility_report(error_unit, plan, report)
+    call print_mobility_report(error_unit, model%mechanism%structure, plan, report)
   end subroutine tell_start
 end module mech9_checking

@@ -3,6 +3,7 @@ module mech9_structure_sketch
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_structure, only: structure_type
+  use mech9_joint_expansion, only: shown_vectors
   use mech9_structural_vectors, only: structural_vectors_type, chain_type, chains_of
   use mech9_partition, only: partition_type
   implicit none
@@ -21,13 +22,15 @@ contains
     type(structure_type), intent(in) :: structure         !< links of the pairs
     type(partition_type), intent(in) :: partition         !< kinds of the coordinates, and their order of computation
     type(chain_type), allocatable :: chains(:)
+    type(structural_vectors_type) :: vectors
     integer :: i, loops
 
-    chains = chains_of(partition%vectors)
+    vectors = shown_vectors(structure, partition%vectors)
+    chains = chains_of(vectors)
     loops = count(chains%closed)
     write (unit, '(a)') '  The links are connected. Numbers between = = are independent coordinates:'
     do i = 1, min(size(chains), most_chains)
-      call print_chain(unit, partition%vectors, chains(i))
+      call print_chain(unit, vectors, chains(i))
     end do
     if (size(chains) > most_chains) write (unit, '(a)') '  and '//counted(size(chains) - most_chains, 'more chain')
     if (loops == 0) then

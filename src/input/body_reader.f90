@@ -9,6 +9,7 @@ module mech9_body_reader
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, get_integer, get_real, get_reals, span_of
   use mech9_motion_reader, only: check_link
+  use mech9_joint_words, only: pair_name
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
@@ -48,16 +49,17 @@ contains
         j = get_reals(group, 'inertia')
         bodies(i)%inertia = reshape([j(1), j(4), j(5), j(4), j(2), j(6), j(5), j(6), j(3)], [3, 3])
         bodies(i)%place = diagnostics%place(group%span)
-        call check_link(group, 'link', 1, structure%n_links, diagnostics)
-        call check_inertia(group, bodies(i), judged .and. bodies(i)%link <= structure%n_links, search, diagnostics)
+        call check_link(group, 'link', 1, structure%shown_links(), diagnostics)
+        call check_inertia(group, structure, bodies(i), judged .and. bodies(i)%link <= structure%shown_links(), search, diagnostics)
       end associate
     end do
   end subroutine read_bodies
 
   !> Report a tensor that no body has. For a link that can turn about one direction only, the moment about that direction
   !> is enough; the rest of its tensor may be zero.
-  pure subroutine check_inertia(group, body, judged, search, diagnostics)
+  pure subroutine check_inertia(group, structure, body, judged, search, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
+    type(structure_type), intent(in) :: structure         !< links and joints
     type(body_type), intent(in) :: body                   !< the body that the group describes
     logical, intent(in) :: judged                         !< whether it is known how the link can turn
     type(turning_search_type), intent(inout) :: search    !< directions in which links turn; used where `judged` is true
@@ -75,7 +77,7 @@ contains
       call search%turns_only_about(body%link, direction, slack, is_enough, barrier)
       if (is_enough) return
       problem = problem//'; one moment alone is enough where a link turns about the axis of that moment only'
-      if (barrier > 0) problem = problem//', and pair '//to_text(barrier)//' lets link '//to_text(body%link)// &
+      if (barrier > 0) problem = problem//', and '//trim(pair_name(structure, barrier))//' lets link '//to_text(body%link)// &
                                  ' turn otherwise'
       problem = problem//'; give all three moments'
     end if

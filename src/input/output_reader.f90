@@ -1,6 +1,7 @@
 !> Settings of the group &output, checked.
 module mech9_output_reader
   use mech9_text, only: to_text
+  use mech9_structure, only: structure_type
   use mech9_request, only: output_settings_type
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: group_or_empty, get_integer, get_integers, get_logical, get_text, has_name, span_of
@@ -12,13 +13,15 @@ module mech9_output_reader
 contains
 
   !> Read which quantities are recorded and in which files; names not given have their defaults.
-  pure subroutine read_output(document, n_coordinates, output, diagnostics)
+  pure subroutine read_output(document, structure, output, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
-    integer, intent(in) :: n_coordinates                  !< how many coordinates there are; 0 where it is not known
+    type(structure_type), intent(in) :: structure         !< links and joints; without coordinates where it is not known
     type(output_settings_type), intent(out) :: output     !< the settings, with defaults for those not given
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(group_type) :: group
+    integer :: i, n_coordinates
 
+    n_coordinates = structure%n_coordinates
     group = group_or_empty(document, 'output')
     output%table = get_text(group, 'table')
     output%hdf5 = get_text(group, 'hdf5')
@@ -44,6 +47,14 @@ contains
     if (n_coordinates == 0) return
     call check_coordinates(group, 'coordinates', 'coordinate', n_coordinates, output%coordinates, diagnostics)
     call check_coordinates(group, 'reaction_pairs', 'pair', n_coordinates, output%reaction_pairs, diagnostics)
+    do i = 1, size(output%reaction_pairs)
+      associate (k => output%reaction_pairs(i))
+        if (k > n_coordinates) cycle
+        if (structure%first_of_joint(k) == k) cycle
+        call diagnostics%add(span_of(group, 'reaction_pairs', i), 'coordinate '//to_text(k)//' is no pair of its own; name the '// &
+                             'first coordinate of its joint, '//to_text(structure%first_of_joint(k)))
+      end associate
+    end do
   end subroutine read_output
 
   !> Report recorded coordinates, or pairs, that do not exist or are named twice.

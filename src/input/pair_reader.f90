@@ -4,7 +4,7 @@ module mech9_pair_reader
   use mech9_error, only: error_type
   use mech9_failure, only: failure_sharp_curve
   use mech9_text, only: to_text
-  use mech9_pose, only: pose_type, pose_from_axis, default_zero
+  use mech9_pose, only: pose_type, default_zero
   use mech9_space_curve, only: space_curve_type, build_curve
   use mech9_pair, only: pair_slot_type
   use mech9_screw_pair, only: screw_pair_type, revolute_pair, prismatic_pair, helical_pair, &
@@ -15,6 +15,10 @@ module mech9_pair_reader
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, has_name, get_integer, get_integers, get_real, get_reals, get_text, &
                           get_logical, span_of
+  use mech9_axis_reader, only: read_axis_frames, make_frame, real_or
+  use mech9_joint_reader, only: read_joint_pairs, joint_of_group
+  use mech9_compound_joint, only: compound_joint_type, is_compound
+  use mech9_structure, only: structure_type
   use mech9_table_file, only: read_curve_file, beside
   use mech9_explanation, only: explain
   use mech9_diagnostics, only: diagnostics_type
@@ -30,9 +34,9 @@ contains
 
   !> Make the pairs of all sound groups. Coordinates without one keep an empty slot: mechanisms with
   !> such holes are refused when the structure is read.
-  subroutine read_pairs(document, n_coordinates, angle_unit, parameters, pairs, diagnostics)
+  subroutine read_pairs(document, structure, angle_unit, parameters, pairs, diagnostics)
     type(document_type), intent(in) :: document                 !< the data file as groups and items
-    integer, intent(in) :: n_coordinates                        !< how many coordinates there are; 0 where it is not known
+    type(structure_type), intent(in) :: structure               !< links and joints; without coordinates where it is not known
     real(wp), intent(in) :: angle_unit                          !< unit of angles in the file [rad]
     real(wp), intent(in) :: parameters(:)                       !< numbers of the group &user, for the user's procedures
     type(pair_slot_type), allocatable, intent(out) :: pairs(:)  !< (M) pairs by coordinate; empty where the group is wrong
@@ -41,16 +45,40 @@ contains
     integer, allocatable :: numbers(:)
     integer :: i, k
 
-    allocate (pairs(n_coordinates))
+    allocate (pairs(structure%n_coordinates))
     numbers = groups_named(document, 'pair')
     do i = 1, size(numbers)
       associate (group => document%groups(numbers(i)))
+        if (is_compound(get_text(group, 'kind'))) then
+          call read_chain(group, structure, pairs, diagnostics)
+          cycle
+        end if
         call read_pair(document%source%name, group, angle_unit, parameters, slot, diagnostics)
         k = get_integer(group, 'coordinate')
-        if (k <= n_coordinates .and. allocated(slot%pair)) call move_alloc(slot%pair, pairs(k)%pair)
+        if (k <= size(pairs) .and. allocated(slot%pair)) call move_alloc(slot%pair, pairs(k)%pair)
       end associate
     end do
   end subroutine read_pairs
+
+  !> The chain of pairs that stands for a joint with several freedoms.
+  subroutine read_chain(group, structure, pairs, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(structure_type), intent(in) :: structure         !< links and joints; without coordinates where it is not known
+    type(pair_slot_type), intent(inout) :: pairs(:)       !< (M) gets the pairs by coordinate
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(compound_joint_type) :: joint
+    type(pair_slot_type), allocatable :: chain(:)
+    integer :: i, j
+
+    joint = joint_of_group(group)
+    j = structure%joint_of(joint%numbers(1))
+    if (j > 0) joint = structure%joints(j)
+    call read_joint_pairs(group, joint, chain, diagnostics)
+    if (j == 0) return
+    do i = 1, joint%freedoms
+      if (allocated(chain(i)%pair)) call move_alloc(chain(i)%pair, pairs(joint%numbers(i))%pair)
+    end do
+  end subroutine read_chain
 
   !> One pair; the slot stays empty where something was reported.
   subroutine read_pair(data_file, group, angle_unit, parameters, slot, diagnostics)
@@ -129,7 +157,6 @@ contains
     type(screw_pair_type), intent(out) :: pair            !< the pair of screw motion
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(pose_type) :: reference, moving
-    real(wp) :: axis(3), zero(3)
     integer :: found
 
     found = diagnostics%count
@@ -137,17 +164,7 @@ contains
       call diagnostics%add(group%span, '&pair needs ''axis'': direction of the axis, in the reference link (or ''dh'')')
       return
     end if
-    axis = get_reals(group, 'axis')
-    zero = default_zero(axis)
-    if (has_name(group, 'zero')) zero = get_reals(group, 'zero')
-    call make_frame(group, '', real_or(group, 'point', [0.0_wp, 0.0_wp, 0.0_wp]), axis, zero, reference, diagnostics)
-
-    ! by default each equals its counterpart in the reference link, but a new axis has its own default of zero
-    if (has_name(group, 'moving_axis')) zero = default_zero(get_reals(group, 'moving_axis'))
-    axis = real_or(group, 'moving_axis', axis)
-    zero = real_or(group, 'moving_zero', zero)
-    if (diagnostics%count == found) &
-      call make_frame(group, 'moving_', real_or(group, 'moving_point', reference%p), axis, zero, moving, diagnostics)
+    call read_axis_frames(group, reference, moving, diagnostics)
     if (diagnostics%count > found) return
     select case (get_text(group, 'kind'))
     case ('revolute')
@@ -248,44 +265,4 @@ contains
       length_of = length_of + norm2(points(:, i) - points(:, i - 1))
     end do
   end function length_of
-
-  !> The three numbers of a name, or a default.
-  pure function real_or(group, name, otherwise) result(vector)
-    type(group_type), intent(in) :: group  !< the group of the data file
-    character(len=*), intent(in) :: name   !< name of the item
-    real(wp), intent(in) :: otherwise(3)   !< the numbers where the item is not given
-    real(wp) :: vector(3)
-
-    vector = otherwise
-    if (has_name(group, name)) vector = get_reals(group, name)
-  end function real_or
-
-  !> The frame of an axis; vectors that are zero or parallel are reported.
-  pure subroutine make_frame(group, prefix, point, axis, zero, frame, diagnostics)
-    type(group_type), intent(in) :: group                 !< the group of the data file
-    character(len=*), intent(in) :: prefix                !< prefix of the names: '' or 'moving_'
-    real(wp), intent(in) :: point(3)                      !< origin of the frame, in the link [m]
-    real(wp), intent(in) :: axis(3)                       !< direction of its z axis, in the link; of any length
-    real(wp), intent(in) :: zero(3)                       !< direction near its x axis, in the link; of any length
-    type(pose_type), intent(out) :: frame                 !< pose of the frame in the link
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-    logical :: ok
-
-    call pose_from_axis(point, axis, zero, frame, ok)
-    if (ok) return
-    if (.not. any(abs(axis) > 0.0_wp)) then
-      call diagnostics%add(span_of(group, prefix//'axis', 1), 'the '//prefix//'axis of pair '// &
-                           to_text(get_integer(group, 'coordinate'))//' is zero; it must have a direction')
-    else if (.not. any(abs(zero) > 0.0_wp)) then
-      call diagnostics%add(span_of(group, prefix//'zero', 1), 'the '//prefix//'zero of pair '// &
-                           to_text(get_integer(group, 'coordinate'))//' is zero; it must have a direction')
-    else if (has_name(group, prefix//'zero') .or. prefix == '') then
-      call diagnostics%add(span_of(group, prefix//'zero'), 'the '//prefix//'zero of pair '// &
-                           to_text(get_integer(group, 'coordinate'))//' lies along the axis; it must point away from it')
-    else
-      call diagnostics%add(span_of(group, 'zero'), 'the zero of pair '// &
-                           to_text(get_integer(group, 'coordinate'))//' lies along its moving_axis; give a moving_zero too')
-    end if
-  end subroutine make_frame
-
 end module mech9_pair_reader

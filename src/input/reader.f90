@@ -86,8 +86,8 @@ contains
     type(request_type), intent(inout) :: request          !< the request for results, with its times
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
 
-    associate (m => mechanism, n_links => mechanism%structure%n_links, n_coordinates => mechanism%structure%n_coordinates)
-      call read_pairs(document, n_coordinates, m%angle_unit, m%parameters, m%pairs, diagnostics)
+    associate (m => mechanism, n_links => mechanism%structure%shown_links())
+      call read_pairs(document, m%structure, m%angle_unit, m%parameters, m%pairs, diagnostics)
       call read_initial(document, problem%partition, m%pairs, m%angle_unit, problem%initial, diagnostics)
       call read_points(document, n_links, m%points, diagnostics)
       call read_drives(document, problem%partition, m%pairs, m%angle_unit, request%time%start, m%parameters, problem%drives, &
@@ -95,7 +95,7 @@ contains
       call read_bodies(document, m%structure, m%pairs, m%bodies, diagnostics)
       m%gravity = read_gravity(document)
       call read_loads(document, n_links, m%pairs, m%angle_unit, m%parameters, m%loads, diagnostics)
-      call read_output(document, n_coordinates, request%output, diagnostics)
+      call read_output(document, m%structure, request%output, diagnostics)
       call check_pairs_given(document, m, diagnostics)
     end associate
   end subroutine read_parts

@@ -10,9 +10,12 @@ module mech9_structure_reader
   use mech9_structural_vectors, only: structural_vectors_type, structure_from_vectors
   use mech9_transformation, only: transform
   use mech9_partition, only: partition_type, free_coordinate, dependent_coordinate
+  use mech9_compound_joint, only: compound_joint_type
+  use mech9_joint_expansion, only: expand_structure, expand_vectors, inner_coordinates
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, has_unsound, has_name, get_integer, get_integers, span_of, find_item
   use mech9_matrix_items, only: matrix_type, read_matrix
+  use mech9_joint_reader, only: read_joints, coordinates_of, coordinate_span
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
@@ -27,7 +30,9 @@ module mech9_structure_reader
     integer, allocatable :: pairs(:)  !< numbers of the sound groups &pair
     logical :: all_pairs = .false.    !< whether no pair has an error
     type(matrix_type) :: matrix
-    integer, allocatable :: links(:, :)       !< (2,M) links of each coordinate's pair; 0 where it has none
+    type(compound_joint_type), allocatable :: joints(:)   !< joints with several freedoms, without numbers of their own links
+    !> (2,M) links of each coordinate's pair; 0 where it has none, or where the first coordinate of its joint stands for it.
+    integer, allocatable :: links(:, :)
     integer, allocatable :: group_of_pair(:)  !< (M) number of each coordinate's group &pair; 0 where it has none
   end type source_data_type
 
@@ -67,7 +72,12 @@ contains
     call compare_with_pairs(document, data, structure, diagnostics)
     known = diagnostics%count == found
     if (.not. known) return
-    if (.not. has_vectors) call transform(structure, independent, partition%vectors)
+    if (size(data%joints) > 0) call expand_structure(data%joints, structure)
+    if (.not. has_vectors) then
+      call transform(structure, independent, partition%vectors)
+    else if (size(data%joints) > 0) then
+      call expand_vectors(structure, independent, partition%vectors)
+    end if
     partition%kind = merge(free_coordinate, dependent_coordinate, independent)
   end subroutine read_structure
 
@@ -92,6 +102,7 @@ contains
     end if
     data%pairs = groups_named(document, 'pair')
     data%all_pairs = .not. has_unsound(document, 'pair')
+    call read_joints(document, data%joints)
   end subroutine gather
 
   !> Make the structure from the coincidence matrix.
@@ -102,22 +113,35 @@ contains
     logical, allocatable, intent(inout) :: independent(:) !< (M) the coordinate is independent
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(finding_type), allocatable :: findings(:)
-    integer :: m, n
+    integer :: m, n, most
     logical :: ok
 
     call read_matrix(data%structure, data%n_links, data%matrix, ok, diagnostics)
     if (.not. ok) return
     n = size(data%matrix%c, 1)
     m = data%n_coordinates
-    if (m == 0) m = max(maxval(data%matrix%c), 0)
-    if (m > n*(n - 1)/2) then
+    if (m == 0) m = max(maxval(data%matrix%c), 0, greatest_of_joints(data))
+    most = n*(n - 1)/2 + sum(data%joints%freedoms - 1)
+    if (m > most) then
       call diagnostics%add(data%n_coordinates_span, 'a matrix c of '//to_text(n)//' links holds at most '// &
-                           to_text(n*(n - 1)/2)//' coordinates, not '//to_text(m), exit_structure)
+                           to_text(most)//' coordinates, not '//to_text(m), exit_structure)
       return
     end if
-    call structure_from_matrix(data%matrix%c, m, cq_of(data), structure, independent, findings)
+    call structure_from_matrix(data%matrix%c, m, cq_of(data), structure, independent, findings, &
+                               inner_coordinates(data%joints, m))
     call report(findings, document, data, diagnostics)
   end subroutine from_matrix
+
+  !> The greatest coordinate of a joint with several freedoms; 0 where there is none.
+  pure integer function greatest_of_joints(data) result(greatest)
+    type(source_data_type), intent(in) :: data  !< the data on the structure, gathered from all groups
+    integer :: j
+
+    greatest = 0
+    do j = 1, size(data%joints)
+      greatest = max(greatest, maxval(data%joints(j)%numbers))
+    end do
+  end function greatest_of_joints
 
   !> Make the structure from the links of the pairs.
   pure subroutine from_pairs(document, data, structure, independent, known, diagnostics)
@@ -137,7 +161,7 @@ contains
       return
     end if
     n = data%n_coordinates
-    if (n == 0) n = size(data%pairs)
+    if (n == 0) n = size(data%pairs) + sum(data%joints%freedoms - 1)
     call take_pairs(document, n, data, diagnostics)
     if (.not. data%all_pairs .or. any(data%group_of_pair == 0)) return
     n = data%n_links
@@ -160,6 +184,7 @@ contains
     type(finding_type), allocatable :: findings(:)
     integer, allocatable :: n, m      ! not allocated where not given
     logical :: has_first
+    integer :: greatest
 
     has_first = allocated(structure%links)
     vectors%nrg = get_integers(data%structure, 'nrg')
@@ -168,9 +193,16 @@ contains
     vectors%nrw = get_integers(data%structure, 'nrw')
     if (data%n_links > 0) n = data%n_links
     if (data%n_coordinates > 0) m = data%n_coordinates
-    call structure_from_vectors(vectors, second, by_rdw, findings, n, m)
+    if (size(data%joints) > 0) then
+      greatest = min(max(data%n_coordinates, maxval([0, vectors%nws]), greatest_of_joints(data)), &
+                     size(vectors%nrg) + sum(data%joints%freedoms))
+      call structure_from_vectors(vectors, second, by_rdw, findings, n, m, inner_coordinates(data%joints, greatest))
+    else
+      call structure_from_vectors(vectors, second, by_rdw, findings, n, m)
+    end if
     call report(findings, document, data, diagnostics)
     if (size(findings) > 0) return
+    call settle_joints(data, by_rdw, diagnostics)
     if (has_first) then
       call compare_sets(data, structure, second, by_rdw, diagnostics)
     else
@@ -179,6 +211,35 @@ contains
     end if
     independent = by_rdw
   end subroutine from_vectors
+
+  !> Set which coordinates of joints with several freedoms are independent: cq tells them, and rdw alone only where all are.
+  pure subroutine settle_joints(data, by_rdw, diagnostics)
+    type(source_data_type), intent(in) :: data            !< the data on the structure, gathered from all groups
+    logical, intent(inout) :: by_rdw(:)  !< (M) independent by rdw; of a joint only its first coordinate, then all of them
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    integer, allocatable :: cq(:), k(:)
+    integer :: i, j
+
+    cq = cq_of(data)
+    do j = 1, size(data%joints)
+      k = data%joints(j)%coordinates()
+      if (any(k > size(by_rdw))) cycle          ! reported with the pairs
+      if (by_rdw(k(1)) .and. .not. has_name(data%structure, 'cq')) then
+        by_rdw(k) = .true.
+      else if (.not. has_name(data%structure, 'cq')) then
+        call diagnostics%add(span_of(data%structure, 'rdw', findloc_value(data, k(1))), 'rdw is 0 for the '// &
+                             trim(data%joints(j)%kind)//' joint of coordinates '//to_text(k)//'; give cq too, which tells '// &
+                             'whether any of them is independent', exit_structure)
+      else if (by_rdw(k(1)) .neqv. all([(any(cq == k(i)), i=1, size(k))])) then
+        call diagnostics%add(span_of(data%structure, 'rdw', findloc_value(data, k(1))), 'cq and rdw disagree about the '// &
+                             trim(data%joints(j)%kind)//' joint of coordinates '//to_text(k)//': rdw is 1 where cq names '// &
+                             'all of them, else 0', exit_structure)
+        by_rdw(k) = [(any(cq == k(i)), i=1, size(k))]
+      else
+        by_rdw(k) = [(any(cq == k(i)), i=1, size(k))]
+      end if
+    end do
+  end subroutine settle_joints
 
   !> The independent coordinates; none where cq is not given.
   pure function cq_of(data) result(cq)
@@ -272,11 +333,11 @@ contains
     integer, intent(in) :: n_coordinates                  !< how many coordinates the pairs should have
     type(source_data_type), intent(inout) :: data         !< the data on the structure, gathered from all groups
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-    integer, allocatable :: missing(:)
-    integer :: i, k, m
+    integer, allocatable :: missing(:), coordinates(:)
+    integer :: i, j, k, m
 
     m = n_coordinates
-    if (m > 10*size(data%pairs) + 1000) then
+    if (m > 10*(size(data%pairs) + sum(data%joints%freedoms)) + 1000) then
       call diagnostics%add(data%n_coordinates_span, to_text(m)//' coordinates need as many pairs, and there are '// &
                            to_text(size(data%pairs)), exit_structure)
       m = size(data%pairs)
@@ -285,14 +346,17 @@ contains
     allocate (data%group_of_pair(m), source=0)
     do i = 1, size(data%pairs)
       associate (group => document%groups(data%pairs(i)))
-        k = get_integer(group, 'coordinate')
-        if (k > m) then
-          call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '//to_text(k)// &
-                               '; they are 1 to '//to_text(m), exit_structure)
-        else
-          data%links(:, k) = get_integers(group, 'links')
-          data%group_of_pair(k) = data%pairs(i)
-        end if
+        coordinates = coordinates_of(group)
+        do j = 1, size(coordinates)
+          k = coordinates(j)
+          if (k > m) then
+            call diagnostics%add(coordinate_span(group, j), 'there is no coordinate '//to_text(k)// &
+                                 '; they are 1 to '//to_text(m), exit_structure)
+          else
+            if (j == 1) data%links(:, k) = get_integers(group, 'links')
+            data%group_of_pair(k) = data%pairs(i)
+          end if
+        end do
       end associate
     end do
     if (.not. data%all_pairs .or. m /= n_coordinates) return

@@ -2,6 +2,7 @@
 module mech9_link_dimensions
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross
+  use mech9_structure, only: structure_type
   use mech9_link_graph, only: link_graph_type, graph_from_structure
   use mech9_pair_axes, only: pair_axes_type, pair_axes, turning, sliding, free
   use mech9_mechanism, only: mechanism_type
@@ -28,7 +29,7 @@ module mech9_link_dimensions
 
 contains
 
-  !> The dimensions of all links, in the order of links and coordinates.
+  !> The dimensions of all links that the user knows, in the order of links and coordinates.
   pure subroutine link_dimensions(mechanism, dimensions)
     type(mechanism_type), intent(in) :: mechanism                          !< the mechanism
     type(link_dimension_type), allocatable, intent(out) :: dimensions(:)   !< two pairs of a link each
@@ -39,23 +40,38 @@ contains
     graph = graph_from_structure(mechanism%structure)
     axes = pair_axes(mechanism%pairs)
     n = 0
-    do link = 1, graph%n_links
+    do link = 1, mechanism%structure%shown_links()
       n = n + number_of_dimensions(graph%first(link + 1) - graph%first(link))
     end do
     allocate (dimensions(n))
     n = 0
-    do link = 1, graph%n_links
+    do link = 1, mechanism%structure%shown_links()
       associate (pairs => graph%pair_at(graph%first(link):graph%first(link + 1) - 1))
         do i = 1, size(pairs) - 1
           do j = i + 1, size(pairs)
             if (size(pairs) > most_pairs .and. j > i + 1 .and. .not. (i == 1 .and. j == size(pairs))) cycle
             n = n + 1
             dimensions(n) = dimension_between(axes, link, pairs(i), pairs(j))
+            call name_joints(mechanism%structure, dimensions(n))
           end do
         end do
       end associate
     end do
   end subroutine link_dimensions
+
+  !> Call joints with several freedoms by their first coordinates, and leave out what depends on their axes: they have several.
+  pure subroutine name_joints(structure, dimension)
+    type(structure_type), intent(in) :: structure           !< links and joints
+    type(link_dimension_type), intent(inout) :: dimension   !< the dimensions between two pairs
+    integer :: i
+
+    do i = 1, 2
+      if (structure%joint_of(dimension%pairs(i)) == 0) cycle
+      dimension%pairs(i) = structure%first_of_joint(dimension%pairs(i))
+      dimension%has_angle = .false.
+      dimension%has_distance = .false.
+    end do
+  end subroutine name_joints
 
   !> Number of pairs of pairs that are compared on a link.
   pure integer function number_of_dimensions(n_pairs) result(n)

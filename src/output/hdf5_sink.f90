@@ -250,10 +250,12 @@ contains
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(columns_type), intent(in) :: columns      !< columns of the rows to come
     type(string_type) :: kinds(size(columns%coordinates))
-    integer :: i
+    integer :: i, j
 
     do i = 1, size(kinds)
       kinds(i)%text = trim(mechanism%pairs(columns%coordinates(i))%pair%kind_name())
+      j = mechanism%structure%joint_of(columns%coordinates(i))
+      if (j > 0) kinds(i)%text = trim(mechanism%structure%joints(j)%kind)
     end do
     call file%put('coordinate', columns%coordinates, 'number of the coordinate and of its pair')
     call file%make_scale('coordinate')

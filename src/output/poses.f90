@@ -36,7 +36,7 @@ contains
     integer :: k, m
 
     m = size(mechanism%pairs)
-    poses%n_links = mechanism%structure%n_links
+    poses%n_links = mechanism%structure%shown_links()
     allocate (poses%vertex_link(2*m + size(mechanism%points)), source=0)
     allocate (poses%local(3, size(poses%vertex_link)), source=0.0_wp)
     do k = 1, m
@@ -59,8 +59,22 @@ contains
       poses%carrier(2*k - 1) = poses%carrier(2*k)
       poses%local(:, 2*k - 1) = in_moving%p
     end do
+    call keep_shown(poses)
     poses%lines = lines_through(poses%n_links, poses%vertex_link)
   end function poses_of
+
+  !> Leave out the vertices of links that belong to joints: their numbers are above those of the links that the user knows.
+  pure subroutine keep_shown(poses)
+    type(poses_type), intent(inout) :: poses   !< the poses, with the vertices of all links
+    logical :: kept(size(poses%vertex_link))
+    integer :: i
+
+    kept = poses%vertex_link <= poses%n_links
+    if (all(kept)) return
+    poses%local = poses%local(:, pack([(i, i=1, size(kept))], kept))
+    poses%carrier = pack(poses%carrier, kept)
+    poses%vertex_link = pack(poses%vertex_link, kept)
+  end subroutine keep_shown
 
   !> Lines that join the vertices of each link in their order, and the last one with the first where there are three or more.
   pure function lines_through(n_links, vertex_link) result(lines)

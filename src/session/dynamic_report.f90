@@ -17,6 +17,7 @@ module mech9_dynamic_report
   use mech9_integrator, only: integration_statistics_type
   use mech9_simulation, only: coordinate_change_type
   use mech9_free_simulation, only: free_simulation_type
+  use mech9_force_record, only: reacting_pairs
   use mech9_run_words, only: duration, each, begin_report, add_structure, add_uniqueness
   implicit none
   private
@@ -193,7 +194,7 @@ contains
     call facts%to_json(json)
     call add_coefficients(json, plan, simulation%coefficients)
     call add_events(json, simulation)
-    if (allocated(unique)) call add_uniqueness(json, model%request%output%reacting(plan%n_coordinates), unique)
+    if (allocated(unique)) call add_uniqueness(json, reacting_pairs(model), unique)
     call add_structure(json, model, plan)
     call json%end_object()
     call json%save(path, err)

@@ -27,7 +27,7 @@ module mech9_equilibrium_task
     put_forces, put_energy_shares
   use mech9_linear_file, only: put_linear_system
   use mech9_run_words, only: begin_report, add_uniqueness
-  use mech9_force_record, only: force_record_type
+  use mech9_force_record, only: force_record_type, reacting_pairs
   use mech9_equilibrium_words, only: print_findings
   use mech9_force_text, only: print_undetermined, print_forceless
   use mech9_row_source, only: signal_interruption_type
@@ -100,8 +100,8 @@ contains
     type(model_type), intent(in) :: model   !< the model
     type(plan_type), intent(in) :: plan     !< its plan
 
-    call print_structure(error_unit, model%problem%partition%vectors)
-    call print_mobility(error_unit, plan)
+    call print_structure(error_unit, model%mechanism%structure, model%problem%partition%vectors)
+    call print_mobility(error_unit, model%mechanism%structure, plan)
     call print_plan(error_unit, model%mechanism, plan, requested_by_results(model%mechanism, model%request%output, .true.))
   end subroutine print_making
 
@@ -178,7 +178,7 @@ contains
     if (options%has('quiet') .or. .not. model%request%output%with_forces()) return
     call print_forceless(error_unit, model%mechanism)
     if (allocated(forces%unique)) &
-      call print_undetermined(error_unit, model%request%output%reacting(size(model%mechanism%pairs)), forces%unique)
+      call print_undetermined(error_unit, reacting_pairs(model), forces%unique)
   end subroutine judge_forces
 
   !> Write table, HDF5 file, and file of matrices.
@@ -348,7 +348,7 @@ contains
     call json%end_array()
     if (options%has('modes') .and. size(list) > 0) call add_modes(json, list(1))
     if (allocated(forces%unique)) &
-      call add_uniqueness(json, model%request%output%reacting(size(model%mechanism%pairs)), forces%unique)
+      call add_uniqueness(json, reacting_pairs(model), forces%unique)
     call json%end_object()
     call json%save(options%argument('report'), err)
   end subroutine save_report

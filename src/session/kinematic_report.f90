@@ -14,6 +14,7 @@ module mech9_kinematic_report
   use mech9_block_names, only: words_of_block
   use mech9_law_notes, only: print_jumps
   use mech9_recording, only: recording_outcome_type
+  use mech9_force_record, only: reacting_pairs
   use mech9_run_words, only: duration, each, begin_report, add_structure, add_uniqueness
   implicit none
   private
@@ -107,7 +108,7 @@ contains
     call begin_report(json, program_name, model, diagnostics, table_path)
     call kinematic_facts(plan, outcome, driven, facts)
     call facts%to_json(json)
-    if (allocated(unique)) call add_uniqueness(json, model%request%output%reacting(plan%n_coordinates), unique)
+    if (allocated(unique)) call add_uniqueness(json, reacting_pairs(model), unique)
     call add_structure(json, model, plan)
     call json%end_object()
     call json%save(path, err)

@@ -114,7 +114,7 @@ contains
       call read_structure_only(document, structure, partition, diagnostics)
       if (.not. diagnostics%failed()) then
         if (.not. options%has('quiet')) call print_names_of_vectors(error_unit)
-        call print_structure(output_unit, partition%vectors)
+        call print_structure(output_unit, structure, partition%vectors)
       end if
     else
       legible = .not. diagnostics%failed()

@@ -23,7 +23,7 @@ module mech9_task
   use mech9_check_notes, only: print_notes
   use mech9_plan_text, only: print_plan
   use mech9_force_text, only: print_uniqueness, print_undetermined, print_forceless
-  use mech9_force_record, only: force_record_type
+  use mech9_force_record, only: force_record_type, reacting_pairs
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_hdf5_record, only: write_uniqueness
   use mech9_system, only: asked_to_end
@@ -86,9 +86,9 @@ contains
 
     if (options%has('check')) then
       call report_mobility(model%mechanism, plan, start, report)
-      call print_mobility_report(output_unit, plan, report)
+      call print_mobility_report(output_unit, model%mechanism%structure, plan, report)
     else if (options%has('plan')) then
-      call print_mobility(output_unit, plan)
+      call print_mobility(output_unit, model%mechanism%structure, plan)
     end if
     if (options%has('plan')) call print_plan(output_unit, model%mechanism, plan, requested)
     if (options%has('branches')) call print_assemblies(output_unit, model%mechanism, plan, start, options%number('starts', 100))
@@ -137,7 +137,7 @@ contains
     call print_forceless(output_unit, model%mechanism)
     call forces%judge(model, plan, start)
     if (allocated(forces%unique)) &
-      call print_uniqueness(output_unit, model%request%output%reacting(size(model%mechanism%pairs)), forces%unique)
+      call print_uniqueness(output_unit, reacting_pairs(model), forces%unique)
   end subroutine print_forces
 
   !> Carry out --graph.
@@ -176,7 +176,8 @@ contains
     if (model%request%output%with_forces() .and. .not. options%has('quiet')) call print_forceless(error_unit, model%mechanism)
     if (pictures%any_wanted() .and. model%request%output%force_arrows) then
       source%film = new_film(model%mechanism, model%problem%partition%independent(), model%request%time%intervals + 1, &
-                             source%columns, numbers_of(model%request%output%drawn_forces(size(model%mechanism%pairs))))
+                             source%columns, numbers_of(model%request%output%drawn_forces(size(model%mechanism%pairs)) .and. &
+                                        model%mechanism%structure%stands_alone()))
     else if (pictures%any_wanted()) then
       source%film = new_film(model%mechanism, model%problem%partition%independent(), model%request%time%intervals + 1, &
                              source%columns)
@@ -202,7 +203,7 @@ contains
     if (allocated(err)) call diagnostics%add_error(err)
     call results%print_words(error_unit, options%has('quiet'))
     if (allocated(source%forces%unique) .and. .not. options%has('quiet')) &
-      call print_undetermined(error_unit, model%request%output%reacting(size(model%mechanism%pairs)), source%forces%unique)
+      call print_undetermined(error_unit, reacting_pairs(model), source%forces%unique)
     ! an interrupted program makes no pictures, which would take too long
     if (asked_to_end()) return
     if (allocated(source%film)) call draw(options, pictures, model, source%film, diagnostics)
@@ -217,8 +218,8 @@ contains
 
     if (.not. options%has('quiet') .and. model%mechanism%title /= '') write (error_unit, '(a)') model%mechanism%title
     if (.not. options%has('verbose')) return
-    call print_structure(error_unit, model%problem%partition%vectors)
-    call print_mobility(error_unit, plan)
+    call print_structure(error_unit, model%mechanism%structure, model%problem%partition%vectors)
+    call print_mobility(error_unit, model%mechanism%structure, plan)
     call print_plan(error_unit, model%mechanism, plan, requested)
   end subroutine announce
 

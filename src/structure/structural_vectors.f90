@@ -32,14 +32,16 @@ contains
 
   !> Structure from the second set given as data, in any valid order and of any
   !> length. nrw may be absent (not allocated, or of size 0) and is then computed.
-  pure subroutine structure_from_vectors(vectors, structure, independent, findings, n_links, n_coordinates)
+  pure subroutine structure_from_vectors(vectors, structure, independent, findings, n_links, n_coordinates, inner)
     type(structural_vectors_type), intent(inout) :: vectors       !< the second set of data; nrw is computed where it is absent
     type(structure_type), intent(out) :: structure                !< of use only without findings
     logical, allocatable, intent(out) :: independent(:)           !< (M) the coordinate is independent
     type(finding_type), allocatable, intent(out) :: findings(:)   !< size 0: all is well
     integer, intent(in), optional :: n_links                      !< N, where known; else the greatest link named
     integer, intent(in), optional :: n_coordinates                !< M, where known; else the greatest coordinate named
+    logical, intent(in), optional :: inner(:)                     !< (M) another coordinate of its joint stands for it in nws
     type(finding_list_type) :: list
+    integer :: n_inner
 
     call check_sizes(vectors, list)
     call list%hand_over(findings)
@@ -47,13 +49,19 @@ contains
     ! valid vectors are longer than N and M, which keeps a mistyped number from asking for much memory
     structure%n_links = min(max(1, maxval(vectors%nrg)), size(vectors%nrg))
     structure%n_coordinates = min(max(0, maxval(vectors%nws)), size(vectors%nrg))
+    n_inner = 0
+    if (present(inner)) then
+      n_inner = count(inner)
+      structure%n_coordinates = size(inner)
+    end if
     if (present(n_links)) call take_count('nrg', 'links', n_links, structure%n_links, size(vectors%nrg), list)
     if (present(n_coordinates)) &
-      call take_count('nws', 'coordinates', n_coordinates, structure%n_coordinates, size(vectors%nrg) - 1, list)
+      call take_count('nws', 'coordinates', n_coordinates, structure%n_coordinates, &
+                      size(vectors%nrg) - 1 + n_inner, list)
     allocate (structure%links(2, structure%n_coordinates), source=0)
     allocate (independent(structure%n_coordinates), source=.false.)
     call check_head(vectors, list)
-    call walk(vectors, structure, independent, list)
+    call walk(vectors, structure, independent, list, inner)
     call check_kinds(vectors, list)
     if (size(vectors%nrw) > 0) then
       call check_closures(vectors, list)
@@ -170,16 +178,18 @@ contains
   end subroutine check_head
 
   !> Run through the chains: take links and kinds of the coordinates, and note errors.
-  pure subroutine walk(vectors, structure, independent, list)
+  pure subroutine walk(vectors, structure, independent, list, inner)
     type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
     type(structure_type), intent(inout) :: structure       !< gets the links of the coordinates
     logical, intent(inout) :: independent(:)               !< (M) gets the kinds of the coordinates
     type(finding_list_type), intent(inout) :: list         !< gets the findings
+    logical, intent(in), optional :: inner(:)              !< (M) another coordinate of its joint stands for it in nws
     logical :: known(structure%n_links), used(structure%n_coordinates)
     logical :: may_go_on       ! false after a step that closed its chain
     integer :: i
 
     used = .false.
+    if (present(inner)) used = inner(:size(used))
     known = .false.
     known(1) = .true.
     may_go_on = .true.
@@ -187,7 +197,7 @@ contains
       if (.not. is_link(vectors%nrg(i), structure%n_links)) then
         call list%add('nrg', [i, 0], 'nrg('//to_text(i)//') = '//to_text(vectors%nrg(i))// &
                       ' is no link; the links are 1 to '//to_text(structure%n_links))
-        if (vectors%nws(i) /= 0) call take_step(vectors, structure, independent, used, i, list)
+        if (vectors%nws(i) /= 0) call take_step(vectors, structure, independent, used, i, list, inner)
         may_go_on = .true.
       else if (vectors%nws(i) == 0) then
         call check_restart(vectors, known, i, list)
@@ -196,7 +206,7 @@ contains
         if (.not. may_go_on) &
           call list%add('nws', [i, 0], 'position '//to_text(i)//' goes on after link '//to_text(vectors%nrg(i - 1))// &
                         ' has closed the chain; restart there with a known link and nws = 0')
-        call take_step(vectors, structure, independent, used, i, list)
+        call take_step(vectors, structure, independent, used, i, list, inner)
         may_go_on = .not. known(vectors%nrg(i))
       end if
       if (is_link(vectors%nrg(i), structure%n_links)) known(vectors%nrg(i)) = .true.
@@ -222,19 +232,26 @@ contains
   end subroutine check_restart
 
   !> Take links and kind of the coordinate of a step, and note an error.
-  pure subroutine take_step(vectors, structure, independent, used, i, list)
+  pure subroutine take_step(vectors, structure, independent, used, i, list, inner)
     type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
     type(structure_type), intent(inout) :: structure   !< gets the links of the coordinates
     logical, intent(inout) :: independent(:)        !< (M) gets the kinds of the coordinates
     logical, intent(inout) :: used(:)               !< coordinates met so far
     integer, intent(in) :: i                        !< a position with nws /= 0
     type(finding_list_type), intent(inout) :: list   !< gets the findings
+    logical, intent(in), optional :: inner(:)        !< (M) another coordinate of its joint stands for it in nws
     integer :: k
+    logical :: is_inner
 
     k = vectors%nws(i)
+    is_inner = .false.
+    if (present(inner) .and. k >= 1 .and. k <= structure%n_coordinates) is_inner = inner(k)
     if (k < 1 .or. k > structure%n_coordinates) then
       call list%add('nws', [i, 0], 'nws('//to_text(i)//') = '//to_text(k)// &
                     ' is no coordinate; they are 1 to '//to_text(structure%n_coordinates))
+    else if (is_inner) then
+      call list%add('nws', [i, 0], 'nws('//to_text(i)//') = '//to_text(k)//': a joint with several coordinates stands in nws '// &
+                    'by the first of them; leave the others out')
     else if (used(k)) then
       call list%add('nws', [i, 0], 'coordinate '//to_text(k)//' is used a second time at position '//to_text(i)// &
                     '; each coordinate stands once in nws')

@@ -6,6 +6,7 @@ module mech9_structure
   use mech9_text, only: to_text, some_of
   use mech9_masks, only: numbers_of
   use mech9_finding, only: finding_type, finding_list_type, longest_list
+  use mech9_compound_joint, only: compound_joint_type
   implicit none
   private
   public :: structure_type, finding_type
@@ -16,14 +17,82 @@ module mech9_structure
     integer :: n_links = 0                   !< N, with link 1 the frame
     integer :: n_coordinates = 0             !< M, as many as pairs
     integer, allocatable :: links(:, :)      !< (2,M) the two links of each pair
+    !> Joints with several freedoms, whose pairs and own links are among those above; not allocated where there is none.
+    type(compound_joint_type), allocatable :: joints(:)
+  contains
+    procedure :: shown_links
+    procedure :: joint_of
+    procedure :: joint_of_link
+    procedure :: first_of_joint
+    procedure :: stands_alone
   end type structure_type
 
 contains
 
+  !> Number of the links that the user knows: they come first, and the links of joints after them.
+  pure integer function shown_links(self)
+    class(structure_type), intent(in) :: self   !< the structure
+
+    shown_links = self%n_links
+    if (allocated(self%joints)) shown_links = self%n_links - sum(self%joints%freedoms - 1)
+  end function shown_links
+
+  !> Number of the joint to which a coordinate belongs; 0 where its pair is no part of a joint with several freedoms.
+  pure integer function joint_of(self, coordinate) result(joint)
+    class(structure_type), intent(in) :: self   !< the structure
+    integer, intent(in) :: coordinate           !< number of the coordinate
+
+    joint = 0
+    if (.not. allocated(self%joints)) return
+    do joint = size(self%joints), 1, -1
+      associate (j => self%joints(joint))
+        if (any(j%numbers(:j%freedoms) == coordinate)) return
+      end associate
+    end do
+  end function joint_of
+
+  !> Number of the joint to which a link belongs; 0 for a link that the user knows.
+  pure integer function joint_of_link(self, link) result(joint)
+    class(structure_type), intent(in) :: self   !< the structure
+    integer, intent(in) :: link                 !< number of the link
+
+    joint = 0
+    if (.not. allocated(self%joints)) return
+    do joint = size(self%joints), 1, -1
+      associate (j => self%joints(joint))
+        if (link > j%before_own .and. link < j%before_own + j%freedoms) return
+      end associate
+    end do
+  end function joint_of_link
+
+  !> The first coordinate of the joint to which a coordinate belongs; the coordinate itself where its pair is no part of one.
+  pure integer function first_of_joint(self, coordinate) result(first)
+    class(structure_type), intent(in) :: self   !< the structure
+    integer, intent(in) :: coordinate           !< number of the coordinate
+    integer :: joint
+
+    first = coordinate
+    joint = self%joint_of(coordinate)
+    if (joint > 0) first = self%joints(joint)%numbers(1)
+  end function first_of_joint
+
+  !> Whether each coordinate stands for a whole joint, being the only one or the first of it.
+  pure function stands_alone(self)
+    class(structure_type), intent(in) :: self   !< the structure
+    logical :: stands_alone(self%n_coordinates)
+    integer :: j
+
+    stands_alone = .true.
+    if (.not. allocated(self%joints)) return
+    do j = 1, size(self%joints)
+      stands_alone(self%joints(j)%numbers(2:self%joints(j)%freedoms)) = .false.
+    end do
+  end function stands_alone
+
   !> Structure from the links of each pair. Two pairs may join the same two links.
   pure subroutine structure_from_pairs(n_links, links, cq, structure, independent, findings)
     integer, intent(in) :: n_links                  !< N
-    integer, intent(in) :: links(:, :)              !< (2,M) links of pair k in column k
+    integer, intent(in) :: links(:, :)  !< (2,M) links of pair k in column k; 0 where another coordinate of its joint stands for it
     integer, intent(in) :: cq(:)                    !< independent coordinates
     type(structure_type), intent(out) :: structure  !< of use only without findings
     logical, allocatable, intent(out) :: independent(:)           !< (M) the coordinate is independent
@@ -41,13 +110,14 @@ contains
   end subroutine structure_from_pairs
 
   !> Structure from the coincidence matrix (7). It cannot express two pairs between the same links.
-  pure subroutine structure_from_matrix(c, n_coordinates, cq, structure, independent, findings)
+  pure subroutine structure_from_matrix(c, n_coordinates, cq, structure, independent, findings, inner)
     integer, intent(in) :: c(:, :)                  !< c(i,j) = c(j,i) = k where pair k joins links i and j
     integer, intent(in) :: n_coordinates            !< M
     integer, intent(in) :: cq(:)                    !< independent coordinates
     type(structure_type), intent(out) :: structure  !< of use only without findings
     logical, allocatable, intent(out) :: independent(:)           !< (M) the coordinate is independent
     type(finding_type), allocatable, intent(out) :: findings(:)   !< size 0: all is well
+    logical, intent(in), optional :: inner(:)   !< (M) another coordinate of its joint stands for it in C
     type(finding_list_type) :: list
     integer :: n
 
@@ -62,7 +132,7 @@ contains
       call check_counts(n, n_coordinates, 'c', list)
       call check_diagonal(c, list)
       call check_symmetry(c, list)
-      call take_links(c, structure%links, list)
+      call take_links(c, structure%links, list, inner)
       call check_connected(n, joined_in_matrix(c), 'c', list)
     end if
     call take_independent(cq, structure%n_coordinates, independent, list)
@@ -108,6 +178,7 @@ contains
     integer :: i, k
 
     do k = 1, size(links, 2)
+      if (all(links(:, k) == 0)) cycle          ! another coordinate of its joint stands for it
       do i = 1, 2
         if (links(i, k) < 1 .or. links(i, k) > n_links) &
           call list%add('links', [k, i], 'pair '//to_text(k)//' names link '//to_text(links(i, k))// &
@@ -200,10 +271,11 @@ contains
 
   !> Links of each coordinate, with findings for numbers out of range, repeated or missing.
   !> A number counts as present but not as repeated where C is not symmetric, so that one error makes one finding.
-  pure subroutine take_links(c, links, list)
+  pure subroutine take_links(c, links, list, inner)
     integer, intent(in) :: c(:, :)                   !< (N,N) the coincidence matrix
     integer, intent(inout) :: links(:, :)            !< (2,M) zeros on entry
     type(finding_list_type), intent(inout) :: list   !< gets the findings
+    logical, intent(in), optional :: inner(:)        !< (M) another coordinate of its joint stands for it in C
     integer :: i, j, k, m
     logical :: present_in_c(size(links, 2))
     integer, allocatable :: missing(:)
@@ -220,6 +292,11 @@ contains
           cycle
         end if
         present_in_c(k) = .true.
+        if (is_inner(k, inner)) then
+          if (j > i) call list%add('c', [i, j], trim(entry_text(c, i, j))//': a joint with several coordinates stands in C by '// &
+                                   'the first of them; leave the others out')
+          cycle
+        end if
         if (j < i .or. c(j, i) /= k) cycle
         if (links(1, k) == 0) then
           links(:, k) = [i, j]
@@ -231,12 +308,22 @@ contains
       end do
     end do
     missing = numbers_of(.not. present_in_c)
+    if (present(inner)) missing = pack(missing, .not. inner(missing))
     if (size(missing) == 1) then
       call list%add('c', [0, 0], 'coordinate '//some_of(missing, longest_list)//' is missing in C')
     else if (size(missing) > 1) then
       call list%add('c', [0, 0], 'coordinates '//some_of(missing, longest_list)//' are missing in C')
     end if
   end subroutine take_links
+
+  !> Whether another coordinate of its joint stands for a coordinate.
+  pure logical function is_inner(k, inner)
+    integer, intent(in) :: k                    !< number of the coordinate
+    logical, intent(in), optional :: inner(:)   !< (M) another coordinate of its joint stands for it; absent: for none
+
+    is_inner = .false.
+    if (present(inner)) is_inner = inner(k)
+  end function is_inner
 
   !> Links that C joins by any number, right or wrong, in either half.
   pure function joined_in_matrix(c) result(links)

@@ -85,13 +85,21 @@ contains
     end select
   end subroutine explain_assembly
 
+  !> " on link 4"; empty for a link that the user does not know.
+  pure character(len=24) function on_link(link) result(words)
+    integer, intent(in) :: link   !< number of the link; 0 for one that the user does not know
+
+    words = ''
+    if (link > 0) words = ' on link '//to_text(link)
+  end function on_link
+
   !> A chain that does not close.
   pure subroutine explain_open_chain(failure, text)
     type(failure_type), intent(in) :: failure             !< of an open chain
     character(len=:), allocatable, intent(inout) :: text  !< the message
 
     text = 'the mechanism cannot be assembled: '//chain_names(failure%chains)// &
-           ' (it closes on link '//to_text(failure%link)//' through coordinate '//to_text(failure%coordinates)// &
+           ' (it closes'//trim(on_link(failure%link))//' through coordinate '//to_text(failure%coordinates)// &
            ') stays open by '//to_text(failure%gap, 3)//' m at best; '
     if (failure%kind == failure_nearly_closed_chain) then
       text = text//'so small a gap comes from directions or points given with too few digits, '// &

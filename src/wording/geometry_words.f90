@@ -6,6 +6,8 @@ module mech9_geometry_words
   use mech9_mechanism, only: mechanism_type
   use mech9_loop_geometry, only: oddity_type, find_oddity, none_found, bent_link, not_parallel, not_across, not_concurrent, &
                                  other_height, too_long
+  use mech9_structure, only: structure_type
+  use mech9_joint_words, only: link_name
   use mech9_explanation, only: explain
   implicit none
   private
@@ -26,16 +28,21 @@ contains
 
     if (.not. allocated(err)) return
     if (err%code /= exit_structure .and. err%code /= exit_assembly) return
+    if (allocated(err%failure)) then
+      ! nobody knows the links of joints
+      if (mechanism%structure%joint_of_link(err%failure%link) > 0) err%failure%link = 0
+    end if
     call find_oddity(mechanism, oddity)
     if (oddity%kind == none_found) return
     call explain(err)
-    call describe(oddity, words)
+    call describe(mechanism%structure, oddity, words)
     err%message = words//'; '//err%message
     if (size(oddity%odd) > 0) call add_place(err, place=mechanism%pairs(oddity%odd(1))%pair%place)
   end subroutine explain_geometry
 
   !> A sentence about an oddity.
-  pure subroutine describe(oddity, words)
+  pure subroutine describe(structure, oddity, words)
+    type(structure_type), intent(in) :: structure            !< links and joints
     type(oddity_type), intent(in) :: oddity                  !< the oddity, with pairs, link, angle or distance by its kind
     character(len=:), allocatable, intent(out) :: words  !< the sentence; empty for an unknown kind
     character(len=:), allocatable :: chain, pairs
@@ -57,11 +64,12 @@ contains
               to_text(oddity%distance, 3)//' m along its parallel axes, wherever it moves'
       if (size(oddity%odd) > 0) words = words//': see point and moving_point of '//pairs
     case (too_long)
-      words = 'link '//to_text(oddity%link)//' is '//to_text(oddity%distance, digits)//' m long from pair '// &
+      words = trim(link_name(structure, oddity%link))//' is '//to_text(oddity%distance, digits)//' m long from pair '// &
               to_text(oddity%odd(1))//' to pair '//to_text(oddity%odd(2))//', and the other links'//chain//' are '// &
               to_text(oddity%others, digits)//' m long together'
     case (bent_link)
-      words = 'the axes of '//pairs//' are not parallel on link '//to_text(oddity%link)//' (by '//trim(degrees(oddity%angle))// &
+      words = 'the axes of '//pairs//' are not parallel on '//trim(link_name(structure, oddity%link))//' (by '// &
+              trim(degrees(oddity%angle))// &
               '), as they are on all other links'//chain//': see axis and moving_axis of these pairs'
     case default
       words = ''

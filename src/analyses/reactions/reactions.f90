@@ -11,6 +11,7 @@ module mech9_reactions
   use mech9_tolerances, only: rank_tolerance_for, balanced, balanced_singular, planar_round_off
   use mech9_block_cholesky, only: clearly_positive
   use mech9_rotation, only: cross, turn_back
+  use mech9_structure, only: structure_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -100,6 +101,7 @@ contains
       call balance_in_plane(plan, reactions, state, self%view, self%sum, self%flat, done)
       if (done) then
         call show_wrenches(plan, reactions, state, self%sum, self%flat, self%force, self%moment, self%needed)
+        call show_joints(mechanism%structure, self)
         return
       end if
     end if
@@ -124,7 +126,24 @@ contains
       end if
     end do
     call find_needed(plan, reactions, self)
+    call show_joints(mechanism%structure, self)
   end subroutine find_reactions
+
+  !> Give the first coordinate of each joint with several freedoms the wrench of its last pair, which leads to the moving link. All
+  !> pairs of the joint pass on the same force, since the links between them have neither mass nor loads.
+  pure subroutine show_joints(structure, self)
+    type(structure_type), intent(in) :: structure   !< links and joints
+    type(reactions_type), intent(inout) :: self     !< with the wrenches of all pairs
+    integer :: j
+
+    if (.not. allocated(structure%joints)) return
+    do j = 1, size(structure%joints)
+      associate (joint => structure%joints(j))
+        self%force(:, joint%numbers(1)) = self%force(:, joint%numbers(joint%freedoms))
+        self%moment(:, joint%numbers(1)) = self%moment(:, joint%numbers(joint%freedoms))
+      end associate
+    end do
+  end subroutine show_joints
 
   !> Take the links from the ends of chains inwards: each passes what it and all beyond it require on to the link on which it
   !> stands. This is the wrench of a pair outside closed chains.

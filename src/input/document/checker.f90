@@ -15,6 +15,7 @@ module mech9_checker
   private
   public :: check_document
 
+  integer, parameter :: most_keys = 6     !< of one group
   integer, parameter :: kind_length = 36  !< length of the longest kind of a group with its law
 
 contains
@@ -239,90 +240,133 @@ contains
     type(document_type), intent(inout) :: document        !< the data file as groups and items
     integer, intent(in) :: row                            !< row of the groups in group_table
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-    integer, allocatable :: members(:), keys(:)
-    integer :: i, j
+    integer, allocatable :: members(:)
+    integer :: i
 
     members = pack([(i, i=1, size(document%groups))], document%groups%row == row)
-    if (size(members) < 2) return
     if (.not. group_table(row)%repeats) then
       do i = 2, size(members)
-        call report_repeated(document%groups(members(i)), document%groups(members(1)), '', diagnostics)
+        call report_repeated(document%groups(members(i)), document%groups(members(1)), diagnostics)
         document%groups(members(i))%sound = .false.
       end do
     else if (group_table(row)%key /= '') then
-      allocate (keys(size(members)))
-      do i = 1, size(members)
-        keys(i) = key_number(document%groups(members(i)), i, members, row, document)
-      end do
-      do i = 2, size(members)
-        j = findloc(keys(:i - 1), keys(i), dim=1)
-        if (j == 0) cycle
-        call report_repeated(document%groups(members(i)), document%groups(members(j)), trim(group_table(row)%key), diagnostics)
-        document%groups(members(i))%sound = .false.
-      end do
+      call check_keys(document, members, trim(group_table(row)%key), diagnostics)
     end if
   end subroutine check_repeated
 
-  !> A number that is equal for groups of the same key and for no others; negative and of its own
-  !> where the key is missing or wrong.
-  pure integer function key_number(group, number, members, row, document)
-    type(group_type), intent(in) :: group        !< the group of the data file
-    integer, intent(in) :: number                !< position of the group among those of its kind
-    integer, intent(in) :: members(:)            !< numbers of all groups of this kind in the document
-    integer, intent(in) :: row                   !< row of these groups in group_table
-    type(document_type), intent(in) :: document  !< the data file as groups and items
-    type(value_type) :: value, other
-    integer :: j
+  !> Report keys that stand in two groups, or twice in one. A group has one key, or a list of them under the plural of its name.
+  pure subroutine check_keys(document, members, key, diagnostics)
+    type(document_type), intent(inout) :: document        !< the data file as groups and items
+    integer, intent(in) :: members(:)                     !< numbers of all groups of a kind
+    character(len=*), intent(in) :: key                   !< name of the key
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(value_type), allocatable :: values(:)
+    integer, allocatable :: numbers(:), owners(:)
+    integer :: i, j, k, n, found
 
-    key_number = -number
-    if (.not. group%sound) return
-    value = key_value(group, trim(group_table(row)%key))
-    if (value%kind == value_integer) then
-      key_number = int(value%whole)
-    else if (value%kind == value_text) then
-      do j = 1, number - 1
-        other = key_value(document%groups(members(j)), trim(group_table(row)%key))
-        if (other%kind /= value_text) cycle
-        if (other%text == value%text) key_number = -j
-        if (key_number == -j) return
+    allocate (numbers(size(members) + most_keys), owners(size(members) + most_keys))
+    n = 0
+    do i = 1, size(members)
+      if (.not. document%groups(members(i))%sound) cycle
+      values = keys_of(document%groups(members(i)), key)
+      if (n + size(values) > size(owners)) call make_room(numbers, owners)
+      found = diagnostics%count
+      do k = 1, size(values)
+        j = findloc(numbers(:n), number_of_key(values(k), document, owners(:n), key), dim=1)
+        if (j == 0) then
+          n = n + 1
+          numbers(n) = number_of_key(values(k), document, owners(:n - 1), key)
+          owners(n) = members(i)
+        else if (owners(j) == members(i)) then
+          call diagnostics%add(values(k)%span, key//' '//diagnostics%text_of(values(k)%span)//' is named twice')
+        else
+          call report_second_key(document%groups(members(i)), document%groups(owners(j)), key, values(k)%span, diagnostics)
+        end if
       end do
-    end if
-  end function key_number
+      if (diagnostics%count > found) document%groups(members(i))%sound = .false.
+    end do
+  end subroutine check_keys
 
-  !> The value of the name that tells groups of a kind apart.
-  pure function key_value(group, key) result(value)
+  !> Make room for more keys.
+  pure subroutine make_room(numbers, owners)
+    integer, allocatable, intent(inout) :: numbers(:)   !< numbers of the keys so far
+    integer, allocatable, intent(inout) :: owners(:)    !< groups to which they belong
+    integer, allocatable :: longer(:)
+
+    allocate (longer(2*size(numbers) + most_keys), source=0)
+    longer(:size(numbers)) = numbers
+    call move_alloc(longer, numbers)
+    allocate (longer(size(numbers)), source=0)
+    longer(:size(owners)) = owners
+    call move_alloc(longer, owners)
+  end subroutine make_room
+
+  !> A number that is equal for equal keys only: the key itself, or minus the place of the first group that has the same text.
+  pure integer function number_of_key(value, document, owners, key) result(number)
+    type(value_type), intent(in) :: value        !< the key: a whole number or a text
+    type(document_type), intent(in) :: document  !< the data file as groups and items
+    integer, intent(in) :: owners(:)             !< numbers of the groups to which the keys before it belong
+    character(len=*), intent(in) :: key          !< name of the key
+    type(value_type), allocatable :: other(:)
+
+    if (value%kind == value_integer) then
+      number = int(value%whole)
+      return
+    end if
+    do number = 1, size(owners)
+      other = keys_of(document%groups(owners(number)), key)
+      if (size(other) /= 1) cycle
+      if (other(1)%kind /= value_text) cycle
+      if (other(1)%text == value%text) exit
+    end do
+    number = -number
+  end function number_of_key
+
+  !> The keys of a group: the value of the name that tells groups of its kind apart, or the values under the plural of this name.
+  pure function keys_of(group, key) result(values)
     type(group_type), intent(in) :: group  !< the group of the data file
-    character(len=*), intent(in) :: key    !< the name whose value is returned
-    type(value_type) :: value
+    character(len=*), intent(in) :: key    !< name of the key
+    type(value_type), allocatable :: values(:)
     integer :: i
 
+    allocate (values(0))
     do i = 1, size(group%items)
-      if (group%items(i)%name == key .and. size(group%items(i)%values) == 1) value = group%items(i)%values(1)
+      if (group%items(i)%name == key .or. group%items(i)%name == key//'s') values = group%items(i)%values
     end do
-  end function key_value
+    values = pack(values, values%kind == value_integer .or. values%kind == value_text)
+  end function keys_of
+
+  !> Report a key that a group before has too, with the line of that group.
+  pure subroutine report_second_key(group, first, key, span, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group
+    type(group_type), intent(in) :: first                 !< the group before
+    character(len=*), intent(in) :: key                   !< name of the key
+    type(span_type), intent(in) :: span                   !< place of the key in the later group
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+
+    call diagnostics%add(span, 'a second &'//group%name//' for '//key//' '//diagnostics%text_of(span)// &
+                         trim(line_of_first(first, diagnostics)))
+  end subroutine report_second_key
 
   !> Report a group that must not be repeated, with the line of the first one.
-  pure subroutine report_repeated(group, first, key, diagnostics)
+  pure subroutine report_repeated(group, first, diagnostics)
     type(group_type), intent(in) :: group                 !< the group that stands there again
     type(group_type), intent(in) :: first                 !< the group that stands there first
-    character(len=*), intent(in) :: key  !< the name that tells the groups apart; empty where the group may stand only once
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-    character(len=:), allocatable :: text
-    type(value_type) :: value
-    type(span_type) :: span
 
-    span = group%span
-    text = '&'//group%name//' may stand only once'
-    if (key /= '') then
-      value = key_value(group, key)
-      span = value%span
-      text = 'a second &'//group%name//' for '//key//' '//diagnostics%text_of(value%span)
-    end if
-    if (first%span%source == 1) then
-      associate (position => diagnostics%place(first%span))
-        text = text//'; the first stands in line '//to_text(position%line)
-      end associate
-    end if
-    call diagnostics%add(span, text)
+    call diagnostics%add(group%span, '&'//group%name//' may stand only once'//trim(line_of_first(first, diagnostics)))
   end subroutine report_repeated
+
+  !> The words about the line of a group that stands first: "; the first stands in line 4"; empty where it is not in the file.
+  pure function line_of_first(first, diagnostics) result(words)
+    type(group_type), intent(in) :: first               !< the group that stands there first
+    type(diagnostics_type), intent(in) :: diagnostics   !< knows the places in the file
+    character(len=48) :: words
+
+    words = ''
+    if (first%span%source /= 1) return
+    associate (position => diagnostics%place(first%span))
+      words = '; the first stands in line '//to_text(position%line)
+    end associate
+  end function line_of_first
 end module mech9_checker

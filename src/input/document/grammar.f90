@@ -32,7 +32,7 @@ module mech9_grammar
     character(len=22) :: default  !< the default as it would be written; in parentheses where it is a rule
     character(len=9) :: range     !< the range of values: empty, >0, >=0, >=1, or >0 and <1
     character(len=108) :: words   !< the texts allowed, with blanks between; empty: any
-    character(len=40) :: kinds    !< the kinds of the group it belongs to, or the laws of time, as in law:harmonic; empty: all
+    character(len=72) :: kinds    !< the kinds of the group it belongs to, or the laws of time, as in law:harmonic; empty: all
     character(len=120) :: help
     character(len=44) :: example  !< a value as it would be written
     logical :: seldom = .false.   !< the conversation asks for it only on request
@@ -43,6 +43,7 @@ module mech9_grammar
   character(len=*), parameter :: for_forces = 'forces'
   logical, parameter :: needed = .true., optional = .false.
   character(len=*), parameter :: screws = 'revolute prismatic helical'
+  character(len=*), parameter :: joints = 'spherical universal cylindrical planar free'
   character(len=*), parameter :: motion_laws = 'dwell constant-velocity harmonic cycloidal polynomial345 polynomial4567 '// &
                                                'modified-sine modified-trapezoidal'
 
@@ -51,7 +52,7 @@ module mech9_grammar
     group_row_type('structure', .false., '', 'both', &
                    'which links meet, which coordinates are independent: first set (c, cq) or second (nrg, nws, rdw, nrw)'), &
     group_row_type('pair', .true., 'coordinate', 'both', &
-                   'a joint with one degree of freedom: its links, its kind, its axis'), &
+                   'a joint of two links: its kind, its coordinate or coordinates, its point and axis'), &
     group_row_type('initial', .true., 'coordinate', 'both', &
                    'a coordinate at the start: a guess of a dependent one, the value of an independent one'), &
     group_row_type('point', .true., 'name', 'both', 'a point of a link whose motion is recorded'), &
@@ -95,12 +96,24 @@ module mech9_grammar
                   'second set: number of chains that are closed up to each link of nrg', '0, 0, 0, 1')]
 
   type(item_row_type), parameter :: pair_items(*) = [ &
-    item_row_type('pair', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
+    item_row_type('pair', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', screws//' path user', &
                   'number of its coordinate', '5'), &
+    item_row_type('pair', 'coordinates', 'integer', 3, 3, '', needed, '', '>=1', '', 'spherical', &
+                  'numbers of its three coordinates: turns about x, then y, then z of the joint''s frame', '4, 5, 6'), &
+    item_row_type('pair', 'coordinates', 'integer', 2, 2, '', needed, '', '>=1', '', 'universal', &
+                  'numbers of its two coordinates: the turn about axis, then that about moving_axis', '4, 5'), &
+    item_row_type('pair', 'coordinates', 'integer', 2, 2, '', needed, '', '>=1', '', 'cylindrical', &
+                  'numbers of its two coordinates: the turn about the axis and the slide along it', '4, 5'), &
+    item_row_type('pair', 'coordinates', 'integer', 3, 3, '', needed, '', '>=1', '', 'planar', &
+                  'numbers of its three coordinates: slides along zero and across it in the plane, and the turn', '4, 5, 6'), &
+    item_row_type('pair', 'coordinates', 'integer', 6, 6, '', needed, '', '>=1', '', 'free', &
+                  'numbers of its six coordinates: slides along x, y, z of the joint''s frame, then turns about x, y, z', &
+                  '4, 5, 6, 7, 8, 9'), &
     item_row_type('pair', 'links', 'integer', 2, 2, '', needed, '', '>=1', '', '', &
                   'the reference link and the moving link', '1, 2'), &
-    item_row_type('pair', 'kind', 'text', 1, 1, '', needed, '', '', screws//' path user', '', &
-                  'it turns, slides, does both as a screw, follows a curve, or moves by a user''s procedure', '''revolute'''), &
+    item_row_type('pair', 'kind', 'text', 1, 1, '', needed, '', '', screws//' path user '//joints, '', &
+                  'it turns, slides, turns as a screw, follows a curve, moves by a user''s procedure, or has several freedoms', &
+                  '''revolute'''), &
     item_row_type('pair', 'point', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', screws, &
                   'a point of the axis, in the reference link', '0, 0, 0'), &
     item_row_type('pair', 'axis', 'real', 3, 3, '', optional, '(needed unless dh)', '', '', screws, &
@@ -114,6 +127,23 @@ module mech9_grammar
                   'the same axis in the moving link', '0, 0, 1', seldom=.true.), &
     item_row_type('pair', 'moving_zero', 'real', 3, 3, '', optional, '(as zero)', '', '', screws, &
                   'direction in the moving link that stands at zero when q = 0', '1, 0, 0', seldom=.true.), &
+    item_row_type('pair', 'point', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', joints, &
+                  'the centre of the joint, or a point of its axis or plane, in the reference link', '0, 0, 0'), &
+    item_row_type('pair', 'axis', 'real', 3, 3, '', needed, '', '', '', 'universal cylindrical planar', &
+                  'direction of the axis, or at right angles to the plane, in the reference link; of any length', '0, 0, 1'), &
+    item_row_type('pair', 'axis', 'real', 3, 3, '', optional, '0, 0, 1', '', '', 'spherical free', &
+                  'z axis of the joint''s frame, in the reference link; of any length', '0, 0, 1', seldom=.true.), &
+    item_row_type('pair', 'zero', 'real', 3, 3, '', optional, '(x, y or z axis)', '', '', 'spherical cylindrical planar free', &
+                  'x axis of the joint''s frame, in the reference link; by default the first axis at 45 degrees or more to axis', &
+                  '1, 0, 0', seldom=.true.), &
+    item_row_type('pair', 'moving_point', 'real', 3, 3, 'm', optional, '(as point)', '', '', joints, &
+                  'the same point in the moving link', '-1.2, 0, 0', seldom=.true.), &
+    item_row_type('pair', 'moving_axis', 'real', 3, 3, '', needed, '', '', '', 'universal', &
+                  'direction of the second axis, in the moving link; at q = 0 the systems of both links are parallel', '0, 1, 0'), &
+    item_row_type('pair', 'moving_axis', 'real', 3, 3, '', optional, '(as axis)', '', '', 'spherical cylindrical planar free', &
+                  'z axis of the joint''s frame, in the moving link', '0, 0, 1', seldom=.true.), &
+    item_row_type('pair', 'moving_zero', 'real', 3, 3, '', optional, '(as zero)', '', '', 'spherical cylindrical planar free', &
+                  'x axis of the joint''s frame, in the moving link', '1, 0, 0', seldom=.true.), &
     item_row_type('pair', 'pitch', 'real', 1, 1, 'm', needed, '', '', '', 'helical', &
                   'advance per turn', '0.005'), &
     item_row_type('pair', 'dh', 'real', 4, 4, 'm, angle', optional, '(point, axis, ...)', '', '', screws, &

@@ -7,6 +7,8 @@ module mech9_structure_graph
   use mech9_error, only: error_type, raise, add_place, exit_file
   use mech9_text, only: string_type, to_text
   use mech9_path, only: ending_of, with_ending
+  use mech9_compound_joint, only: compound_joint_type
+  use mech9_structure, only: structure_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_block_names, only: chain_names
@@ -97,13 +99,14 @@ contains
 
     text = 'graph mechanism {'//line_end
     if (mechanism%title /= '') text = text//'  label='//quoted(mechanism%title)//'; labelloc=t; fontsize=18;'//line_end
-    if (plan%n_links > most_layered) text = text//'  layout=sfdp; overlap=prism; outputorder=edgesfirst;'//line_end
+    if (mechanism%structure%shown_links() > most_layered) &
+      text = text//'  layout=sfdp; overlap=prism; outputorder=edgesfirst;'//line_end
     text = text//'  fontname="sans-serif"; ranksep=0.6; nodesep=0.5;'//line_end// &
            '  node [fontname="sans-serif", shape=circle, style=filled, fillcolor=white, width=0.5, fixedsize=true];'// &
            line_end//'  edge [fontname="sans-serif", fontsize=11];'//line_end// &
            '  1 [shape=box, width=0.9, fillcolor="#d8d8d8", penwidth=2, label="1 frame"];'//line_end
     do b = 1, size(plan%blocks)
-      text = text//cluster(plan, b)
+      text = text//cluster(mechanism%structure, plan, b)
     end do
     do b = 1, size(plan%blocks)
       text = text//edges(mechanism, plan, b)
@@ -112,9 +115,10 @@ contains
   end function structure_graph
 
   !> The links that a block reaches first.
-  pure function cluster(plan, b) result(text)
-    type(plan_type), intent(in) :: plan  !< the plan of the mechanism
-    integer, intent(in) :: b             !< number of the block
+  pure function cluster(structure, plan, b) result(text)
+    type(structure_type), intent(in) :: structure  !< links and joints
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    integer, intent(in) :: b                       !< number of the block
     character(len=:), allocatable :: text
     integer :: s
 
@@ -122,7 +126,7 @@ contains
            '    label='//quoted('block '//to_text(b)//': '//words_of(plan, plan%blocks(b)))//'; labelloc=b; fontsize=11; '// &
            'style=rounded; color="'//colour(b)//'"; fontcolor="'//colour(b)//'";'//line_end
     do s = plan%blocks(b)%first_step, plan%blocks(b)%last_step
-      if (plan%frame_of(plan%steps(s)%link) == s) &
+      if (plan%frame_of(plan%steps(s)%link) == s .and. structure%joint_of_link(plan%steps(s)%link) == 0) &
         text = text//'    '//to_text(plan%steps(s)%link)//' [color="'//colour(b)//'"];'//line_end
     end do
     text = text//'  }'//line_end
@@ -148,12 +152,17 @@ contains
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     integer, intent(in) :: b                       !< number of the block
     character(len=:), allocatable :: text
-    integer :: s, k, from
+    integer :: s, j, k, from
 
     text = ''
     do s = plan%blocks(b)%first_step, plan%blocks(b)%last_step
       associate (step => plan%steps(s))
         k = step%coordinate
+        j = mechanism%structure%joint_of(k)
+        if (j > 0) then
+          if (k == mechanism%structure%first_of_joint(k)) text = text//edge_of_joint(mechanism%structure%joints(j), plan, b)
+          cycle
+        end if
         from = sum(mechanism%structure%links(:, k)) - step%link
         text = text//'  '//to_text(from)//' -- '//to_text(step%link)//' [color="'//colour(b)//'", label="   q'// &
                to_text(k)//' '//trim(mechanism%pairs(k)%pair%kind_name())//'\l'
@@ -162,6 +171,26 @@ contains
       end associate
     end do
   end function edges
+
+  !> A joint with several freedoms as one edge.
+  pure function edge_of_joint(joint, plan, b) result(text)
+    type(compound_joint_type), intent(in) :: joint  !< the joint
+    type(plan_type), intent(in) :: plan             !< the plan of the mechanism
+    integer, intent(in) :: b                        !< number of the block
+    character(len=:), allocatable :: text
+    logical :: independent(joint%freedoms)
+    integer :: i
+
+    independent = [(.not. plan%steps(plan%step_of(joint%numbers(i)))%dependent, i=1, joint%freedoms)]
+    text = '  '//to_text(joint%ends(1))//' -- '//to_text(joint%ends(2))//' [color="'//colour(b)//'", label="   q'// &
+           to_text(joint%coordinates(), ', q')//' '//trim(joint%kind)//'\l'
+    if (all(independent)) then
+      text = text//'   independent\l", penwidth="4'
+    else if (any(independent)) then
+      text = text//'   independent: q'//to_text(pack(joint%coordinates(), independent), ', q')//'\l", penwidth="4'
+    end if
+    text = text//'"];'//line_end
+  end function edge_of_joint
 
   !> The colour of a block.
   pure character(len=7) function colour(b)

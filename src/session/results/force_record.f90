@@ -13,7 +13,7 @@ module mech9_force_record
   use mech9_columns, only: columns_type
   implicit none
   private
-  public :: force_record_type
+  public :: force_record_type, reacting_pairs
 
   type :: force_record_type
     logical :: wanted = .false.              !< forces are recorded
@@ -29,6 +29,14 @@ module mech9_force_record
 
 contains
 
+  !> The pairs whose wrenches are recorded. The first coordinate of a joint with several freedoms stands for it.
+  pure function reacting_pairs(model) result(reacting)
+    type(model_type), intent(in) :: model     !< the model
+    logical :: reacting(size(model%mechanism%pairs))
+
+    reacting = model%request%output%reacting(size(reacting)) .and. model%mechanism%structure%stands_alone()
+  end function reacting_pairs
+
   !> Add the columns of the forces that the request names.
   subroutine begin(self, model, columns)
     class(force_record_type), intent(out) :: self    !< the record
@@ -40,7 +48,7 @@ contains
       self%wanted = output%with_forces()
       if (.not. self%wanted) return
       driven = output%drive_forces .and. model%problem%partition%kind == driven_coordinate
-      call columns%append_forces(model%mechanism, numbers_of(driven), numbers_of(output%reacting(size(driven))))
+      call columns%append_forces(model%mechanism, numbers_of(driven), numbers_of(reacting_pairs(model)))
     end associate
   end subroutine begin
 
@@ -51,10 +59,19 @@ contains
     type(plan_type), intent(in) :: plan               !< its plan, with all blocks
     type(state_type), intent(in) :: start             !< its assembled position
     type(reaction_plan_type) :: reactions
+    integer :: j
 
     if (.not. model%request%output%reactions) return
     call make_reaction_plan(model%mechanism, plan, reactions)
     call find_unique(plan, reactions, start, self%unique)
+    associate (structure => model%mechanism%structure)
+      if (.not. allocated(structure%joints)) return
+      do j = 1, size(structure%joints)
+        associate (numbers => structure%joints(j)%coordinates())
+          self%unique(:, numbers(1)) = self%unique(:, numbers(size(numbers)))
+        end associate
+      end do
+    end associate
   end subroutine judge
 
   !> The forces in the present state of a simulation. The plan of inverse dynamics is made anew after a change of coordinates.

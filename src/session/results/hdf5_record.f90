@@ -2,6 +2,8 @@
 module mech9_hdf5_record
   use mech9_text, only: to_text, string_type
   use mech9_lapack, only: ilaver
+  use mech9_structural_vectors, only: structural_vectors_type
+  use mech9_joint_expansion, only: shown_vectors
   use mech9_model, only: model_type
   use mech9_result_units, only: unit_name
   use mech9_columns, only: columns_type
@@ -78,20 +80,23 @@ contains
   subroutine write_structure(file, model)
     type(hdf5_file_type), intent(inout) :: file     !< the open file
     type(model_type), intent(in) :: model       !< the model
-    integer :: links(2, size(model%mechanism%pairs)), k
+    type(structural_vectors_type) :: vectors
+    integer :: links(2, size(model%mechanism%pairs)), j, k
 
     do k = 1, size(model%mechanism%pairs)
       links(:, k) = [model%mechanism%pairs(k)%pair%reference, model%mechanism%pairs(k)%pair%moving]
+      j = model%mechanism%structure%joint_of(k)
+      if (j > 0) links(:, k) = model%mechanism%structure%joints(j)%ends
     end do
-    associate (structure => model%mechanism%structure, vectors => model%problem%partition%vectors, &
-               independent => model%problem%partition%independent())
+    vectors = shown_vectors(model%mechanism%structure, model%problem%partition%vectors)
+    associate (structure => model%mechanism%structure, independent => model%problem%partition%independent())
       call file%put('structure/end', [1, 2], 'end of a pair: 1 the reference link, 2 the moving link')
       call file%make_scale('structure/end')
       call file%put('structure/links', links, 'links that each pair joins')
       call file%attach_scales('structure/links', ['/coordinate   ', '/structure/end'])
       call file%put('structure/independent', merge(1, 0, independent), '1 where the coordinate is independent')
       call file%attach_scales('structure/independent', ['/coordinate'])
-      call write_matrix(file, structure%n_links, links)
+      call write_matrix(file, structure%shown_links(), links, structure%stands_alone())
       call file%put('structure/position', [(k, k=1, size(vectors%nrg))], 'position in the structural vectors')
       call file%make_scale('structure/position')
       call write_vector(file, 'nrg', vectors%nrg, 'links in the order of the chains')
@@ -133,16 +138,18 @@ contains
   end subroutine write_vector
 
   !> Write the coincidence matrix, unless it is very large or two pairs join the same two links, which it cannot show.
-  subroutine write_matrix(file, n_links, links)
+  subroutine write_matrix(file, n_links, links, in_matrix)
     type(hdf5_file_type), intent(inout) :: file   !< the open file
     integer, intent(in) :: n_links                !< number of links
     integer, intent(in) :: links(:, :)            !< (2,M) reference and moving link of each pair
+    logical, intent(in) :: in_matrix(:)           !< (M) the coordinate stands in the matrix
     integer, allocatable :: c(:, :)
     integer :: k
 
     if (n_links > largest_matrix) return
     allocate (c(n_links, n_links), source=0)
     do k = 1, size(links, 2)
+      if (.not. in_matrix(k)) cycle
       if (c(links(1, k), links(2, k)) /= 0) return
       c(links(1, k), links(2, k)) = k
       c(links(2, k), links(1, k)) = k

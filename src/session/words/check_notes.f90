@@ -93,7 +93,8 @@ contains
     end do
     if (.not. massless(1)) write (unit, '(a)') 'note: link 1 is the frame, which does not move: its &body has no effect'
     massless(1) = .false.
-    if (count(massless) == mechanism%structure%n_links - 1) return
+    massless(mechanism%structure%shown_links() + 1:) = .false.
+    if (count(massless) == mechanism%structure%shown_links() - 1) return
     ! a link between axes that meet is part of a ball or universal joint, which needs no mass
     call link_dimensions(mechanism, dimensions)
     do i = 1, size(dimensions)

@@ -6,11 +6,13 @@ module mech9_plan_text
   use mech9_screw, only: split_space
   use mech9_mechanism, only: mechanism_type
   use mech9_explanation, only: explain_failure
-  use mech9_plan, only: plan_type, block_type, closure_type
+  use mech9_structure, only: structure_type
+  use mech9_plan, only: plan_type, block_type, closure_type, step_type
   use mech9_requested, only: requested_type, requested_blocks
   use mech9_lagrange_types, only: dynamics_plan_type
   use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_structure_text, only: print_marked
+  use mech9_joint_words, only: shown_of, link_name, joint_name
   implicit none
   private
   public :: print_plan
@@ -32,7 +34,7 @@ contains
     call print_arithmetic(unit, plan)
     needed = requested_blocks(plan, requested)
     do b = 1, size(plan%blocks)
-      call print_block(unit, plan, plan%blocks(b), b, needed(b))
+      call print_block(unit, mechanism%structure, plan, plan%blocks(b), b, needed(b))
     end do
     if (requested%derivatives == 1) write (unit, '(a)') 'accelerations left out: none are recorded'
     if (requested%derivatives == 0) write (unit, '(a)') &
@@ -46,8 +48,9 @@ contains
   end subroutine print_plan
 
   !> Write one block: its links, equations and chains.
-  subroutine print_block(unit, plan, block, number, is_needed)
+  subroutine print_block(unit, structure, plan, block, number, is_needed)
     integer, intent(in) :: unit            !< Fortran unit to write to
+    type(structure_type), intent(in) :: structure  !< links and joints
     type(plan_type), intent(in) :: plan    !< the plan of the mechanism
     type(block_type), intent(in) :: block  !< the block
     integer, intent(in) :: number          !< number of the block
@@ -55,9 +58,9 @@ contains
     integer :: c, i
 
     write (unit, '(a)') 'block '//to_text(number)//': links '// &
-      to_text(pack(plan%steps(block%first_step:block%last_step)%link, &
-                   [(.not. any(plan%closures(block%first_closure:block%last_closure)%closing == i), &
-                     i=block%first_step, block%last_step)]))
+      to_text(shown_of(structure, pack(plan%steps(block%first_step:block%last_step)%link, &
+                                       [(.not. any(plan%closures(block%first_closure:block%last_closure)%closing == i), &
+                                         i=block%first_step, block%last_step)])))
     if (.not. is_needed) write (unit, '(a)') '  left out: no result or load depends on it'
     if (size(block%unknowns) > 0) then
       write (unit, '(a)') '  solved for: '//to_text([(block%coordinates(i), i=1, size(block%unknowns))])//' from '// &
@@ -66,20 +69,35 @@ contains
     else
       write (unit, '(a)') '  nothing to solve: an open chain'
     end if
-    if (block%arithmetic > 1) call print_plane(unit, plan, block)
+    if (block%arithmetic > 1) call print_plane(unit, structure, plan, block)
     do c = block%first_closure, block%last_closure
       associate (closure => plan%closures(c))
-        write (unit, '(a)') '  chain '//to_text(closure%chain)//' closes on link '//to_text(plan%steps(closure%closing)%link)// &
-          ' through coordinate '//to_text(plan%steps(closure%closing)%coordinate)//'; its motions span '// &
-          counted(closure%rank, 'dimension')
-        call print_basis(unit, plan, closure)
+        write (unit, '(a)') '  chain '//to_text(closure%chain)//' closes '// &
+          place_of_closing(structure, plan%steps(closure%closing))//'; its motions span '//counted(closure%rank, 'dimension')
+        call print_basis(unit, structure, plan, closure)
       end associate
     end do
   end subroutine print_block
 
+  !> The place at which a chain closes: "on link 4 through coordinate 7", or "in the spherical joint of coordinates 4, 5, 6".
+  pure function place_of_closing(structure, step) result(words)
+    type(structure_type), intent(in) :: structure  !< links and joints
+    type(step_type), intent(in) :: step            !< the last step of the chain
+    character(len=:), allocatable :: words
+    integer :: j
+
+    j = structure%joint_of_link(step%link)
+    if (j == 0) then
+      words = 'on link '//to_text(step%link)//' through coordinate '//to_text(step%coordinate)
+    else
+      words = 'in the '//trim(joint_name(structure%joints(j)))
+    end if
+  end function place_of_closing
+
   !> Write the plane of a planar block of a spatial mechanism.
-  subroutine print_plane(unit, plan, block)
+  subroutine print_plane(unit, structure, plan, block)
     integer, intent(in) :: unit            !< Fortran unit to write to
+    type(structure_type), intent(in) :: structure  !< links and joints
     type(plan_type), intent(in) :: plan    !< the plan of the mechanism
     type(block_type), intent(in) :: block  !< the block
     integer :: link
@@ -88,14 +106,15 @@ contains
       link = 1
       if (plane%base > 0) link = plan%steps(plane%base)%link
       write (unit, '(a)') '  planar arithmetic: all its pairs turn about or slide across the direction '// &
-        direction_in_words(matmul(plane%axes(:, 3), plan%link_in_frame(link)%r))//' of link '//to_text(link)
+        direction_in_words(matmul(plane%axes(:, 3), plan%link_in_frame(link)%r))//' of '//trim(link_name(structure, link))
     end associate
   end subroutine print_plane
 
   !> Write the directions in which the links of a chain can move, as in "turning about (0, 0, 1), sliding along (1, 0, 0),
 !> (0, 1, 0) of link 1"; nothing where all six motions are possible.
-  subroutine print_basis(unit, plan, closure)
+  subroutine print_basis(unit, structure, plan, closure)
     integer, intent(in) :: unit                !< Fortran unit to write to
+    type(structure_type), intent(in) :: structure  !< links and joints
     type(plan_type), intent(in) :: plan        !< the plan of the mechanism
     type(closure_type), intent(in) :: closure  !< the closed chain
     character(len=:), allocatable :: turning, sliding
@@ -115,7 +134,7 @@ contains
     sliding = ''
     if (n_slides > 0) sliding = 'sliding along '//directions_in_words(matmul(to_link, slides(:, :n_slides)))
     if (n_turns > 0 .and. n_slides > 0) turning = turning//', '
-    write (unit, '(4x,a)') turning//sliding//' of link '//to_text(link)
+    write (unit, '(4x,a)') turning//sliding//' of '//trim(link_name(structure, link))
   end subroutine print_basis
 
   !> Directions in words: "(1, 0, 0), (0, 1, 0)", or "all directions".
@@ -179,6 +198,8 @@ contains
     has_mass(1) = .true.
     idle = .not. dynamics%carries(plan%frame_of)
     idle(1) = .false.
+    has_mass(mechanism%structure%shown_links() + 1:) = .true.
+    idle(mechanism%structure%shown_links() + 1:) = .false.
     call print_marked(unit, .not. has_mass, 'without mass, no terms of inertia: links ')
     call print_marked(unit, idle, 'no mass, load or later chain depends on their motion, left out: links ')
     without_effect = .true.

@@ -6,6 +6,8 @@ module mech9_run_words
   use mech9_json, only: json_type
   use mech9_source, only: span_type
   use mech9_diagnostics, only: diagnostics_type
+  use mech9_structural_vectors, only: structural_vectors_type
+  use mech9_joint_expansion, only: shown_vectors
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_version, only: version, revision, compiler
@@ -124,15 +126,17 @@ contains
     type(json_type), intent(inout) :: json         !< the report, which is being composed
     type(model_type), intent(in) :: model          !< the model
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(structural_vectors_type) :: vectors
     integer :: b, i
 
-    call json%add('links', plan%n_links)
+    vectors = shown_vectors(model%mechanism%structure, model%problem%partition%vectors)
+    call json%add('links', model%mechanism%structure%shown_links())
     call json%add('coordinates', plan%n_coordinates)
     call add_integers(json, 'independent', plan%independent)
-    call add_integers(json, 'nrg', model%problem%partition%vectors%nrg)
-    call add_integers(json, 'nws', model%problem%partition%vectors%nws)
-    call add_integers(json, 'rdw', model%problem%partition%vectors%rdw)
-    call add_integers(json, 'nrw', model%problem%partition%vectors%nrw)
+    call add_integers(json, 'nrg', vectors%nrg)
+    call add_integers(json, 'nws', vectors%nws)
+    call add_integers(json, 'rdw', vectors%rdw)
+    call add_integers(json, 'nrw', vectors%nrw)
     call json%begin_array('blocks')
     do b = 1, size(plan%blocks)
       associate (block => plan%blocks(b))

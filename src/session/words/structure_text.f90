@@ -4,10 +4,13 @@ module mech9_structure_text
   use mech9_text, only: to_text, some_of
   use mech9_counted, only: counted
   use mech9_masks, only: numbers_of
+  use mech9_structure, only: structure_type
   use mech9_structural_vectors, only: structural_vectors_type
+  use mech9_joint_expansion, only: shown_vectors
   use mech9_plan, only: plan_type
-  use mech9_mobility_report, only: mobility_report_type
+  use mech9_mobility_report, only: mobility_report_type, idle_type
   use mech9_block_names, only: chain_names
+  use mech9_joint_words, only: joint_name
   implicit none
   private
   public :: print_structure, print_names_of_vectors, print_mobility, print_mobility_report, print_marked
@@ -22,10 +25,13 @@ module mech9_structure_text
 contains
 
   !> Write the structural vectors, one in each line: "nrg = 1 2 3 ...".
-  subroutine print_structure(unit, vectors)
-    integer, intent(in) :: unit                           !< Fortran unit to write to
-    type(structural_vectors_type), intent(in) :: vectors  !< the structural vectors
+  subroutine print_structure(unit, structure, given)
+    integer, intent(in) :: unit                         !< Fortran unit to write to
+    type(structure_type), intent(in) :: structure       !< links and joints
+    type(structural_vectors_type), intent(in) :: given  !< the structural vectors, with the chains of joints
+    type(structural_vectors_type) :: vectors
 
+    vectors = shown_vectors(structure, given)
     write (unit, '(2a)') 'nrg = ', to_text(vectors%nrg, ' ')
     write (unit, '(2a)') 'nws = ', to_text(vectors%nws, ' ')
     write (unit, '(2a)') 'rdw = ', to_text(vectors%rdw, ' ')
@@ -44,9 +50,10 @@ contains
   end subroutine print_names_of_vectors
 
   !> Write counts, mobility and redundancy.
-  subroutine print_mobility(unit, plan)
-    integer, intent(in) :: unit          !< Fortran unit to write to
-    type(plan_type), intent(in) :: plan  !< the plan of the mechanism
+  subroutine print_mobility(unit, structure, plan)
+    integer, intent(in) :: unit                    !< Fortran unit to write to
+    type(structure_type), intent(in) :: structure  !< links and joints
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     integer :: b, unknowns, equations
 
     unknowns = 0
@@ -55,30 +62,32 @@ contains
       unknowns = unknowns + size(plan%blocks(b)%unknowns)
       equations = equations + plan%blocks(b)%equations
     end do
-    call print_counts(unit, plan)
+    call print_counts(unit, structure, plan)
     write (unit, '(a)') 'mobility '//to_text(plan%n_coordinates - unknowns)//' = '// &
       counted(plan%n_coordinates, 'coordinate')//' - rank '//to_text(unknowns)
     if (equations > unknowns) write (unit, '(a)') 'redundant equations: '//to_text(equations - unknowns)
   end subroutine print_mobility
 
   !> Write the numbers of links, coordinates and closed chains, and the independent coordinates.
-  subroutine print_counts(unit, plan)
-    integer, intent(in) :: unit          !< Fortran unit to write to
-    type(plan_type), intent(in) :: plan  !< the plan of the mechanism
+  subroutine print_counts(unit, structure, plan)
+    integer, intent(in) :: unit                    !< Fortran unit to write to
+    type(structure_type), intent(in) :: structure  !< links and joints
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
 
-    write (unit, '(a)') counted(plan%n_links, 'link')//', '//counted(plan%n_coordinates, 'coordinate')//', '// &
+    write (unit, '(a)') counted(structure%shown_links(), 'link')//', '//counted(plan%n_coordinates, 'coordinate')//', '// &
       counted(size(plan%closures), 'closed chain')
     write (unit, '(a)') 'independent: '//to_text(plan%independent)
   end subroutine print_counts
 
   !> Write counts, ranks, redundant equations, and which coordinates can be independent or cannot move.
-  subroutine print_mobility_report(unit, plan, report)
+  subroutine print_mobility_report(unit, structure, plan, report)
     integer, intent(in) :: unit                       !< Fortran unit to write to
+    type(structure_type), intent(in) :: structure     !< links and joints
     type(plan_type), intent(in) :: plan               !< the plan of the mechanism
     type(mobility_report_type), intent(in) :: report  !< mobility and ranks
     integer :: i, c
 
-    call print_counts(unit, plan)
+    call print_counts(unit, structure, plan)
     write (unit, '(a)') 'mobility by the count: '//to_text(report%by_count)//' = '//counted(plan%n_coordinates, 'coordinate')// &
       ' - '//counted(plan%n_coordinates - report%by_count, 'dimension')//' of the chains'' motions'
     write (unit, '(a)') 'mobility by the rank: '//to_text(report%by_rank)//' = '// &
@@ -96,10 +105,50 @@ contains
                       '; the links that these pairs join move as one body')
     call print_marked(unit, report%dimensions == 0, 'on no closed chain: ')
     do i = 1, size(report%idle)
-      write (unit, '(a)') 'idle: coordinates '//some_of(report%idle(i)%coordinates, longest_list)//' can move while links '// &
-        to_text(report%idle(i)%ends(1))//' and '//to_text(report%idle(i)%ends(2))//' stand still'
+      call print_idle(unit, structure, report%idle(i))
     end do
   end subroutine print_mobility_report
+
+  !> Write the coordinates of an idle freedom, and the joints with several freedoms to which they belong.
+  subroutine print_idle(unit, structure, idle)
+    integer, intent(in) :: unit                    !< Fortran unit to write to
+    type(structure_type), intent(in) :: structure  !< links and joints
+    type(idle_type), intent(in) :: idle            !< the idle freedom
+    character(len=:), allocatable :: joints
+    integer :: i, j, before
+
+    joints = ''
+    before = 0
+    do i = 1, size(idle%coordinates)
+      j = structure%joint_of(idle%coordinates(i))
+      if (j == 0 .or. j == before) cycle
+      joints = joints//trim(merge(' (the', ', the', before == 0))//' '//trim(joint_name(structure%joints(j)))
+      before = j
+    end do
+    if (before > 0) joints = joints//')'
+    write (unit, '(a)') 'idle: coordinates '//some_of(idle%coordinates, longest_list)//joints//' can move while links '// &
+      to_text(outer_link(structure, idle, 1))//' and '//to_text(outer_link(structure, idle, 2))//' stand still'
+  end subroutine print_idle
+
+  !> The link at one end of an idle freedom; where it belongs to a joint, the link at the end of the joint.
+  pure integer function outer_link(structure, idle, side) result(link)
+    type(structure_type), intent(in) :: structure  !< links and joints
+    type(idle_type), intent(in) :: idle            !< the idle freedom
+    integer, intent(in) :: side                    !< 1 or 2
+    integer :: j
+
+    link = idle%ends(side)
+    j = structure%joint_of_link(link)
+    if (j == 0) return
+    associate (joint => structure%joints(j))
+      ! the link stands between two pairs of the joint; the freedom goes through one of them
+      if (any(idle%coordinates == joint%numbers(link - joint%before_own + 1))) then
+        link = joint%ends(1)
+      else
+        link = joint%ends(2)
+      end if
+    end associate
+  end function outer_link
 
   !> Write equations and rank of each block; of many blocks only those that are singular at the start.
   subroutine print_ranks(unit, plan, report)

@@ -1,0 +1,310 @@
+"""Joints with several freedoms: spherical, universal, cylindrical, planar, free.
+
+Compares the program with itself in part: each joint against the same joint as a chain of pairs with one freedom, over massless
+links that the data file gives. These chains are formed here, from the definition of the joints. All else is closed forms, counts
+and messages.
+
+usage: compound_joints.py MECH9K MECH9D
+"""
+import math
+import os
+import re
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+from mech9_cases import Checks, run, table_and_report, table_of, text_of
+
+DATA, STRUCTURE = 3, 4
+AXES = {'x': '1,0,0', 'y': '0,1,0', 'z': '0,0,1'}
+CHAINS = {'spherical': ['Rx', 'Ry', 'Rz'], 'cylindrical': ['Rz', 'Tz'], 'planar': ['Tx', 'Ty', 'Rz'],
+          'free': ['Tx', 'Ty', 'Tz', 'Rx', 'Ry', 'Rz']}
+COMMON = """&gravity acceleration=0.4,-9.81,0.3 /
+&body link=2, mass=1.1, centre=0.1,0.02,0, inertia=0.02,0.03,0.03,0,0,0 /
+&body link=3, mass=0.7, centre=0.4,0.05,0.1, inertia=0.05,0.06,0.04,0.001,0.002,0 /
+"""
+# mechanisms as lists of lines; a line for a joint is a dictionary
+RSUR = [dict(coordinate=1, links=(1, 2), kind='revolute', point='0,0,0', axis='0,0,1', zero='1,0,0'),
+        dict(coordinates=(2, 3, 4), links=(2, 3), kind='spherical', point='0.3,0,0', moving_point='0,0,0'),
+        dict(coordinates=(5, 6), links=(3, 4), kind='universal', point='1.0,0,0', axis='0,0,1', moving_axis='0,1,0',
+             moving_point='0,0.6,0'),
+        dict(coordinate=7, links=(1, 4), kind='revolute', point='1.0,0.4,0.1', axis='1,0,0.2', moving_point='0,0,0',
+             moving_axis='1,0,0')]
+RSCR = [dict(coordinate=1, links=(1, 2), kind='revolute', point='0,0,0', axis='0,0,1', zero='1,0,0'),
+        dict(coordinates=(7, 4, 5), links=(2, 3), kind='spherical', point='0.3,0,0.05', axis='0,1,1', zero='1,0,0',
+             moving_point='0.1,0.1,0', moving_axis='0,0,1', moving_zero='1,0.3,0'),
+        dict(coordinates=(2, 3), links=(4, 3), kind='cylindrical', point='0,0,0', axis='1,0,0', zero='0,1,0', moving_point='0,0,0',
+             moving_axis='0,0,1', moving_zero='1,0,0'),
+        dict(coordinate=6, links=(1, 4), kind='revolute', point='1,0,0', axis='0.1,0,1', moving_point='0,0,0', moving_axis='0,0,1')]
+SWASH = [dict(coordinate=1, links=(1, 2), kind='revolute', point='0,0,0', axis='0,0,1', zero='1,0,0'),
+         dict(coordinates=(5, 2, 7), links=(2, 3), kind='planar', point='0,0,0.02', axis='0.3,0.1,1', zero='1,0,0.4',
+              moving_point='0,0,-0.03', moving_axis='0,0,1'),
+         dict(coordinates=(3, 4), links=(3, 4), kind='universal', point='0,0,0.01', axis='1,0,0', moving_axis='0.2,1,0',
+              moving_point='0,0,0'),
+         dict(coordinate=6, links=(1, 4), kind='prismatic', point='0.3,0.05,0', axis='0,0.1,1', moving_point='0,0,0.02')]
+CLOSED = {'RSUR': (RSUR, 1, ''), 'RSCR': (RSCR, 1, ''), 'swash plate': (SWASH, 1, '')}
+DRIVE = "&drive coordinate=1, kind='harmonic', mean=0.2, amplitude=0.3, angular_frequency=4 /\n"
+
+
+def group(name, items):
+    words = []
+    for key, value in items.items():
+        if key in ('kind',):
+            words.append(f"{key}='{value}'")
+        elif isinstance(value, tuple):
+            words.append(f'{key}=' + ','.join(str(v) for v in value))
+        else:
+            words.append(f'{key}={value}')
+    return f'&{name} ' + ', '.join(words) + ' /\n'
+
+
+def by_hand(joint, links):
+    """The chain of pairs of a joint, over links of the numbers given."""
+    if 'coordinate' in joint:
+        return group('pair', joint)
+    ends = [joint['links'][0], *links, joint['links'][1]]
+    frame = {key: joint[key] for key in ('point', 'axis', 'zero') if key in joint}
+    moving = {key: joint[key] for key in ('moving_point', 'moving_axis', 'moving_zero') if key in joint}
+    text = ''
+    if joint['kind'] == 'universal':
+        steps = [('revolute', {'point': joint['point'], 'axis': joint['axis'], 'moving_point': '0,0,0'}),
+                 ('revolute', {'point': '0,0,0', 'axis': joint['moving_axis'], 'moving_point': joint['moving_point']})]
+    else:
+        # a constant frame before and after the turns and slides: pairs about z, x, y of links in line with the frame
+        frame.setdefault('axis', '0,0,1')
+        moving.setdefault('moving_axis', frame['axis'])
+        z, x = frame_of(frame['axis'], frame.get('zero'))
+        zero = moving.get('moving_zero') or (frame.get('zero') if moving['moving_axis'] == frame['axis'] else None)
+        zm, xm = frame_of(moving['moving_axis'], zero)
+        y = np.cross(z, x)
+        inside = {'x': x, 'y': y, 'z': z}
+        steps = []
+        chain = CHAINS[joint['kind']]
+        for i, step in enumerate(chain):
+            items = {}
+            items['point'] = frame['point'] if i == 0 else '0,0,0'
+            direction = inside[step[1]] if i == 0 else np.eye(3)['xyz'.index(step[1])]
+            # the zero direction is the next axis in the order x, y, z, on both sides
+            after = 'xyz'[('xyz'.index(step[1]) + 1) % 3]
+            near = inside[after] if i == 0 else np.eye(3)['xyz'.index(after)]
+            items['axis'], items['zero'] = numbers(direction), numbers(near)
+            ym = np.cross(zm, xm)
+            last = i == len(chain) - 1
+            outside = {'x': xm, 'y': ym, 'z': zm}
+            items['moving_axis'] = numbers(outside[step[1]] if last else np.eye(3)['xyz'.index(step[1])])
+            items['moving_zero'] = numbers(outside[after] if last else np.eye(3)['xyz'.index(after)])
+            items['moving_point'] = moving['moving_point'] if last else '0,0,0'
+            steps.append(('revolute' if step[0] == 'R' else 'prismatic', items))
+    for i, (kind, items) in enumerate(steps):
+        text += group('pair', dict(coordinate=joint['coordinates'][i], links=(ends[i], ends[i + 1]), kind=kind, **items))
+    return text
+
+
+def frame_of(axis, zero):
+    """z and x of the frame that a data file gives."""
+    z = np.array([float(word) for word in axis.split(',')])
+    z /= np.linalg.norm(z)
+    if zero is None:
+        x = next(np.eye(3)[i] for i in range(3) if abs(z[i]) <= math.sqrt(0.5) * (1 + 1e-12))
+    else:
+        x = np.array([float(word) for word in zero.split(',')])
+    x = x - (x @ z) * z
+    return z, x / np.linalg.norm(x)
+
+
+def numbers(vector):
+    return ','.join(f'{float(v)!r}' for v in vector)
+
+
+def both(mechanism, n_links):
+    """The pairs as joints, and the same by hand."""
+    joints, hand, next_link = '', '', n_links + 1
+    for joint in mechanism:
+        joints += group('pair', joint)
+        own = len(joint.get('coordinates', (0,))) - 1
+        hand += by_hand(joint, range(next_link, next_link + own))
+        next_link += own
+    return joints, hand
+
+
+class Cases:
+    def __init__(self, mech9k, mech9d, folder):
+        self.mech9k, self.mech9d, self.folder, self.checks = mech9k, mech9d, folder, Checks()
+
+    def write(self, text, name='case.nml'):
+        path = os.path.join(self.folder, name)
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        return path
+
+    def table(self, program, text, *options):
+        return table_of(program, self.write(text), *options)
+
+    def same(self, one, other, tolerance, why):
+        """Columns of the same names, but those of reactions, agree within parts of their largest values."""
+        for name in one:
+            if name.startswith('R') or name in ('closure', 'conditioning'):
+                continue
+            scale = max(1.0, float(np.max(np.abs(other[name]))))
+            error = float(np.max(np.abs(one[name] - other[name])))
+            self.checks.true(error <= tolerance * scale, f'{why}: {name} differs by {error:.3g}')
+
+
+def check_closed(cases):
+    """Closed chains, driven: equal to the chains by hand but for round-off in their frames; and the wrenches of joints."""
+    rest = "&point name='P', link=3, position=0.5,0.1,0 /\n&output reactions=.true., drive_forces=.true. /\n" \
+           '&time end=1.5, intervals=15 /\n' + COMMON
+    for name, (mechanism, independent, start) in CLOSED.items():
+        joints, hand = both(mechanism, 4)
+        head = f'&structure cq={independent} /\n' + DRIVE + start
+        one = cases.table(cases.mech9k, head + joints + rest)
+        other = cases.table(cases.mech9k, head + hand + rest)
+        # round-off times the conditioning of the chains; accelerations are the largest numbers
+        cases.same(one, other, 2e-11, name)
+        for joint in mechanism:
+            numbers_of_joint = joint.get('coordinates', (joint.get('coordinate'),))
+            for part in ('fx', 'fy', 'fz', 'mx', 'my', 'mz'):
+                wrench = other[f'R{numbers_of_joint[-1]}.{part}']
+                error = float(np.max(np.abs(one[f'R{numbers_of_joint[0]}.{part}'] - wrench)))
+                cases.checks.true(error <= 1e-9 * max(1.0, float(np.max(np.abs(wrench)))),
+                                  f'{name}: the wrench of the joint {numbers_of_joint} in {part} is that of its last pair')
+            for k in numbers_of_joint[1:]:
+                cases.checks.true(f'R{k}.fx' not in one, f'{name}: coordinate {k} has no wrench of its own')
+
+
+def check_free_motion(cases):
+    """Open chains in mech9d: a free body and a pendulum on a ball, against the chains by hand."""
+    free = [dict(coordinates=(1, 2, 3, 4, 5, 6), links=(1, 2), kind='free', point='0.1,0.2,0.3', axis='0.1,0.2,1', zero='1,0.2,0',
+                 moving_point='0.1,0,0.05'),
+            dict(coordinates=(7, 8, 9), links=(2, 3), kind='spherical', point='0.5,0,0', moving_point='0,0.1,0')]
+    joints, hand = both(free, 3)
+    rest = '&structure cq=1,2,3,4,5,6,7,8,9 /\n' + COMMON + '&time end=0.5, intervals=5 /\n&solver relative_tolerance=1e-11, ' \
+        'absolute_tolerance=1e-12 /\n' + ''.join(f'&initial coordinate={k}, position={0.05 * k:.2f}, velocity={0.3 * (k - 4):.1f} /\n'
+                                                 for k in range(1, 10))
+    one, other = cases.table(cases.mech9d, joints + rest), cases.table(cases.mech9d, hand + rest)
+    # a hundred times the tolerance of the integration
+    cases.same(one, other, 1e-9, 'a free body with a ball')
+    spread = float(np.max(np.abs(one['E.total'] - one['E.total'][0])))
+    cases.checks.true(spread <= 1e-8 * float(np.max(np.abs(one['E.kinetic']))), f'a free body with a ball: its energy keeps ({spread:.2g})')
+
+
+def check_structure(cases):
+    """The first and the second set of structural data count the user's links, and the first coordinate stands for a joint."""
+    joints, _ = both(RSUR, 4)
+    rest = DRIVE + "&point name='P', link=3, position=0.5,0.1,0 /\n&time end=0.3, intervals=3 /\n"
+    plain = '&structure cq=1 /\n' + joints + rest
+    expected = ['nrg = 1 2 3 4 1', 'nws = 0 1 2 5 7', 'rdw = 1 1 0 0 0', 'nrw = 0 0 0 0 1']
+    matrix = '&mechanism links=4, coordinates=7 /\n&structure c=0,1,0,7, 1,0,2,0, 0,2,0,5, 7,0,5,0, cq=1 /\n'
+    vectors = '&structure nrg=1,2,3,4,1, nws=0,1,2,5,7, rdw=1,1,0,0,0, nrw=0,0,0,0,1, cq=1 /\n'
+    backward = '&structure nrg=1,4,3,2,1, nws=0,7,5,2,1, rdw=1,0,0,0,1, cq=1 /\n'
+    reference = cases.table(cases.mech9k, plain)
+    for why, text in (('pairs', plain), ('matrix', matrix + joints + rest), ('vectors', vectors + joints + rest)):
+        done = run(cases.mech9k, cases.write(text), '--structure', '--quiet')
+        cases.checks.equal(done.stdout.splitlines(), expected, f'{why}: the structural vectors')
+        cases.same(cases.table(cases.mech9k, text), reference, 0.0, why)
+    done = run(cases.mech9k, cases.write(backward + joints + rest), '--structure', '--quiet')
+    cases.checks.equal(done.stdout.splitlines()[:3], ['nrg = 1 4 3 2 1', 'nws = 0 7 5 2 1', 'rdw = 1 0 0 0 1'],
+                       'backward: the structural vectors are the given ones')
+    # in another order of computation the guesses lead to another assembly, so that they are given
+    guesses = ''.join(f"&initial coordinate={k}, position={float(reference[f'q{k}'][0])!r} /\n" for k in range(1, 8))
+    cases.same(cases.table(cases.mech9k, backward + joints + rest + guesses), reference, 1e-11, 'backward')
+    free = "&structure nrg=1,2, nws=0,1, rdw=1,1 /\n&pair coordinates=1,2,3, links=1,2, kind='spherical' /\n" \
+           '&body link=2, mass=1, centre=0.3,0,0 /\n&time end=0.1, intervals=1 /\n'
+    done = run(cases.mech9d, cases.write(free), '--structure', '--quiet')
+    cases.checks.equal(done.stdout.splitlines(), ['nrg = 1 2', 'nws = 0 1', 'rdw = 1 1', 'nrw = 0 0'],
+                       'a ball whose coordinates are all independent')
+
+
+def check_shown(cases):
+    """No number of a link that belongs to a joint is shown: the mechanism has links 1 to 4."""
+    joints, _ = both(RSUR, 4)
+    text = '&structure cq=1 /\n' + joints + DRIVE + COMMON + '&output reactions=.true., poses=.true. /\n&time end=0.3, intervals=3 /\n'
+    path = cases.write(text)
+    for option in ('--check', '--plan'):
+        done = run(cases.mech9k, path, option)
+        cases.checks.true(done.returncode == 0 and '4 links, 7 coordinates, 1 closed chain' in done.stdout,
+                          f'{option} counts the links of the user', done.stdout + done.stderr)
+        cases.checks.true(not re.search(r'links? [1-9, ]*[5-9]', done.stdout), f'{option} shows no link of a joint', done.stdout)
+    graph = os.path.join(cases.folder, 'graph.dot')
+    run(cases.mech9k, path, '--graph', graph)
+    edges = re.findall(r'(\d+) -- (\d+) \[.*label="\s*([^"\\]*)', text_of(graph))
+    cases.checks.equal(sorted(edges), [('1', '2', 'q1 revolute'), ('1', '4', 'q7 revolute'), ('2', '3', 'q2, q3, q4 spherical'),
+                                       ('3', '4', 'q5, q6 universal')], 'a joint is one edge of the graph')
+    _, report = table_and_report(cases.mech9k, path)
+    cases.checks.equal((report['links'], report['nrg'], report['nws']), (4, [1, 2, 3, 4, 1], [0, 1, 2, 5, 7]), 'the report')
+    cases.checks.equal([one['pair'] for one in report['reactions']], [1, 2, 5, 7], 'the report: pairs with wrenches')
+    try:
+        import h5py
+    except ImportError:
+        cases.checks.left_out('h5py is not installed (Debian: python3-h5py)')
+        return
+    name = os.path.join(cases.folder, 'case.h5')
+    done = run(cases.mech9k, path, '--hdf5', name, '--quiet')
+    cases.checks.equal(done.returncode, 0, 'a run with HDF5')
+    with h5py.File(name) as file:
+        cases.checks.equal(list(file['link'][()]), [1, 2, 3, 4], 'HDF5: links')
+        cases.checks.equal(file['structure/c'][()].tolist(), [[0, 1, 0, 7], [1, 0, 2, 0], [0, 2, 0, 5], [7, 0, 5, 0]], 'HDF5: C')
+        kinds = [kind.decode() if isinstance(kind, bytes) else str(kind) for kind in file['coordinate_kind'][()]]
+        cases.checks.equal(kinds, ['revolute'] + 3 * ['spherical'] + 2 * ['universal'] + ['revolute'], 'HDF5: kinds')
+        cases.checks.equal(list(file['pair'][()]), [1, 2, 5, 7], 'HDF5: pairs with wrenches')
+
+
+BAD = [
+    ('a coordinate twice in a joint', "&pair coordinates=2,3,3, links=2,3, kind='spherical' /", '2:23', 'coordinate 3 is named twice'),
+    ('a coordinate of another pair', "&pair coordinates=2,1,4, links=2,3, kind='spherical' /", '2:21',
+     'a second &pair for coordinate 1; the first stands in line 1'),
+    ('too few coordinates', "&pair coordinates=2,3, links=2,3, kind='spherical' /", '2:7',
+     "2 values for 'coordinates' where 3 are expected"),
+    ('a negative coordinate', "&pair coordinates=2,-3, links=2,3, kind='cylindrical', axis=0,0,1 /", '2:21', "must be >=1"),
+    ('coordinate for a joint', "&pair coordinate=2, links=2,3, kind='planar', axis=0,0,1 /", '2:7', 'does not belong to pairs of kind'),
+    ('coordinates for a pair', "&pair coordinates=2,3, links=2,3, kind='revolute', axis=0,0,1 /", '2:7', 'does not belong'),
+    ('no coordinates', "&pair links=2,3, kind='spherical' /", '2:1', "&pair needs 'coordinates'"),
+    ('no moving_axis', "&pair coordinates=2,3, links=2,3, kind='universal', axis=0,0,1 /", '2:1', "&pair needs 'moving_axis'"),
+    ('parallel axes', "&pair coordinates=2,3, links=2,3, kind='universal', axis=0,0,1, moving_axis=0,0,-2 /", '2:65',
+     'the two axes of the universal joint of coordinates 2, 3 are parallel'),
+    ('a zero axis', "&pair coordinates=2,3,4, links=2,3, kind='spherical', axis=0,0,0 /", '2:60',
+     'the axis of the spherical joint of coordinates 2, 3, 4 is zero'),
+    ('no axis', "&pair coordinates=2,3, links=2,3, kind='cylindrical' /", '2:1', "&pair needs 'axis'"),
+    ('a gap in the numbers', "&pair coordinates=2,4,5, links=2,3, kind='spherical' /", '2:23', 'there is no coordinate 5'),
+    ('a body of a link of the joint', "&pair coordinates=2,3,4, links=2,3, kind='spherical' /\n&body link=4, mass=1 /", '3:12',
+     'there is no link 4; they are 1 to 3'),
+    ('a wrench of an inner coordinate', "&pair coordinates=2,3,4, links=2,3, kind='spherical' /\n&output reaction_pairs=3 /", '3:24',
+     'name the first coordinate of its joint, 2'),
+]
+
+
+def check_bad_input(cases):
+    first = "&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /\n"
+    for why, lines, place, message in BAD:
+        done = run(cases.mech9d, cases.write(first + lines + '\n&structure cq=1,2,3,4 /\n'))
+        cases.checks.true(done.returncode in (DATA, STRUCTURE) and f'case.nml:{place}: ' in done.stderr and message in done.stderr,
+                          f'{why}: the message and its place', done.stderr)
+    joints, _ = both(RSUR, 4)
+    for why, structure, place, message in (
+            ('an inner coordinate in C', '&structure c=0,1,0,7, 1,0,2,0, 0,2,0,6, 7,0,6,0, cq=1 /\n', '1:45',
+             'a joint with several coordinates stands in C by the first of them'),
+            ('an inner coordinate in nws', '&structure nrg=1,2,3,4,1, nws=0,1,3,5,7, rdw=1,1,0,0,0, cq=1 /\n', '1:35',
+             'a joint with several coordinates stands in nws by the first of them'),
+            ('rdw alone', '&structure nrg=1,2,3,4,1, nws=0,1,2,5,7, rdw=1,1,0,0,0 /\n', '1:50', 'give cq too'),
+            ('cq against rdw', '&structure nrg=1,2,3,4,1, nws=0,1,2,5,7, rdw=1,1,1,0,0, cq=1,2 /\n', '1:50',
+             'cq and rdw disagree about the spherical joint of coordinates 2, 3, 4')):
+        done = run(cases.mech9k, cases.write(structure + joints + DRIVE))
+        cases.checks.true(done.returncode == STRUCTURE and f'case.nml:{place}: ' in done.stderr and message in done.stderr,
+                          f'{why}: the message and its place', done.stderr)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        cases = Cases(sys.argv[1], sys.argv[2], folder)
+        check_closed(cases)
+        check_free_motion(cases)
+        check_structure(cases)
+        check_shown(cases)
+        check_bad_input(cases)
+        cases.checks.finish()
+
+
+if __name__ == '__main__':
+    main()
