@@ -197,7 +197,8 @@ contains
     axis = real_or(group, 'moving_axis', [0.0_wp, 0.0_wp, 1.0_wp])
     zero = real_or(group, 'moving_zero', default_zero(axis))
     call make_frame(group, 'moving_', real_or(group, 'moving_point', [0.0_wp, 0.0_wp, 0.0_wp]), axis, zero, moving, diagnostics)
-    call read_curve_file(beside(data_file, get_text(group, 'file')), span_of(group, 'file', 1), points, spans, ok, diagnostics)
+    call read_curve_file(beside(data_file, get_text(group, 'file')), span_of(group, 'file', 1), get_integers(group, 'columns'), &
+                         points, spans, ok, diagnostics)
     if (ok) call read_curve(group, points, spans, curve, diagnostics)
     if (diagnostics%count == found) pair = path_pair(curve, get_text(group, 'orientation') == 'tangent', reference, moving)
   end subroutine read_path

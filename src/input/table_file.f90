@@ -94,15 +94,17 @@ contains
 
   !> Read the points of a curve: x and y in each line, or x, y and z. Errors are reported with their places in that file; `ok` is
   !> false where there are any.
-  subroutine read_curve_file(path, asked_at, points, spans, ok, diagnostics)
+  subroutine read_curve_file(path, asked_at, chosen, points, spans, ok, diagnostics)
     character(len=*), intent(in) :: path                  !< path of the file
     type(span_type), intent(in) :: asked_at               !< place of its name in the data file
+    integer, intent(in) :: chosen(:)                      !< columns of x, y and perhaps z; none: the file has no others
     real(wp), allocatable, intent(out) :: points(:, :)    !< (3,n) [m]; z is 0 in a plane
     type(span_type), allocatable, intent(out) :: spans(:) !< (n) places of the points in the file
     logical, intent(out) :: ok                            !< whether no error was reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(source_type) :: source
-    type(span_type) :: fields(3), whole
+    type(span_type), allocatable :: fields(:)
+    type(span_type) :: whole
     type(error_type), allocatable :: err
     integer :: number, line, n, found, count, columns
     logical :: may_be_names, readable
@@ -120,11 +122,17 @@ contains
     allocate (points(3, size(source%line_start)), source=0.0_wp)
     allocate (spans(size(source%line_start)))
     n = 0
-    columns = 0
+    columns = size(chosen)
+    ! no line has more words than the file has letters
+    allocate (fields(max(3, min(maxval([0, chosen]), len(source%text)))))
     may_be_names = .true.
     do line = 1, size(source%line_start)
       call find_words(source, number, line, may_be_names, fields, count, whole)
       if (count == 0) cycle
+      if (size(chosen) > 0) then
+        call choose_fields(chosen, whole, count, fields, readable, diagnostics)
+        if (.not. readable) cycle
+      end if
       if (columns == 0 .and. (count == 2 .or. count == 3)) columns = count
       if (count /= columns) then
         call diagnostics%add(whole, 'each line holds the coordinates of a point, x and y in a plane or x, y and z in space; '// &
@@ -143,6 +151,25 @@ contains
                            ' points, and the file has '//to_text(n))
     ok = diagnostics%count == found
   end subroutine read_curve_file
+
+  !> Keep the words of the chosen columns of a line. A line without some of them is reported.
+  pure subroutine choose_fields(chosen, whole, count, fields, ok, diagnostics)
+    integer, intent(in) :: chosen(:)                      !< the columns
+    type(span_type), intent(in) :: whole                  !< place of the line
+    integer, intent(inout) :: count                       !< how many words the line has; afterwards how many are chosen
+    type(span_type), intent(inout) :: fields(:)           !< places of the words; afterwards the first ones are those chosen
+    logical, intent(out) :: ok                            !< whether the line has all of these columns
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+
+    ok = count >= maxval(chosen)
+    if (ok) then
+      fields(:size(chosen)) = fields(chosen)
+      count = size(chosen)
+    else
+      call diagnostics%add(whole, 'column '//to_text(maxval(chosen))//' is asked for by ''columns'', and this line has '// &
+                           counted(count, 'number'))
+    end if
+  end subroutine choose_fields
 
   !> How many numbers the lines before have: " and those before it have 2"; empty where there are none.
   pure function the_others(columns) result(text)

@@ -1,9 +1,10 @@
-!> The request: the times of the results, their accuracy, and where they go.
+!> The request: the times of the results, their accuracy, where they go, and the cams whose profiles are computed.
 module mech9_request
   use mech9_kinds, only: wp
+  use mech9_error, only: place_type
   implicit none
   private
-  public :: request_type, time_grid_type, solver_settings_type, output_settings_type
+  public :: request_type, time_grid_type, solver_settings_type, output_settings_type, cam_request_type
 
   !> Results are given at start + (end - start) i/intervals, i = 0 .. intervals.
   type :: time_grid_type
@@ -47,11 +48,27 @@ module mech9_request
     procedure :: drawn_forces
   end type output_settings_type
 
+  !> A cam whose profile follows from the motion of its follower: it touches a roller, an edge or a flat face of the follower.
+  type :: cam_request_type
+    integer :: link = 0                    !< number of the cam's link
+    integer :: follower = 0                !< number of the follower's link
+    real(wp) :: point(3) = 0.0_wp          !< centre of the roller, or a point of the flat face, in the follower's system [m]
+    real(wp) :: roller = 0.0_wp            !< radius of the roller; 0: an edge [m]
+    logical :: flat = .false.              !< the follower has a flat face in place of a roller
+    real(wp) :: face(3) = 0.0_wp           !< unit normal of the flat face towards the cam, in the follower's system
+    logical :: outer = .false.             !< the cam surrounds the path of the roller
+    real(wp) :: axis(3) = 0.0_wp           !< unit normal of the cam's plane, in the cam's system
+    integer :: guide = 0                   !< coordinate of the pair that guides the follower; 0: none
+    integer :: coordinate = 0              !< coordinate by which the cam turns or slides
+    type(place_type) :: place              !< place of its group in the data file
+  end type cam_request_type
+
   !> The results of a problem that the user wants.
   type :: request_type
     type(time_grid_type) :: time
     type(solver_settings_type) :: solver
     type(output_settings_type) :: output
+    type(cam_request_type), allocatable :: cams(:)   !< in the order of the data file
   end type request_type
 
 contains

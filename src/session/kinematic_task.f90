@@ -16,6 +16,7 @@ module mech9_kinematic_task
   use mech9_law_times, only: check_times_of_laws
   use mech9_task, only: task_type, answers_only, print_check, print_given, begin_run, end_run
   use mech9_range_text, only: print_ranges
+  use mech9_cam_task, only: work_on_cams
   use mech9_facts, only: facts_type
   use mech9_results, only: results_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
@@ -81,7 +82,7 @@ contains
     type(error_type), allocatable :: err
 
     reported = .false.
-    if (options%has('check') .or. .not. answers_only(options)) &
+    if (options%has('check') .or. options%has('cam') .or. .not. answers_only(options)) &
       call check_times_of_laws(model, with_masses .or. model%request%output%with_forces(), diagnostics)
     if (diagnostics%failed()) return
     call read_picture_requests(options, model, program_name, pictures, err)
@@ -97,6 +98,7 @@ contains
                        diagnostics)
       if (options%has('range')) call print_ranges(output_unit, model, plan, start)
       if (options%has('check')) call check_motion(model, plan, start, err)
+      if (options%has('cam') .and. .not. allocated(err)) call work_on_cams(program_name, options, model, plan, start, err)
       if (allocated(err)) call diagnostics%add_error(err)
       return
     end if

@@ -69,7 +69,7 @@ contains
     type(command_line_type), intent(in) :: options   !< the command line
 
     answers_only = options%has('check') .or. options%has('plan') .or. options%has('branches') &
-                   .or. options%has('graph') .or. options%has('range')
+                   .or. options%has('graph') .or. options%has('range') .or. options%has('cam')
   end function answers_only
 
   !> Carry out --check, --plan, --branches and --graph, and --sketch beside them.

@@ -94,6 +94,7 @@ contains
     if (program_name == 'mech9k') then
       call draft%give('drive', 1, 'coordinate', '1')
       call draft%give('drive', 1, 'kind', ''''//drive//'''')
+      call draft%give('cam', 1, 'link', '2')
     end if
     do i = 1, size(loads)
       call draft%give('load', i, 'kind', ''''//trim(loads(i))//'''')

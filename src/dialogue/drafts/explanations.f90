@@ -107,6 +107,9 @@ module mech9_explanations
                   'Name a text file that has the coordinates of a point in each line, beside the data file: x and y, or x, y '// &
                   'and z. A smooth curve is laid through them; there must be at least four. If the last point is the first '// &
                   'one again, the curve is closed.', 'curve.dat (with lines such as: 0.1 0.25)'), &
+    explanation_type('pair', 'columns', 'path', &
+                  'A file can have further columns, as a table of results or of a cam has. Tell in which columns x and y '// &
+                  'stand, and in space z.', '3, 4 (x is the third number of each line, y the fourth)'), &
     explanation_type('pair', 'orientation', 'path', &
                   'The moving link can keep its orientation while one of its points follows the curve, or turn with the '// &
                   'tangent of the curve, as a train does on its rails.', 'tangent'), &
@@ -358,6 +361,30 @@ module mech9_explanations
     explanation_type('motor', 'period', 'law:segments', &
                   'With a period the segments repeat. It is the time from the first to the last of the times.', '1')]
 
+  type(explanation_type), parameter :: cam_texts(*) = [ &
+    explanation_type('cam', 'link', '', &
+                  'A cam is a link whose shape moves another link, its follower, as the drives say. The option --cam computes '// &
+                  'this shape. Name the link by its number. Enter goes on without a further cam.', '2'), &
+    explanation_type('cam', 'follower', '', &
+                  'Name the link that touches the cam. It is guided by a pair of its own, and moved by drives.', '3'), &
+    explanation_type('cam', 'point', '', &
+                  'Give the centre of the roller, or any point of the flat face, in the system of the follower.', &
+                  '0, 0.05, 0'), &
+    explanation_type('cam', 'roller', '', &
+                  'The follower touches the cam with a roller of this radius. With 0 it touches with an edge.', '0.01'), &
+    explanation_type('cam', 'face', '', &
+                  'A flat face can touch the cam in place of a roller. Give the direction across the face towards the cam, in '// &
+                  'the system of the follower.', '0, -1, 0 (the face looks down on the cam)'), &
+    explanation_type('cam', 'side', '', &
+                  'The cam lies inside of the path of its roller as a disk does, or outside as a ring or the outer wall of a '// &
+                  'groove does.', 'outer'), &
+    explanation_type('cam', 'axis', '', &
+                  'The profile lies in a plane. Give the direction across this plane, in the system of the cam, if the cam '// &
+                  'does not turn about it.', '0, 0, 1'), &
+    explanation_type('cam', 'guide', '', &
+                  'The pressure angle is the angle between the force of the cam and the motion that a pair of the follower '// &
+                  'allows. Name this pair by its coordinate where the follower has several.', '2')]
+
   type(explanation_type), parameter :: run_texts(*) = [ &
     explanation_type('time', 'start', '', &
                   'The first result is given at this time.', '0'), &
@@ -426,7 +453,7 @@ module mech9_explanations
                   'again.', '0.1, 2.0')]
 
   type(explanation_type), parameter :: explanations(*) = &
-    [general_texts, pair_texts, motion_texts, body_texts, load_texts, motor_texts, run_texts]
+    [general_texts, pair_texts, motion_texts, body_texts, load_texts, motor_texts, cam_texts, run_texts]
 
 contains
 

@@ -108,13 +108,14 @@ contains
       return
     end if
     if (group == 'user' .and. .not. has_procedures(draft)) return
+    if (group == 'cam' .and. .not. may_have_cams(draft)) return
     if (group == 'initial') then
       if (outline%program_name == 'mech9k' .or. .not. all(outline%independent)) &
         call append(questions, count, question_type(kind=ask_guesses, topic=topic, group_row=group_row))
     else if (any(item_table(rows)%seldom) .and. group /= 'mechanism' .and. &
-             (all(group /= ['load ', 'motor']) .or. draft%count_of(group) > 0)) then
-      ! a conversation does not begin with rarely used names; those of the mechanism can be changed by their names, and laws of
-      ! loads and motors are for those that are there
+             (all(group /= ['load ', 'motor', 'cam  ']) .or. draft%count_of(group) > 0)) then
+      ! a conversation does not begin with rarely used names; those of the mechanism can be changed by their names, and
+      ! those of loads, motors and cams are for the ones that are there
       call append(questions, count, question_type(kind=ask_seldom, topic=topic, group_row=group_row))
     end if
     do place = 1, merge(draft%count_of(group), 1, group_table(group_row)%repeats)
@@ -250,6 +251,17 @@ contains
       has_procedures = has_procedures .or. kind_in(draft, i) == 'user'
     end do
   end function has_procedures
+
+  !> Whether there is a cam, or a drive with the motion laws of cam design.
+  pure logical function may_have_cams(draft)
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
+    integer :: i
+
+    may_have_cams = draft%count_of('cam') > 0
+    do i = 1, draft%count_of('drive')
+      may_have_cams = may_have_cams .or. kind_in(draft, draft%find('drive', i)) == 'segments'
+    end do
+  end function may_have_cams
 
   !> The questions about the structure are appended: the way in which it is given, its data, the independent coordinates
   !> and the check.

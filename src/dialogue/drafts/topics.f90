@@ -29,6 +29,8 @@ module mech9_topics
     topic_type('Motors', 'motor', 'A motor moves a coordinate without a drive: by direct current, or by a controller. '// &
                'A motor begun by mistake is left out by remove.'), &
     topic_type('Points', 'point', 'Positions, velocities and accelerations of these points are recorded.'), &
+    topic_type('Cams', 'cam', 'A cam whose profile follows from the motion of its follower, for the option --cam. '// &
+               'A cam begun by mistake is left out by remove.'), &
     topic_type('Time', 'time', ''), &
     topic_type('Computation', 'solver', ''), &
     topic_type('Results', 'output', ''), &

@@ -63,6 +63,8 @@ module mech9_grammar
     group_row_type('load', .true., '', for_forces, 'a force, torque, spring or damper, or a user''s procedure'), &
     group_row_type('motor', .true., '', 'mech9d', &
                    'a motor on an independent coordinate without a drive: direct current, or set by a PID controller'), &
+    group_row_type('cam', .true., '', 'mech9k', &
+                   'a cam whose profile mech9k computes from the motion of its follower (option --cam)'), &
     group_row_type('time', .false., '', 'both', &
                    'the times of the results: start + (end - start) i/intervals, i = 0 .. intervals'), &
     group_row_type('solver', .false., '', 'mech9d', 'method and tolerances of the integration'), &
@@ -152,6 +154,9 @@ module mech9_grammar
     item_row_type('pair', 'file', 'text', 1, 1, 'm', needed, '', '', '', 'path', &
                   'a text file with x, y and in space z in each line, beside the data file; a smooth curve joins the points', &
                   '''curve.dat'''), &
+    item_row_type('pair', 'columns', 'integer', 2, 3, '', optional, '(all)', '>=1', '', 'path', &
+                  'the columns of x, y and in space z in a file that has others too, as a table of results has', '3, 4, 5', &
+                  seldom=.true.), &
     item_row_type('pair', 'orientation', 'text', 1, 1, '', optional, '''fixed''', '', 'fixed tangent', 'path', &
                   'fixed: the moving link keeps its orientation; tangent: it turns with the tangent of the curve', '''tangent'''), &
     item_row_type('pair', 'closed', 'logical', 1, 1, '', optional, '(where ends meet)', '', '', 'path', &
@@ -328,6 +333,27 @@ module mech9_grammar
     item_row_type('motor', 'period', 'real', 1, 1, 's', optional, '(no repetition)', '>0', '', 'law:segments', &
                   'the segments repeat after this time, which is that from the first to the last of times', '1')]
 
+  type(item_row_type), parameter :: cam_items(*) = [ &
+    item_row_type('cam', 'link', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
+                  'number of the link that is the cam', '2'), &
+    item_row_type('cam', 'follower', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
+                  'number of the link that touches the cam with its roller or its flat face', '3'), &
+    item_row_type('cam', 'point', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', '', &
+                  'centre of the roller, or a point of the flat face, in the follower', '0, 0.05, 0'), &
+    item_row_type('cam', 'roller', 'real', 1, 1, 'm', optional, '0', '>=0', '', '', &
+                  'radius of the roller; 0 for a follower with an edge', '0.01'), &
+    item_row_type('cam', 'face', 'real', 3, 3, '', optional, '(a roller)', '', '', '', &
+                  'a flat face in place of a roller: its normal towards the cam, in the follower; of any length', '0, -1, 0', &
+                  seldom=.true.), &
+    item_row_type('cam', 'side', 'text', 1, 1, '', optional, '''inner''', '', 'inner outer', '', &
+                  'inner: the path of the roller''s centre surrounds the cam; outer: the cam, a ring or a groove, surrounds it', &
+                  '''outer''', seldom=.true.), &
+    item_row_type('cam', 'axis', 'real', 3, 3, '', optional, '(of its pair, or z)', '', '', '', &
+                  'normal of the cam''s plane, in the cam; by default the axis about which it turns', '0, 0, 1', seldom=.true.), &
+    item_row_type('cam', 'guide', 'integer', 1, 1, '', optional, '(found)', '>=1', '', '', &
+                  'coordinate of the pair that guides the follower, for the pressure angle; by default its pair with link 1', '2', &
+                  seldom=.true.)]
+
   type(item_row_type), parameter :: run_items(*) = [ &
     item_row_type('time', 'start', 'real', 1, 1, 's', optional, '0', '', '', '', 'time of the first result', '0'), &
     item_row_type('time', 'end', 'real', 1, 1, 's', optional, '1', '', '', '', 'time of the last result', '2.5'), &
@@ -388,7 +414,7 @@ module mech9_grammar
                   'numbers that every user procedure receives', '0.1, 2.0')]
 
   type(item_row_type), parameter :: item_table(*) = &
-    [general_items, pair_items, motion_items, body_items, load_items, motor_items, run_items]
+    [general_items, pair_items, motion_items, body_items, load_items, motor_items, cam_items, run_items]
 
 contains
 

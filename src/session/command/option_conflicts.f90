@@ -6,12 +6,12 @@ module mech9_option_conflicts
   public :: judge_options, answer_of, rest_of
 
   !> The options that replace a run by an answer, the first ones before the others.
-  character(len=*), parameter :: answers(*) = [character(len=11) :: 'structure', 'check', 'plan', 'branches', 'range', 'graph', &
-                                               'equilibrium', 'modes', 'linear']
+  character(len=*), parameter :: answers(*) = [character(len=11) :: 'structure', 'check', 'plan', 'branches', 'range', 'cam', &
+                                               'graph', 'equilibrium', 'modes', 'linear']
   !> Those of them that are about positions of equilibrium.
   character(len=*), parameter :: of_rest(*) = [character(len=11) :: 'equilibrium', 'modes', 'linear']
   !> Options that a conversation does not take.
-  character(len=*), parameter :: of_files(*) = [character(len=11) :: 'check', 'structure', 'plan', 'branches', 'range', &
+  character(len=*), parameter :: of_files(*) = [character(len=11) :: 'check', 'structure', 'plan', 'branches', 'range', 'cam', &
                                                 'equilibrium', 'modes', 'linear', 'set']
 
 contains

@@ -44,6 +44,8 @@ module mech9_options
                 'write the linearised equations of motion there as matrices'), &
     option_type('range', no_argument, '', any_text, .false., 'mech9k', &
                 'print how far each independent coordinate can go from the start'), &
+    option_type('cam', needed_argument, '[N:]FILE', any_text, .true., 'mech9k', &
+                'compute the profile of cam N: a table, or a drawing (.svg)'), &
     option_type('graph', needed_argument, 'FILE', any_text, .false., both, &
                 'draw links, pairs and blocks as a graph: .dot, .svg, .png or .pdf'), &
     option_type('table', needed_argument, 'PATH', any_text, .false., both, &

@@ -7,6 +7,7 @@ module mech9_written_files
   use mech9_structure_graph, only: text_of_graph
   use mech9_xdmf, only: xdmf_path
   use mech9_command_line, only: command_line_type
+  use mech9_cam_files, only: cam_file_type, read_cam_file
   implicit none
   private
   public :: result_paths_type, written_file_type, find_result_paths, list_written_files, standard_output_path
@@ -131,11 +132,27 @@ contains
       return
     end if
     call append(files, '--sketch', options%argument('sketch'))
+    call list_cams(options, files)
     if (.not. options%has('graph')) return
     graph = options%argument('graph')
     call append(files, '--graph', graph)
     if (text_of_graph(graph) /= graph) call append(files, 'the text of --graph', text_of_graph(graph))
   end subroutine list_answers
+
+  !> Add the files of --cam.
+  pure subroutine list_cams(options, files)
+    type(command_line_type), intent(in) :: options                    !< the command line
+    type(written_file_type), allocatable, intent(inout) :: files(:)   !< gets the files
+    type(string_type), allocatable :: requests(:)
+    type(cam_file_type) :: file
+    integer :: i
+
+    call options%arguments('cam', requests)
+    do i = 1, size(requests)
+      call read_cam_file(requests(i)%text, file)
+      call append(files, '--cam', file%path)
+    end do
+  end subroutine list_cams
 
   !> Add the files of --equilibrium, --modes and --linear.
   pure subroutine list_of_equilibrium(options, files)

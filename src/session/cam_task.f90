@@ -1,0 +1,160 @@
+!> The profiles of cams, for --cam: tables, drawings, and a few lines about each.
+module mech9_cam_task
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, add_place, exit_usage
+  use mech9_text, only: string_type, to_text
+  use mech9_path, only: ending_of
+  use mech9_command_line, only: command_line_type
+  use mech9_cam_files, only: cam_file_type, read_cam_file
+  use mech9_model, only: model_type
+  use mech9_request, only: cam_request_type
+  use mech9_result_units, only: unit_of, unit_name
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_cam_profile, only: cam_profile_type, find_profile
+  use mech9_table, only: table_type
+  use mech9_version, only: version
+  use mech9_cam_picture, only: save_cam_picture
+  use mech9_cam_text, only: print_cam, judge_cam, name_of_cam
+  implicit none
+  private
+  public :: work_on_cams
+
+  character, parameter :: directions(3) = ['x', 'y', 'z']
+
+contains
+
+  !> Compute the profiles of all cams that are asked for, and write their files.
+  subroutine work_on_cams(program_name, options, model, plan, start, err)
+    character(len=*), intent(in) :: program_name        !< mech9k
+    type(command_line_type), intent(in) :: options      !< the command line
+    type(model_type), intent(in), target :: model       !< the model
+    type(plan_type), intent(in) :: plan                 !< its plan
+    type(state_type), intent(in) :: start               !< its closed position at the start
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(cam_file_type), allocatable :: files(:)
+    type(cam_profile_type) :: profile
+    integer :: i, k
+
+    call read_files(options, size(model%request%cams), files, err)
+    if (allocated(err)) return
+    do k = 1, size(model%request%cams)
+      if (.not. any(files%number == k)) cycle
+      associate (cam => model%request%cams(k))
+        call find_profile(model, plan, start, cam, profile, err)
+        if (.not. allocated(err)) call judge_cam(model, k, profile, err)
+        call add_place(err, place=cam%place)
+        if (allocated(err)) return
+        if (.not. options%has('quiet')) call print_cam(error_unit, model, k, profile)
+        do i = 1, size(files)
+          if (files(i)%number /= k) cycle
+          if (files(i)%is_picture) then
+            call save_cam_picture(files(i)%path, name_of_cam(model, k), model, cam, profile, err)
+          else
+            call save_table(files(i)%path, program_name, model, k, profile, err)
+          end if
+          if (allocated(err)) return
+          if (files(i)%path /= '-' .and. .not. options%has('quiet')) &
+            write (error_unit, '(4a)') 'cam ', to_text(k), ': ', files(i)%path
+        end do
+      end associate
+    end do
+  end subroutine work_on_cams
+
+  !> The files of --cam. Cams that do not exist, and files whose cam is not told, are errors (exit_usage).
+  subroutine read_files(options, n_cams, files, err)
+    type(command_line_type), intent(in) :: options                !< the command line
+    integer, intent(in) :: n_cams                                 !< cams of the data file
+    type(cam_file_type), allocatable, intent(out) :: files(:)     !< the files, each with the number of its cam
+    type(error_type), allocatable, intent(out) :: err             !< allocated if it failed
+    type(string_type), allocatable :: requests(:)
+    integer :: i
+
+    call options%arguments('cam', requests)
+    allocate (files(size(requests)))
+    do i = 1, size(requests)
+      call read_cam_file(requests(i)%text, files(i))
+      associate (file => files(i))
+        if (n_cams == 0) then
+          call raise(err, exit_usage, '--cam computes a cam that the data file describes in a group &cam, and it has none; '// &
+                     '--help-data cam explains the group')
+        else if (file%number == 0 .and. n_cams > 1) then
+          call raise(err, exit_usage, 'there are '//to_text(n_cams)//' cams; tell which one by its number, as in --cam 1:'// &
+                     file%path)
+        else if (file%number > n_cams) then
+          call raise(err, exit_usage, 'there is no cam '//to_text(file%number)//'; they are 1 to '//to_text(n_cams))
+        else if (any(ending_of(file%path) == [character(len=4) :: 'png', 'pdf', 'gif', 'html'])) then
+          call raise(err, exit_usage, "a cam is drawn into a file whose name ends in .svg, not '"//file%path//"'")
+        end if
+        if (allocated(err)) return
+        file%number = max(1, file%number)
+      end associate
+    end do
+  end subroutine read_files
+
+  !> The table of a profile, with a row for each output at which the follower moves against the cam.
+  subroutine save_table(path, program_name, model, number, profile, err)
+    character(len=*), intent(in) :: path                !< of the table; '-' is standard output
+    character(len=*), intent(in) :: program_name        !< mech9k
+    type(model_type), intent(in) :: model               !< the model
+    integer, intent(in) :: number                       !< of the cam
+    type(cam_profile_type), intent(in) :: profile       !< its profile
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(string_type), allocatable :: names(:), units(:)
+    type(table_type) :: table
+    type(error_type), allocatable :: at_close
+    real(wp), allocatable :: row(:)
+    integer :: i
+
+    call list_columns(model, model%request%cams(number), profile%has_pressure, names, units)
+    call table%open(path, model%mechanism%title//new_line('a')//name_of_cam(model, number), program_name//' '//version, names, &
+                    units, err)
+    do i = 1, size(profile%contacts)
+      if (allocated(err)) exit
+      if (.not. (profile%at_output(i) .and. profile%contacts(i)%known)) cycle
+      associate (contact => profile%contacts(i), cam => model%request%cams(number))
+        row = [contact%t, contact%angle/unit_of(model%mechanism, cam%coordinate), contact%profile, contact%pitch, contact%radius, &
+               merge(1.0_wp, 0.0_wp, contact%undercut)]
+        if (profile%has_pressure) row = [row, contact%pressure/model%mechanism%angle_unit]
+        if (cam%flat) row = [row, contact%offset]
+      end associate
+      call table%write_row(row, err)
+    end do
+    call table%close(at_close)
+    if (.not. allocated(err)) call move_alloc(at_close, err)
+  end subroutine save_table
+
+  !> The columns of the table.
+  subroutine list_columns(model, cam, has_pressure, names, units)
+    type(model_type), intent(in) :: model                     !< the model
+    type(cam_request_type), intent(in) :: cam                 !< the cam
+    logical, intent(in) :: has_pressure                       !< the pressure angles are known
+    type(string_type), allocatable, intent(out) :: names(:)   !< headings of the columns
+    type(string_type), allocatable, intent(out) :: units(:)   !< their units
+    integer :: i, n
+
+    allocate (names(10 + count([has_pressure, cam%flat])), units(10 + count([has_pressure, cam%flat])))
+    do i = 1, size(units)
+      units(i)%text = 'm'
+    end do
+    names(1)%text = 't'
+    units(1)%text = 's'
+    names(2)%text = 'q'//to_text(cam%coordinate)
+    units(2)%text = trim(unit_name(model%mechanism, cam%coordinate))
+    do i = 1, 3
+      names(2 + i)%text = 'profile.'//directions(i)
+      names(5 + i)%text = 'pitch.'//directions(i)
+    end do
+    names(9)%text = 'radius'
+    names(10)%text = 'undercut'
+    units(10)%text = ''
+    n = 10
+    if (has_pressure) then
+      n = n + 1
+      names(n)%text = 'pressure_angle'
+      units(n)%text = trim(merge('rad', 'deg', abs(model%mechanism%angle_unit - 1.0_wp) <= 0.0_wp))
+    end if
+    if (cam%flat) names(n + 1)%text = 'offset'
+  end subroutine list_columns
+end module mech9_cam_task

@@ -1,0 +1,163 @@
+!> Cams in words: the lines about a profile, and the reasons why there is none.
+module mech9_cam_text
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_data
+  use mech9_text, only: to_text
+  use mech9_counted, only: counted
+  use mech9_model, only: model_type
+  use mech9_result_units, only: unit_of, unit_name
+  use mech9_cam_contact, only: cam_contact_type
+  use mech9_cam_profile, only: cam_profile_type
+  use mech9_law_notes, only: print_jumps
+  implicit none
+  private
+  public :: print_cam, judge_cam, name_of_cam
+
+  integer, parameter :: digits = 7        !< significant digits of extreme values
+  integer, parameter :: most_ranges = 6   !< ranges of undercut that are listed
+
+contains
+
+  !> A cam and its follower: "cam 1: link 2, and a roller of radius 0.01 m on link 3".
+  function name_of_cam(model, number) result(name)
+    type(model_type), intent(in) :: model   !< the model
+    integer, intent(in) :: number           !< of the cam
+    character(len=:), allocatable :: name
+
+    associate (cam => model%request%cams(number))
+      name = 'cam '//to_text(number)//': link '//to_text(cam%link)
+      if (cam%flat) then
+        name = name//', and a flat face on link '
+      else if (cam%roller > 0.0_wp) then
+        name = name//', and a roller of radius '//to_text(cam%roller)//' m on link '
+      else
+        name = name//', and an edge on link '
+      end if
+      name = name//to_text(cam%follower)
+    end associate
+  end function name_of_cam
+
+  !> Fail where the motion of the follower determines no profile (exit_data).
+  subroutine judge_cam(model, number, profile, err)
+    type(model_type), intent(in) :: model               !< the model
+    integer, intent(in) :: number                       !< of the cam
+    type(cam_profile_type), intent(in) :: profile       !< its profile
+    type(error_type), allocatable, intent(out) :: err   !< allocated if there is none
+    character(len=:), allocatable :: cam
+    character(len=4) :: motion
+
+    cam = 'cam '//to_text(number)
+    if (profile%off_plane > 0) then
+      associate (contact => profile%contacts(profile%off_plane))
+        if (profile%deviation > 0.0_wp) then
+          call raise(err, exit_data, cam//' is not plane: its follower moves by '//to_text(profile%deviation, 3)// &
+                     ' m along the axis of the cam up to t = '//to_text(contact%t)//' s; check ''axis'' and ''point'' of the cam')
+        else
+          call raise(err, exit_data, cam//' is not plane: the flat face of its follower is not parallel to the axis of the cam '// &
+                     'at t = '//to_text(contact%t)//' s; check ''axis'' and ''face'' of the cam')
+        end if
+      end associate
+    else if (.not. any(profile%contacts%known)) then
+      motion = 'move'
+      if (model%request%cams(number)%flat) motion = 'turn'
+      call raise(err, exit_data, cam//' has no profile: link '//to_text(model%request%cams(number)%follower)//' does not '// &
+                 motion//' against the cam; check ''link'' and ''follower'' and their drives')
+    end if
+  end subroutine judge_cam
+
+  !> Write the lines about a profile.
+  subroutine print_cam(unit, model, number, profile)
+    integer, intent(in) :: unit                     !< Fortran unit to write to
+    type(model_type), intent(in) :: model           !< the model
+    integer, intent(in) :: number                   !< of the cam
+    type(cam_profile_type), intent(in) :: profile   !< its profile
+    integer :: n
+
+    n = count(profile%at_output .and. profile%contacts%known)
+    write (unit, '(a)') name_of_cam(model, number)
+    write (unit, '(a)') '  profile: '//counted(n, 'point')//merge(', closed', ', open  ', profile%closed)
+    if (profile%resting > 0) &
+      write (unit, '(a)') '  at '//counted(profile%resting, 'output')//' the follower rests against the cam; no points there'
+    if (profile%has_pressure) then
+      write (unit, '(a)') '  greatest pressure angle: '// &
+        angle_of(profile%contacts(profile%pressure)%pressure)//place_of(profile%contacts(profile%pressure))
+    else
+      write (unit, '(a)') '  pressure angle: not known, since no pair alone guides the follower; ''guide'' can name one'
+    end if
+    if (profile%convex > 0) call print_radius('convex', profile%contacts(profile%convex))
+    if (profile%concave > 0) call print_radius('concave', profile%contacts(profile%concave))
+    if (model%request%cams(number)%flat) &
+      write (unit, '(a)') '  contact on the face: from '// &
+        to_text(minval(profile%contacts%offset, profile%contacts%known), digits)//' to '// &
+        to_text(maxval(profile%contacts%offset, profile%contacts%known), digits)//' m from its point'
+    call print_undercut(unit, model, number, profile)
+    call print_jumps(unit, model)
+  contains
+    !> The least radius of curvature of one kind.
+    subroutine print_radius(kind, contact)
+      character(len=*), intent(in) :: kind              !< convex or concave
+      type(cam_contact_type), intent(in) :: contact     !< the contact with this radius
+
+      if (abs(contact%radius) <= huge(1.0_wp)) then
+        write (unit, '(a)') '  least radius of curvature, '//kind//': '//to_text(abs(contact%radius), digits)//' m'// &
+          place_of(contact)
+      else
+        write (unit, '(a)') '  '//kind//' nowhere: straight lines'
+      end if
+    end subroutine print_radius
+
+    !> An angle in the unit of the data file.
+    function angle_of(angle) result(text)
+      real(wp), intent(in) :: angle   !< [rad]
+      character(len=:), allocatable :: text
+
+      text = to_text(angle/model%mechanism%angle_unit, digits)// &
+             merge(' rad', ' deg', abs(model%mechanism%angle_unit - 1.0_wp) <= 0.0_wp)
+    end function angle_of
+
+    !> The position of a contact: " at q1 = 1.5 rad (t = 0.2 s)".
+    function place_of(contact) result(text)
+      type(cam_contact_type), intent(in) :: contact   !< the contact
+      character(len=:), allocatable :: text
+
+      associate (k => model%request%cams(number)%coordinate)
+        text = ' at q'//to_text(k)//' = '//to_text(contact%angle/unit_of(model%mechanism, k))//' '// &
+               trim(unit_name(model%mechanism, k))//' (t = '//to_text(contact%t)//' s)'
+      end associate
+    end function place_of
+  end subroutine print_cam
+
+  !> Write whether and where the profile is undercut.
+  subroutine print_undercut(unit, model, number, profile)
+    integer, intent(in) :: unit                     !< Fortran unit to write to
+    type(model_type), intent(in) :: model           !< the model
+    integer, intent(in) :: number                   !< of the cam
+    type(cam_profile_type), intent(in) :: profile   !< its profile
+    integer :: i
+
+    if (size(profile%undercut, 2) == 0) then
+      write (unit, '(a)') '  undercut: none'
+      return
+    end if
+    do i = 1, min(size(profile%undercut, 2), most_ranges)
+      call print_range(profile%contacts(profile%undercut(1, i)), profile%contacts(profile%undercut(2, i)))
+    end do
+    if (size(profile%undercut, 2) > most_ranges) &
+      write (unit, '(a)') '  undercut: in '//counted(size(profile%undercut, 2) - most_ranges, 'further range')
+    write (unit, '(a)') '  a cam cut by such a '//trim(merge('flat tool', 'roller   ', model%request%cams(number)%flat))// &
+      ' does not move its follower as asked: take a larger base circle'// &
+      trim(merge(' or a smaller roller', '                    ', model%request%cams(number)%roller > 0.0_wp))
+  contains
+    !> One range.
+    subroutine print_range(first, last)
+      type(cam_contact_type), intent(in) :: first   !< its first contact
+      type(cam_contact_type), intent(in) :: last    !< its last contact
+
+      associate (k => model%request%cams(number)%coordinate)
+        write (unit, '(a)') '  undercut: from q'//to_text(k)//' = '//to_text(first%angle/unit_of(model%mechanism, k))//' to '// &
+          to_text(last%angle/unit_of(model%mechanism, k))//' '//trim(unit_name(model%mechanism, k))//' (t = '// &
+          to_text(first%t)//' to '//to_text(last%t)//' s)'
+      end associate
+    end subroutine print_range
+  end subroutine print_undercut
+end module mech9_cam_text

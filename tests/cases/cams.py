@@ -1,0 +1,346 @@
+"""Profiles of cams (--cam) against closed forms: circles, flat faces, offset and swinging rollers; undercut, other planes and units,
+profiles that are read back as curves, bad input.
+
+Compares the program with itself in part: one cam in other planes, other units, other numbers of links, and held while its follower
+runs around it; a profile that is read back by a path pair. All else is closed forms.
+
+usage: cams.py MECH9K
+"""
+import math
+import os
+import re
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+from mech9_cases import Checks, read_table, run, text_of
+
+USAGE, DATA = 2, 3
+ROUND_OFF = 2e-13   # of lengths below 1 m that take some twenty operations
+CURVATURE = 1e-10   # of radii: quotients of products of accelerations
+
+
+class Cases:
+    def __init__(self, mech9k, folder):
+        self.mech9k, self.folder, self.checks = mech9k, folder, Checks()
+
+    def write(self, name, text):
+        path = os.path.join(self.folder, name)
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        return path
+
+    def profile(self, text, *options, number=''):
+        """The table of a cam by its columns, and the lines about it."""
+        table = os.path.join(self.folder, 'cam.dat')
+        done = run(self.mech9k, self.write('case.nml', text), '--cam', number + table, *options)
+        if not self.checks.equal(done.returncode, 0, f'a cam is computed: {done.stderr}'):
+            raise SystemExit(self.checks.finish())
+        return read_table(text_of(table)), done.stderr
+
+    def refused(self, text, code, words, *options):
+        done = run(self.mech9k, self.write('case.nml', text), *(options or ('--cam', '-')))
+        said = done.stderr
+        self.checks.equal(done.returncode, code, f'refused: {words}; {said}')
+        self.checks.true(words in ' '.join(said.split()), f'the message says "{words}"', said)
+
+    def near(self, values, expected, tolerance, why):
+        error = float(np.max(np.abs(np.asarray(values) - expected)))
+        self.checks.true(error <= tolerance, f'{why}: differs by {error:.3g}, and {tolerance:.3g} is allowed')
+
+
+def around(table, centre):
+    """Distances of the profile from a point of its plane."""
+    return np.hypot(table['profile.x'] - centre[0], table['profile.y'] - centre[1])
+
+
+# A crank of length E with a rod of length R + ROLLER: the roller at the end of the rod touches a circle of radius R about the crank pin.
+E, R, ROLLER = 0.01, 0.038, 0.012
+ROD = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.01,0,0, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point={rod},0,0, moving_point={arm},0,0 /
+&pair coordinate=4, links=1,4, {guide} /
+&initial coordinate=2, position=1.5 /
+&initial coordinate=4, position={start} /
+&drive coordinate=1, kind='polynomial', coefficients=0.2, {speed}, 1.1 /
+&cam link=2, follower=4, point={arm},0,0, roller={roller} {more} /
+&time end=1, intervals=50 /
+"""
+SLIDE = "kind='prismatic', axis=0,1,0, point={offset},0,0, moving_point=0,0,0"
+SWING = "kind='revolute', axis=0,0,1, point=-0.06,0.02,0, moving_point=0,0,0"
+
+
+def circles(s):
+    """The envelope of rollers at a fixed distance from a point is a circle, whatever guides them and however the cam turns."""
+    for guide, arm, start in ((SLIDE.format(offset=0), 0, 0.05), (SLIDE.format(offset=0.007), 0, 0.05), (SWING, 0.06, 0.5)):
+        for speed in (5.0, -5.0):
+            text = ROD.format(rod=R + ROLLER, arm=arm, guide=guide, start=start, speed=speed, roller=ROLLER, more='')
+            table, said = s.profile(text)
+            s.near(around(table, (E, 0)), R, ROUND_OFF, f'an eccentric circle, {guide}')
+            s.near(table['radius'], R, CURVATURE, f'radius of an eccentric circle, {guide}')
+            s.near(np.hypot(table['pitch.x'] - E, table['pitch.y']), R + ROLLER, ROUND_OFF, 'pitch curve of an eccentric circle')
+            s.checks.true('undercut: none' in said, 'an eccentric circle is not undercut', said)
+            if guide == SLIDE.format(offset=0):
+                angle = np.arcsin(np.abs(E * np.cos(table['q1'])) / (R + ROLLER))
+                s.near(table['pressure_angle'], angle, 1e-12, 'pressure angle of an eccentric circle: that of the rod')
+            # the same rod, with the roller inside of a ring
+            ring, _ = s.profile(text.replace('roller=', "side='outer', roller="))
+            s.near(around(ring, (E, 0)), R + 2 * ROLLER, ROUND_OFF, f'a ring around its rollers, {guide}')
+            s.near(ring['radius'], -R - 2 * ROLLER, CURVATURE, 'a ring is concave')
+    # an edge touches the pitch curve itself
+    edge, _ = s.profile(ROD.format(rod=R, arm=0, guide=SLIDE.format(offset=0), start=0.03, speed=5, roller=0, more=''))
+    s.near(around(edge, (E, 0)), R, ROUND_OFF, 'an edge runs along a circle')
+
+
+def swinging_face(s):
+    """A face that keeps its distance from a crank pin touches a circle about the pin, on an arm that swings as well."""
+    table, said = s.profile("""&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.01,0,0, moving_point=0,0.03,0 /
+&pair coordinate=3, links=3,4, kind='prismatic', axis=1,0,0, moving_point=0,0.005,0 /
+&pair coordinate=4, links=1,4, kind='revolute', axis=0,0,1, point=-0.08,0.01,0, moving_point=0,0,0 /
+&initial coordinate=2, position=0 /
+&initial coordinate=3, position=-0.08 /
+&initial coordinate=4, position=0 /
+&drive coordinate=1, kind='polynomial', coefficients=0, 6, 1 /
+&cam link=2, follower=4, point=0.02,0.005,0, face=0,3,0 /
+&time end=1, intervals=50 /
+""")
+    s.near(around(table, (E, 0)), 0.03 * np.ones(51), ROUND_OFF, 'a swinging flat face on a circle')
+    s.near(table['radius'], 0.03, CURVATURE, 'radius of a circle under a swinging face')
+    # along the face offsets count against x; the pressure angle is that of the arm from the pivot to the contact
+    arm = 0.02 - table['offset']
+    s.near(table['pressure_angle'], np.arctan(0.005 / np.abs(arm)), 1e-11, 'pressure angle of a swinging flat face')
+
+
+def curve345(x):
+    return x**3 * (10 - 15 * x + 6 * x * x), 30 * x * x * (1 - x)**2, 60 * x * (1 - x) * (1 - 2 * x)
+
+
+LIFT = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=1,3, kind='prismatic', axis=0,1,0, point={offset},{height},0, moving_point=0,0,0 /
+&drive coordinate=1, kind='polynomial', coefficients=0, 1 /
+&drive coordinate=2, kind='segments', times=0, {beta}, times(3)=3, values=0, {lift}, values(3)={lift}, laws='polynomial345', 'dwell' /
+&cam link=2, follower=3, {cam} /
+&time end=2.4, intervals=240 /
+"""
+
+
+def translating(s):
+    """The formulas of textbooks for translating followers, with one radian of the cam in a second."""
+    height, offset, lift, beta, radius = 0.04, 0.008, 0.02, 2.0, 0.01
+    t = np.linspace(0, 2.4, 241)
+    w, ds, dds = curve345(np.minimum(t / beta, 1))
+    w, ds, dds = lift * w, lift * ds / beta, lift * dds / beta**2
+    # a flat face: radius of curvature base + s + s'', contact at a distance s' from the axis
+    table, said = s.profile(LIFT.format(offset=0, height=height, beta=beta, lift=lift, cam='face=0,-1,0'))
+    s.near(table['radius'], height + w + dds, 1e-12, 'radius of curvature under a flat face')
+    s.near(np.abs(table['offset']), ds, 1e-12, 'contact on a flat face')
+    s.near(table['pressure_angle'], 0, 1e-15, 'pressure angle of a flat face across its slide')
+    s.near(np.hypot(table['profile.x'], table['profile.y']), np.hypot(height + w, ds), ROUND_OFF, 'profile under a flat face')
+    dense = np.linspace(0, 1, 2000001)
+    ws, _, wdd = curve345(dense)
+    least = height + lift * ws + lift * wdd / beta**2
+    found = re.search(r'convex: (\S+) m at q1 = (\S+) rad', said)
+    s.checks.near(float(found[1]), least.min(), 1e-6, 'least radius between outputs')
+    s.checks.near(float(found[2]), beta * dense[least.argmin()], 1e-3, 'place of the least radius')
+    # an offset roller: tan of the pressure angle is (s' - e)/(s + height) on the side where the offset helps
+    table, said = s.profile(LIFT.format(offset=offset, height=height, beta=beta, lift=lift, cam=f'roller={radius}'))
+    tangent = np.abs(ds - offset) / (height + w)
+    s.near(np.tan(table['pressure_angle']), tangent, 1e-12, 'pressure angle of an offset roller')
+    _, fine, _ = curve345(dense)
+    largest = np.arctan(np.abs(lift * fine / beta - offset) / (height + lift * ws)).max()
+    found = re.search(r'greatest pressure angle: (\S+) rad', said)
+    s.checks.near(float(found[1]), largest, 1e-6, 'greatest pressure angle')
+    # radius of the pitch curve from the polar formula of x = e, y = height + s in the turning cam
+    y = height + w
+    speed = np.hypot(ds - offset, y)
+    curvature = (y * y + (ds - offset) * (2 * ds - offset) - y * dds) / speed**3
+    s.near(1 / (table['radius'] + radius), curvature, 1e-10, 'curvature of the pitch curve')
+    s.checks.equal(table['undercut'].max(), 0.0, 'no undercut')
+
+
+def undercut(s):
+    """A roller larger than the least radius of the pitch curve undercuts it where the curve is too sharp, and so does a face."""
+    height, lift, beta = 0.03, 0.02, 1.2
+    t = np.linspace(0, 2.4, 241)
+    w, ds, dds = curve345(np.minimum(t / beta, 1))
+    y, ds, dds = height + lift * w, lift * ds / beta, lift * dds / beta**2
+    curvature = (y * y + 2 * ds**2 - y * dds) / np.hypot(ds, y)**3
+    text = LIFT.format(offset=0, height=height, beta=beta, lift=lift, cam='roller=0.025')
+    table, said = s.profile(text)
+    expected = curvature * 0.025 >= 1
+    s.checks.true(0 < expected.sum() < 200, 'some of the cam is undercut')
+    s.checks.true(np.array_equal(table['undercut'] > 0, expected), 'undercut where the pitch curve is too sharp')
+    found = re.search(r'undercut: from q1 = (\S+) to (\S+) rad \(t = ', said)
+    if s.checks.true(found, 'the range of undercut is told', said):
+        x = np.linspace(0, 1.5, 1500001)
+        w, d, dd = curve345(np.minimum(x / beta, 1))
+        y, d, dd = height + lift * w, lift * d / beta, lift * dd / beta**2
+        inside = x[(y * y + 2 * d**2 - y * dd) / np.hypot(d, y)**3 * 0.025 >= 1]
+        s.checks.near([float(found[1]), float(found[2])], [inside[0], inside[-1]], 2e-5, 'ends of the undercut lie between outputs')
+    table, said = s.profile(LIFT.format(offset=0, height=height, beta=beta, lift=lift, cam='face=0,-1,0'))
+    least = height + lift * curve345(np.minimum(t / beta, 1))[0] + lift * curve345(np.minimum(t / beta, 1))[2] / beta**2
+    s.checks.true(np.array_equal(table['undercut'] > 0, least <= 0), 'undercut of a flat face')
+    s.checks.true('a flat tool' in said, 'undercut of a flat face is told', said)
+
+
+def published(s):
+    """Problem of a textbook: a disk cam lifts a radial flat face by 50 mm and back in one turn, harmonically, from a least radius of
+    25 mm (H. H. Mabie, C. F. Reinholtz: Mechanisms and Dynamics of Machinery, chapter on cams). The contour is a circle of radius
+    50 mm, and contact reaches 25 mm to both sides."""
+    table, said = s.profile("""&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=1,3, kind='prismatic', axis=0,1,0, moving_point=0,0,0 /
+&drive coordinate=1, kind='polynomial', coefficients=0, 6.283185307179586 /
+&drive coordinate=2, kind='harmonic', mean=0.05, amplitude=0.025, angular_frequency=6.283185307179586, phase=-1.5707963267948966 /
+&cam link=2, follower=3, face=0,-1,0 /
+&time end=1, intervals=72 /
+""")
+    s.near(around(table, (0, -0.025)), 0.05, ROUND_OFF, 'a harmonic flat follower runs on a circle')
+    s.near(table['radius'], 0.05, CURVATURE, 'its radius')
+    s.checks.true('from -0.025 to 0.025 m' in said, 'length of its face', said)
+    s.checks.true('73 points, closed' in said, 'its profile is closed', said)
+
+
+def same_cam(s):
+    """The same cam where the cam is held and its follower runs around it, in another plane, and with other units and numbers."""
+    first, _ = s.profile(LIFT.format(offset=0.008, height=0.04, beta=2, lift=0.02, cam='roller=0.01'))
+    drives = """&drive coordinate=1, kind='polynomial', coefficients=0, {turn} /
+&drive coordinate=2, kind='segments', times=0, 2, 3, values=0, 0.02, 0.02, laws='polynomial345', 'dwell' /
+&time end=2.4, intervals=240 /
+"""
+    held, _ = s.profile("""&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=0,1,0, point=0.008,0.04,0, moving_point=0,0,0 /
+&cam link=1, follower=3, roller=0.01 /
+""" + drives.format(turn=-1))
+    turned, _ = s.profile("""&mechanism angle_unit='deg' /
+&structure cq=1,2 /
+&pair coordinate=1, links=2,1, kind='revolute', axis=-1,0,0 /
+&pair coordinate=2, links=3,1, kind='prismatic', axis=0,0,-1, point=0,0,0, moving_point=0,0.008,0.04 /
+&cam link=2, follower=3, roller=0.01, guide=2 /
+""" + drives.format(turn=57.29577951308232))
+    for name in ('radius', 'undercut'):
+        s.near(held[name], first[name], 1e-11, f'{name} of a cam that is held')
+        s.near(turned[name], first[name], 1e-11, f'{name} of a cam in another plane')
+    s.near(held['pressure_angle'], first['pressure_angle'], 1e-12, 'pressure angle of a cam that is held')
+    s.near(np.radians(turned['pressure_angle']), first['pressure_angle'], 1e-12, 'pressure angle of a cam in another plane')
+    for a, b in (('x', 'y'), ('y', 'z')):
+        s.near(held[f'profile.{a}'], first[f'profile.{a}'], ROUND_OFF, 'a cam that is held')
+        s.near(turned[f'profile.{b}'], first[f'profile.{a}'], ROUND_OFF, 'a cam in another plane')
+    # a plate cam that slides: its profile is the curve of its law, moved by the roller
+    plate, _ = s.profile("""&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=-1,0,0, moving_point=0,1,0 /
+&pair coordinate=2, links=1,3, kind='prismatic', axis=0,1,0, moving_point=0,0,0 /
+&cam link=2, follower=3, roller=0.1 /
+""" + drives.format(turn=1))
+    x = np.linspace(0, 2.4, 241)
+    w, ds, _ = curve345(np.minimum(x / 2, 1))
+    w, ds = 0.02 * w, 0.01 * ds
+    s.near(plate['profile.x'], x + 0.1 * ds / np.hypot(1, ds), ROUND_OFF, 'a sliding cam')
+    s.near(plate['profile.y'], w - 0.1 / np.hypot(1, ds) + 1, 1e-12, 'a sliding cam lies below its follower')
+    s.checks.true(np.all(np.isinf(plate['radius'][220:])), 'a sliding cam is straight where its follower rests')
+
+
+def read_back(s):
+    """A profile that is read back as a curve leads the roller's centre as the motion law does."""
+    text = LIFT.format(offset=0, height=0.04, beta=2, lift=0.02, cam='roller=0.01').replace('intervals=240', 'intervals=2400')
+    s.profile(text)
+    table = os.path.join(s.folder, 'result.dat')
+    path = s.write('follow.nml', """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='path', file='cam.dat', columns=3,4, orientation='tangent' /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=0,{r},0, moving_point=0,0,0 /
+&pair coordinate=4, links=1,4, kind='prismatic', axis=0,1,0, moving_point=0,0,0 /
+&initial coordinate=2, position=0.03 /
+&initial coordinate=3, position=2 /
+&initial coordinate=4, position=0.05 /
+&drive coordinate=1, kind='polynomial', coefficients=0, 1 /
+&time start=0.8, end=1.5, intervals=35 /
+""".format(r=0.01))
+    done = run(s.mech9k, path, '--table', table)
+    if not s.checks.equal(done.returncode, 0, f'a profile is read back: {done.stderr}'):
+        return
+    rows = read_table(text_of(table))
+    w, ds, dds = curve345(rows['t'] / 2)
+    s.near(rows['q4'], 0.04 + 0.02 * w, 1e-9, 'a follower on a profile that was read back')
+    s.near(rows['dq4'], 0.01 * ds, 1e-7, 'its velocity')
+    s.near(rows['ddq4'], 0.005 * dds, 1e-4, 'its acceleration')
+    for columns, words in (('3,40', "column 40 is asked for by 'columns', and this line has 11 numbers"),
+                           ('3', 'columns'), ('1,2', ''), ('9,3', '')):
+        with open(path, encoding='utf-8') as file:
+            changed = file.read().replace('columns=3,4', 'columns=' + columns)
+        if words:
+            s.refused(changed, DATA, words, '--check')
+
+
+def resting(s):
+    """Outputs at which cam and follower rest give no points; the others do."""
+    text = LIFT.format(offset=0, height=0.04, beta=1, lift=0.02, cam='roller=0.01').replace(
+        "coordinate=1, kind='polynomial', coefficients=0, 1", "coordinate=1, kind='segments', times=0,1,3, values=0,1,1, "
+        "laws='cycloidal','dwell'")
+    table, said = s.profile(text)
+    s.checks.true('the follower rests against the cam; no points there' in said, 'rest is told', said)
+    s.checks.true(90 < len(table['t']) < 110, f'rows of the motion only: {len(table["t"])}')
+
+
+def pictures(s):
+    """The drawing is SVG with the curves; red marks what is undercut."""
+    import xml.etree.ElementTree as tree
+    picture = os.path.join(s.folder, 'cam.svg')
+    for cam, undercut_parts in (('roller=0.01', 0), ('roller=0.025', 1), ('face=0,-1,0', 0)):
+        text = LIFT.format(offset=0, height=0.03, beta=1.2 if undercut_parts else 2, lift=0.02, cam=cam)
+        s.profile(text, '--cam', picture)
+        root = tree.parse(picture).getroot()
+        marks = [item.get('id') or item.get('class') for item in root.iter()]
+        s.checks.true('profile' in marks and 'follower' in marks, f'curve and follower are drawn: {cam}')
+        s.checks.equal(marks.count('undercut'), undercut_parts, f'undercut parts: {cam}')
+        s.checks.equal('pitch' in marks, 'roller' in cam, f'pitch curve: {cam}')
+
+
+def bad_input(s):
+    good = LIFT.format(offset=0, height=0.04, beta=2, lift=0.02, cam='roller=0.01')
+    cam = '&cam link=2, follower=3, roller=0.01 /'
+    s.checks.true(cam in good, 'the group that is changed')
+    for changed, code, words in (
+            ('', USAGE, 'a group &cam, and it has none'),
+            (cam + cam, USAGE, 'there are 2 cams; tell which one by its number, as in --cam 1:-'),
+            ('&cam link=2, follower=9, roller=0.01 /', DATA, 'there is no link 9; they are 1 to 3'),
+            ('&cam link=3, follower=3 /', DATA, 'two different links'),
+            ('&cam link=2, follower=3, roller=-1 /', DATA, 'roller'),
+            ('&cam link=2, follower=3, roller=1, face=0,1,0 /', DATA, "leave 'roller' or 'face' out"),
+            ("&cam link=2, follower=3, face=0,1,0, side='outer' /", DATA, "leave 'side' out"),
+            ('&cam link=2, follower=3, face=0,0,0 /', DATA, 'normal of the flat face is zero'),
+            ('&cam link=2, follower=3, axis=0,0,0 /', DATA, "normal of the cam's plane is zero"),
+            ('&cam link=2, follower=3, guide=1 /', DATA, 'pair 1 does not guide the follower'),
+            ('&cam link=2, follower=3, guide=7 /', DATA, 'pair 7 does not guide the follower'),
+            ('&cam link=2, follower=3, axis=0,1,0 /', DATA, 'case.nml:6'),
+            ('&cam link=2, follower=3, axis=1,0,1 /', DATA, 'is not plane: its follower moves by'),
+            ('&cam link=2, follower=3, face=0,1,1 /', DATA, 'is not plane: the flat face'),
+            ('&cam link=1, follower=3, face=1,0,0, axis=0,0,1 /', DATA, 'has no profile: link 3 does not turn against the cam')):
+        s.refused(good.replace(cam, changed), code, words)
+    s.refused(good, USAGE, 'there is no cam 2; they are 1 to 1', '--cam', '2:-')
+    s.refused(good, USAGE, 'ends in .svg', '--cam', 'cam.png')
+    s.refused(good, USAGE, '--cam needs an argument', '--cam')
+    path = s.write('case.nml', good)
+    s.refused(good, USAGE, 'would overwrite', '--cam', path)
+    s.refused(good, USAGE, "cannot both be", '--cam', 'a.dat', '--cam', 'a.dat')
+    s.refused(good, USAGE, '--animate shows a run, and --cam makes none', '--cam', 'a.dat', '--animate', 'a.html')
+    s.refused(good.replace('times(3)=3', 'times(3)=2.2'), DATA, 'the run goes on to')
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        s = Cases(sys.argv[1], folder)
+        for case in (circles, swinging_face, translating, undercut, published, same_cam, read_back, resting, pictures, bad_input):
+            case(s)
+        return s.checks.finish()
+
+
+if __name__ == '__main__':
+    sys.exit(main())
