@@ -38,10 +38,11 @@ contains
 
   !> Add a pair. Points and directions are given in the system of the link that they belong to; those of the moving link are the
   !> same numbers as in the reference link unless given.
-  pure subroutine pair(self, coordinate, kind, links, point, axis, moving_point, moving_axis, zero, moving_zero, pitch)
+  pure subroutine pair(self, coordinate, kind, links, point, axis, moving_point, moving_axis, zero, moving_zero, pitch, file, &
+                       orientation)
     class(design_type), intent(inout) :: self             !< the design
     integer, intent(in) :: coordinate                     !< number of the pair's coordinate
-    character(len=*), intent(in) :: kind                  !< 'revolute', 'prismatic', 'helical' or 'user'
+    character(len=*), intent(in) :: kind                  !< 'revolute', 'prismatic', 'helical', 'path' or 'user'
     integer, intent(in) :: links(2)                       !< reference link and moving link; 1 is the frame
     real(wp), intent(in), optional :: point(3)            !< on the axis, in the reference link [m]
     real(wp), intent(in), optional :: axis(3)             !< direction of the axis in the reference link
@@ -50,6 +51,8 @@ contains
     real(wp), intent(in), optional :: zero(3)             !< direction from which angles count, in the reference link
     real(wp), intent(in), optional :: moving_zero(3)      !< direction in the moving link that lies on `zero` at angle 0
     real(wp), intent(in), optional :: pitch               !< advance per turn of a helical pair [m]
+    character(len=*), intent(in), optional :: file         !< of the points of a path, from the current folder
+    character(len=*), intent(in), optional :: orientation !< of the moving link along a path: 'fixed', the default, or 'tangent'
     character(len=:), allocatable :: names
 
     names = 'coordinate='//to_text(coordinate)//', kind='//quoted(kind)//', links='//integers(links)
@@ -60,6 +63,8 @@ contains
     if (present(zero)) names = names//', zero='//reals(zero)
     if (present(moving_zero)) names = names//', moving_zero='//reals(moving_zero)
     if (present(pitch)) names = names//', pitch='//reals([pitch])
+    if (present(file)) names = names//', file='//quoted(file)
+    if (present(orientation)) names = names//', orientation='//quoted(orientation)
     call self%add('pair', names)
   end subroutine pair
 

@@ -93,6 +93,7 @@ contains
       end if
       call diagnostics%add(span_of(group, 'guide', 1), 'pair '//to_text(cam%guide)//' does not guide the follower: a guide '// &
                            'is a revolute or prismatic pair between link '//to_text(cam%follower)//' and a link other than the cam')
+      cam%guide = 0
     else if (count(guides) == 1) then
       cam%guide = findloc_true(guides)
     else if (count(with_frame) == 1) then

@@ -4,13 +4,14 @@ module mech9_drive_check
   use mech9_error, only: error_type
   use mech9_text, only: to_text
   use mech9_model, only: model_type
+  use mech9_pair, only: pair_guide_type
   use mech9_law, only: law_type
   use mech9_result_units, only: unit_of
   use mech9_independent_choice, only: find_choice
   use mech9_partition, only: partition_type
   use mech9_source, only: span_type
   use mech9_document, only: document_type, group_type
-  use mech9_lookup, only: groups_named, has_unsound, get_integer, get_integers, span_of
+  use mech9_lookup, only: groups_named, has_name, has_unsound, get_integer, get_real, get_integers, span_of
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
@@ -42,7 +43,54 @@ contains
     do i = 1, size(numbers)
       call check_start(document%groups(numbers(i)), model, diagnostics)
     end do
+    call check_curves(document, model, diagnostics)
   end subroutine check_drives
+
+  !> Report coordinates that would start beyond the ends of their curves: by a drive, or by an initial position.
+  subroutine check_curves(document, model, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(model_type), intent(in) :: model                 !< all that was read
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(pair_guide_type) :: guide
+    type(error_type), allocatable :: err
+    integer, allocatable :: drives(:), initials(:)
+    real(wp) :: q, dq, ddq
+    integer :: i, k
+
+    drives = groups_named(document, 'drive')
+    initials = groups_named(document, 'initial')
+    do k = 1, size(model%mechanism%pairs)
+      if (.not. allocated(model%mechanism%pairs(k)%pair)) cycle
+      call model%mechanism%pairs(k)%pair%guide(guide)
+      if (guide%closed .or. .not. guide%length > 0.0_wp) cycle
+      do i = 1, size(drives)
+        if (get_integer(document%groups(drives(i)), 'coordinate') /= k .or. i > size(model%problem%drives)) cycle
+        if (.not. allocated(model%problem%drives(i)%drive)) cycle
+        if (model%problem%drives(i)%drive%coordinate /= k) cycle
+        call model%problem%drives(i)%drive%evaluate(model%request%time%start, q, dq, ddq, err)
+        if (.not. allocated(err)) call check_place(document%groups(drives(i))%span, k, q, guide%length, diagnostics)
+      end do
+      do i = 1, size(initials)
+        associate (group => document%groups(initials(i)))
+          if (get_integer(group, 'coordinate') == k .and. has_name(group, 'position')) &
+            call check_place(span_of(group, 'position', 1), k, get_real(group, 'position'), guide%length, diagnostics)
+        end associate
+      end do
+    end do
+  end subroutine check_curves
+
+  !> Report a place beyond the ends of a curve.
+  pure subroutine check_place(span, coordinate, q, length, diagnostics)
+    type(span_type), intent(in) :: span                   !< where it is given
+    integer, intent(in) :: coordinate                     !< number of the coordinate
+    real(wp), intent(in) :: q                             !< its place at the start [m]
+    real(wp), intent(in) :: length                        !< of the curve [m]
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+
+    if (q >= -same_zero*length .and. q <= (1.0_wp + same_zero)*length) return
+    call diagnostics%add(span, 'coordinate '//to_text(coordinate)//' would start at '//to_text(q)// &
+                         ' m, and its curve leads from 0 to '//to_text(length, 10)//' m; start on the curve')
+  end subroutine check_place
 
   !> Report motors on dependent coordinates, and on driven ones.
   subroutine check_motors(document, model, diagnostics)

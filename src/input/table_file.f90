@@ -4,7 +4,7 @@
 !> line of names may stand before the first point.
 module mech9_table_file
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
+  use mech9_error, only: error_type, place_type
   use mech9_text, only: to_text, lower, starts_with
   use mech9_counted, only: counted
   use mech9_source, only: source_type, span_type, read_source
@@ -148,9 +148,21 @@ contains
     spans = spans(:n)
     if (diagnostics%count == found .and. n < fewest_points) &
       call diagnostics%add(span_type(number, 0, 0), 'a smooth curve needs at least '//to_text(fewest_points)// &
-                           ' points, and the file has '//to_text(n))
+                           ' points, and the file has '//to_text(n)//'; '//owner_words(diagnostics, asked_at)//' follows it')
     ok = diagnostics%count == found
   end subroutine read_curve_file
+
+  !> The pair that names a file, by its place: "the pair in line 3 of bead.nml".
+  pure function owner_words(diagnostics, asked_at) result(words)
+    type(diagnostics_type), intent(in) :: diagnostics   !< knows the sources
+    type(span_type), intent(in) :: asked_at             !< place of the file's name
+    character(len=:), allocatable :: words
+    type(place_type) :: place
+
+    place = diagnostics%place(asked_at)
+    words = 'a pair'
+    if (place%line > 0) words = 'the pair in line '//to_text(place%line)//' of '//printable(diagnostics%sources(1)%name)
+  end function owner_words
 
   !> Keep the words of the chosen columns of a line. A line without some of them is reported.
   pure subroutine choose_fields(chosen, whole, count, fields, ok, diagnostics)

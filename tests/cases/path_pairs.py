@@ -301,6 +301,13 @@ def ends(s):
         s.checks.true(float(last[0]) <= time + 1e-9, 'nothing is recorded beyond the end')
     exactly = s.table(pair + "&drive coordinate=1, kind='polynomial', coefficients=0, 0.66666666666666663 /\n")
     s.near(exactly, 'q1', exactly['t'] * 2 / 3, 1e-15, 'from end to end')
+    # a start beyond an end is no end of a motion: it is told with the place of its number
+    for start, place in (("&drive coordinate=1, kind='polynomial', coefficients=2.5, 1 /\n", 'case.nml:4:1'),
+                         ("&drive coordinate=1, kind='polynomial', coefficients=-0.1, 1 /\n", 'case.nml:4:1'),
+                         ('&initial coordinate=1, position=2.5 /\n&body link=2, mass=1 /\n', 'case.nml:4:33')):
+        done = run(s.mech9k if 'drive' in start else s.mech9d, s.write('case.nml', pair + start), '--check')
+        s.checks.equal(done.returncode, DATA, f'a start beyond an end is refused: {done.stderr}')
+        s.checks.true(place in done.stderr and 'and its curve leads from 0 to 2 m; start on the curve' in done.stderr, done.stderr)
     # a closed chain: the crank pulls the block beyond the end
     s.curve([(0.0, 0.0), (0.3, 0.0), (0.6, 0.0), (0.8, 0.0)])
     done = run(s.mech9k, s.write('case.nml', CRANK.format(guide="&pair coordinate=3, links=1,4, kind='path', file='curve.dat' /")
@@ -315,7 +322,7 @@ def refusals(s):
             "&drive coordinate=1, kind='polynomial', coefficients=0.5 /\n")
     square = '0 0\n1 0\n1 1\n0 1\n'
     for points, names, code, words in (
-            ('0 0\n1 0\n1 1\n', '', DATA, 'curve.dat: a smooth curve needs at least 4 points, and the file has 3'),
+            ('0 0\n1 0\n1 1\n', '', DATA, 'curve.dat: a smooth curve needs at least 4 points, and the file has 3; the pair in line 1 of'),
             ('0 0\n1 0\n1 1\n0 0\n', '', DATA, 'a smooth curve needs at least 4 points, and there are 3'),
             ('', '', DATA, "curve.dat': the file is empty"),
             ('# nothing\n', '', DATA, 'curve.dat: a smooth curve needs at least 4 points, and the file has 0'),

@@ -8,6 +8,7 @@ program test_design
   call check_bits()
   call check_refusals()
   call check_everything_else()
+  call check_path()
   call test%finish()
 
 contains
@@ -46,6 +47,36 @@ contains
     call test%has_error(err, exit_usage, 'a name that no point has is refused')
     call motion%close()
   end subroutine check_bits
+
+  !> A bead on a straight wire through the points of a file, which is looked for in the current folder.
+  subroutine check_path()
+    type(design_type) :: design
+    type(mechanism_type) :: mechanism
+    type(motion_type) :: motion
+    type(error_type), allocatable :: err
+    real(wp) :: p(3)
+    integer :: unit, i
+
+    open (newunit=unit, file='wire.dat', status='replace', action='write')
+    do i = 0, 4
+      write (unit, '(2(es24.16e3,1x))') 0.3_wp*i, 0.4_wp*i
+    end do
+    close (unit)
+    call design%independent([1])
+    call design%pair(1, 'path', [1, 2], file='wire.dat', orientation='tangent')
+    call design%drive(1, [0.25_wp, 1.0_wp])
+    call design%point('bead', 2, [0.0_wp, 0.1_wp, 0.0_wp])
+    call design%finish(mechanism, err)
+    call test%no_error(err, 'a design with a path is accepted')
+    call motion%start_kinematics(mechanism, err)
+    call test%no_error(err, 'a motion along a path starts')
+    call motion%point('bead', err, position=p)
+    call test%near(p(1), 0.25_wp*0.6_wp - 0.1_wp*0.8_wp, 1e-14_wp, 'the bead stands beside its wire')
+    call test%near(p(2), 0.25_wp*0.8_wp + 0.1_wp*0.6_wp, 1e-14_wp, 'the bead turns with its wire')
+    call motion%close()
+    open (newunit=unit, file='wire.dat', status='old')
+    close (unit, status='delete')
+  end subroutine check_path
 
   subroutine check_refusals()
     type(design_type) :: design, empty
