@@ -81,7 +81,7 @@ contains
 
   !> Report a place beyond the ends of a curve.
   pure subroutine check_place(span, coordinate, q, length, diagnostics)
-    type(span_type), intent(in) :: span                   !< where it is given
+    type(span_type), intent(in) :: span                   !< place of the number in the data file
     integer, intent(in) :: coordinate                     !< number of the coordinate
     real(wp), intent(in) :: q                             !< its place at the start [m]
     real(wp), intent(in) :: length                        !< of the curve [m]

@@ -37,6 +37,7 @@ module mech9_pair
   !> The curve along which a pair leads its moving link.
   type :: pair_guide_type
     logical :: closed = .false.             !< the pair repeats its poses after `length`; else q goes from 0 to `length`
+    logical :: turns = .false.              !< the moving link turns with the tangent, which is the x axis of the moving frame
     real(wp) :: length = 0.0_wp             !< greatest q, or change of q after which poses repeat [m]; 0: there is no curve
     real(wp), allocatable :: points(:, :)   !< (3,n) places of the moving frame in the reference frame, for sizes and pictures [m]
   end type pair_guide_type

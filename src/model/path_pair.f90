@@ -106,6 +106,7 @@ contains
 
     guide%closed = self%curve%closed
     guide%length = self%curve%length
+    guide%turns = self%along
     n = size(self%curve%piece)
     allocate (guide%points(3, places_per_part*n + 1))
     do i = 0, places_per_part*n

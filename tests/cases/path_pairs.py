@@ -355,6 +355,27 @@ def refusals(s):
     s.checks.true("case.nml:1:50: the curve '" in done.stderr, done.stderr)
 
 
+def symbols(s):
+    """A link that turns with its curve is a block on it, another one a diamond; a closed curve of a moving link is a cam."""
+    angle = 2 * math.pi * np.arange(25) / 24
+    s.curve(closed(np.c_[np.cos(angle), np.sin(angle)]))
+    text = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links={links}, kind='path', file='curve.dat', orientation='{orientation}' /
+&drive coordinate=1, kind='polynomial', coefficients=0, 1 /
+&drive coordinate=2, kind='polynomial', coefficients=0, 1 /
+"""
+    picture = os.path.join(s.folder, 'path.svg')
+    for links, orientation, symbol, curve in (('1,3', 'tangent', 'block', 'curve'), ('1,3', 'fixed', 'free', 'curve'),
+                                              ('2,3', 'tangent', 'block', 'cam'), ('2,3', 'fixed', 'free', 'cam')):
+        done = run(s.mech9k, s.write('case.nml', text.format(links=links, orientation=orientation)), '--no-write', '--sketch', picture)
+        s.checks.equal(done.returncode, 0, f'a path is drawn: {done.stderr}')
+        drawn = text_of(picture)
+        other = {'block': 'free', 'free': 'block'}[symbol]
+        s.checks.true(f'<g class="{symbol}' in drawn and f'<g class="{other}' not in drawn, f'{orientation}: the symbol is {symbol}')
+        s.checks.true(f'<g class="{curve}' in drawn, f'links {links}: the curve is drawn as {curve}')
+
+
 def mobility(s):
     """Ranks do not depend on where on its curve a pair stands: at an inflection, on a straight part, in a chain of slides."""
     x = np.linspace(-1.0, 1.0, 41)
@@ -380,7 +401,7 @@ def mobility(s):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         s = Cases(sys.argv[1], sys.argv[2], folder)
-        for case in (line, circle, ellipse, helix, tautochrone, knot, carried_curve, forces, ends, refusals, mobility):
+        for case in (line, circle, ellipse, helix, tautochrone, knot, carried_curve, forces, ends, refusals, symbols, mobility):
             case(s)
         s.checks.finish()
 

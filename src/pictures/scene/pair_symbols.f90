@@ -256,8 +256,13 @@ contains
     end do
     names = names_of(pairs)
     do i = 1, size(pairs)
-      if (skeleton%places(pairs(i))%kind == free) &
-        call scene%add_item(mark, as_free, symbols%node(pairs(i):pairs(i)), above=above, text=names)
+      if (skeleton%places(pairs(i))%kind == free) then
+        if (any(abs(skeleton%places(pairs(i))%tangent) > 0.0_wp)) then
+          call add_runner(skeleton%places(pairs(i)), projection, above, names, scene)
+        else
+          call scene%add_item(mark, as_free, symbols%node(pairs(i):pairs(i)), above=above, text=names)
+        end if
+      end if
       if (skeleton%places(pairs(i))%kind == sliding .or. skeleton%places(pairs(i))%kind == screwing) &
         call add_block(skeleton%places(pairs(i)), pairs(i), projection, above, names, scene, symbols)
     end do
@@ -334,6 +339,21 @@ contains
       call scene%add_item(open_path, in_block, [from, to], link, above=above, text=names)
     end associate
   end subroutine add_block
+
+  !> The block that runs along the curve of a path pair and turns with it is added.
+  subroutine add_runner(place, projection, above, names, scene)
+    type(place_type), intent(in) :: place            !< place of the pair
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    integer, intent(in) :: above(4)                  !< numbers of the items that the symbol lies upon; 0: none
+    character(len=*), intent(in) :: names            !< names of the coordinates of the joint
+    type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
+    integer :: ends(2), i
+
+    do i = 1, 2
+      call scene%add_node(place%links(2), place%points(:, 2) + (2*i - 3)*projection%metres(block_half)*place%tangent, ends(i))
+    end do
+    call scene%add_item(open_path, in_block, ends, place%links(2), above=above, text=names)
+  end subroutine add_runner
 
   !> A pin is added: a short cylinder along the axis. Only the end that is turned to the viewer is drawn.
   subroutine add_pin(place, px, crossed, above, names, scene)

@@ -106,7 +106,7 @@ contains
     end do
   end subroutine add_curves
 
-  !> The curve of a path pair is added.
+  !> The curve of a path pair is added; a closed one of a moving link is the edge of a cam.
   subroutine add_guide(guide, link, px, scene)
     real(wp), intent(in) :: guide(:, :)       !< (3,n) places of the curve, in the link [m]
     integer, intent(in) :: link               !< number of the link to which it belongs
@@ -120,7 +120,12 @@ contains
     do i = 1, size(chosen)
       call scene%add_node(link, guide(:, chosen(i)), nodes(i))
     end do
-    call scene%add_item(open_path, in_curve, nodes, link)
+    i = size(nodes)
+    if (link /= 1 .and. norm2(guide(:, size(guide, 2)) - guide(:, 1)) <= px) then
+      call scene%add_item(closed_path, in_cam, nodes(:i - 1), link)
+    else
+      call scene%add_item(open_path, in_curve, nodes, link)
+    end if
   end subroutine add_guide
 
   !> Whether a curve ends within two of its mean steps from where it began.
