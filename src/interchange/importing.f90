@@ -20,6 +20,8 @@ module mech9_importing
   use mech9_xml_reader, only: read_xml
   use mech9_robot, only: robot_type
   use mech9_urdf_reader, only: read_urdf, read_loops
+  use mech9_mjcf_reader, only: read_mjcf
+  use mech9_robot_poses, only: make_planar_loops_planar
   use mech9_rigid_links, only: join_rigid_links
   use mech9_pair_series, only: series_type, find_series
   use mech9_robot_start, only: find_start
@@ -74,7 +76,9 @@ contains
 
     call read_robot(inputs, robot, err)
     if (.not. allocated(err)) call join_rigid_links(robot, err)
-    if (.not. allocated(err)) call find_series(robot, series, err)
+    if (allocated(err)) return
+    call make_planar_loops_planar(robot)
+    call find_series(robot, series, err)
     if (allocated(err)) return
     if (size(series%pairs) == 0) then
       call raise(err, exit_usage, inputs(1)%text//': the robot has no joints that move')
@@ -115,8 +119,11 @@ contains
     case ('robot')
       call robot%begin('URDF')
       call read_urdf(tree, robot, err)
+    case ('mujoco')
+      call robot%begin('MJCF')
+      call read_mjcf(tree, robot, err)
     case default
-      call tree%fail(1, '<'//tree%name(1)//'> is no robot: the file must begin with <robot> (URDF)', err)
+      call tree%fail(1, '<'//tree%name(1)//'> is no robot: the file must begin with <robot> (URDF) or <mujoco> (MJCF)', err)
     end select
     if (size(inputs) > 1 .and. .not. allocated(err)) then
       call read_xml(inputs(2)%text, loops, err)

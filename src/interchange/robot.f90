@@ -48,6 +48,7 @@ module mech9_robot
     real(wp) :: damping = 0.0_wp              !< [N m s/rad or N s/m]
     logical :: is_preferred = .false.         !< the file wants its coordinate independent
     logical :: closes = .false.               !< it closes a chain: better not independent
+    character(len=:), allocatable :: remark   !< a change of the joint, in words; not allocated where there is none
   end type robot_joint_type
 
   !> A point of a link that is worth recording.

@@ -143,6 +143,7 @@ contains
     last = findloc(series%pairs%joint, series%pairs(k)%joint, dim=1, back=.true.)
     if (last > first) text = text//', freedom '//to_text(k - first + 1)//' of '//to_text(last - first + 1)
     if (series%closes(series%pairs(k)%joint)) text = text//', which closes a chain'
+    if (allocated(joint%remark)) text = text//'; '//joint%remark
     if (joint%has_range) text = text//', range '//number_text(joint%range(1))//' to '//number_text(joint%range(2))
   end function pair_comment
 

@@ -7,7 +7,7 @@ module mech9_urdf_reader
   use mech9_pose, only: pose_type
   use mech9_inertia, only: inertia_in_axes
   use mech9_xml_tree, only: xml_tree_type
-  use mech9_xml_values, only: get_numbers, get_number, needed_attribute, is_true
+  use mech9_xml_values, only: get_numbers, get_number, needed_attribute, is_true, place_in
   use mech9_robot, only: robot_type, robot_joint_type, fixed_joint, revolute_joint, prismatic_joint, cylindrical_joint, &
                          universal_joint, spherical_joint, planar_joint, free_joint, most_links, most_joints
   implicit none
@@ -181,11 +181,14 @@ contains
     type(robot_type), intent(inout) :: robot             !< gets the joint
     type(error_type), allocatable, intent(inout) :: err  !< the failure
     type(robot_joint_type) :: joint
+    character(len=:), allocatable :: word
     type(pose_type) :: inner
     integer :: place
 
     joint%name = needed_attribute(tree, element, 'name', err)
-    call find_place(tree, element, words, place, err)
+    word = needed_attribute(tree, element, 'type', err)
+    place = place_in(words, word)
+    if (place == 0) call tree%fail(element, "unknown type '"//word//"' of a joint", err)
     if (allocated(err)) return
     joint%kind = kinds(place)
     joint%links(1) = link_of(tree, element, first, robot, err)
@@ -206,22 +209,6 @@ contains
     call note_parts(tree, element, joint%name, robot, err)
     call robot%add_joint(tree, element, joint, err)
   end subroutine read_joint
-
-  !> The place of a joint's type in a list of words.
-  subroutine find_place(tree, element, list, place, err)
-    type(xml_tree_type), intent(in) :: tree              !< the document
-    integer, intent(in) :: element                       !< number of the element <joint> or <loop>
-    character(len=*), intent(in) :: list(:)              !< the types
-    integer, intent(out) :: place                        !< in the list
-    type(error_type), allocatable, intent(inout) :: err  !< the failure
-    character(len=:), allocatable :: word
-
-    word = needed_attribute(tree, element, 'type', err)
-    do place = size(list), 1, -1
-      if (list(place) == word) return
-    end do
-    call tree%fail(element, "unknown type '"//word//"' of a joint", err)
-  end subroutine find_place
 
   !> The number of the link that an element of a joint names.
   integer function link_of(tree, element, name, robot, err) result(link)

@@ -9,7 +9,7 @@ module mech9_xml_values
   use mech9_xml_tree, only: xml_tree_type
   implicit none
   private
-  public :: get_numbers, get_number, get_list, needed_attribute, numbers_in, is_true
+  public :: get_numbers, get_number, get_list, needed_attribute, numbers_in, is_true, place_in
 
   !> Numbers that data files can hold.
   real(wp), parameter :: largest = 1.0e100_wp, smallest = 1.0e-100_wp
@@ -126,6 +126,16 @@ contains
     value = tree%attribute(element, name)
     if (.not. tree%has(element, name)) call tree%fail(element, '<'//tree%name(element)//"> needs '"//name//"'", err)
   end function needed_attribute
+
+  !> The place of a word in a list; 0 where it is not there.
+  pure integer function place_in(list, word) result(place)
+    character(len=*), intent(in) :: list(:)  !< words
+    character(len=*), intent(in) :: word     !< the word that is looked for
+
+    do place = size(list), 1, -1
+      if (list(place) == word) return
+    end do
+  end function place_in
 
   !> Whether a text says yes.
   pure logical function is_true(text)

@@ -1,0 +1,274 @@
+!> Robots in MJCF, the format of MuJoCo: bodies nested in each other, with their joints, frames, sites and shapes.
+module mech9_mjcf_reader
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_text, only: to_text
+  use mech9_rotation, only: unit, about_axis
+  use mech9_pose, only: pose_type, compose
+  use mech9_xml_tree, only: xml_tree_type
+  use mech9_xml_values, only: get_numbers, get_number, is_true, place_in
+  use mech9_robot, only: robot_type, robot_joint_type, fixed_joint, revolute_joint, prismatic_joint, &
+                         spherical_joint, free_joint
+  use mech9_mjcf_settings, only: mjcf_settings_type, read_settings
+  use mech9_mjcf_masses, only: read_inertial, add_geom
+  use mech9_mjcf_equality, only: read_equalities
+  implicit none
+  private
+  public :: read_mjcf
+
+contains
+
+  !> Read a document whose root is <mujoco>. The world is the frame.
+  subroutine read_mjcf(tree, robot, err)
+    type(xml_tree_type), intent(in) :: tree            !< the document
+    type(robot_type), intent(inout) :: robot           !< an empty robot; gets links and joints
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
+    type(mjcf_settings_type) :: settings
+    integer :: e
+
+    robot%name = tree%attribute(1, 'model')
+    call refuse_unknown(tree, err)
+    if (.not. allocated(err)) call read_settings(tree, settings, err)
+    if (allocated(err)) return
+    call robot%add_link(tree, 1, 'world', err)
+    e = tree%first_child(1)
+    do while (e > 0 .and. .not. allocated(err))
+      select case (tree%name(e))
+      case ('worldbody')
+        call read_contents(tree, e, settings, 0, pose_type(), 1, robot, err)
+      case ('option')
+        call get_numbers(tree, e, 'gravity', robot%gravity, err)
+        if (tree%attribute(tree%child(e, 'flag'), 'gravity') == 'disable') robot%gravity = 0.0_wp
+      case ('compiler', 'default', 'equality', 'actuator')
+      case default
+        call robot%note(tree, e, '<'//tree%name(e)//'>')
+      end select
+      e = tree%next_sibling(e)
+    end do
+    if (.not. allocated(err)) call read_equalities(tree, settings, robot, err)
+    if (.not. allocated(err)) call read_actuators(tree, robot)
+  end subroutine read_mjcf
+
+  !> Fail because of elements that make or bring bodies in ways that are not known here.
+  subroutine refuse_unknown(tree, err)
+    type(xml_tree_type), intent(in) :: tree            !< the document
+    type(error_type), allocatable, intent(out) :: err  !< allocated if there are any
+    integer :: e
+
+    do e = 1, tree%count
+      select case (tree%name(e))
+      case ('include', 'attach', 'composite', 'flexcomp', 'replicate')
+        call tree%fail(e, '<'//tree%name(e)//'> is not followed; let MuJoCo write the whole model into one file '// &
+                       '(mj_saveLastXML)', err)
+        return
+      end select
+    end do
+  end subroutine refuse_unknown
+
+  !> Read the elements in a body, in the world, or in a frame of one of these.
+  recursive subroutine read_contents(tree, element, settings, class, frame, link, robot, err)
+    type(xml_tree_type), intent(in) :: tree              !< the document
+    integer, intent(in) :: element                       !< number of the element
+    type(mjcf_settings_type), intent(in) :: settings     !< units and defaults
+    integer, intent(in) :: class                         !< number of the element of the class of defaults that holds in it
+    type(pose_type), intent(in) :: frame                 !< of the element, in the frame of the link
+    integer, intent(in) :: link                          !< number of the link
+    type(robot_type), intent(inout) :: robot             !< gets links, joints and masses
+    type(error_type), allocatable, intent(inout) :: err  !< the failure
+    type(pose_type) :: pose
+    integer :: e, own
+
+    e = tree%first_child(element)
+    do while (e > 0 .and. .not. allocated(err))
+      own = class
+      if (tree%has(e, 'class')) own = settings%class_of(tree, tree%attribute(e, 'class'), e, err)
+      if (tree%has(e, 'childclass')) own = settings%class_of(tree, tree%attribute(e, 'childclass'), e, err)
+      if (allocated(err)) return
+      select case (tree%name(e))
+      case ('body')
+        call settings%get_pose(tree, e, 0, pose, err)
+        call read_body(tree, e, settings, own, compose(frame, pose), link, robot, err)
+      case ('frame')
+        call settings%get_pose(tree, e, 0, pose, err)
+        call read_contents(tree, e, settings, own, compose(frame, pose), link, robot, err)
+      case ('site')
+        call settings%get_pose(tree, e, own, pose, err)
+        pose = compose(frame, pose)
+        if (tree%has(e, 'name') .and. .not. allocated(err)) call robot%add_point(tree%attribute(e, 'name'), link, pose%p)
+      case ('geom')
+        if (link > 1 .and. .not. settings%never_from_geoms .and. (settings%from_geoms .or. tree%child(element, 'inertial') == 0)) &
+          call add_geom(tree, e, settings, own, frame, robot, robot%links(link), err)
+      case ('inertial')
+        if (link > 1 .and. .not. settings%from_geoms) call read_inertial(tree, e, settings, robot%links(link), err)
+      case ('joint', 'freejoint')
+      case default
+        call robot%note(tree, e, '<'//tree%name(e)//'> of bodies')
+      end select
+      e = tree%next_sibling(e)
+    end do
+  end subroutine read_contents
+
+  !> Read a body: its joints, with massless links between several of them, and its contents.
+  recursive subroutine read_body(tree, element, settings, class, pose, parent, robot, err)
+    type(xml_tree_type), intent(in) :: tree              !< the document
+    integer, intent(in) :: element                       !< number of the element
+    type(mjcf_settings_type), intent(in) :: settings     !< units and defaults
+    integer, intent(in) :: class                         !< number of the element of the class of defaults that holds in it
+    type(pose_type), intent(in) :: pose                  !< of the body in the link around it
+    integer, intent(in) :: parent                        !< number of that link
+    type(robot_type), intent(inout) :: robot             !< gets links, joints and masses
+    type(error_type), allocatable, intent(inout) :: err  !< the failure
+    character(len=:), allocatable :: name
+    type(robot_joint_type) :: joint
+    type(pose_type) :: start
+    integer :: e, n, last
+
+    if (allocated(err)) return
+    name = tree%attribute(element, 'name')
+    if (name == '') name = 'body '//to_text(element)
+    if (is_true(tree%attribute(element, 'mocap'))) call robot%note(tree, element, "mocap of body '"//name//"', which is fixed now")
+    n = 0
+    start = pose
+    last = parent
+    e = tree%first_child(element)
+    do while (e > 0 .and. .not. allocated(err))
+      if (tree%name(e) == 'joint' .or. tree%name(e) == 'freejoint') then
+        if (n > 0) then
+          call robot%add_link(tree, e, name//' ('//to_text(n)//')', err)
+          robot%joints(robot%n_joints)%links(2) = robot%n_links
+          last = robot%n_links
+          start = pose_type()
+        end if
+        n = n + 1
+        call read_joint(tree, e, settings, class, start, last, name, n, robot, err)
+      end if
+      e = tree%next_sibling(e)
+    end do
+    if (n == 0) then
+      joint%name = 'fixed '//name
+      joint%kind = fixed_joint
+      joint%links(1) = parent
+      joint%frames(1) = pose
+      call robot%add_joint(tree, element, joint, err)
+    end if
+    call robot%add_link(tree, element, name, err)
+    if (allocated(err)) return
+    robot%joints(robot%n_joints)%links(2) = robot%n_links
+    call read_contents(tree, element, settings, class, pose_type(), robot%n_links, robot, err)
+  end subroutine read_body
+
+  !> Read a joint, whose moving link follows.
+  subroutine read_joint(tree, element, settings, around, start, link, body, number, robot, err)
+    type(xml_tree_type), intent(in) :: tree              !< the document
+    integer, intent(in) :: element                       !< number of the element <joint> or <freejoint>
+    type(mjcf_settings_type), intent(in) :: settings     !< units and defaults
+    integer, intent(in) :: around                        !< number of the element of the class of defaults of the body
+    type(pose_type), intent(in) :: start                 !< of the body's frame in the reference link
+    integer, intent(in) :: link                          !< number of the reference link
+    character(len=*), intent(in) :: body                 !< name of the body
+    integer, intent(in) :: number                        !< of the joint in the body
+    type(robot_type), intent(inout) :: robot             !< gets the joint
+    type(error_type), allocatable, intent(inout) :: err  !< the failure
+    character(len=9), parameter :: words(5) = [character(len=9) :: '', 'hinge', 'slide', 'ball', 'free']
+    integer, parameter :: kinds(5) = [revolute_joint, revolute_joint, prismatic_joint, spherical_joint, free_joint]
+    character(len=:), allocatable :: word
+    type(robot_joint_type) :: joint
+    type(pose_type) :: at
+    integer :: class, place
+
+    class = around
+    if (tree%has(element, 'class')) class = settings%class_of(tree, tree%attribute(element, 'class'), element, err)
+    word = tree%attribute(settings%holder(tree, element, class, 'type'), 'type')
+    if (tree%name(element) == 'freejoint') word = 'free'
+    place = place_in(words, word)
+    if (place == 0) call tree%fail(element, "unknown type '"//word//"' of a joint", err)
+    if (allocated(err)) return
+    joint%kind = kinds(place)
+    joint%name = tree%attribute(element, 'name')
+    if (joint%name == '') joint%name = 'joint '//to_text(number)//' of '//body
+    joint%links(1) = link
+    if (joint%kind /= free_joint) call get_numbers(tree, settings%holder(tree, element, class, 'pos'), 'pos', at%p, err)
+    joint%axis = [0.0_wp, 0.0_wp, 1.0_wp]
+    call get_numbers(tree, settings%holder(tree, element, class, 'axis'), 'axis', joint%axis, err)
+    if (.not. any(abs(joint%axis) > 0.0_wp)) call tree%fail(element, 'the axis has no direction: its components are all zero', err)
+    joint%axis = unit(joint%axis)
+    joint%frames(1) = compose(start, at)
+    joint%frames(2) = at
+    call read_springs(tree, element, settings, class, joint, robot, err)
+    call robot%add_joint(tree, element, joint, err)
+  end subroutine read_joint
+
+  !> Reference, range, spring and damper of a joint. Its coordinate is the reference where the body stands as the file places it.
+  subroutine read_springs(tree, element, settings, class, joint, robot, err)
+    type(xml_tree_type), intent(in) :: tree              !< the document
+    integer, intent(in) :: element                       !< number of the element
+    type(mjcf_settings_type), intent(in) :: settings     !< units and defaults
+    integer, intent(in) :: class                         !< number of the element of its class of defaults
+    type(robot_joint_type), intent(inout) :: joint       !< gets them
+    type(robot_type), intent(inout) :: robot             !< gets notes
+    type(error_type), allocatable, intent(inout) :: err  !< the failure
+    real(wp) :: scale, armature, friction
+    character(len=:), allocatable :: limited
+
+    armature = 0.0_wp
+    friction = 0.0_wp
+    call get('armature', armature)
+    call get('frictionloss', friction)
+    call get('stiffness', joint%stiffness)
+    call get('damping', joint%damping)
+    if (abs(armature) > 0.0_wp) call robot%note(tree, element, "the armature of joint '"//joint%name//"'")
+    if (abs(friction) > 0.0_wp) call robot%note(tree, element, "the friction of joint '"//joint%name//"'")
+    limited = tree%attribute(settings%holder(tree, element, class, 'limited'), 'limited')
+    joint%has_range = settings%holder(tree, element, class, 'range') > 0 .and. &
+                      (limited == 'true' .or. (limited /= 'false' .and. settings%autolimits))
+    if (joint%has_range) call robot%note(tree, element, 'ranges of joints, which data files do not have; comments of the data '// &
+                                         'file tell them')
+    if (all(joint%kind /= [revolute_joint, prismatic_joint])) then
+      if (joint%stiffness > 0.0_wp .or. joint%damping > 0.0_wp) &
+        call robot%note(tree, element, "spring and damper of joint '"//joint%name//"', which has several freedoms")
+      joint%stiffness = 0.0_wp
+      joint%damping = 0.0_wp
+      joint%has_range = .false.
+      return
+    end if
+    scale = merge(settings%angle_unit, 1.0_wp, joint%kind == revolute_joint)
+    if (joint%has_range) call get_numbers(tree, settings%holder(tree, element, class, 'range'), 'range', joint%range, err)
+    call get('ref', joint%start)
+    call get('springref', joint%rest)
+    joint%range = joint%range*scale
+    joint%start = joint%start*scale
+    joint%rest = joint%rest*scale
+    if (joint%kind == revolute_joint) then
+      joint%frames(1)%r = matmul(joint%frames(1)%r, about_axis(joint%axis, -joint%start))
+    else
+      joint%frames(1)%p = joint%frames(1)%p - matmul(joint%frames(1)%r, joint%axis)*joint%start
+    end if
+  contains
+    !> A number of the joint or of its defaults.
+    subroutine get(name, number)
+      character(len=*), intent(in) :: name     !< name of the attribute
+      real(wp), intent(inout) :: number        !< default before, value afterwards
+
+      call get_number(tree, settings%holder(tree, element, class, name), name, number, err)
+    end subroutine get
+  end subroutine read_springs
+
+  !> Actuators are not taken over, but their joints had better be independent.
+  subroutine read_actuators(tree, robot)
+    type(xml_tree_type), intent(in) :: tree   !< the document
+    type(robot_type), intent(inout) :: robot  !< gets preferences and notes
+    integer :: e, a, joint
+
+    e = tree%child(1, 'actuator')
+    do while (e > 0)
+      a = tree%first_child(e)
+      do while (a > 0)
+        call robot%note(tree, a, '<'//tree%name(a)//'> of actuators')
+        joint = robot%find_joint(tree%attribute(a, 'joint'))
+        if (joint > 0) robot%joints(joint)%is_preferred = .true.
+        a = tree%next_sibling(a)
+      end do
+      e = tree%next_named(e, 'actuator')
+    end do
+  end subroutine read_actuators
+end module mech9_mjcf_reader
