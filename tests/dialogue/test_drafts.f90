@@ -62,6 +62,8 @@ contains
     call tester%is_true(size(draft%groups) == 2, 'taking away a group that is not there changes nothing')
     call tester%is_true(integer_of('12') == 12 .and. integer_of('1.5') == 0 .and. integer_of('x') == 0 .and. &
                         integer_of('99999999999') == 0, 'only whole numbers in range are read as whole numbers')
+    call tester%is_true(unquoted("'dwell', 'it''s', 'harmonic'") == "dwell, it's, harmonic" .and. unquoted("''") == '', &
+                        'a list of texts is shown without the quotes of each')
     call tester%is_true(unquoted("'it''s'") == "it's" .and. unquoted('1, 2') == '1, 2', &
                         'quotes come off a text and nothing comes off a list')
   end subroutine give_and_take

@@ -342,11 +342,13 @@ contains
     if (abs(numeral%whole) < huge(number)) number = int(numeral%whole)
   end function integer_of
 
-  !> A text value without its quotes. A value without quotes stays as it is.
+  !> A text value, or a list of them, without the quotes: 'dwell', 'harmonic' gives dwell, harmonic. A value without quotes stays as
+  !> it is.
   pure function unquoted(text) result(plain)
     character(len=*), intent(in) :: text  !< value as a data file writes it
     character(len=:), allocatable :: plain
     character :: quote
+    logical :: inside
     integer :: i
 
     plain = text
@@ -354,10 +356,17 @@ contains
     quote = text(1:1)
     if (quote /= '''' .and. quote /= '"') return
     plain = ''
-    i = 2
-    do while (i < len(text))
-      plain = plain//text(i:i)
-      if (text(i:i) == quote) i = i + 1
+    inside = .false.
+    i = 1
+    do while (i <= len(text))
+      if (text(i:i) /= quote) then
+        plain = plain//text(i:i)
+      else if (inside .and. text(min(i + 1, len(text)):min(i + 1, len(text))) == quote .and. i < len(text)) then
+        plain = plain//quote
+        i = i + 1
+      else
+        inside = .not. inside
+      end if
       i = i + 1
     end do
   end function unquoted
