@@ -10,7 +10,8 @@ module mech9_pair
   use mech9_rotation, only: turn, cross
   implicit none
   private
-  public :: pair_type, pair_slot_type, pair_motion_type, pair_guide_type, screw_factors_type, kind_name_length, reversed_motion
+  public :: pair_type, pair_slot_type, pair_motion_type, pair_guide_type, pair_thirds_type, screw_factors_type
+  public :: kind_name_length, reversed_motion, reversed_thirds
 
   integer, parameter :: kind_name_length = 9   !< letters of the longest name of a kind, prismatic
 
@@ -23,6 +24,13 @@ module mech9_pair
     real(wp) :: w_rate(3) = 0.0_wp   !< derivative of w in q
     real(wp) :: v_rate(3) = 0.0_wp   !< derivative of v in q, U''
   end type pair_motion_type
+
+  !> Third derivatives of the pose that a pair gives, in the axes of the frame in the reference link.
+  type :: pair_thirds_type
+    logical :: known = .false.       !< the pair knows them; else they are found by differences
+    real(wp) :: w(3) = 0.0_wp        !< second derivative in q of the angular rate
+    real(wp) :: v(3) = 0.0_wp        !< second derivative in q of the rate of the moving frame's origin, U'''
+  end type pair_thirds_type
 
   !> The frames of a pair, and the factors of one with a fixed axis: pose = before * (turn by `turn`*(q + offset) about z and
   !> slide by `slide`*(q + offset) along z) * after. Without a fixed axis, what `evaluate` gives stands between the frames.
@@ -55,6 +63,7 @@ module mech9_pair
     procedure(kind_name_interface), deferred :: kind_name
     procedure(calls_interface), deferred :: user_calls
     procedure :: guide => no_guide
+    procedure :: thirds => unknown_thirds
   end type pair_type
 
   !> One of several pairs of different kinds.
@@ -104,6 +113,34 @@ contains
 
     allocate (guide%points(3, 0))
   end subroutine no_guide
+
+  !> Third derivatives that the pair does not know.
+  pure subroutine unknown_thirds(self, q, thirds)
+    class(pair_type), intent(in) :: self            !< the pair
+    real(wp), intent(in) :: q                       !< value of the coordinate
+    type(pair_thirds_type), intent(out) :: thirds   !< not known
+  end subroutine unknown_thirds
+
+  !> The third derivatives of the motion of the reference link in the moving link.
+  pure function reversed_thirds(motion, thirds) result(back)
+    type(pair_motion_type), intent(in) :: motion    !< motion of the moving link in the reference link
+    type(pair_thirds_type), intent(in) :: thirds    !< its third derivatives
+    type(pair_thirds_type) :: back
+    real(wp) :: r_back(3, 3), g(3), g_rate(3), g_second(3), slip(3), slip_rate(3)
+
+    r_back = transpose(motion%pose%r)
+    associate (w => motion%w, v => motion%v, w_rate => motion%w_rate, v_rate => motion%v_rate, p => motion%pose%p)
+      g = v - cross(w, p)
+      g_rate = v_rate - cross(w_rate, p) - cross(w, v)
+      g_second = thirds%v - cross(thirds%w, p) - 2.0_wp*cross(w_rate, v) - cross(w, v_rate)
+      ! the derivative of a vector that turns back with the moving link: x' - w x x
+      slip = g_rate - cross(w, g)
+      slip_rate = g_second - cross(w_rate, g) - cross(w, g_rate)
+      back%w = -turn(r_back, thirds%w - cross(w, w_rate))
+      back%v = -turn(r_back, slip_rate - cross(w, slip))
+    end associate
+    back%known = thirds%known
+  end function reversed_thirds
 
   !> The motion of the reference link in the moving link, from that of the moving in the reference link.
   pure function reversed_motion(motion) result(back)

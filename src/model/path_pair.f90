@@ -8,7 +8,7 @@ module mech9_path_pair
   use mech9_rotation, only: cross
   use mech9_pose, only: pose_type, inverse
   use mech9_space_curve, only: space_curve_type, curve_place_type
-  use mech9_pair, only: pair_type, pair_motion_type, pair_guide_type, screw_factors_type, kind_name_length
+  use mech9_pair, only: pair_type, pair_motion_type, pair_guide_type, pair_thirds_type, screw_factors_type, kind_name_length
   implicit none
   private
   public :: path_pair_type, path_pair
@@ -25,6 +25,7 @@ module mech9_path_pair
     procedure :: kind_name
     procedure :: user_calls
     procedure :: guide => find_guide
+    procedure :: thirds => find_thirds
   end type path_pair_type
 
   integer, parameter :: places_per_part = 4   !< places of the guide for each part of the curve
@@ -95,6 +96,21 @@ contains
 
     user_calls = 0
   end function user_calls
+
+  !> Third derivatives of the motion along the curve. Those beyond the end of an open curve are those of its end piece.
+  pure subroutine find_thirds(self, q, thirds)
+    class(path_pair_type), intent(in) :: self          !< the pair
+    real(wp), intent(in) :: q                          !< arc length from the first point [m]
+    type(pair_thirds_type), intent(out) :: thirds      !< the third derivatives
+    type(curve_place_type) :: place
+
+    call self%curve%locate(q, place)
+    thirds%known = .true.
+    thirds%v = place%curvature_rate
+    if (.not. self%along) return
+    thirds%w = cross(place%curvature, place%curvature_rate) + cross(place%tangent, self%curve%second_curvature_rate(place)) &
+                  + self%curve%twist*place%curvature_rate
+  end subroutine find_thirds
 
   !> The curve as many places on it.
   pure subroutine find_guide(self, guide)

@@ -23,6 +23,7 @@ module mech9_quintic_spline
   contains
     procedure :: evaluate
     procedure :: velocity
+    procedure :: fourth_derivative
   end type quintic_spline_type
 
   !> The linear equations of the derivatives at the points, as a band.
@@ -276,4 +277,17 @@ contains
       end associate
     end do
   end function velocity
+
+  !> The fourth derivative by the parameter alone.
+  pure function fourth_derivative(self, piece, x) result(fourth)
+    class(quintic_spline_type), intent(in) :: self   !< the spline
+    integer, intent(in) :: piece                     !< number of the piece
+    real(wp), intent(in) :: x                        !< parameter, in the piece or near it
+    real(wp) :: fourth(3)
+    real(wp) :: h, t
+
+    h = self%x(piece + 1) - self%x(piece)
+    t = (x - self%x(piece))/h
+    fourth = (24.0_wp*self%c(4, :, piece) + t*120.0_wp*self%c(5, :, piece))/h**4
+  end function fourth_derivative
 end module mech9_quintic_spline

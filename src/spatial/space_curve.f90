@@ -29,6 +29,7 @@ module mech9_space_curve
     procedure :: check_ends
     procedure :: locate
     procedure :: frame_at
+    procedure :: second_curvature_rate
   end type space_curve_type
 
   !> A place on the curve, with derivatives by the arc length.
@@ -275,6 +276,28 @@ contains
 
     r = carried(self, place%part, place%u, place%tangent, self%twist*(place%s - self%s(place%part - 1)))
   end function frame_at
+
+  !> The third derivative of the tangent by the arc length [1/m^3]. The parameter u of the spline is a function of the arc length,
+  !> whose derivatives follow from the length 1 of the tangent.
+  pure function second_curvature_rate(self, place) result(rate)
+    class(space_curve_type), intent(in) :: self   !< the curve
+    type(curve_place_type), intent(in) :: place   !< the place
+    real(wp) :: rate(3)
+    real(wp), dimension(3) :: point, first, second, third, fourth
+    real(wp) :: speed, u1, u2, u3, u4
+
+    call self%spline%evaluate(self%piece(place%part), place%u, point, first, second, third)
+    fourth = self%spline%fourth_derivative(self%piece(place%part), place%u)
+    associate (t => place%tangent, k => place%curvature)
+      speed = norm2(first)
+      u1 = 1.0_wp/speed
+      u2 = -dot_product(t, second)*u1**3
+      u3 = -(dot_product(k, k) + dot_product(t, third*u1**3 + 3.0_wp*u1*u2*second))*u1
+      rate = fourth*u1**4 + 6.0_wp*u1**2*u2*third + (4.0_wp*u1*u3 + 3.0_wp*u2**2)*second
+      u4 = -(3.0_wp*dot_product(k, place%curvature_rate) + dot_product(t, rate))*u1
+      rate = rate + u4*first
+    end associate
+  end function second_curvature_rate
 
   !> Number of the part in which an arc length lies; the first or the last one outside.
   pure integer function part_at(self, s) result(part)

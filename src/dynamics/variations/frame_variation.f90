@@ -6,7 +6,7 @@ module mech9_frame_variation
   use mech9_error, only: error_type
   use mech9_differentiation, only: half_width, step_count, trial_step, derivatives_from_stencil
   use mech9_rotation, only: turn, cross, combine
-  use mech9_pair, only: pair_motion_type, reversed_motion
+  use mech9_pair, only: pair_motion_type, pair_thirds_type, reversed_motion, reversed_thirds
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_variation, only: variation_type
@@ -15,8 +15,8 @@ module mech9_frame_variation
   public :: third_derivatives_type, new_third_derivatives, find_third_derivatives
   public :: vary_positions, vary_velocities, vary_accelerations
 
-  !> Derivatives in q of axis_w_rate and axis_v_rate of pairs without a fixed axis, with the parent frame fixed. Such pairs
-  !> give two derivatives of their pose; the third is found from differences of the second, to near round-off.
+  !> Derivatives in q of axis_w_rate and axis_v_rate of pairs without a fixed axis, with the parent frame fixed. Where such a pair
+  !> gives two derivatives of its pose only, the third is found from differences of the second, to near round-off.
   type :: third_derivatives_type
     real(wp), allocatable :: w(:, :)   !< (3,M) third derivative of the rotation, zero for steps along fixed axes
     real(wp), allocatable :: v(:, :)   !< (3,M) of the origin
@@ -39,16 +39,45 @@ contains
     type(third_derivatives_type), intent(inout) :: third  !< gets the derivatives
     type(error_type), allocatable, intent(out) :: err     !< allocated if a pair has no pose near its present one
     integer :: s
+    logical :: known
 
     do s = 1, plan%n_coordinates
       if (plan%steps(s)%is_screw) cycle
       third%w(:, s) = 0.0_wp
       third%v(:, s) = 0.0_wp
       if (.not. abs(state%dq(plan%steps(s)%coordinate)) > 0.0_wp) cycle
-      call differentiate_pair(plan, state, s, third, err)
+      call take_known(plan, state, s, third, known, err)
+      if (.not. (known .or. allocated(err))) call differentiate_pair(plan, state, s, third, err)
       if (allocated(err)) return
     end do
   end subroutine find_third_derivatives
+
+  !> Take the third derivatives of one pair, where it knows them.
+  subroutine take_known(plan, state, s, third, known, err)
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism, in space
+    type(state_type), intent(in) :: state                 !< with poses
+    integer, intent(in) :: s                              !< step of the pair
+    type(third_derivatives_type), intent(inout) :: third  !< gets the derivatives of this step, where they are known
+    logical, intent(out) :: known                         !< the pair knows them
+    type(error_type), allocatable, intent(out) :: err     !< allocated if the pair has no pose
+    type(pair_thirds_type) :: thirds
+    type(pair_motion_type) :: motion
+    real(wp) :: departing(3, 3)
+
+    associate (step => plan%steps(s), pair => plan%pairs(plan%steps(s)%coordinate)%pair)
+      call pair%thirds(state%q(step%coordinate), thirds)
+      known = thirds%known
+      if (.not. known) return
+      if (step%reversed) then
+        call pair%evaluate(state%q(step%coordinate), motion, err)
+        if (allocated(err)) return
+        thirds = reversed_thirds(motion, thirds)
+      end if
+      departing = combine(state%r(:, :, step%parent), step%before%r)
+    end associate
+    third%w(:, s) = turn(departing, thirds%w)
+    third%v(:, s) = turn(departing, thirds%v)
+  end subroutine take_known
 
   !> The third derivatives of one pair, by the stencil whose two highest orders agree best.
   subroutine differentiate_pair(plan, state, s, third, err)
