@@ -9,8 +9,8 @@ module mech9_front_factors
   use mech9_kinds, only: wp
   use mech9_householder, only: reflect_back
   use mech9_front_plan, only: front_plan_type
-  use mech9_front_kernels, only: gather, eliminate, add_squares, add_differences, pass_rows, reflect, substitute, take_covariance, &
-    invert, fill_covariance
+  use mech9_front_kernels, only: gather, take_rows, eliminate, add_squares, add_differences, pass_rows, reflect, substitute, &
+    take_covariance, invert, fill_covariance
   implicit none
   private
   public :: front_factors_type, new_front_factors
@@ -125,6 +125,12 @@ contains
     do f = size(self%plan%fronts), 1, -1
       associate (front => self%plan%fronts(f), plan => self%plan)
         r = front%columns - front%pivots
+        if (front%shares_parent) then
+          call invert(front%rows, front%pivots, r, self%values(front%value + 1:), self%reciprocals(front%pivot + 1:), &
+                      self%covariances(plan%fronts(front%parent)%square + 1:), self%inverse, self%coupling, self%product, &
+                      self%variances(front%pivot + 1:))
+          cycle
+        end if
         if (front%parent > 0) then
           associate (parent => plan%fronts(front%parent))
             call take_covariance(r, plan%places(front%column + front%pivots + 1:), parent%columns, &
@@ -176,9 +182,7 @@ contains
     square = 0.0_wp
     do f = 1, size(self%plan%fronts)
       associate (front => self%plan%fronts(f), plan => self%plan)
-        do i = 1, front%own
-          self%sides(front%row + i) = b(plan%rows(front%row + i))
-        end do
+        call take_rows(front%own, plan%rows(front%row + 1:), plan%m, b, self%sides(front%row + 1:))
         call reflect(front%rows, front%pivots, self%values(front%value + 1:), self%scales(front%pivot + 1:), &
                      self%sides(front%row + 1:))
         if (front%parent == 0) then

@@ -5,7 +5,7 @@ module mech9_front_kernels
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: gather, eliminate, add_squares, add_differences, pass_rows, reflect, substitute, take_covariance, invert, &
+  public :: gather, take_rows, eliminate, add_squares, add_differences, pass_rows, reflect, substitute, take_covariance, invert, &
     fill_covariance
 
 contains
@@ -37,6 +37,26 @@ contains
       end do
     end do
   end subroutine gather
+
+  !> Take a front's own rows out of a right-hand side.
+  pure subroutine take_rows(own, rows, m_matrix, right, sides)
+    integer, intent(in) :: own                  !< number of own rows
+    integer, intent(in) :: rows(own)            !< their numbers in the matrix
+    integer, intent(in) :: m_matrix             !< rows of the matrix
+    real(wp), intent(in) :: right(m_matrix)     !< the right-hand side
+    real(wp), intent(inout) :: sides(own)       !< gets the right-hand side of these rows
+    integer :: i
+
+    if (is_spatial_closure(own, rows)) then
+      do i = 1, 6
+        sides(i) = right(rows(1) + i - 1)
+      end do
+      return
+    end if
+    do i = 1, own
+      sides(i) = right(rows(i))
+    end do
+  end subroutine take_rows
 
   !> Whether the own rows of a front are the six rows of one spatial closure, one behind the other.
   pure logical function is_spatial_closure(own, rows)
@@ -145,19 +165,21 @@ contains
     real(wp), intent(in) :: a(m_matrix, n_matrix)   !< the first matrix
     real(wp), intent(in) :: b(m_matrix, n_matrix)   !< the second one
     real(wp), intent(inout) :: total                !< the sum of squares
-    real(wp) :: sums(2)
-    integer :: i, j, k
+    real(wp) :: sums(6)
+    integer :: i, j, k, before
 
-    sums = 0.0_wp
     if (is_spatial_closure(own, rows)) then
+      before = rows(1) - 1
+      sums = 0.0_wp
       do j = 1, n
         k = columns(j)
-        do i = rows(1), rows(1) + 4, 2
-          sums(1) = sums(1) + (a(i, k) - b(i, k))**2
-          sums(2) = sums(2) + (a(i + 1, k) - b(i + 1, k))**2
+        ! unrolled, the loop would be compiled number by number and not for vectors
+!GCC$ unroll 1
+        do i = 1, 6
+          sums(i) = sums(i) + (a(before + i, k) - b(before + i, k))**2
         end do
       end do
-      total = total + sums(1) + sums(2)
+      total = total + (((sums(1) + sums(2)) + (sums(3) + sums(4))) + (sums(5) + sums(6)))
       return
     end if
     do j = 1, n
@@ -181,13 +203,15 @@ contains
     real(wp), intent(inout) :: parent(m_parent, n_parent)  !< gets the rows
     integer :: i, j
 
-    do j = 1, n_parent
-      do i = before + 1, before + m - p
-        parent(i, j) = 0.0_wp
+    if (n - p < n_parent) then
+      do j = 1, n_parent
+        do i = before + 1, before + m - p
+          parent(i, j) = 0.0_wp
+        end do
       end do
-    end do
-    do j = p + 1, n
-      do i = p + 1, m
+    end if
+    do i = p + 1, m
+      do j = p + 1, n
         parent(before + i - p, places(j)) = a(i, j)
       end do
     end do

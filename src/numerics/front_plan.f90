@@ -30,6 +30,7 @@ module mech9_front_plan
     integer :: pivot = 0        !< number of pivots of all fronts before it
     integer :: square = 0       !< number of squares of columns of all fronts before it that have children
     logical :: has_children = .false.   !< earlier fronts pass rows on to it
+    logical :: shares_parent = .false.  !< it has no children, and its other columns are those of its parent in the same order
     integer :: parent = 0       !< number of the front that takes its remaining rows; 0: none
     integer :: parent_row = 0   !< number of rows of the parent before these
   end type front_type
@@ -289,9 +290,23 @@ contains
         do i = front%column + front%pivots + 1, front%column + front%columns
           plan%places(i) = number(plan%columns(i))
         end do
+        front%shares_parent = shares_parent(plan%fronts(front%parent)%columns, front%has_children, &
+                                            plan%places(front%column + front%pivots + 1:front%column + front%columns))
       end associate
     end do
   end subroutine find_places
+
+  !> Whether a front without children has all columns of its parent, in their order, beside its pivots.
+  pure logical function shares_parent(n_parent, has_children, places)
+    integer, intent(in) :: n_parent       !< columns of the parent
+    logical, intent(in) :: has_children   !< earlier fronts pass rows on to the front
+    integer, intent(in) :: places(:)      !< places of the front's other columns among those of the parent
+    integer :: i
+
+    shares_parent = .false.
+    if (has_children .or. size(places) /= n_parent) return
+    shares_parent = all(places == [(i, i=1, n_parent)])
+  end function shares_parent
 
   !> The sign of the determinant of the permutations that bring rows and columns into the order in which fronts eliminate them.
   pure integer function sign_of(plan) result(sign)
