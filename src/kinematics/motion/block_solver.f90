@@ -6,7 +6,8 @@ module mech9_block_solver
   use mech9_least_squares, only: least_squares_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
-  use mech9_planar_chain, only: planar_chain_type, new_planar_chain, chain_jacobian, chain_rates, chain_motion
+  use mech9_planar_chain, only: planar_chain_type, new_planar_chain, chain_residual, chain_jacobian, chain_change, &
+    chain_rates, chain_motion
   use mech9_frame_motion, only: place_unshown, place_frames_after_change, spread_velocities, spread_accelerations
   use mech9_planar_view, only: show_poses, show_velocities, show_accelerations
   use mech9_block_equations, only: block_jacobian, block_rates, block_residual, block_fronts
@@ -96,18 +97,14 @@ contains
     work%count%frames_placed = work%count%frames_placed + steps_of(block)
     outcome%converged = size(block%unknowns) == 0
     do while (.not. outcome%converged)
-      call block_residual(plan, block, state, work%right)
-      residual_norm = maxval(abs(work%right))
+      call find_residual(plan, block, state, work, residual_norm)
       outcome%converged = residual_norm <= closed_to_round_off .and. outcome%iterations >= least
       if (outcome%converged) exit
       ! the iteration has diverged, or is too slow
       if (outcome%iterations == most_iterations .or. .not. residual_norm < huge(residual_norm)) exit
       call factorize_block(plan, block, state, work)
-      work%right = -work%right
-      call work%equations%solve(work%right, work%change)
-      call apply_change(plan, block, work%change, state)
+      call correct(plan, block, state, work, size_of_change)
       outcome%iterations = outcome%iterations + 1
-      size_of_change = maxval(abs(work%change))
       outcome%factorized = size_of_change <= same
       if (size_of_change > unchanged_position) then
         work%count%frames_placed = work%count%frames_placed + steps_of(block)
@@ -125,6 +122,42 @@ contains
     end do
     if (block%is_shown) call show_poses(plan, plan%planar%shown, block%first_step, block%last_step, state)
   end subroutine close_block
+
+  !> The residual of a block at the position in `state`, into work%right, and its largest number.
+  pure subroutine find_residual(plan, block, state, work, largest)
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(block_type), intent(in) :: block          !< the block
+    type(state_type), intent(in) :: state          !< with the poses of the frames
+    type(block_work_type), intent(inout) :: work   !< scratch of the block; gets the residual
+    real(wp), intent(out) :: largest               !< the largest number of the residual [rad, lengths of the mechanism]
+
+    if (work%chain%used) then
+      call chain_residual(work%chain, state%planar, work%right)
+      largest = largest_of_three(work%right)
+    else
+      call block_residual(plan, block, state, work%right)
+      largest = maxval(abs(work%right))
+    end if
+  end subroutine find_residual
+
+  !> Change a block's dependent coordinates by the correction that its factors give for the residual in work%right; the frames stay.
+  subroutine correct(plan, block, state, work, largest)
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(block_type), intent(in) :: block          !< the block
+    type(state_type), intent(inout) :: state       !< its coordinates are changed
+    type(block_work_type), intent(inout) :: work   !< scratch of the block, with residual and factors; gets the change
+    real(wp), intent(out) :: largest               !< the largest change of a coordinate, in its unit
+
+    if (work%chain%used .and. work%equations%by_cofactors) then
+      call chain_change(work%chain, work%equations%inverse, work%right, state%q, work%change)
+      largest = largest_of_three(work%change)
+    else
+      work%right = -work%right
+      call work%equations%solve(work%right, work%change)
+      call apply_change(plan, block, work%change, state)
+      largest = maxval(abs(work%change))
+    end if
+  end subroutine correct
 
   !> Jacobian of a block at the position in `state`, factorized.
   subroutine factorize_block(plan, block, state, work)
@@ -262,7 +295,14 @@ contains
     work%count%frames_moved = work%count%frames_moved + (last - block%first_step + 1)
   end subroutine solve_accelerations
 
-  ! The next two take arrays of known shape, so that the compiler keeps their addresses in registers.
+  ! The next three take arrays of known shape, so that the compiler keeps their addresses in registers.
+
+  !> The largest absolute value of three numbers.
+  pure real(wp) function largest_of_three(values) result(largest)
+    real(wp), intent(in) :: values(3)   !< of any unit
+
+    largest = max(abs(values(1)), abs(values(2)), abs(values(3)))
+  end function largest_of_three
 
   !> Set some of the values to zero.
   pure subroutine clear_at(n, places, values)

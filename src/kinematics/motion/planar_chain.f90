@@ -8,11 +8,13 @@ module mech9_planar_chain
   use mech9_plan, only: plan_type, block_type
   use mech9_planar_plan, only: planar_plan_type, planar_closure_type, planar_step_type
   use mech9_planar_motion, only: find_accelerations
-  use mech9_planar_formulas, only: step_column, step_velocity, add_rate, add_bias, stem_difference, rows_at_base
+  use mech9_planar_formulas, only: step_column, step_velocity, add_rate, add_bias, stem_difference, rows_at_base, &
+    closing_error
   use mech9_state, only: planar_motion_type
   implicit none
   private
-  public :: planar_chain_type, new_planar_chain, chain_jacobian, chain_rates, chain_motion, chain_accelerations
+  public :: planar_chain_type, new_planar_chain, chain_residual, chain_jacobian, chain_change, chain_rates, chain_motion, &
+    chain_accelerations
 
   !> A block of one planar closed chain with three unknowns.
   type :: planar_chain_type
@@ -20,7 +22,8 @@ module mech9_planar_chain
     integer :: first_step = 0             !< first step of the block
     integer :: last_step = 0              !< last step of the block
     integer :: last_moved = 0             !< last step of the block whose acceleration is used
-    integer :: closure = 0                !< number of its closure
+    type(planar_closure_type) :: closure  !< its closure
+    real(wp) :: per_length = 1.0_wp       !< one over the mechanism's size [1/m]
     integer :: unknowns(3) = 0            !< steps of the three unknown coordinates
     integer :: coordinates(3) = 0         !< numbers of these coordinates
     real(wp) :: units(3) = 1.0_wp         !< their units: 1 rad, or the length of the mechanism [m]
@@ -43,12 +46,13 @@ contains
     chain%first_step = block%first_step
     chain%last_step = block%last_step
     chain%last_moved = min(block%last_step, block%last_moved)
-    chain%closure = block%first_closure
+    chain%closure = plan%planar%closures(block%first_closure)
+    chain%per_length = 1.0_wp/plan%planar%length
     chain%unknowns = block%unknowns
     chain%coordinates = block%coordinates
     chain%units = plan%unit_of(block%coordinates)
     allocate (chain%signs(block%first_step:block%last_step), source=0.0_wp)
-    associate (part => plan%closures(chain%closure)%part)
+    associate (part => plan%closures(block%first_closure)%part)
       chain%stems = part%stems
       do i = 1, size(part%steps)
         s = part%steps(i)
@@ -60,6 +64,32 @@ contains
     chain%used = .true.
   end function new_planar_chain
 
+  !> The residual of the three equations.
+  pure subroutine chain_residual(chain, motion, residual)
+    type(planar_chain_type), intent(in) :: chain     !< the chain
+    type(planar_motion_type), intent(in) :: motion   !< with the poses of the frames
+    real(wp), intent(out) :: residual(3)             !< [rad, lengths of the mechanism]
+    real(wp) :: error(3)
+
+    call closing_error(chain%closure, size(motion%angle), motion%pose, error)
+    call rows_at_base(chain%closure, chain%per_length, size(motion%angle), motion%pose, error, residual)
+  end subroutine chain_residual
+
+  !> Add to the three coordinates the change that cancels a residual.
+  pure subroutine chain_change(chain, inverse, residual, q, change)
+    type(planar_chain_type), intent(in) :: chain       !< the chain
+    real(wp), intent(in) :: inverse(3, 3)              !< inverse of the Jacobian
+    real(wp), intent(in) :: residual(3)                !< [rad, lengths of the mechanism]
+    real(wp), intent(inout), contiguous :: q(:)        !< (M) coordinates [rad, m]
+    real(wp), intent(out) :: change(3)                 !< of the three coordinates, in their units
+    integer :: j
+
+    do j = 1, 3
+      change(j) = -(inverse(j, 1)*residual(1) + inverse(j, 2)*residual(2) + inverse(j, 3)*residual(3))
+      q(chain%coordinates(j)) = q(chain%coordinates(j)) + chain%units(j)*change(j)
+    end do
+  end subroutine chain_change
+
   !> Derivatives of the three equations with respect to the three coordinates, each in its unit.
   pure subroutine chain_jacobian(planar, chain, motion, jacobian)
     type(planar_plan_type), intent(in) :: planar     !< the plan in planar arithmetic
@@ -67,8 +97,8 @@ contains
     type(planar_motion_type), intent(in) :: motion   !< with the poses of the frames
     real(wp), intent(out) :: jacobian(3, 3)          !< (equations, coordinates)
 
-    call fill(chain%unknowns, chain%first_step, chain%last_step, chain%signs, planar%closures(chain%closure)%base, &
-              1.0_wp/planar%length, size(planar%steps), planar%steps, motion%pose, motion%slide, jacobian)
+    call fill(chain%unknowns, chain%first_step, chain%last_step, chain%signs, chain%closure%base, &
+              chain%per_length, size(planar%steps), planar%steps, motion%pose, motion%slide, jacobian)
   end subroutine chain_jacobian
 
   !> Rates of the three coordinates and velocities of the frames up to frame `last`, from the rates of the given coordinates
@@ -82,8 +112,8 @@ contains
     type(planar_motion_type), intent(inout) :: motion   !< poses in; velocities of these frames out
     real(wp) :: bias(2)
 
-    call find_rates(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
-                    chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
+    call find_rates(chain, chain%first_step, chain%last_step, chain%signs, size(chain%given), &
+                    chain%given, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
                     motion%velocity, dq)
     call find_velocities(chain%first_step, last, chain%signs, size(planar%steps), planar%steps, motion%pose, motion%slide, &
                          dq, motion%velocity, bias)
@@ -100,8 +130,8 @@ contains
     type(planar_motion_type), intent(inout) :: motion   !< poses in; velocities and accelerations out
     real(wp) :: bias(2)
 
-    call find_rates(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
-                    chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
+    call find_rates(chain, chain%first_step, chain%last_step, chain%signs, size(chain%given), &
+                    chain%given, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
                     motion%velocity, dq)
     call find_velocities(chain%first_step, chain%last_step, chain%signs, size(planar%steps), planar%steps, motion%pose, &
                          motion%slide, dq, motion%velocity, bias)
@@ -119,8 +149,8 @@ contains
     real(wp), intent(inout), contiguous :: ddq(:)       !< (M) given accelerations in; all of the chain out [rad/s^2, m/s^2]
     type(planar_motion_type), intent(inout) :: motion   !< poses and velocities in; accelerations out
 
-    call accelerate(chain, planar%closures(chain%closure), chain%first_step, chain%last_step, chain%signs, size(chain%given), &
-                    chain%given, 1.0_wp/planar%length, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
+    call accelerate(chain, chain%first_step, chain%last_step, chain%signs, size(chain%given), &
+                    chain%given, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
                     dq, bias, motion%velocity, ddq, motion%acceleration)
   end subroutine chain_accelerations
 
@@ -149,16 +179,14 @@ contains
   end subroutine fill
 
   !> Rates of the three coordinates, by which the loop stays closed.
-  pure subroutine find_rates(chain, closure, first, last, signs, n_given, given, per_length, inverse, m, steps, f, slide, v, dq)
+  pure subroutine find_rates(chain, first, last, signs, n_given, given, inverse, m, steps, f, slide, v, dq)
     type(planar_chain_type), intent(in) :: chain       !< the chain
-    type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
     integer, intent(in) :: first                       !< first step of the chain
     integer, intent(in) :: last                        !< last step of the chain
     integer, intent(in) :: n_given                     !< number of given steps
     integer, intent(in) :: given(n_given)              !< steps of the loop whose coordinates are given
     integer, intent(in) :: m                           !< number of steps of the plan
     real(wp), intent(in) :: signs(first:last)          !< of each step in the loop: 1 or -1; 0: not in it
-    real(wp), intent(in) :: per_length                 !< one over the mechanism's size [1/m]
     real(wp), intent(in) :: inverse(3, 3)              !< inverse of the chain's Jacobian
     real(wp), intent(in) :: f(4, 0:m)                  !< (cosine, sine, x, y) pose of each frame [m]
     real(wp), intent(in) :: slide(2, m)                !< velocity of each frame's origin per unit rate
@@ -167,23 +195,21 @@ contains
     real(wp), intent(inout) :: dq(m)                   !< rates of all coordinates [rad/s, m/s]
     real(wp) :: opening(3)
 
-    call stem_difference(m, chain%stems, f(3:4, closure%closing), f, v, opening)
-    call add_given(n_given, given, first, last, signs, f(3:4, closure%closing), m, steps, f, slide, dq, opening)
-    call close_rates(chain, closure, per_length, inverse, m, f, opening, dq)
+    call stem_difference(m, chain%stems, f(3:4, chain%closure%closing), f, v, opening)
+    call add_given(n_given, given, first, last, signs, f(3:4, chain%closure%closing), m, steps, f, slide, dq, opening)
+    call close_rates(chain, inverse, m, f, opening, dq)
   end subroutine find_rates
 
   !> Accelerations of the three coordinates and of the frames.
-  pure subroutine accelerate(chain, closure, first, last, signs, n_given, given, per_length, inverse, m, steps, f, slide, &
+  pure subroutine accelerate(chain, first, last, signs, n_given, given, inverse, m, steps, f, slide, &
                              dq, bias, v, ddq, a)
     type(planar_chain_type), intent(in) :: chain       !< the chain
-    type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
     integer, intent(in) :: first                       !< first step of the chain
     integer, intent(in) :: last                        !< last step of the chain
     integer, intent(in) :: n_given                     !< number of given steps
     integer, intent(in) :: given(n_given)              !< steps of the loop whose coordinates are given
     integer, intent(in) :: m                           !< number of steps of the plan
     real(wp), intent(in) :: signs(first:last)          !< of each step in the loop: 1 or -1; 0: not in it
-    real(wp), intent(in) :: per_length                 !< one over the mechanism's size [1/m]
     real(wp), intent(in) :: inverse(3, 3)              !< inverse of the chain's Jacobian
     real(wp), intent(in) :: f(4, 0:m)                  !< (cosine, sine, x, y) pose of each frame [m]
     real(wp), intent(in) :: slide(2, m)                !< velocity of each frame's origin per unit rate
@@ -195,12 +221,12 @@ contains
     real(wp), intent(inout) :: a(3, 0:m)               !< acceleration of each frame [rad/s^2, m/s^2]
     real(wp) :: opening(3)
 
-    call stem_difference(m, chain%stems, f(3:4, closure%closing), f, a, opening)
-    call add_given(n_given, given, first, last, signs, f(3:4, closure%closing), m, steps, f, slide, ddq, opening)
+    call stem_difference(m, chain%stems, f(3:4, chain%closure%closing), f, a, opening)
+    call add_given(n_given, given, first, last, signs, f(3:4, chain%closure%closing), m, steps, f, slide, ddq, opening)
     ! the target's point at the closing frame's origin has a centripetal acceleration about the target's origin
-    opening(2) = opening(2) + bias(1) + v(1, closure%target)**2*(f(3, closure%closing) - f(3, closure%target))
-    opening(3) = opening(3) + bias(2) + v(1, closure%target)**2*(f(4, closure%closing) - f(4, closure%target))
-    call close_rates(chain, closure, per_length, inverse, m, f, opening, ddq)
+    opening(2) = opening(2) + bias(1) + v(1, chain%closure%target)**2*(f(3, chain%closure%closing) - f(3, chain%closure%target))
+    opening(3) = opening(3) + bias(2) + v(1, chain%closure%target)**2*(f(4, chain%closure%closing) - f(4, chain%closure%target))
+    call close_rates(chain, inverse, m, f, opening, ddq)
     call find_accelerations(m, steps, first, chain%last_moved, dq, ddq, f, slide, v, a)
   end subroutine accelerate
 
@@ -227,11 +253,9 @@ contains
   end subroutine add_given
 
   !> The rates of the three coordinates that cancel a relative motion of the ends of the loop.
-  pure subroutine close_rates(chain, closure, per_length, inverse, m, f, opening, rates)
+  pure subroutine close_rates(chain, inverse, m, f, opening, rates)
     type(planar_chain_type), intent(in) :: chain       !< the chain
-    type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
     integer, intent(in) :: m                           !< number of steps of the plan
-    real(wp), intent(in) :: per_length                 !< one over the mechanism's size [1/m]
     real(wp), intent(in) :: inverse(3, 3)              !< inverse of the chain's Jacobian
     real(wp), intent(in) :: f(4, 0:m)                  !< (cosine, sine, x, y) pose of each frame [m]
     real(wp), intent(in) :: opening(3)                 !< motion of the closing frame relative to the target, at the closing frame
@@ -239,7 +263,7 @@ contains
     real(wp) :: rows(3)
     integer :: j
 
-    call rows_at_base(closure, per_length, m, f, opening, rows)
+    call rows_at_base(chain%closure, chain%per_length, m, f, opening, rows)
     do j = 1, 3
       rates(chain%coordinates(j)) = -chain%units(j)*(inverse(j, 1)*rows(1) + inverse(j, 2)*rows(2) + inverse(j, 3)*rows(3))
     end do

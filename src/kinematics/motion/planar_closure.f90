@@ -3,7 +3,7 @@
 module mech9_planar_closure
   use mech9_kinds, only: wp
   use mech9_planar_plan, only: planar_plan_type, planar_closure_type, planar_step_type
-  use mech9_planar_formulas, only: step_column, add_rate, stem_difference, rows_at_base
+  use mech9_planar_formulas, only: step_column, add_rate, stem_difference, rows_at_base, closing_error
   use mech9_plan, only: plan_type, loop_type, constraint_type
   use mech9_state, only: planar_motion_type, state_type
   use mech9_planar_view, only: plane_in_space
@@ -34,7 +34,7 @@ contains
     real(wp) :: error(3)
 
     associate (closure => plan%planar%closures(self%closure), m => size(plan%planar%steps))
-      call find_error(closure, m, state%planar%pose, error)
+      call closing_error(closure, m, state%planar%pose, error)
       call rows_at_base(closure, 1.0_wp/plan%length, m, state%planar%pose, error, values)
     end associate
   end subroutine residual
@@ -115,42 +115,12 @@ contains
     type(state_type), intent(in) :: state                       !< with the poses of the frames
     real(wp) :: error(3)
 
-    call find_error(plan%planar%closures(self%closure), size(plan%planar%steps), state%planar%pose, error)
+    call closing_error(plan%planar%closures(self%closure), size(plan%planar%steps), state%planar%pose, error)
     gap = max(sqrt(error(2)**2 + error(3)**2), plan%length*abs(error(1)))
   end function gap
 
   ! The following procedures take arrays of known shape beside their types, so that the compiler keeps their addresses in
   ! registers.
-
-  !> The angle and the displacement from the target pose to the closing frame.
-  pure subroutine find_error(closure, m, f, error)
-    type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
-    integer, intent(in) :: m                           !< number of steps of the plan
-    real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]
-    real(wp), intent(out) :: error(3)                  !< from the target pose to the closing frame [rad, m, m]
-    real(wp) :: c, s
-    integer :: i, t
-
-    i = closure%closing
-    t = closure%target
-    c = f(1, t)*closure%cosine - f(2, t)*closure%sine
-    s = f(2, t)*closure%cosine + f(1, t)*closure%sine
-    error(1) = angle_of(c*f(1, i) + s*f(2, i), c*f(2, i) - s*f(1, i))
-    error(2) = f(3, i) - f(3, t) - (f(1, t)*closure%place(1) - f(2, t)*closure%place(2))
-    error(3) = f(4, i) - f(4, t) - (f(2, t)*closure%place(1) + f(1, t)*closure%place(2))
-  end subroutine find_error
-
-  !> The angle with a given cosine and sine; a small angle is found by the series of the arc sine.
-  pure real(wp) function angle_of(c, s) result(angle)
-    real(wp), intent(in) :: c   !< cosine
-    real(wp), intent(in) :: s   !< sine
-
-    if (c > 0.0_wp .and. abs(s) < 1.0e-2_wp) then
-      angle = s*(1.0_wp + s**2*(1.0_wp/6.0_wp + s**2*(3.0_wp/40.0_wp + s**2*(5.0_wp/112.0_wp))))
-    else
-      angle = atan2(s, c)
-    end if
-  end function angle_of
 
   !> Derivatives of a closure's equations with respect to the coordinates of steps of a loop, from plain arrays.
   pure subroutine fill_columns(k, flat, base, per_length, n_steps, steps, signs, first, n_columns, column_of, f, slide, &

@@ -8,7 +8,7 @@ module mech9_planar_formulas
   use mech9_planar_plan, only: planar_step_type, planar_closure_type
   implicit none
   private
-  public :: step_column, step_velocity, step_acceleration, add_rate, add_bias, stem_difference, rows_at_base
+  public :: step_column, step_velocity, step_acceleration, add_rate, add_bias, stem_difference, rows_at_base, closing_error
   public :: turn_in_plane, point_velocity, point_acceleration
 
 contains
@@ -187,4 +187,34 @@ contains
     rows(2) = (motion(2) - motion(1)*(f(4, b) - f(4, i)))*per_length
     rows(3) = (motion(3) + motion(1)*(f(3, b) - f(3, i)))*per_length
   end subroutine rows_at_base
+
+  !> The angle and the displacement from the target pose to the closing frame.
+  pure subroutine closing_error(closure, m, f, error)
+    type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
+    integer, intent(in) :: m                           !< number of steps of the plan
+    real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]
+    real(wp), intent(out) :: error(3)                  !< from the target pose to the closing frame [rad, m, m]
+    real(wp) :: c, s
+    integer :: i, t
+
+    i = closure%closing
+    t = closure%target
+    c = f(1, t)*closure%cosine - f(2, t)*closure%sine
+    s = f(2, t)*closure%cosine + f(1, t)*closure%sine
+    error(1) = angle_of(c*f(1, i) + s*f(2, i), c*f(2, i) - s*f(1, i))
+    error(2) = f(3, i) - f(3, t) - (f(1, t)*closure%place(1) - f(2, t)*closure%place(2))
+    error(3) = f(4, i) - f(4, t) - (f(2, t)*closure%place(1) + f(1, t)*closure%place(2))
+  end subroutine closing_error
+
+  !> The angle with a given cosine and sine; a small angle is found by the series of the arc sine.
+  pure real(wp) function angle_of(c, s) result(angle)
+    real(wp), intent(in) :: c   !< cosine
+    real(wp), intent(in) :: s   !< sine
+
+    if (c > 0.0_wp .and. abs(s) < 1.0e-2_wp) then
+      angle = s*(1.0_wp + s**2*(1.0_wp/6.0_wp + s**2*(3.0_wp/40.0_wp + s**2*(5.0_wp/112.0_wp))))
+    else
+      angle = atan2(s, c)
+    end if
+  end function angle_of
 end module mech9_planar_formulas

@@ -274,30 +274,36 @@ contains
     if (size(block%unknowns) == 0) return
     worst = max(worst, newton%correction/(trusted_correction*pivot))
     if (newton%correction > small_correction*pivot) worst = max(worst, newton%contraction/trusted_contraction)
-    move = largest_change(size(block%coordinates), block%coordinates, size(per_unit), per_unit, state%q, predictor%q)
-    rate_change = largest_change(size(block%coordinates), block%coordinates, size(per_unit), per_unit, state%dq, predictor%dq)
+    call find_changes(size(block%coordinates), block%coordinates, size(per_unit), per_unit, state%q, predictor%q, state%dq, &
+                      predictor%dq, move, rate_change)
     rate_change = rate_change*abs(state%t - predictor%t)
     worst = max(worst, move/longest_move, rate_change/(trusted_rate_change*max(move, trusted_correction*pivot)))
   end subroutine judge_step
 
   ! Arrays of explicit shape: the compiler keeps their addresses in registers.
 
-  !> Largest difference of some coordinates, in their units.
-  pure real(wp) function largest_change(n, coordinates, m, per_unit, now, before) result(largest)
-    integer, intent(in) :: n   !< number of coordinates to compare
-    integer, intent(in) :: coordinates(n)   !< their numbers
-    integer, intent(in) :: m   !< number of all coordinates
-    real(wp), intent(in) :: per_unit(m)   !< (M) reciprocals of the coordinates' units
-    real(wp), intent(in) :: now(m)   !< (M) values at the end of the step
-    real(wp), intent(in) :: before(m)   !< (M) values at its start
+  !> Largest differences of some coordinates and of their rates over a step, in their units.
+  pure subroutine find_changes(n, coordinates, m, per_unit, q, q_before, dq, dq_before, move, rate_change)
+    integer, intent(in) :: n                    !< number of coordinates to compare
+    integer, intent(in) :: coordinates(n)       !< their numbers
+    integer, intent(in) :: m                    !< number of all coordinates
+    real(wp), intent(in) :: per_unit(m)         !< (M) reciprocals of the coordinates' units
+    real(wp), intent(in) :: q(m)                !< (M) coordinates at the end of the step [rad, m]
+    real(wp), intent(in) :: q_before(m)         !< (M) coordinates at its start
+    real(wp), intent(in) :: dq(m)               !< (M) rates at the end of the step
+    real(wp), intent(in) :: dq_before(m)        !< (M) rates at its start
+    real(wp), intent(out) :: move               !< largest difference of the coordinates
+    real(wp), intent(out) :: rate_change        !< largest difference of the rates [per s]
     integer :: i, k
 
-    largest = 0.0_wp
+    move = 0.0_wp
+    rate_change = 0.0_wp
     do i = 1, n
       k = coordinates(i)
-      largest = max(largest, abs(now(k) - before(k))*per_unit(k))
+      move = max(move, abs(q(k) - q_before(k))*per_unit(k))
+      rate_change = max(rate_change, abs(dq(k) - dq_before(k))*per_unit(k))
     end do
-  end function largest_change
+  end subroutine find_changes
 
   !> The trial position becomes the accepted one.
   pure subroutine accept_step(plan, stepper, complete)
