@@ -14,14 +14,14 @@ contains
 
   !> B of the three coordinates, their rates from those of the independent coordinates, columns and velocities of the frames,
   !> and the bias acceleration of the loop.
-  pure subroutine chain_columns(flat, first, last, signs, inverse, length, m, steps, f, slide, n_b, entries, parent_entry, &
+  pure subroutine chain_columns(flat, first, last, signs, inverse, per_length, m, steps, f, slide, n_b, entries, parent_entry, &
                                 carries, columns, b, dq, v, bias)
     type(planar_block_type), intent(in) :: flat      !< the loop
     integer, intent(in) :: first                     !< first step of the chain
     integer, intent(in) :: last                      !< last step of the chain
     real(wp), intent(in) :: signs(first:last)        !< of each step in the loop: 1 or -1; 0: not in it
     real(wp), intent(in) :: inverse(3, 3)            !< inverse of the Jacobian
-    real(wp), intent(in) :: length                   !< the mechanism's size [m]
+    real(wp), intent(in) :: per_length               !< one over the mechanism's size [1/m]
     integer, intent(in) :: m                         !< number of steps
     type(planar_step_type), intent(in) :: steps(m)   !< the steps of the plan
     real(wp), intent(in) :: f(4, 0:m)                !< pose of each frame, in the plane's axes [m]
@@ -42,12 +42,13 @@ contains
       dq(flat%chain%coordinates(i)) = 0.0_wp
     end do
     do j = 1, flat%columns
-      call find_side(j, size(flat%independent), flat%independent, size(flat%earlier), flat%earlier, 1.0_wp/length, m, steps, &
+      call find_side(j, size(flat%independent), flat%independent, size(flat%earlier), flat%earlier, per_length, m, steps, &
                      f, slide, n_b, columns, side)
       rate = dq(flat%given(j))
+      side = side*(-1.0_wp/flat%given_units(j))
       do i = 1, 3
         e = flat%first_entries(i) + j - 1
-        b(e) = -(inverse(i, 1)*side(1) + inverse(i, 2)*side(2) + inverse(i, 3)*side(3))*flat%units(i)/flat%given_units(j)
+        b(e) = (inverse(i, 1)*side(1) + inverse(i, 2)*side(2) + inverse(i, 3)*side(3))*flat%units(i)
         dq(flat%chain%coordinates(i)) = dq(flat%chain%coordinates(i)) + b(e)*rate
       end do
     end do

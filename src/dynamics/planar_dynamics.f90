@@ -122,7 +122,7 @@ contains
     real(wp) :: bias(2)
 
     associate (planar => plan%planar, chain => flat%chain, motion => state%planar)
-      call chain_columns(flat, chain%first_step, chain%last_step, chain%signs, inverse, planar%length, plan%n_coordinates, &
+      call chain_columns(flat, chain%first_step, chain%last_step, chain%signs, inverse, chain%per_length, plan%n_coordinates, &
                          planar%steps, motion%pose, motion%slide, size(jacobian%b), dynamics%first, dynamics%parent_entry, &
                          dynamics%carries_columns, jacobian%flat, jacobian%b, state%dq, motion%velocity, bias)
       call chain_accelerations(planar, chain, inverse, bias, state%dq, state%ddq, motion)

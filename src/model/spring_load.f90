@@ -99,7 +99,8 @@ contains
     if (allocated(self%law)) call self%find_factor(state%t, factor, err)
     if (allocated(err)) return
     d = self%span(state)
-    rate = self%span_rate(state)
+    rate = 0.0_wp
+    if (abs(self%damping) > 0.0_wp) rate = self%span_rate(state)
     call self%pull(d, rate, force, err)
     if (allocated(err)) return
     force = factor*force

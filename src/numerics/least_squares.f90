@@ -88,7 +88,12 @@ contains
     self%by_cofactors = .false.
     self%by_fronts = .false.
     if (self%m == 3 .and. self%n == 3) then
-      call invert_by_cofactors(self%a, self%inverse, self%lengths, self%sign_of_det)
+      ! a number is read sooner where it was written than from a copy of several at once
+      if (present(matrix)) then
+        call invert_by_cofactors(matrix, self%inverse, self%lengths, self%sign_of_det)
+      else
+        call invert_by_cofactors(self%a, self%inverse, self%lengths, self%sign_of_det)
+      end if
       self%by_cofactors = self%lengths(3) > nearly_dependent*self%lengths(1)
     else if (self%fronts%plan%used) then
       call self%fronts%factorize(self%a)
