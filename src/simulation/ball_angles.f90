@@ -8,7 +8,7 @@ module mech9_ball_angles
   use mech9_kinds, only: wp
   use mech9_tolerances, only: doubtful_margin, short_way
   use mech9_error, only: error_type
-  use mech9_three_turns, only: swing_type, heading_type
+  use mech9_three_turns, only: swing_type, heading_type, three_turns_type
   use mech9_partition, only: partition_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
@@ -38,6 +38,9 @@ module mech9_ball_angles
     procedure :: in_lock
     procedure :: show
     procedure :: replaced_coordinates
+    procedure :: longest_way
+    procedure :: turns_in_use
+    procedure :: give_same_wrenches
   end type ball_angles_type
 
 contains
@@ -165,6 +168,45 @@ contains
       if (.not. may_continue) return
     end do
   end function may_continue
+
+  !> The time in which the joints go ways over which their angles may be continued at once, at their present speed [s].
+  pure real(wp) function longest_way(self) result(time)
+    class(ball_angles_type), intent(in) :: self   !< the angles
+    real(wp) :: speed
+    integer :: i
+
+    time = huge(time)
+    do i = 1, size(self%joints)
+      if (.not. self%replaced(i)) cycle
+      associate (turns => self%joints(i)%given)
+        speed = turns%speed(self%swings(i))
+        if (speed > 0.0_wp) time = min(time, 0.5_wp*max(self%lock, short_way*turns%distance(self%swings(i)))/speed)
+      end associate
+    end do
+  end function longest_way
+
+  !> Whether other angles are in use, and the pairs of the joints pass on the same wrenches about the same points in these as in
+  !> the angles of the data file.
+  pure logical function give_same_wrenches(self)
+    class(ball_angles_type), intent(in) :: self   !< the angles
+    integer :: i
+
+    give_same_wrenches = self%in_use()
+    if (.not. give_same_wrenches) return
+    do i = 1, size(self%joints)
+      if (self%replaced(i)) give_same_wrenches = give_same_wrenches .and. self%joints(i)%centred
+    end do
+  end function give_same_wrenches
+
+  !> The turns by which a joint moves at present.
+  pure function turns_in_use(self, joint) result(turns)
+    class(ball_angles_type), intent(in) :: self   !< the angles
+    integer, intent(in) :: joint                  !< number of the joint
+    type(three_turns_type) :: turns
+
+    turns = self%joints(joint)%given
+    if (self%replaced(joint)) turns = self%joints(joint)%substitute
+  end function turns_in_use
 
   !> Continue the angles of the data file to a state.
   pure subroutine continue_to(self, state)

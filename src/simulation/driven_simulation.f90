@@ -8,7 +8,9 @@ module mech9_driven_simulation
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
   use mech9_requested, only: requested_by_results, add_forces, leave_out_unrequested
-  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance, set_inputs
+  use mech9_driven_motion, only: driven_motion_type, set_inputs
+  use mech9_ball_angles, only: ball_angles_type
+  use mech9_driven_angles, only: begin_with_angles, advance_with_angles
   use mech9_lagrange_types, only: dynamics_plan_type
   use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_generalized_forces, only: show_state
@@ -22,12 +24,14 @@ module mech9_driven_simulation
     type(plan_type) :: plan              !< of the requested part of the motion
     type(state_type) :: assembled        !< the closed position at the start
     type(driven_motion_type) :: driven
+    type(ball_angles_type) :: angles     !< of ball joints, as in the data file
     type(dynamics_plan_type), allocatable, private :: dynamics   !< made when energies are asked for first
     type(motion_view_type), allocatable, private :: view         !< of the present state, as loads see it
   contains
     procedure :: begin
     procedure :: go_to
     procedure :: present => present_state
+    procedure :: present_for_forces
     procedure :: present_closure
     procedure :: watch_conditioning
     procedure :: energies
@@ -77,8 +81,7 @@ contains
     real(wp), intent(in) :: t                              !< time of the start [s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
 
-    call start_driven_motion(self%model%problem%drives, self%plan, self%assembled, t, self%driven, err, &
-                             self%requested%derivatives)
+    call begin_with_angles(self%model, self%plan, self%assembled, t, self%requested%derivatives, self%driven, self%angles, err)
   end subroutine begin
 
   !> The position at time t, on the same branch.
@@ -87,7 +90,7 @@ contains
     real(wp), intent(in) :: t                              !< time to go to [s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
 
-    call advance(self%model%problem%drives, self%plan, self%driven, t, err)
+    call advance_with_angles(self%model, self%plan, t, self%driven, self%angles, err)
   end subroutine go_to
 
   !> The plan and the present state.
@@ -98,8 +101,25 @@ contains
 
     plan => self%plan
     state => self%driven%state
-    if (.not. self%started) state => self%assembled
+    if (.not. self%started) then
+      state => self%assembled
+    else if (self%angles%in_use()) then
+      plan => self%angles%plan
+      state => self%angles%state
+    end if
   end subroutine present_state
+
+  !> The plan and the state in the angles that are in use, where wrenches are the same in these.
+  subroutine present_for_forces(self, plan, state)
+    class(driven_simulation_type), intent(in), target :: self   !< the simulation
+    type(plan_type), pointer, intent(out) :: plan               !< the plan
+    type(state_type), pointer, intent(out) :: state             !< the present state
+
+    call self%present(plan, state)
+    if (.not. self%angles%give_same_wrenches()) return
+    plan => self%plan
+    state => self%driven%state
+  end subroutine present_for_forces
 
   !> Largest closure error of the present position [m].
   real(wp) function present_closure(self)

@@ -37,6 +37,7 @@ module mech9_free_simulation
     procedure :: begin
     procedure :: go_to
     procedure :: present
+    procedure :: present_for_forces
     procedure :: present_closure
     procedure :: watch_conditioning
     procedure :: energies
@@ -290,8 +291,38 @@ contains
       end if
       call motion%change_angles(changed, err)
     end associate
+    if (changed) changed = .not. same_replaced(self)
     if (changed) call add_event(self)
   end subroutine change_angles
+
+  !> The coordinates of hinges whose angles are replaced. The angles of joints with several freedoms are the program's own matter.
+  function replaced_hinges(self) result(coordinates)
+    class(free_simulation_type), intent(in) :: self   !< the simulation
+    integer, allocatable :: coordinates(:)
+    logical, allocatable :: of_hinge(:)
+    integer :: i
+
+    coordinates = self%motion%angles%replaced_coordinates()
+    allocate (of_hinge(size(coordinates)))
+    do i = 1, size(coordinates)
+      of_hinge(i) = self%model%mechanism%structure%joint_of(coordinates(i)) == 0
+    end do
+    coordinates = pack(coordinates, of_hinge)
+  end function replaced_hinges
+
+  !> Whether the angles of the same hinges were replaced at the last event.
+  logical function same_replaced(self)
+    class(free_simulation_type), intent(in) :: self   !< the simulation
+    integer, allocatable :: now(:)
+
+    now = replaced_hinges(self)
+    same_replaced = size(now) == 0
+    if (size(self%events) == 0) return
+    associate (before => self%events(size(self%events))%replaced)
+      same_replaced = size(now) == size(before)
+      if (same_replaced) same_replaced = all(now == before)
+    end associate
+  end function same_replaced
 
   !> One more event: the present choice of coordinates. By hand: an array constructor of them would leak (gfortran 12).
   subroutine add_event(self)
@@ -308,7 +339,7 @@ contains
     end do
     grown(n + 1)%t = self%motion%t
     grown(n + 1)%independent = self%motion%system%plan%independent
-    grown(n + 1)%replaced = self%motion%angles%replaced_coordinates()
+    grown(n + 1)%replaced = replaced_hinges(self)
     call move_alloc(grown, self%events)
   end subroutine add_event
 
@@ -326,6 +357,18 @@ contains
       state => self%motion%system%state
     end if
   end subroutine present
+
+  !> The plan and the state in the angles that are integrated, where wrenches are the same in these.
+  subroutine present_for_forces(self, plan, state)
+    class(free_simulation_type), intent(in), target :: self   !< the simulation
+    type(plan_type), pointer, intent(out) :: plan             !< the plan
+    type(state_type), pointer, intent(out) :: state           !< the present state
+
+    call self%present(plan, state)
+    if (.not. self%motion%angles%give_same_wrenches()) return
+    plan => self%motion%system%plan
+    state => self%motion%system%state
+  end subroutine present_for_forces
 
   !> Largest closure error of the present position [m].
   real(wp) function present_closure(self)

@@ -74,6 +74,7 @@ module mech9_simulation
     procedure :: stop_if_interrupted
     procedure :: statistics
     procedure :: close => close_nothing
+    procedure :: present_for_forces => present_as_shown
     procedure(position_interface), deferred :: begin
     procedure(position_interface), deferred :: go_to
     procedure(present_interface), deferred :: present
@@ -253,6 +254,16 @@ contains
     statistics%positions = self%positions
     call self%count_work(statistics)
   end function statistics
+
+  !> The plan and the state from which forces in the pairs are found. They are those that are presented, unless angles of ball
+  !> joints are singular in these.
+  subroutine present_as_shown(self, plan, state)
+    class(simulation_type), intent(in), target :: self   !< the simulation
+    type(plan_type), pointer, intent(out) :: plan        !< the plan
+    type(state_type), pointer, intent(out) :: state      !< the present position, velocities and accelerations
+
+    call self%present(plan, state)
+  end subroutine present_as_shown
 
   !> Free the memory beside the simulation's own components. There is none unless a simulation says so.
   subroutine close_nothing(self)

@@ -1,17 +1,18 @@
 !> Ball joints that are made of three revolute pairs, whose angles may be replaced by those of another triple of axes.
 !>
-!> The axes of the three pairs meet in one point, each at a right angle to the next, and the two links between them have no
-!> inertia, bear no load, belong to no closed chain and carry no other link: then nothing depends on the three angles but the
-!> rotation that they give together. Another triple of axes with the same rotation gives the same motion, and need not be
-!> singular where the angles of the data file are. Where the links between have inertia, or neighbouring axes are not at
-!> right angles, the mechanism itself is another one beside such a position, and nothing may be replaced.
+!> The axes of the three pairs meet in one point, each at a right angle to the next. The two links between them have no
+!> inertia, bear no load and carry no other link. The three angles are either all free, outside closed chains, or all determined
+!> by closed chains. Then nothing depends on them but the rotation that they give together. Another triple of axes with the same
+!> rotation gives the same motion, and need not be singular where the angles of the data file are. Where the links between have
+!> inertia, or neighbouring axes are not at right angles, the mechanism itself is another one beside such a position, and nothing
+!> may be replaced.
 module mech9_ball_joints
   use mech9_kinds, only: wp
   use mech9_tolerances, only: screw_tolerance
   use mech9_pose, only: pose_type
   use mech9_three_turns, only: three_turns_type, set_three_turns, substitute_turns, cyclic
   use mech9_mechanism, only: mechanism_type
-  use mech9_partition, only: partition_type, free_coordinate
+  use mech9_partition, only: partition_type, free_coordinate, dependent_coordinate
   use mech9_plan, only: plan_type, step_type
   implicit none
   private
@@ -24,6 +25,7 @@ module mech9_ball_joints
     type(three_turns_type) :: given       !< the turns as in the data file
     type(three_turns_type) :: substitute  !< the turns that may replace them
     type(step_type) :: replaced(3)        !< steps that make these turns, between the same frames
+    logical :: centred = .false.          !< the origins of the frames between are in the joint's centre, for both triples
   end type ball_joint_type
 
 contains
@@ -83,12 +85,13 @@ contains
     end do
   end function passive_frames
 
-  !> Steps of revolute pairs with free coordinates, outside closed chains, which no load reads or moves.
+  !> Steps of revolute pairs that no load reads or moves, with free coordinates outside closed chains or with dependent ones
+  !> inside. All steps of one kind are followed by others of the same kind in a joint, since its chain has no branches.
   function free_steps(mechanism, partition, plan) result(free)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(partition_type), intent(in) :: partition   !< of its coordinates
     type(plan_type), intent(in) :: plan             !< its plan
-    logical :: free(plan%n_coordinates), loaded(plan%n_coordinates)
+    logical :: free(plan%n_coordinates), loaded(plan%n_coordinates), in_loop(plan%n_coordinates)
     integer :: i
 
     loaded = .false.
@@ -99,13 +102,15 @@ contains
     do i = 1, size(plan%blocks)
       free(plan%blocks(i)%first_step:plan%blocks(i)%last_step) = .true.
     end do
+    in_loop = .false.
     do i = 1, size(plan%closures)
-      free(plan%closures(i)%loop%steps) = .false.
+      in_loop(plan%closures(i)%loop%steps) = .true.
     end do
     do i = 1, plan%n_coordinates
       associate (step => plan%steps(i))
         free(i) = free(i) .and. step%is_screw .and. abs(step%turn) > 0.0_wp .and. .not. abs(step%slide) > 0.0_wp &
-                  .and. .not. loaded(step%coordinate) .and. partition%kind(step%coordinate) == free_coordinate
+                  .and. .not. loaded(step%coordinate) &
+                  .and. partition%kind(step%coordinate) == merge(dependent_coordinate, free_coordinate, in_loop(i))
       end associate
     end do
   end function free_steps
@@ -157,6 +162,7 @@ contains
     end associate
     fits = all(abs(away) <= screw_tolerance*plan%length)
     if (.not. fits) return
+    joint%centred = all(abs(height) <= screw_tolerance*plan%length)
     joint%substitute = substitute_turns(joint%given)
     joint%replaced = plan%steps(joint%steps)
     joint%replaced%turn = 1.0_wp

@@ -116,6 +116,10 @@ contains
     call nearest_frames(plan, layout, links(0), links(n), here, there)
     from_here = (n + layout%depth(there) - layout%depth(here))/2
     from_here = max(0, min(n - 1, from_here))
+    ! chains close on links that the user knows, not inside a joint with several freedoms: the last of them is one
+    do while (mechanism%structure%joint_of_link(links(from_here + 1)) > 0)
+      from_here = from_here + 1
+    end do
     do i = 1, from_here
       call add_step(mechanism, partition, chain, links(i - 1), links(i), coordinates(i), here, plan, layout, reached)
       call make_first(links(i), reached, plan, layout)

@@ -1,10 +1,11 @@
 !> A driven motion from output to output, through singular positions or up to its end.
 module mech9_driven_motion
   use mech9_kinds, only: wp, long
-  use mech9_tolerances, only: just_short_of_end, singular_conditioning
+  use mech9_tolerances, only: just_short_of_end, singular_conditioning, doubtful_margin
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_failure, only: failure_start_at_dead_point, failure_start_on_branches, failure_start_unclear, &
     failure_start_locked, failure_start_not_left, failure_escape, failure_dead_point, failure_lost_branch
+  use mech9_three_turns, only: three_turns_type
   use mech9_law, only: drive_slot_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
@@ -21,8 +22,14 @@ module mech9_driven_motion
   use mech9_block_equations, only: largest_gap
   implicit none
   private
-  public :: driven_motion_type, start_driven_motion, advance, set_inputs
+  public :: driven_motion_type, ball_angles_in_use_type, start_driven_motion, advance, set_inputs
 
+
+  !> The angles by which a ball joint moves at present.
+  type :: ball_angles_in_use_type
+    type(three_turns_type) :: turns   !< the three turns
+    integer :: second = 0             !< coordinate of the second turn
+  end type ball_angles_in_use_type
 
   !> A driven motion: the branch stepper, the special position ahead, and counts for the report.
   type, extends(branch_stepper_type) :: driven_motion_type
@@ -36,6 +43,8 @@ module mech9_driven_motion
     real(wp) :: closure = 0.0_wp                  !< largest closure error at the last output [m]
     real(wp) :: worst_closure = 0.0_wp            !< largest closure error at any output [m]
     real(wp), allocatable :: limit(:)             !< (M) independent coordinates where the motion ends [rad, m]
+    type(ball_angles_in_use_type), allocatable :: angles(:)   !< of the ball joints whose angles can be replaced; may be missing
+    logical :: paused = .false.                   !< the motion waits for other angles of a ball joint, short of the time to go to
   end type driven_motion_type
 
 contains
@@ -151,7 +160,8 @@ contains
   end subroutine begin_crossing
 
   !> Go on to a time on the same branch; the state then has position, rates and accelerations there. Fails with exit_singular
-  !> where the motion cannot go on; the state is then the last one that was reached.
+  !> where the motion cannot go on; the state is then the last one that was reached. Where the angles of a ball joint come near
+  !> to their singular position, the motion is `paused` at the end of a step.
   subroutine advance(drives, plan, driven, t, err)
     type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -162,6 +172,7 @@ contains
     integer :: refused_by
     logical :: stuck
 
+    driven%paused = .false.
     do while (abs(t - driven%predictor%t) > 0.0_wp)
       direction = sign(1.0_wp, t - driven%predictor%t)
       if (driven%crossing%exists) then
@@ -179,6 +190,8 @@ contains
       end if
       call step_towards(drives, plan, driven%branch_stepper_type, t, stuck, refused_by, err)
       if (allocated(err)) exit
+      driven%paused = angles_in_doubt(driven)
+      if (driven%paused) exit
       if (stuck) then
         ! an escape that was found before explains why no step is accepted
         if (driven%ahead%kind /= escape .or. driven%ahead%block /= refused_by) &
@@ -195,6 +208,20 @@ contains
       call count_output(plan, driven)
     end if
   end subroutine advance
+
+  !> Whether the angles of a ball joint are near their singular position, so that others should be taken.
+  pure logical function angles_in_doubt(driven)
+    type(driven_motion_type), intent(in) :: driven   !< the driven motion
+    integer :: i
+
+    angles_in_doubt = .false.
+    if (.not. allocated(driven%angles)) return
+    do i = 1, size(driven%angles)
+      associate (angles => driven%angles(i))
+        angles_in_doubt = angles_in_doubt .or. angles%turns%margin(driven%predictor%q(angles%second)) < doubtful_margin
+      end associate
+    end do
+  end function angles_in_doubt
 
   !> Look ahead after a step if a block has come near a singular position.
   subroutine look_ahead_if_near(drives, plan, driven, direction, err)

@@ -59,8 +59,8 @@ contains
     real(wp), intent(in) :: t                           !< output time [s]
     real(wp), intent(inout) :: row(:)                   !< (columns%width()) in the units of the results
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(plan_type), pointer :: plan
-    type(state_type), pointer :: state
+    type(plan_type), pointer :: plan, force_plan
+    type(state_type), pointer :: state, force_state
     integer :: next
 
     if (self%simulation%started) then
@@ -73,7 +73,8 @@ contains
     call self%columns%fill(self%simulation%model%mechanism, plan, state, row)
     call self%columns%fill_poses(plan, state, row)
     if (self%forces%wanted) then
-      call self%forces%find(self%simulation, plan, state, err)
+      call self%simulation%present_for_forces(force_plan, force_state)
+      call self%forces%find(self%simulation, force_plan, force_state, err)
       if (allocated(err)) return
       associate (found => self%forces%reactions)
         call self%columns%fill_forces(found%needed, found%force, found%moment, row)

@@ -1,0 +1,191 @@
+!> Driven motions through gimbal lock of ball joints: near it, other angles move the joint, and results keep those of the data file.
+!>
+!> Steps end where the angles of a joint come near to their singular position. The motion starts anew there with other angles
+!> (mech9_ball_angles). While others are in use, steps are so short that the angles of the data file can be continued.
+module mech9_driven_angles
+  use mech9_kinds, only: wp
+  use mech9_tolerances, only: third_derivative_step
+  use mech9_error, only: error_type
+  use mech9_model, only: model_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
+  use mech9_ball_angles, only: ball_angles_type
+  implicit none
+  private
+  public :: begin_with_angles, advance_with_angles
+
+  !> Most halvings of a step over which angles cannot be continued.
+  integer, parameter :: most_halvings = 60
+
+contains
+
+  !> Begin a motion at its assembled start, with other angles in ball joints that stand near gimbal lock.
+  subroutine begin_with_angles(model, plan, assembled, t, derivatives, driven, angles, err)
+    type(model_type), intent(in) :: model                  !< the model
+    type(plan_type), intent(inout) :: plan                 !< with the angles of the data file; then as the motion executes it
+    type(state_type), intent(in) :: assembled              !< the assembled position
+    real(wp), intent(in) :: t                              !< time of the start [s]
+    integer, intent(in) :: derivatives                     !< order of the highest derivative found at every position
+    type(driven_motion_type), intent(out) :: driven        !< the driven motion
+    type(ball_angles_type), intent(inout) :: angles        !< of the ball joints
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(state_type) :: start
+
+    start = assembled
+    start%t = t
+    call angles%begin(model, model%problem%partition, plan, start, err)
+    if (allocated(err)) return
+    call start_driven_motion(model%problem%drives, plan, start, t, driven, err, derivatives)
+    if (allocated(err)) return
+    call note_angles(angles, driven)
+    call show_angles(model, plan, angles, driven, err)
+  end subroutine begin_with_angles
+
+  !> Go on to a time, as `advance` does.
+  subroutine advance_with_angles(model, plan, t, driven, angles, err)
+    type(model_type), intent(in) :: model                  !< the model
+    type(plan_type), intent(inout) :: plan                 !< as the motion executes it
+    real(wp), intent(in) :: t                              !< time to go to [s]
+    type(driven_motion_type), intent(inout) :: driven      !< the driven motion
+    type(ball_angles_type), intent(inout) :: angles        !< of the ball joints
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    logical :: reached
+
+    do
+      if (angles%in_use()) then
+        call advance_short(model, plan, t, driven, angles, reached, err)
+      else
+        call advance(model%problem%drives, plan, driven, t, err)
+        reached = .not. driven%paused
+      end if
+      if (allocated(err)) exit
+      if (driven%paused) call change_angles(model, plan, driven, angles, err)
+      if (allocated(err) .or. reached) exit
+    end do
+    if (.not. allocated(err)) call show_angles(model, plan, angles, driven, err)
+  end subroutine advance_with_angles
+
+  !> Go on towards a time, as far as the angles of the data file can be continued at once.
+  subroutine advance_short(model, plan, t, driven, angles, reached, err)
+    type(model_type), intent(in) :: model                  !< the model
+    type(plan_type), intent(in) :: plan                    !< as the motion executes it
+    real(wp), intent(in) :: t                              !< time to go towards [s]
+    type(driven_motion_type), intent(inout) :: driven      !< the driven motion
+    type(ball_angles_type), intent(inout) :: angles        !< of the ball joints, some of which are replaced
+    logical, intent(out) :: reached                        !< the motion is at this time
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(driven_motion_type) :: before
+    real(wp) :: h
+    integer :: i
+
+    before = driven
+    h = min(angles%longest_way(), abs(t - before%state%t))
+    do i = 1, most_halvings
+      reached = .not. h < abs(t - before%state%t)
+      if (reached) then
+        call advance(model%problem%drives, plan, driven, t, err)
+      else
+        call advance(model%problem%drives, plan, driven, before%state%t + sign(h, t - before%state%t), err)
+      end if
+      if (allocated(err)) return
+      reached = reached .and. .not. driven%paused
+      if (angles%may_continue(driven%state)) exit
+      driven = before
+      h = 0.5_wp*h
+    end do
+    driven%positions = before%positions
+    call angles%continue_to(driven%state)
+  end subroutine advance_short
+
+  !> Start anew at the present position with other angles in the joints that are near gimbal lock.
+  subroutine change_angles(model, plan, driven, angles, err)
+    type(model_type), intent(in) :: model                  !< the model
+    type(plan_type), intent(inout) :: plan                 !< as the motion executes it
+    type(driven_motion_type), intent(inout) :: driven      !< the driven motion
+    type(ball_angles_type), intent(inout) :: angles        !< of the ball joints
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(driven_motion_type) :: before
+    type(plan_type) :: changed_plan
+    type(state_type) :: changed
+    real(wp) :: t
+
+    t = driven%predictor%t
+    driven%state%t = t
+    if (angles%in_use()) call show_angles(model, plan, angles, driven, err)
+    if (allocated(err)) return
+    call angles%change(driven%state, changed_plan, changed, err)
+    if (allocated(err)) return
+    before = driven
+    plan = changed_plan
+    call start_driven_motion(model%problem%drives, plan, changed, t, driven, err, before%derivatives)
+    if (allocated(err)) return
+    driven%positions = before%positions - 1
+    driven%steps = before%steps
+    driven%iterations = before%iterations
+    driven%halvings = before%halvings
+    driven%crossings = before%crossings
+    driven%conditioning = before%conditioning
+    driven%worst_closure = max(driven%worst_closure, before%worst_closure)
+    call note_angles(angles, driven)
+  end subroutine change_angles
+
+  !> Tell the motion which angles it has, so that it pauses near their singular positions.
+  pure subroutine note_angles(angles, driven)
+    type(ball_angles_type), intent(in) :: angles        !< of the ball joints
+    type(driven_motion_type), intent(inout) :: driven   !< the driven motion
+    integer :: i
+
+    if (size(angles%joints) == 0) return
+    allocate (driven%angles(size(angles%joints)))
+    do i = 1, size(angles%joints)
+      driven%angles(i)%turns = angles%turns_in_use(i)
+      driven%angles(i)%second = angles%joints(i)%coordinates(2)
+    end do
+  end subroutine note_angles
+
+  !> Show the present position in the angles of the data file, if others are in use.
+  subroutine show_angles(model, plan, angles, driven, err)
+    type(model_type), intent(in) :: model                  !< the model
+    type(plan_type), intent(in) :: plan                    !< as the motion executes it
+    type(ball_angles_type), intent(inout) :: angles        !< of the ball joints
+    type(driven_motion_type), intent(inout) :: driven      !< the driven motion
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    real(wp) :: dddq(plan%n_coordinates)
+
+    if (.not. angles%in_use()) return
+    call angles%continue_to(driven%state)
+    dddq = 0.0_wp
+    if (angles%in_lock() .and. driven%derivatives > 1) call find_third_derivatives(model, plan, driven, dddq)
+    call angles%show(driven%state, dddq, err)
+  end subroutine show_angles
+
+  !> Third derivatives of all coordinates by a central difference of the accelerations, of one side at an end of the motion. They
+  !> are zero where the motion leads to neither side.
+  subroutine find_third_derivatives(model, plan, driven, dddq)
+    type(model_type), intent(in) :: model              !< the model
+    type(plan_type), intent(in) :: plan                !< as the motion executes it
+    type(driven_motion_type), intent(in) :: driven     !< the driven motion
+    real(wp), intent(out) :: dddq(:)                   !< (M) [rad/s^3, m/s^3]
+    type(driven_motion_type) :: other
+    type(error_type), allocatable :: err
+    real(wp) :: ddq(size(dddq), 2), t(2), dt
+    integer :: i
+
+    dt = third_derivative_step/max(maxval(abs(driven%state%dq)/plan%unit_of), &
+                                   sqrt(maxval(abs(driven%state%ddq)/plan%unit_of)), tiny(dt)/epsilon(dt))
+    do i = 1, 2
+      other = driven
+      call advance(model%problem%drives, plan, other, driven%state%t + (2*i - 3)*dt, err)
+      t(i) = other%state%t
+      ddq(:, i) = other%state%ddq
+      if (allocated(err)) then
+        t(i) = driven%state%t
+        ddq(:, i) = driven%state%ddq
+        deallocate (err)
+      end if
+    end do
+    dddq = 0.0_wp
+    if (abs(t(2) - t(1)) > 0.0_wp) dddq = (ddq(:, 2) - ddq(:, 1))/(t(2) - t(1))
+  end subroutine find_third_derivatives
+end module mech9_driven_angles
