@@ -30,7 +30,7 @@ module mech9_cam_profile
 
   integer, parameter :: refinements = 2     !< times that the places of extreme values are looked at more closely
   integer, parameter :: parts = 40          !< parts into which an interval is divided each time
-  integer, parameter :: most_divided = 60   !< intervals that are divided, at most
+  integer, parameter :: most_ends = 60      !< ends of undercut ranges that are looked at, at most
   !> Part of the profile's size, or sine of an angle, by which digits of the data may make the motion leave the plane.
   real(wp), parameter :: plane_tolerance = 1.0e-6_wp
   !> The ends of a closed profile meet to this part of its size.
@@ -114,7 +114,8 @@ contains
     associate (contacts => profile%contacts)
       do i = 1, size(contacts)
         if (.not. contacts(i)%known) cycle
-        if (is_better(contacts(i)%pressure, -1, profile%pressure, contacts%pressure)) profile%pressure = i
+        if (profile%pressure == 0) profile%pressure = i
+        if (contacts(i)%pressure > contacts(profile%pressure)%pressure) profile%pressure = i
         if (contacts(i)%undercut) then
           if (n > 0) then
             if (ranges(2, n) == i - 1) then
@@ -125,42 +126,36 @@ contains
           n = n + 1
           ranges(:, n) = i
         else if (contacts(i)%radius > 0.0_wp) then
-          if (is_better(contacts(i)%radius, 1, profile%convex, contacts%radius)) profile%convex = i
+          if (profile%convex == 0) profile%convex = i
+          if (contacts(i)%radius < contacts(profile%convex)%radius) profile%convex = i
         else
-          if (is_better(contacts(i)%radius, -1, profile%concave, contacts%radius)) profile%concave = i
+          if (profile%concave == 0) profile%concave = i
+          if (contacts(i)%radius > contacts(profile%concave)%radius) profile%concave = i
         end if
       end do
     end associate
     profile%undercut = ranges(:, :n)
   end subroutine find_extremes
 
-  !> Whether a value is more extreme than the best one so far.
-  pure logical function is_better(value, sense, best, values)
-    real(wp), intent(in) :: value       !< the value
-    integer, intent(in) :: sense        !< 1 where small values are sought, -1 where great ones are
-    integer, intent(in) :: best         !< place of the best one so far; 0: none
-    real(wp), intent(in) :: values(:)   !< all values
-
-    is_better = best == 0
-    if (.not. is_better) is_better = sense*value < sense*values(best)
-  end function is_better
-
   !> Divide the intervals beside extreme values, and those in which an undercut begins or ends.
   pure subroutine divide(profile, times)
     type(cam_profile_type), intent(inout) :: profile       !< with its contacts; gets which of the new times are outputs
     real(wp), allocatable, intent(inout) :: times(:)       !< the times, in order; gets more of them [s]
-    logical :: divided(size(times))
+    logical, allocatable :: divided(:)
     real(wp), allocatable :: finer(:)
     logical, allocatable :: at_output(:)
-    integer :: i, k, n, at
+    integer :: i, k, n, at, ends
 
-    divided = .false.   ! interval i ends at time i
+    allocate (divided(size(times)), source=.false.)   ! interval i ends at time i
     call mark(profile%pressure, divided)
     call mark(profile%convex, divided)
     call mark(profile%concave, divided)
+    ends = 0
     do i = 2, size(times)
-      if (count(divided) >= most_divided) exit
-      divided(i) = divided(i) .or. (profile%contacts(i)%undercut .neqv. profile%contacts(i - 1)%undercut)
+      if (profile%contacts(i)%undercut .eqv. profile%contacts(i - 1)%undercut) cycle
+      divided(i) = .true.
+      ends = ends + 1
+      if (ends == most_ends) exit
     end do
     n = size(times) + (parts - 1)*count(divided)
     allocate (finer(n), at_output(n))

@@ -303,6 +303,13 @@ def pictures(s):
         s.checks.equal('pitch' in marks, 'roller' in cam, f'pitch curve: {cam}')
 
 
+def many_outputs(s):
+    """The time grows with the number of outputs, not with its square, which would take minutes."""
+    text = LIFT.format(offset=0, height=0.04, beta=2, lift=0.02, cam='roller=0.01').replace('intervals=240', 'intervals=200000')
+    done = run(s.mech9k, s.write('case.nml', text), '--cam', os.path.join(s.folder, 'cam.svg'), timeout=60)
+    s.checks.equal(done.returncode, 0, f'a cam with many outputs: {done.stderr}')
+
+
 def bad_input(s):
     good = LIFT.format(offset=0, height=0.04, beta=2, lift=0.02, cam='roller=0.01')
     cam = '&cam link=2, follower=3, roller=0.01 /'
@@ -337,7 +344,7 @@ def bad_input(s):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         s = Cases(sys.argv[1], folder)
-        for case in (circles, swinging_face, translating, undercut, published, same_cam, read_back, resting, pictures, bad_input):
+        for case in (circles, swinging_face, translating, undercut, published, same_cam, read_back, resting, pictures, many_outputs, bad_input):
             case(s)
         return s.checks.finish()
 

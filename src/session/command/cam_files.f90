@@ -12,7 +12,7 @@ module mech9_cam_files
     logical :: is_picture = .false.         !< a drawing; else a table
   end type cam_file_type
 
-  integer, parameter :: most_digits = 6   !< of the number of a cam
+  integer, parameter :: most_digits = 9   !< of the number of a cam
 
 contains
 
