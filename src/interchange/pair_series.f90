@@ -1,20 +1,19 @@
-!> The pairs of a robot: joints with several freedoms become series of pairs with massless links between them, and links and
-!> coordinates get their numbers in the data file.
+!> The pairs of a robot: its joints, with the numbers of links and coordinates in the data file.
 module mech9_pair_series
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_structure
-  use mech9_rotation, only: cross, unit
-  use mech9_pose, only: pose_type, identity_pose, default_zero
-  use mech9_robot, only: robot_type, robot_joint_type, revolute_joint, prismatic_joint, helical_joint, cylindrical_joint, &
-                         universal_joint, spherical_joint, planar_joint, free_joint
+  use mech9_pose, only: pose_type, identity_pose
+  use mech9_robot, only: robot_type, robot_joint_type, revolute_joint, cylindrical_joint, universal_joint, &
+                         spherical_joint, planar_joint, free_joint
   implicit none
   private
   public :: series_type, single_pair_type, find_series
 
-  !> A pair of the data file.
+  !> A pair of the data file, by one of its coordinates.
   type :: single_pair_type
-    integer :: kind = revolute_joint   !< revolute, prismatic or helical
+    integer :: kind = revolute_joint   !< one of the kinds of joints
     integer :: joint = 0               !< number of the joint that it belongs to
+    integer :: freedoms = 0            !< number of coordinates of the pair; 0 at all of them but the first
     integer :: links(2) = 0            !< numbers in the data file of reference link and moving link
     type(pose_type) :: frames(2)       !< pose of the joint's frame in each of the two links
     real(wp) :: axis(3) = 0.0_wp       !< direction in the joint's frame, of length one
@@ -22,13 +21,14 @@ module mech9_pair_series
 
   !> Links and pairs in the order of the data file.
   type :: series_type
-    integer :: n_links = 0                                 !< all links, the massless ones included
+    integer :: n_links = 0                                 !< all links, with the massless ones of divided joints
     integer, allocatable :: number_of(:)                   !< (links of the robot) number in the data file
-    type(single_pair_type), allocatable :: pairs(:)        !< pair k has coordinate k
+    type(single_pair_type), allocatable :: pairs(:)        !< by coordinates
     logical, allocatable :: closes(:)                      !< (joints of the robot) the joint closes a chain
   end type series_type
 
-  real(wp), parameter :: x(3) = [1.0_wp, 0.0_wp, 0.0_wp], y(3) = [0.0_wp, 1.0_wp, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp]
+  !> Components of parallel directions differ by less: by round-off of sines and cosines.
+  real(wp), parameter :: round_off = 1.0e-14_wp
 
 contains
 
@@ -78,72 +78,69 @@ contains
     end do
   end subroutine find_series
 
-  !> Add the pairs of a joint and its massless links, which get the numbers before that of the link it leads to.
+  !> Add the pairs of a joint.
   subroutine add_joint(joint, k, new_link, series)
     type(robot_joint_type), intent(in) :: joint   !< the joint
     integer, intent(in) :: k                      !< its number in the robot
     integer, intent(in) :: new_link               !< number in the robot of the link that it leads to; 0: it closes a chain
     type(series_type), intent(inout) :: series    !< gets pairs and numbers of links
     type(single_pair_type), allocatable :: longer(:)
-    real(wp) :: axes(3, 6)
-    integer :: kinds(6), links(0:6), i, n, m
+    integer :: i, n, m, between
 
-    call freedoms_of(joint, kinds, axes, n)
-    m = size(series%pairs)
-    allocate (longer(m + n))
-    longer(:m) = series%pairs
-    do i = 1, n - 1
-      links(i) = series%n_links + i
-    end do
-    series%n_links = series%n_links + n - 1
+    n = freedoms_of(joint%kind)
+    between = 0
+    if (joint%kind == universal_joint .and. .not. has_parallel_frames(joint)) between = series%n_links + 1
+    if (between > 0) series%n_links = between
     if (new_link > 0) then
       series%n_links = series%n_links + 1
       series%number_of(new_link) = series%n_links
     end if
-    links(0) = series%number_of(joint%links(1))
-    links(n) = series%number_of(joint%links(2))
-    do i = 1, n
-      longer(m + i) = single_pair_type(kinds(i), k, links(i - 1:i), [identity_pose, identity_pose], axes(:, i))
+    m = size(series%pairs)
+    allocate (longer(m + n))
+    longer(:m) = series%pairs
+    do i = m + 1, m + n
+      longer(i) = single_pair_type(joint%kind, k, 0, series%number_of(joint%links), joint%frames, joint%axis)
     end do
-    longer(m + 1)%frames(1) = joint%frames(1)
-    longer(m + n)%frames(2) = joint%frames(2)
+    longer(m + 1)%freedoms = n
+    if (between > 0) call split_universal(joint, between, longer(m + 1:m + 2))
     call move_alloc(longer, series%pairs)
   end subroutine add_joint
 
-  !> The freedoms of a joint, one after the other.
-  pure subroutine freedoms_of(joint, kinds, axes, n)
+  !> Whether the systems of both links of a joint are parallel where its coordinates are zero, as universal pairs need it.
+  pure logical function has_parallel_frames(joint)
     type(robot_joint_type), intent(in) :: joint  !< the joint
-    integer, intent(out) :: kinds(6)             !< revolute, prismatic or helical
-    real(wp), intent(out) :: axes(3, 6)          !< directions in the joint's frame, of length one
-    integer, intent(out) :: n                    !< number of freedoms
 
-    kinds = revolute_joint
-    axes = 0.0_wp
-    n = 1
-    axes(:, 1) = joint%axis
-    select case (joint%kind)
-    case (prismatic_joint, helical_joint)
-      kinds(1) = joint%kind
-    case (cylindrical_joint)
-      n = 2
-      kinds(2) = prismatic_joint
-      axes(:, 2) = joint%axis
-    case (universal_joint)
-      n = 2
-      axes(:, 2) = joint%second
-    case (spherical_joint)
-      n = 3
-      axes(:, :3) = reshape([x, y, z], [3, 3])
-    case (planar_joint)
-      n = 3
-      kinds(:2) = prismatic_joint
-      axes(:, 1) = unit(default_zero(joint%axis) - dot_product(default_zero(joint%axis), joint%axis)*joint%axis)
-      axes(:, 2) = cross(joint%axis, axes(:, 1))
-      axes(:, 3) = joint%axis
+    has_parallel_frames = maxval(abs(joint%frames(1)%r - joint%frames(2)%r)) < round_off
+  end function has_parallel_frames
+
+  !> A universal joint as two pairs with a massless link between them.
+  pure subroutine split_universal(joint, between, pairs)
+    type(robot_joint_type), intent(in) :: joint          !< the joint
+    integer, intent(in) :: between                       !< number of the massless link
+    type(single_pair_type), intent(inout) :: pairs(2)    !< its two pairs
+
+    pairs%kind = revolute_joint
+    pairs%freedoms = 1
+    pairs(1)%links(2) = between
+    pairs(1)%frames(2) = identity_pose
+    pairs(2)%links(1) = between
+    pairs(2)%frames(1) = identity_pose
+    pairs(2)%axis = joint%second
+  end subroutine split_universal
+
+  !> The number of freedoms of a kind of joints.
+  pure integer function freedoms_of(kind)
+    integer, intent(in) :: kind  !< one of the kinds
+
+    select case (kind)
+    case (cylindrical_joint, universal_joint)
+      freedoms_of = 2
+    case (spherical_joint, planar_joint)
+      freedoms_of = 3
     case (free_joint)
-      n = 6
-      kinds(:3) = prismatic_joint
-      axes = reshape([x, y, z, x, y, z], [3, 6])
+      freedoms_of = 6
+    case default
+      freedoms_of = 1
     end select
-  end subroutine freedoms_of
+  end function freedoms_of
 end module mech9_pair_series

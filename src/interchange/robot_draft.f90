@@ -6,7 +6,7 @@ module mech9_robot_draft
   use mech9_pose, only: default_zero
   use mech9_rotation, only: unit
   use mech9_draft, only: draft_type, draft_group_type, entry_type
-  use mech9_robot, only: robot_type, robot_joint_type, helical_joint
+  use mech9_robot, only: robot_type, robot_joint_type, helical_joint, universal_joint, spherical_joint, free_joint
   use mech9_pair_series, only: series_type
   implicit none
   private
@@ -96,44 +96,61 @@ contains
     call move_alloc(longer, group%entries)
   end subroutine add
 
-  !> Add the group of a pair. Directions of the moving link are given where they differ from those of the reference link.
+  !> Add the group of a pair, by its first coordinate. Directions of the moving link are given where they differ from those of the
+  !> reference link.
   subroutine add_pair(robot, series, k, draft, n)
     type(robot_type), intent(in) :: robot     !< the robot
     type(series_type), intent(in) :: series   !< its pairs
-    integer, intent(in) :: k                  !< number of the pair
+    integer, intent(in) :: k                  !< number of the coordinate
     type(draft_type), intent(inout) :: draft  !< the data file
     integer, intent(inout) :: n               !< number of its groups
-    character(len=*), parameter :: kinds(3) = [character(len=9) :: 'revolute', 'prismatic', 'helical']
-    real(wp) :: zero(3), axes(3, 2), zeros(3, 2)
+    character(len=*), parameter :: kinds(8) = [character(len=11) :: 'revolute', 'prismatic', 'helical', 'cylindrical', &
+                                               'universal', 'spherical', 'planar', 'free']
+    real(wp) :: axis(3), zero(3), axes(3, 2), zeros(3, 2)
+    logical :: differ
     integer :: i
 
     associate (pair => series%pairs(k), joint => robot%joints(series%pairs(k)%joint))
-      zero = default_zero(pair%axis)
+      if (pair%freedoms == 0) return
+      axis = pair%axis
+      zero = default_zero(axis)
+      zero = unit(zero - dot_product(zero, axis)*axis)
+      if (pair%kind == spherical_joint .or. pair%kind == free_joint) then
+        axis = [0.0_wp, 0.0_wp, 1.0_wp]
+        zero = [1.0_wp, 0.0_wp, 0.0_wp]
+      end if
       do i = 1, 2
-        axes(:, i) = tidy(matmul(pair%frames(i)%r, pair%axis))
-        zeros(:, i) = tidy(matmul(pair%frames(i)%r, unit(zero - dot_product(zero, pair%axis)*pair%axis)))
+        axes(:, i) = tidy(matmul(pair%frames(i)%r, axis))
+        zeros(:, i) = tidy(matmul(pair%frames(i)%r, zero))
       end do
+      differ = any(abs(axes(:, 1) - axes(:, 2)) + abs(zeros(:, 1) - zeros(:, 2)) > 0.0_wp)
+      if (pair%kind == universal_joint) then
+        axes(:, 2) = tidy(matmul(pair%frames(2)%r, joint%second))
+        differ = .true.
+      end if
       call begin_group(draft, n, 'pair', pair_comment(series, k, joint))
-      call add(draft%groups(n), 'coordinate', to_text(k))
+      if (pair%freedoms > 1) then
+        call add(draft%groups(n), 'coordinates', to_text([(i, i=k, k + pair%freedoms - 1)], ', '))
+      else
+        call add(draft%groups(n), 'coordinate', to_text(k))
+      end if
       call add(draft%groups(n), 'links', to_text(pair%links, ', '))
       call add(draft%groups(n), 'kind', "'"//trim(kinds(pair%kind))//"'")
       if (pair%kind == helical_joint) call add(draft%groups(n), 'pitch', number_text(joint%pitch))
       call add(draft%groups(n), 'point', numbers_text(pair%frames(1)%p))
       call add(draft%groups(n), 'axis', numbers_text(axes(:, 1)))
-      if (any(abs(axes(:, 1) - axes(:, 2)) + abs(zeros(:, 1) - zeros(:, 2)) > 0.0_wp)) &
+      if (pair%kind /= universal_joint .and. (differ .or. pair%freedoms > 1)) &
         call add(draft%groups(n), 'zero', numbers_text(zeros(:, 1)))
       call add(draft%groups(n), 'moving_point', numbers_text(pair%frames(2)%p))
-      if (any(abs(axes(:, 1) - axes(:, 2)) + abs(zeros(:, 1) - zeros(:, 2)) > 0.0_wp)) then
-        call add(draft%groups(n), 'moving_axis', numbers_text(axes(:, 2)))
-        call add(draft%groups(n), 'moving_zero', numbers_text(zeros(:, 2)))
-      end if
+      if (differ) call add(draft%groups(n), 'moving_axis', numbers_text(axes(:, 2)))
+      if (differ .and. pair%kind /= universal_joint) call add(draft%groups(n), 'moving_zero', numbers_text(zeros(:, 2)))
     end associate
   end subroutine add_pair
 
   !> The comment on a pair: its joint and the range of that.
   function pair_comment(series, k, joint) result(text)
     type(series_type), intent(in) :: series       !< all pairs
-    integer, intent(in) :: k                      !< number of the pair
+    integer, intent(in) :: k                      !< number of its first coordinate
     type(robot_joint_type), intent(in) :: joint   !< its joint
     character(len=:), allocatable :: text
     integer :: first, last
@@ -141,7 +158,7 @@ contains
     text = 'joint '//joint%name
     first = findloc(series%pairs%joint, series%pairs(k)%joint, dim=1)
     last = findloc(series%pairs%joint, series%pairs(k)%joint, dim=1, back=.true.)
-    if (last > first) text = text//', freedom '//to_text(k - first + 1)//' of '//to_text(last - first + 1)
+    if (count(series%pairs(first:last)%freedoms > 0) > 1) text = text//', turn '//to_text(k - first + 1)//' of 2'
     if (series%closes(series%pairs(k)%joint)) text = text//', which closes a chain'
     if (allocated(joint%remark)) text = text//'; '//joint%remark
     if (joint%has_range) text = text//', range '//number_text(joint%range(1))//' to '//number_text(joint%range(2))
@@ -162,7 +179,8 @@ contains
     end do
     do i = 2, size(robot%links)
       if (any(robot%points(:robot%n_points)%link == i)) cycle
-      if (count(series%pairs%links(1) == series%number_of(i)) + count(series%pairs%links(2) == series%number_of(i)) > 1) cycle
+      if (count(series%pairs%freedoms > 0 .and. (series%pairs%links(1) == series%number_of(i) .or. &
+                                                 series%pairs%links(2) == series%number_of(i))) > 1) cycle
       call add_point(robot%links(i)%name, series%number_of(i), [0.0_wp, 0.0_wp, 0.0_wp], first, draft, n)
     end do
   end subroutine add_points

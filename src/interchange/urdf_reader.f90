@@ -52,14 +52,14 @@ contains
     n = 0
     e = tree%first_child(1)
     do while (e > 0 .and. n <= most_links + most_joints)
-      if (tree%name(e) == 'link' .or. tree%name(e) == 'joint') n = n + 1
+      if (any(tree%name(e) == [character(len=5) :: 'link', 'joint', 'loop'])) n = n + 1
       if (n > most_links + most_joints) call tree%fail(e, 'the robot has too many links and joints: more than '// &
                                                        to_text(most_links + most_joints), err)
       e = tree%next_sibling(e)
     end do
   end subroutine count_parts
 
-  !> The element of the link that is the child of no joint. Where each link is the child of one, it is the first link.
+  !> The element of the link that is the child of no joint or loop. Where each link is the child of one, it is the first link.
   subroutine find_root(tree, root, err)
     type(xml_tree_type), intent(in) :: tree            !< the document
     integer, intent(out) :: root                       !< number of the element
@@ -70,7 +70,8 @@ contains
     e = tree%child(1, 'link')
     if (e == 0) call tree%fail(1, 'the robot has no <link>', err)
     do while (e > 0)
-      if (.not. is_child(tree, tree%attribute(e, 'name'))) then
+      if (.not. is_child(tree, 'joint', 'child', tree%attribute(e, 'name')) .and. &
+          .not. is_child(tree, 'loop', 'successor', tree%attribute(e, 'name'))) then
         if (root > 0) then
           call tree%fail(e, "link '"//tree%attribute(e, 'name')//"' hangs on no joint, and neither does link '"// &
                          tree%attribute(root, 'name')//"'; only one link, the frame, may be without one", err)
@@ -83,17 +84,19 @@ contains
     if (root == 0) root = tree%child(1, 'link')
   end subroutine find_root
 
-  !> Whether a link is the child of a joint.
-  logical function is_child(tree, link)
+  !> Whether a link is the child of a joint, or the successor of a loop.
+  logical function is_child(tree, joints, side, link)
     type(xml_tree_type), intent(in) :: tree  !< the document
+    character(len=*), intent(in) :: joints   !< name of elements: joint or loop
+    character(len=*), intent(in) :: side     !< name of the element in them that names the link
     character(len=*), intent(in) :: link     !< name of the link
-    integer :: joint
+    integer :: e
 
     is_child = .true.
-    joint = tree%child(1, 'joint')
-    do while (joint > 0)
-      if (tree%attribute(tree%child(joint, 'child'), 'link') == link) return
-      joint = tree%next_named(joint, 'joint')
+    e = tree%child(1, joints)
+    do while (e > 0)
+      if (tree%attribute(tree%child(e, side), 'link') == link) return
+      e = tree%next_named(e, joints)
     end do
     is_child = .false.
   end function is_child

@@ -218,7 +218,7 @@ def check_mjcf_loops(s):
     spatial = MJCF_FOUR_BAR.replace('<joint name="C"/>', '<joint name="C" axis="0.1 0 1"/><joint name="D" axis="1 0 0"/><joint '
                                     'name="E" axis="0 1 0"/>')
     data = s.imports(spatial.replace('CLOSING', connect))
-    s.checks.equal(data.count('&pair'), 8, 'a ball in space is three hinges')
+    s.checks.true("'spherical'" in data and data.count('&pair') == 6, 'a ball in space stays a ball')
     s.table(s.mech9k, data)
 
 
