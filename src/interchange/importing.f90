@@ -21,6 +21,7 @@ module mech9_importing
   use mech9_robot, only: robot_type
   use mech9_urdf_reader, only: read_urdf, read_loops
   use mech9_mjcf_reader, only: read_mjcf
+  use mech9_sdf_reader, only: read_sdf
   use mech9_robot_poses, only: make_planar_loops_planar
   use mech9_rigid_links, only: join_rigid_links
   use mech9_pair_series, only: series_type, find_series
@@ -122,8 +123,11 @@ contains
     case ('mujoco')
       call robot%begin('MJCF')
       call read_mjcf(tree, robot, err)
+    case ('sdf')
+      call robot%begin('SDF')
+      call read_sdf(tree, robot, err)
     case default
-      call tree%fail(1, '<'//tree%name(1)//'> is no robot: the file must begin with <robot> (URDF) or <mujoco> (MJCF)', err)
+      call tree%fail(1, '<'//tree%name(1)//'> is no robot: the file must begin with <robot> (URDF), <mujoco> (MJCF) or <sdf>', err)
     end select
     if (size(inputs) > 1 .and. .not. allocated(err)) then
       call read_xml(inputs(2)%text, loops, err)
@@ -246,7 +250,7 @@ contains
       text = text//'! Link '//to_text(series%number_of(i))//': '//printable(robot%links(i)%name)//eol
     end do
     if (series%n_links > size(robot%links)) &
-      text = text//'! The other links are massless; they stand between the freedoms of one joint.'//eol
+      text = text//'! The other links are massless; they stand between both turns of universal joints.'//eol
     if (robot%n_notes > 0) text = text//'!'//eol//'! Not taken over:'//eol
     do i = 1, robot%n_notes
       text = text//'!   '//note_text(robot, i)//eol

@@ -73,7 +73,7 @@ module mech9_options
     option_type('resume', needed_argument, 'FILE', any_text, .false., both, &
                 'continue a conversation that was left or interrupted'), &
     option_type('import', needed_argument, 'FILE [LOOPS]', any_text, .false., both, &
-                'make a data file of a robot (URDF, MJCF); LOOPS: XML of closing joints', 2), &
+                'make a data file of a robot (URDF, MJCF, SDF); LOOPS: closing joints', 2), &
     option_type('out', needed_argument, 'FILE.nml', any_text, .false., both, &
                 'the data file that --import writes; standard output without it'), &
     option_type('quiet', no_argument, '', any_text, .false., both, &
