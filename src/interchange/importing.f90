@@ -32,6 +32,7 @@ module mech9_importing
   public :: import_robot
 
   character, parameter :: eol = achar(10)
+  character(len=*), parameter :: beside_singular = 'The robot''s own position is singular; the start lies beside it.'
 
 contains
 
@@ -150,11 +151,13 @@ contains
     type(draft_type) :: draft
     type(draft_text_type) :: written
     type(model_type) :: model
+    logical :: moved
     integer :: chains, k
 
     q = robot%joints(series%pairs%joint)%start
     chains = count(series%closes)
     independent = .true.
+    moved = .false.
     if (chains > 0) then
       independent(2:) = .false.
       call draft_of_robot(robot, series, independent, q, .false., draft)
@@ -162,7 +165,7 @@ contains
       if (allocated(err)) return
       preferred = robot%joints(series%pairs%joint)%is_preferred
       if (.not. any(preferred)) preferred = .not. series%closes(series%pairs%joint)
-      call find_start(model%mechanism, preferred, q, independent, err)
+      call find_start(model%mechanism, preferred, q, independent, moved, err)
       if (allocated(err)) then
         err%message = printable(file)//': '//err%message
         return
@@ -172,10 +175,12 @@ contains
     call take_model(draft, robot, model, err)
     if (allocated(err)) return
     draft%head = head_of(program_name, file, robot, series)
+    if (moved) draft%head = draft%head//'!'//eol//'! '//beside_singular//eol
     call write_draft(draft, '', written)
     call move_alloc(written%text, text)
     summary = to_text(series%n_links)//' links, '//to_text(size(q))//' coordinates, '//to_text(chains)//' closed '// &
               trim(merge('chain ', 'chains', chains == 1))//'; independent: '//to_text(pack([(k, k=1, size(q))], independent), ', ')
+    if (moved) summary = summary//eol//beside_singular
   end subroutine write_robot
 
   !> Read a draft as the programs will. Inertias that no body has are taken out, with a note.

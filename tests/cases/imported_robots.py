@@ -230,6 +230,12 @@ def check_four_bar(s):
         s.checks.near(gap, 0.0, ROUND_OFF, f'{why}: the coupler keeps its length')
     data = s.imports(FOUR_BAR.replace('LOOP', LOOP).replace('name="C" type', 'name="C" independent="true" type'))
     s.checks.true('cq=2 ' in data, 'the file chooses the independent coordinate', data)
+    # a parallelogram that is straight at zero
+    flat = FOUR_BAR.replace('LOOP', LOOP).replace('0.2 0 0', '0.4 0 0').replace('"0.5 0 0"', '"0.6 0 0"')
+    data = s.imports(flat)
+    s.checks.true("position is singular; the start lies beside it" in s.said and 'coefficients=0.3' in data, 'a start beside a singularity',
+                  s.said)
+    s.table(s.mech9k, re.sub('coefficients=[^ ]*', 'coefficients=0.3, 2', data))
     lift = text_of(os.path.join(TREE, 'examples', 'hydraulic_lift', 'lift.urdf'))
     data = s.imports(lift)
     # a range without zero: its middle is the start
