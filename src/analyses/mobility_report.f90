@@ -53,6 +53,7 @@ contains
 
     allocate (report%dimensions(plan%n_coordinates), source=0)
     do c = 1, size(plan%closures)
+      if (plan%closures(c)%coupling > 0) cycle
       associate (loop => plan%steps(plan%closures(c)%loop%steps)%coordinate)
         report%dimensions(loop) = max(report%dimensions(loop), plan%closures(c)%rank)
       end associate

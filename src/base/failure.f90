@@ -20,7 +20,7 @@ module mech9_failure
   public :: failure_no_initial_position, failure_not_started, failure_backwards, failure_interrupted
   public :: failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
     failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve, &
-    failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, last_failure
+    failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, failure_open_coupling, failure_coupled, last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
@@ -157,7 +157,14 @@ module mech9_failure
   integer, parameter :: failure_off_curve = 60
   !> Planar arithmetic does not know a pair without a fixed axis: coordinates.
   integer, parameter :: failure_no_fixed_axis = 61
-  integer, parameter :: last_failure = 61
+
+  ! Couplings
+
+  !> The coordinates of a coupling do not agree with those that other chains and couplings allow: chains, coordinates, gap.
+  integer, parameter :: failure_open_coupling = 62
+  !> A mechanism is executed in space because coordinates are coupled.
+  integer, parameter :: failure_coupled = 63
+  integer, parameter :: last_failure = failure_coupled
 
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type

@@ -131,6 +131,10 @@ contains
     end do
     do c = block%first_closure, block%last_closure
       call add_earlier(plan%closures(c)%target)
+      if (plan%closures(c)%coupling == 0) cycle
+      do s = 1, size(plan%closures(c)%loop%steps)
+        call add_earlier(plan%closures(c)%loop%steps(s))
+      end do
     end do
     do s = block%first_step, block%last_step
       if (clusters%of_step(s) == cluster) then

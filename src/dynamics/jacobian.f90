@@ -74,9 +74,14 @@ contains
       row = 0
       do c = block%first_closure, block%last_closure
         associate (rank => plan%closures(c)%rank)
-          e = dynamics%first(plan%closures(c)%closing) + offset
-          call arithmetic%closing_column(plan, c, state, jacobian, e, dynamics%target_entry(e), &
+          if (plan%closures(c)%coupling > 0) then
+            e = dynamics%first(block%unknowns(1)) + offset
+            work%right(row + 1) = coupled_rate(plan, dynamics, c, dynamics%column(e), state, jacobian)
+          else
+            e = dynamics%first(plan%closures(c)%closing) + offset
+            call arithmetic%closing_column(plan, c, state, jacobian, e, dynamics%target_entry(e), &
                                            work%right(row + 1:row + rank))
+          end if
           row = row + rank
         end associate
       end do
@@ -90,4 +95,26 @@ contains
       end do
     end associate
   end subroutine eliminate
+
+  !> The rate of a coupling's equation per unit rate of one independent coordinate.
+  pure real(wp) function coupled_rate(plan, dynamics, c, column, state, jacobian) result(rate)
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    integer, intent(in) :: c                           !< number of the closure that is the coupling
+    integer, intent(in) :: column                      !< place of the coordinate among the independent ones
+    type(state_type), intent(in) :: state              !< with the coordinates
+    type(jacobian_type), intent(in) :: jacobian        !< with `b` of the coupling's steps
+    real(wp) :: values(1)
+    integer :: i, e, s
+
+    rate = 0.0_wp
+    do i = 1, size(plan%closures(c)%loop%steps)
+      s = plan%closures(c)%loop%steps(i)
+      do e = dynamics%first(s), dynamics%first(s + 1) - 1
+        if (dynamics%column(e) /= column) cycle
+        call plan%constraints(c)%item%column(plan, s, 1.0_wp, state, values)
+        rate = rate + values(1)*jacobian%b(e)/plan%unit_of(plan%steps(s)%coordinate)
+      end do
+    end do
+  end function coupled_rate
 end module mech9_jacobian

@@ -15,6 +15,7 @@ module mech9_reader
   use mech9_drive_reader, only: read_drives
   use mech9_drive_check, only: check_drives, check_motors
   use mech9_motion_reader, only: read_initial, read_points
+  use mech9_coupling_reader, only: read_couplings
   use mech9_body_reader, only: read_bodies, read_gravity
   use mech9_load_reader, only: read_loads
   use mech9_motor_reader, only: read_motors
@@ -90,6 +91,7 @@ contains
     associate (m => mechanism, n_links => mechanism%structure%shown_links())
       call read_pairs(document, m%structure, m%angle_unit, m%parameters, m%pairs, diagnostics)
       call read_initial(document, problem%partition, m%pairs, m%angle_unit, problem%initial, diagnostics)
+      call read_couplings(document, m%pairs, problem%initial%position, m%angle_unit, m%couplings, diagnostics)
       call read_points(document, n_links, m%points, diagnostics)
       call read_drives(document, problem%partition, m%pairs, m%angle_unit, request%time%start, m%parameters, problem%drives, &
                        diagnostics)

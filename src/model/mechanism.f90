@@ -6,6 +6,7 @@ module mech9_mechanism
   use mech9_point, only: point_type
   use mech9_body, only: body_type
   use mech9_load, only: load_slot_type
+  use mech9_coupling, only: coupling_slot_type
   implicit none
   private
   public :: mechanism_type
@@ -19,6 +20,7 @@ module mech9_mechanism
     real(wp) :: data_tolerance = 0.0_wp
     type(structure_type) :: structure
     type(pair_slot_type), allocatable :: pairs(:)     !< pair k has coordinate k
+    type(coupling_slot_type), allocatable :: couplings(:)   !< in the order of the data file; none where not allocated
     type(point_type), allocatable :: points(:)
     type(body_type), allocatable :: bodies(:)
     type(load_slot_type), allocatable :: loads(:)   !< in the order of the data file; motors are the last ones

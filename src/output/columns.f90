@@ -31,6 +31,7 @@ module mech9_columns
     integer :: motion = 0                   !< how many columns, the first ones, belong to time, coordinates and points
     integer, allocatable :: drives(:)       !< driven coordinates whose forces have columns, ascending
     integer, allocatable :: reacting(:)     !< pairs whose wrenches have columns, ascending
+    integer :: couplings = 0                !< how many couplings have columns of their forces, after those of pairs
     integer :: motors = 0                   !< how many columns belong to motors, after those of forces
     real(wp), allocatable :: motor_factors(:)   !< (motors) factors from the program's units to those of the results
     type(poses_type) :: poses               !< columns after the others, if they were requested
@@ -86,7 +87,7 @@ contains
     end do
   end function kinematic_columns
 
-  !> Append the columns of forces: of drives, then of pairs.
+  !> Append the columns of forces: of drives, then of pairs and couplings.
   pure subroutine append_forces(self, mechanism, drives, reacting)
     class(columns_type), intent(inout) :: self     !< the columns
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
@@ -108,6 +109,13 @@ contains
         end do
       end do
     end do
+    if (size(reacting) == 0 .or. .not. allocated(mechanism%couplings)) return
+    self%couplings = size(mechanism%couplings)
+    do i = 1, self%couplings
+      k = mechanism%couplings(i)%coupling%coordinates(2)
+      call self%append('C'//to_text(i), force_unit_name(mechanism, k), &
+                       'force of coupling '//to_text(i)//' on coordinate '//to_text(k))
+    end do
   end subroutine append_forces
 
   !> How many columns belong to forces.
@@ -115,15 +123,16 @@ contains
     class(columns_type), intent(in) :: self  !< the columns
 
     forces = 0
-    if (allocated(self%drives)) forces = size(self%drives) + 6*size(self%reacting)
+    if (allocated(self%drives)) forces = size(self%drives) + 6*size(self%reacting) + self%couplings
   end function forces
 
   !> Fill the columns of forces in a row.
-  pure subroutine fill_forces(self, needed, force, moment, row)
+  pure subroutine fill_forces(self, needed, force, moment, coupled, row)
     class(columns_type), intent(in) :: self  !< the columns, some of forces
     real(wp), intent(in) :: needed(:)        !< (M) forces of drives [N m, N]
     real(wp), intent(in) :: force(:, :)      !< (3,M) of each pair [N]
     real(wp), intent(in) :: moment(:, :)     !< (3,M) of each pair [N m]
+    real(wp), intent(in) :: coupled(:)       !< (couplings) of each on its second coordinate [N m, N]
     real(wp), intent(inout) :: row(:)        !< numbers of one row, one for each column
     integer :: i, at
 
@@ -137,6 +146,7 @@ contains
       row(at + 4:at + 6) = moment(:, self%reacting(i))
       at = at + 6
     end do
+    row(at + 1:at + self%couplings) = coupled(:self%couplings)
   end subroutine fill_forces
 
   !> Append the columns of motors: state and force of each.

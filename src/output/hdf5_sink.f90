@@ -157,6 +157,11 @@ contains
     call self%series%add('reaction_moment', [((at + 6*(i - 1) + 3 + k, k=1, 3), i=1, n)], [3, n], &
                          'moments that they pass, about the origins of the pairs'' frames in the moving links', 'N m', &
                          ['/time', '/pair', '/axis'])
+    at = at + 6*n
+    n = columns%couplings
+    if (n > 0) call self%series%add('coupling_force', [(at + i, i=1, n)], [n], &
+                                    'forces of the couplings on their second coordinates', &
+                                    common_unit(columns%units(at + 1:at + n)), ['/time    ', '/coupling'])
   end subroutine add_forces
 
   !> Add poses of links, and the vertices of their drawing.
@@ -200,6 +205,9 @@ contains
     call file%make_scale('pair')
     if (.not. has_axes) call put_axes(file, 'axis', 'axis of the fixed frame')
     has_axes = .true.
+    if (columns%couplings == 0) return
+    call file%put('coupling', [(i, i=1, columns%couplings)], 'number of the coupling, in the order of the data file')
+    call file%make_scale('coupling')
   end subroutine put_force_scales
 
   !> Write scales of the poses, and to which links vertices and lines belong. A scale stands in the group of the data set

@@ -9,27 +9,49 @@ contains
 
   ! Lengths of results: gfortran wants them before the functions that have them.
 
+  !> Length of the words for several things.
+  pure integer function several_length(word, numbers) result(length)
+    character(len=*), intent(in) :: word    !< for one of them
+    integer, intent(in) :: numbers(:)       !< their numbers
+
+    length = 0
+    if (size(numbers) > 0) length = len(word) + len(' ') + len(to_text(numbers))
+    if (size(numbers) > 1) length = length + len('s')
+  end function several_length
+
+  !> "coupling 2", "couplings 1, 3", or nothing.
+  pure function several(word, numbers) result(words)
+    character(len=*), intent(in) :: word    !< for one of them
+    integer, intent(in) :: numbers(:)       !< their numbers
+    character(len=several_length(word, numbers)) :: words
+
+    words = ''
+    if (size(numbers) == 1) words = word//' '//to_text(numbers)
+    if (size(numbers) > 1) words = word//'s '//to_text(numbers)
+  end function several
+
   !> Length of the names of chains.
   pure integer function chain_names_length(chains) result(length)
-    integer, intent(in) :: chains(:)        !< numbers of the closed chains
+    integer, intent(in) :: chains(:)        !< numbers of the closed chains, and of couplings, negative
 
     length = len('an open chain')
-    if (size(chains) == 1) length = len('closed chain ') + len(to_text(chains))
-    if (size(chains) > 1) length = len('closed chains  together') + len(to_text(chains))
+    if (size(chains) == 0) return
+    length = len(several('closed chain', pack(chains, chains > 0))) + len(several('coupling', -pack(chains, chains < 0)))
+    if (any(chains > 0) .and. any(chains < 0)) length = length + len(' and ')
+    if (size(chains) > 1) length = length + len(' together')
   end function chain_names_length
 
-  !> "closed chain 2" or "closed chains 1, 3 together".
+  !> "closed chain 2", "closed chains 1, 3 together", "coupling 1" or "closed chain 2 and coupling 1 together".
   pure function chain_names(chains) result(names)
-    integer, intent(in) :: chains(:)        !< numbers of the closed chains of a block
+    integer, intent(in) :: chains(:)        !< numbers of the closed chains of a block, and of its couplings, negative
     character(len=chain_names_length(chains)) :: names
 
-    if (size(chains) == 0) then
-      names = 'an open chain'
-    else if (size(chains) == 1) then
-      names = 'closed chain '//to_text(chains)
-    else
-      names = 'closed chains '//to_text(chains)//' together'
-    end if
+    names = 'an open chain'
+    if (size(chains) == 0) return
+    names = several('closed chain', pack(chains, chains > 0))//several('coupling', -pack(chains, chains < 0))
+    if (any(chains > 0) .and. any(chains < 0)) &
+      names = several('closed chain', pack(chains, chains > 0))//' and '//several('coupling', -pack(chains, chains < 0))
+    if (size(chains) > 1) names = trim(names)//' together'
   end function chain_names
 
   !> The numbers in ascending order.
@@ -45,7 +67,7 @@ contains
 
   !> Length of the words of a block.
   pure integer function words_length(chains, coordinates) result(length)
-    integer, intent(in) :: chains(:)        !< numbers of the closed chains
+    integer, intent(in) :: chains(:)        !< numbers of the closed chains, and of couplings, negative
     integer, intent(in) :: coordinates(:)   !< numbers of the coordinates
 
     length = len(chain_names(chains)) + len(' (coordinates )') + len(to_text(coordinates))

@@ -340,7 +340,7 @@ def short_answers(talks):
              ('This must be given', 'z'), ('zero', '-x'),
              ('kind [revolute]', 'pris'), ('point', ''), ('axis: ', '-x'), ('zero', ''),
              ('kind [revolute]', ''), ('point', '.1 0 0'), ('axis [0, 0, 1]', ''), ('zero', ''),
-             ('kind [revolute]', ''), ('point', '.4 0 0'), ('axis [0, 0, 1]', ''), ('zero', ''),
+             ('kind [revolute]', ''), ('point', '.4 0 0'), ('axis [0, 0, 1]', ''), ('zero', ''), ('coupling 1, kind', ''),
              ('kind [polynomial]', 'har'), ('mean (deg) [0]', ''), ('amplitude (deg): ', '?'), ('For example: 30 (', '20'),
              ('angular_frequency (deg/s)', '360'), ('phase (deg) [0]', '?'), ('For example: 90 (begins at', ''),
              ('guesses', ''), ('point 1, name', 'none'), ('start', ''), ('end', ''), ('intervals', '10'),

@@ -191,6 +191,12 @@ TABLE = """&structure cq=1 /
 &drive coordinate=1, kind='table', file='table.dat' /
 &time start=-1, end=1, intervals=2 /
 """
+GEARS = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=1,3, kind='revolute', point=1,0,0, axis=0,0,1 /
+&drive coordinate=1, kind='polynomial', coefficients=0,1 /
+&coupling kind='gear', coordinates=1,2, ratio=2 /
+"""
 PATH = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='path', file='curve.dat' /
 &drive coordinate=1, kind='polynomial', coefficients=1, 5 /
@@ -287,6 +293,9 @@ def driven_cases():
          DONE, ['spatial arithmetic: pair 1 has no fixed axis\n']),
         ('chain_off_plane', four_bar(FLAT, turned(60), drive(1, '60'), offset='1e-11'), ('--plan',), DONE,
          ['spatial arithmetic: closed chain 1 does not close in a plane\n']),
+        ('coupled', GEARS, ('--plan',), DONE, ['spatial arithmetic: coordinates are coupled\n']),
+        ('open_coupling', GEARS + "&coupling kind='gear', coordinates=1,2, ratio=2, phase=1 /\n", (), ASSEMBLY,
+         ['cannot be assembled: coupling 2 of coordinates 1, 2 contradicts', ':6:1:']),
     ]
 
 

@@ -75,6 +75,7 @@ contains
     type(draft_type) :: draft
     character(len=10), parameter :: pairs(4) = [character(len=10) :: 'revolute', 'prismatic', 'helical', 'user']
     character(len=10), parameter :: loads(5) = [character(len=10) :: 'force', 'torque', 'spring', 'coordinate', 'user']
+    character(len=6), parameter :: couplings(5) = [character(len=6) :: 'gear', 'rack', 'belt', 'screw', 'linear']
     character(len=6), parameter :: links(4) = ['1, 2', '2, 3', '3, 4', '4, 1']
     character(len=1) :: number
     integer :: i
@@ -96,6 +97,9 @@ contains
       call draft%give('drive', 1, 'kind', ''''//drive//'''')
       call draft%give('cam', 1, 'link', '2')
     end if
+    do i = 1, size(couplings)
+      call draft%give('coupling', i, 'kind', ''''//trim(couplings(i))//'''')
+    end do
     do i = 1, size(loads)
       call draft%give('load', i, 'kind', ''''//trim(loads(i))//'''')
     end do

@@ -26,7 +26,7 @@ def pairs(with_links):
         if with_links:
             steps = steps[:-1] + [(f'Pair {k}', LINKS[k]), ('kind', '')]
         steps += [('point', POINTS[k]), ('axis', '0 0 1' if k == 1 else ''), ('moving_point', MOVING_POINTS[k])]
-    return steps
+    return steps + [('coupling 1, kind', '')]
 
 
 MOTION = [('Drive of coordinate 5', ''), ('coefficients', '0.5, 6'), ('guesses', 'yes')]

@@ -223,7 +223,7 @@ contains
     do b = 1, size(plan%blocks)
       associate (block => plan%blocks(b))
         if (block%last_closure < block%first_closure) cycle
-        if (clusters%of_step(plan%closures(block%first_closure)%closing) /= steps(1)) cycle
+        if (clusters%of_step(plan%closures(block%first_closure)%loop%steps(1)) /= steps(1)) cycle
         cluster%blocks = [cluster%blocks, b]
         regular = regular .and. block%equations == size(block%unknowns)
         closures = closures + block%last_closure - block%first_closure + 1

@@ -23,6 +23,7 @@ module mech9_reactions
   use mech9_joint_geometry, only: joint_geometry_type, new_joint_geometry, find_geometry
   use mech9_cluster_balance, only: cluster_balance_type, new_cluster_balance
   use mech9_loop_balance, only: loop_balance_type, new_loop_balance, balance_loops, show_loops
+  use mech9_coupling_forces, only: coupling_forces_type, new_coupling_forces, add_couplings
   use mech9_planar_wrenches, only: planar_wrenches_type, new_planar_wrenches, balance_in_plane, show_wrenches
   use mech9_planar_balance, only: planar_balance_type, new_planar_balance
   use mech9_singular_cluster, only: singular_cluster_type, decompose_cluster
@@ -40,6 +41,7 @@ module mech9_reactions
     type(joint_geometry_type) :: geometry         !< of the position
     type(motion_view_type) :: view                !< the motion as loads read it
     type(force_sum_type) :: sum                   !< of the loads
+    type(coupling_forces_type) :: couplings       !< forces of the couplings
     type(planar_wrenches_type) :: flat            !< of a flat mechanism
     type(loop_balance_type) :: loops              !< of the clusters that equilibrium determines
     type(cluster_balance_type), allocatable :: balances(:)   !< of the clusters
@@ -74,6 +76,7 @@ contains
     self%geometry = new_joint_geometry(plan)
     if (reactions%flat) self%flat = new_planar_wrenches(plan)
     self%loops = new_loop_balance(plan, reactions)
+    self%couplings = new_coupling_forces(plan)
     allocate (self%balances(size(reactions%clusters)), self%in_plane(merge(size(reactions%clusters), 0, plan%planar%used)))
     do c = 1, size(reactions%clusters)
       self%balances(c) = new_cluster_balance(reactions, reactions%clusters(c))
@@ -96,6 +99,8 @@ contains
     if (size(reactions%acting) > 0) then
       call sum_loads(mechanism, plan, reactions%acting, reactions%loaded, state, self%view, self%sum, err)
       if (allocated(err)) return
+    else if (size(plan%couplings) > 0) then
+      call self%sum%clear()
     end if
     if (reactions%flat) then
       call balance_in_plane(plan, reactions, state, self%view, self%sum, self%flat, done)
@@ -109,6 +114,7 @@ contains
     call find_required(mechanism, plan, reactions, state, self%geometry%place, self%view, self%sum, self%link_force, &
                        self%link_moment)
     call carry_inwards(plan, reactions, self)
+    call add_couplings(plan, reactions, state, self%geometry, self%total_force, self%total_moment, self%sum, self%couplings)
     do c = 1, size(reactions%clusters)
       call leave_unloaded(reactions%clusters(c), self, done)
       if (.not. done) then

@@ -298,6 +298,32 @@ module mech9_explanations
     explanation_type('load', 'period', 'law:segments', &
                   'With a period the segments repeat. It is the time from the first to the last of the times.', '1')]
 
+  type(explanation_type), parameter :: coupling_texts(*) = [ &
+    explanation_type('coupling', 'kind', '', &
+                  'A gear or a belt couples two coordinates that turn, a rack or a screw one that turns and one that slides. '// &
+                  'linear couples any coordinates by a sum with coefficients. Enter goes on without a further coupling.', 'gear'), &
+    explanation_type('coupling', 'coordinates', '', &
+                  'Give the numbers of the coordinates. The first one moves the second; only a linear coupling may have more.', &
+                  '1, 2'), &
+    explanation_type('coupling', 'ratio', 'gear', &
+                  'The second coordinate turns so many times while the first one turns once. It is negative for two gears that '// &
+                  'mesh from outside, because they turn in opposite directions.', '-2.5'), &
+    explanation_type('coupling', 'radius', 'rack', &
+                  'The rack slides by this radius while the pinion turns by 1 rad. A negative radius reverses it.', '0.02'), &
+    explanation_type('coupling', 'radii', 'belt', &
+                  'Give the radius of the pulley of the first coordinate and that of the second one.', '0.05, 0.1'), &
+    explanation_type('coupling', 'crossed', 'belt', &
+                  'With a crossed belt the pulleys turn in opposite directions.', '.true.'), &
+    explanation_type('coupling', 'pitch', 'screw', &
+                  'The second coordinate slides by the pitch while the first one makes a turn.', '0.005'), &
+    explanation_type('coupling', 'phase', 'gear rack belt screw', &
+                  'The second coordinate has this value where the first one is zero. Without it both have their initial '// &
+                  'positions together.', '0'), &
+    explanation_type('coupling', 'coefficients', 'linear', &
+                  'The sum of these numbers, each times its coordinate, is constant. Give one for each coordinate.', '1, -2, 1'), &
+    explanation_type('coupling', 'constant', 'linear', &
+                  'The sum of the coefficients times the coordinates has this value.', '0')]
+
   type(explanation_type), parameter :: motor_texts(*) = [ &
     explanation_type('motor', 'coordinate', '', &
                   'A motor acts on an independent coordinate without a drive. Name it by its number. Enter goes on without a '// &
@@ -453,7 +479,7 @@ module mech9_explanations
                   'again.', '0.1, 2.0')]
 
   type(explanation_type), parameter :: explanations(*) = &
-    [general_texts, pair_texts, motion_texts, body_texts, load_texts, motor_texts, cam_texts, run_texts]
+    [general_texts, pair_texts, coupling_texts, motion_texts, body_texts, load_texts, motor_texts, cam_texts, run_texts]
 
 contains
 

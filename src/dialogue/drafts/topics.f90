@@ -19,6 +19,8 @@ module mech9_topics
                'mechanism and give all points and directions in the frame, as they are in that position; all coordinates are '// &
                'then 0 there. Where links have systems of their own, they are given in the reference link, and again in the '// &
                'moving link as moving_point, moving_axis and moving_zero.'), &
+    topic_type('Couplings', 'coupling', 'Gears, racks, belts and screws couple coordinates. Each coupling makes one more '// &
+               'coordinate dependent. A coupling begun by mistake is left out by remove.'), &
     topic_type('Drives', 'drive', 'An independent coordinate with a drive is a given function of time; mech9k needs one '// &
                'for each.'), &
     topic_type('The start', 'initial', ''), &

@@ -17,7 +17,8 @@ module mech9_linearisation
   use mech9_motion_variation, only: motion_variation_work_type, new_motion_variation_work, factorize_chains, &
     prepare_variations, vary_motion
   use mech9_tree_forces, only: tree_forces_type, new_tree_forces, find_tree_forces, vary_tree_forces, loop_wrench_type
-  use mech9_loop_forces, only: loop_forces_type, new_loop_forces, eliminate_dependent, loop_wrenches
+  use mech9_loop_forces, only: loop_forces_type, new_loop_forces, eliminate_dependent, loop_wrenches, &
+    vary_couplings
   implicit none
   private
   public :: linearisation_type, new_linearisation, find_forces, vary_forces, find_matrix
@@ -32,7 +33,8 @@ module mech9_linearisation
     type(dynamics_plan_type) :: dynamics
     type(motion_variation_work_type) :: motion
     type(tree_forces_type) :: tree
-    type(loop_forces_type) :: loops
+    type(loop_forces_type) :: loops         !< forces of the equations of blocks
+    type(loop_forces_type) :: loops_held    !< those of the motion, while `loops` serves its variations
     type(loop_wrench_type), allocatable :: wrenches(:)   !< (closures) forces of the closed chains
     type(variation_type) :: variation                    !< by the last parameter
     real(wp), allocatable :: forces(:)    !< (M) required along the independent coordinates; zero for others [N m, N]
@@ -79,6 +81,7 @@ contains
     if (allocated(err)) return
     self%forces = self%tree%required
     call eliminate_dependent(plan, state, self%motion%blocks, self%loops, self%forces)
+    self%loops_held = self%loops
     call loop_wrenches(plan, state, self%loops, self%wrenches)
     call find_tree_forces(mechanism, plan, self%dynamics, state, self%tree, err, self%wrenches)
   end subroutine find_forces
@@ -96,6 +99,7 @@ contains
     call vary_tree_forces(mechanism, plan, self%dynamics, state, self%variation, self%tree, err, self%wrenches)
     if (allocated(err)) return
     self%change = self%tree%required_change
+    call vary_couplings(plan, state, self%loops_held, self%variation%q, self%change)
     call eliminate_dependent(plan, state, self%motion%blocks, self%loops, self%change)
   end subroutine vary_forces
 

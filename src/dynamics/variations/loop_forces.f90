@@ -6,11 +6,12 @@ module mech9_loop_forces
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_equations, only: constraint_wrench
+  use mech9_coupling_constraint, only: bent_force
   use mech9_block_solver, only: block_work_type
   use mech9_tree_forces, only: loop_wrench_type
   implicit none
   private
-  public :: loop_forces_type, new_loop_forces, eliminate_dependent, loop_wrenches
+  public :: loop_forces_type, new_loop_forces, eliminate_dependent, loop_wrenches, vary_couplings, coupling_force
 
   !> The forces of the equations of one block, and scratch.
   type :: multipliers_type
@@ -83,6 +84,40 @@ contains
       row = row + n
     end do
   end subroutine hand_on
+
+  !> Subtract the change of the forces of couplings on coordinates that vary, with the multipliers held.
+  subroutine vary_couplings(plan, state, loops, q, forces)
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism, in space
+    type(state_type), intent(in) :: state          !< position of the mechanism
+    type(loop_forces_type), intent(in) :: loops    !< with the multipliers
+    real(wp), intent(in) :: q(:)                   !< (M) variations of the coordinates
+    real(wp), intent(inout) :: forces(:)           !< (M) forces on the coordinates that the varied motion requires [N m, N]
+    integer :: b, c, row
+
+    do b = 1, size(plan%blocks)
+      row = 0
+      do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
+        if (plan%closures(c)%coupling > 0) call bent_force(plan, c, state, -loops%blocks(b)%values(row + 1), q, forces)
+        row = row + plan%constraints(c)%item%equations
+      end do
+    end do
+  end subroutine vary_couplings
+
+  !> The generalized force that a coupling exerts on one of its coordinates.
+  pure real(wp) function coupling_force(plan, b, c, k, state, loops) result(force)
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    integer, intent(in) :: b                       !< number of the block
+    integer, intent(in) :: c                       !< number of its closure that is the coupling
+    integer, intent(in) :: k                       !< number of the coordinate
+    type(state_type), intent(in) :: state          !< position of the mechanism
+    type(loop_forces_type), intent(in) :: loops    !< with the multipliers
+    real(wp) :: values(1)
+    integer :: row
+
+    row = sum(plan%closures(plan%blocks(b)%first_closure:c)%rank)
+    call plan%constraints(c)%item%column(plan, plan%step_of(k), 1.0_wp, state, values)
+    force = values(1)*loops%blocks(b)%values(row)/plan%unit_of(k)
+  end function coupling_force
 
   !> The forces of the closed chains from their multipliers.
   subroutine loop_wrenches(plan, state, loops, wrenches)

@@ -10,6 +10,7 @@ module mech9_motion_variation
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type, new_block_work, factorize_block
+  use mech9_coupling_constraint, only: varied_coupling
   use mech9_variation, only: variation_type
   use mech9_frame_variation, only: third_derivatives_type, new_third_derivatives, find_third_derivatives, vary_positions, &
     vary_velocities, vary_accelerations
@@ -176,8 +177,12 @@ contains
     row = 0
     do c = block%first_closure, block%last_closure
       associate (constraint => plan%constraints(c)%item)
-        call find_opening(plan%closures(c)%closing, plan%closures(c)%target, state, order, variation, w, v)
-        call constraint%opening(plan, state, w, v, values(row + 1:row + constraint%equations))
+        if (plan%closures(c)%coupling > 0) then
+          values(row + 1) = varied_coupling(plan, c, state, order, variation%q, variation%dq, variation%ddq)
+        else
+          call find_opening(plan%closures(c)%closing, plan%closures(c)%target, state, order, variation, w, v)
+          call constraint%opening(plan, state, w, v, values(row + 1:row + constraint%equations))
+        end if
         row = row + constraint%equations
       end associate
     end do

@@ -55,6 +55,8 @@ module mech9_grammar
                    'a joint of two links: its kind, its coordinate or coordinates, its point and axis'), &
     group_row_type('initial', .true., 'coordinate', 'both', &
                    'a coordinate at the start: a guess of a dependent one, the value of an independent one'), &
+    group_row_type('coupling', .true., '', 'both', &
+                   'an equation between coordinates, as of gears, racks, belts and screws'), &
     group_row_type('point', .true., 'name', 'both', 'a point of a link whose motion is recorded'), &
     group_row_type('drive', .true., 'coordinate', 'both', &
                    'an independent coordinate as a function of time; mech9k needs one for each, in mech9d the others are free'), &
@@ -175,6 +177,29 @@ module mech9_grammar
                   'direction in the moving link along axis, or across the tangent', '0, 0, 1', seldom=.true.), &
     item_row_type('pair', 'moving_zero', 'real', 3, 3, '', optional, '(x, y or z axis)', '', '', 'path', &
                   'direction in the moving link along zero, or along the tangent', '1, 0, 0', seldom=.true.)]
+
+  type(item_row_type), parameter :: coupling_items(*) = [ &
+    item_row_type('coupling', 'kind', 'text', 1, 1, '', needed, '', '', 'gear rack belt screw linear', '', &
+                  'which machine part couples the coordinates, or linear for a sum with coefficients', '''gear'''), &
+    item_row_type('coupling', 'coordinates', 'integer', 2, unlimited, '', needed, '', '>=1', '', '', &
+                  'numbers of the coordinates: two, of which the first moves the second, or any for linear', '2, 5'), &
+    item_row_type('coupling', 'ratio', 'real', 1, 1, '', needed, '', '', '', 'gear', &
+                  'change of the second coordinate per change of the first one; negative: the other way', '-2.5'), &
+    item_row_type('coupling', 'radius', 'real', 1, 1, 'm', needed, '', '', '', 'rack', &
+                  'slide of the second coordinate per rad of the first one; negative: the other way', '0.02'), &
+    item_row_type('coupling', 'radii', 'real', 2, 2, 'm', needed, '', '>0', '', 'belt', &
+                  'radii of the pulleys of both coordinates', '0.05, 0.1'), &
+    item_row_type('coupling', 'crossed', 'logical', 1, 1, '', optional, '.false.', '', '', 'belt', &
+                  'whether the belt is crossed, so that the pulleys turn in opposite directions', '.true.', seldom=.true.), &
+    item_row_type('coupling', 'pitch', 'real', 1, 1, 'm', needed, '', '', '', 'screw', &
+                  'slide of the second coordinate per turn of the first one; negative: a left-hand thread', '0.005'), &
+    item_row_type('coupling', 'phase', 'real', 1, 1, 'q', optional, '(from &initial)', '', '', 'gear rack belt screw', &
+                  'the second coordinate where the first one is zero; by default from the positions in &initial', '0', &
+                  seldom=.true.), &
+    item_row_type('coupling', 'coefficients', 'real', 2, unlimited, '1 per q', needed, '', '', '', 'linear', &
+                  'coefficients of the coordinates in the sum, for the units of this file', '1, -2, 1'), &
+    item_row_type('coupling', 'constant', 'real', 1, 1, '', optional, '0', '', '', 'linear', &
+                  'the value of the sum', '0')]
 
   type(item_row_type), parameter :: motion_items(*) = [ &
     item_row_type('initial', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
@@ -414,7 +439,7 @@ module mech9_grammar
                   'numbers that every user procedure receives', '0.1, 2.0')]
 
   type(item_row_type), parameter :: item_table(*) = &
-    [general_items, pair_items, motion_items, body_items, load_items, motor_items, cam_items, run_items]
+    [general_items, pair_items, coupling_items, motion_items, body_items, load_items, motor_items, cam_items, run_items]
 
 contains
 

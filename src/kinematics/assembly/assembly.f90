@@ -184,7 +184,7 @@ contains
     call damped%factorize()
     call damped%solve(right, work%change)
     ! no more than about a radian at once: beyond it the linear model of the closures is useless
-    work%change = work%change/max(1.0_wp, maxval(abs(work%change)))
+    if (.not. block%is_linear) work%change = work%change/max(1.0_wp, maxval(abs(work%change)))
   end subroutine damped_change
 
   !> The residual of the block at the coordinates in `state`, in work%right, and its norm.

@@ -4,7 +4,7 @@ module mech9_diagnosis
   use mech9_tolerances, only: apparent_motion, least_rate, returned_to_start
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly
   use mech9_failure, only: failure_wrong_choice, failure_undetermined_coordinates, failure_open_chain, &
-    failure_nearly_closed_chain, failure_locked_chain, failure_nearly_moving_chain
+    failure_nearly_closed_chain, failure_locked_chain, failure_nearly_moving_chain, failure_open_coupling
   use mech9_masks, only: numbers_of
   use mech9_random, only: random_type
   use mech9_plan, only: plan_type, within_range
@@ -66,7 +66,7 @@ contains
       if (.not. allocated(best)) best = motions
       if (size(motions, 2) < size(best, 2)) best = motions
     end do
-    call refuse_choice(best, wanted, err)
+    call refuse_choice(plan, best, wanted, err)
   end subroutine judge_choice
 
   !> Generic closed positions near one that may be singular, and the coordinates that return to their values there each time.
@@ -109,11 +109,12 @@ contains
   end subroutine find_positions
 
   !> Fail because of a choice of independent coordinates, with one that would serve.
-  subroutine refuse_choice(motions, wanted, err)
+  subroutine refuse_choice(plan, motions, wanted, err)
+    type(plan_type), intent(in) :: plan       !< the plan of the mechanism
     real(wp), intent(in) :: motions(:, :)     !< (M, mobility) basis of the motions at a closed position
     logical, intent(in) :: wanted(:)          !< (M) the independent coordinates
     type(error_type), allocatable, intent(out) :: err   !< always allocated
-    logical :: chosen(size(wanted))
+    logical :: chosen(size(wanted)), idle(size(wanted))
     real(wp), allocatable :: shares(:, :)
     integer :: k
 
@@ -122,7 +123,13 @@ contains
     err%failure%number = size(wanted)
     err%failure%coordinates = numbers_of(wanted)
     err%failure%others = numbers_of(chosen)
-    err%failure%idle = numbers_of([(norm2(motions(k, :)) <= least_rate, k=1, size(wanted))])
+    idle = [(norm2(motions(k, :)) <= least_rate, k=1, size(wanted))]
+    err%failure%idle = numbers_of(idle)
+    ! couplings that contradict each other, or closed chains, hold their coordinates
+    err%failure%chains = pack([(-k, k=1, size(plan%couplings))], &
+                              [(all(idle(plan%couplings(k)%coupling%coordinates)), k=1, size(plan%couplings))])
+    k = size(err%failure%chains)
+    if (k > 0) err%place = plan%couplings(-err%failure%chains(k))%coupling%place
     if (.not. any(chosen)) return
     call shares_of(motions, chosen, shares)
     err%failure%replaces = abs(shares) > least_rate
@@ -147,6 +154,12 @@ contains
                                          outcome%gap < nearly_closed*plan%length))
     associate (closure => plan%closures(outcome%worst_closure))
       err%failure%chains = [closure%chain]
+      if (closure%coupling > 0) then
+        err%failure%kind = failure_open_coupling
+        err%failure%coordinates = plan%couplings(closure%coupling)%coupling%coordinates
+        err%place = plan%couplings(closure%coupling)%coupling%place
+        return
+      end if
       err%failure%link = plan%steps(closure%closing)%link
       err%failure%coordinates = [plan%steps(closure%closing)%coordinate]
     end associate

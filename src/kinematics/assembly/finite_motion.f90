@@ -297,7 +297,8 @@ contains
     row = 0
     do c = block%first_closure, block%last_closure
       associate (closure => plan%closures(c), place => state%p(:, plan%closures(c)%closing))
-        do i = 1, size(closure%loop%steps)
+        ! the numbers of couplings are exact
+        do i = 1, merge(0, size(closure%loop%steps), closure%coupling > 0)
           s = closure%loop%steps(i)
           do j = 1, 3
             w = closure%loop%signs(i)*state%r(:, j, plan%steps(s)%parent)

@@ -5,6 +5,7 @@ module mech9_arithmetics
   use mech9_planar_plan, only: planar_plan_type
   use mech9_spatial_arithmetic, only: spatial_arithmetic_type
   use mech9_spatial_closure, only: spatial_closure_type
+  use mech9_coupling_constraint, only: coupling_constraint_type
   use mech9_planar_arithmetic, only: planar_arithmetic_type
   use mech9_planar_block_arithmetic, only: planar_block_arithmetic_type
   use mech9_planar_closure, only: planar_closure_constraint_type
@@ -24,8 +25,12 @@ contains
     allocate (plan%arithmetics(1), plan%constraints(size(plan%closures)))
     allocate (spatial_arithmetic_type :: plan%arithmetics(1)%kind)
     do c = 1, size(plan%closures)
-      allocate (plan%constraints(c)%item, &
-                source=spatial_closure_type(equations=plan%closures(c)%rank, closure=c))
+      if (plan%closures(c)%coupling > 0) then
+        allocate (plan%constraints(c)%item, source=coupling_constraint_type(equations=1, closure=c))
+      else
+        allocate (plan%constraints(c)%item, &
+                  source=spatial_closure_type(equations=plan%closures(c)%rank, closure=c))
+      end if
     end do
   end subroutine set_in_space
 

@@ -1,8 +1,9 @@
 !> Clusters are the parts of the spanning tree that closed chains hold together.
 !>
-!> Two steps belong to one cluster where a loop contains both, or where loops with common steps connect them. A step that is in
-!> no loop is a cluster by itself. A cluster is a connected part of the tree and stands on one frame outside it, its base. So
-!> clusters form a tree again, and the motion of a cluster relative to its base depends on coordinates of its own only.
+!> Two steps belong to one cluster where a loop contains both, or where loops with common steps connect them. The steps of a
+!> coupling, and those of the path between them, are in one cluster too. A step that is in no loop is a cluster by itself.
+!> A cluster is a connected part of the tree and stands on one frame outside it, its base. So clusters form a tree again, and the
+!> motion of a cluster relative to its base depends on coordinates of its own only.
 module mech9_clusters
   use mech9_plan, only: plan_type
   implicit none
@@ -30,14 +31,20 @@ contains
     do b = 1, size(plan%blocks)
       do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
         associate (steps => plan%closures(c)%loop%steps)
-          call unite_all(steps, leader)
+          if (plan%closures(c)%coupling > 0) then
+            do s = 2, size(steps)
+              call unite_all([steps(s - 1), steps(s), steps_between(plan, steps(s - 1), steps(s))], leader)
+            end do
+          else
+            call unite_all(steps, leader)
+          end if
           clusters%closed(steps) = .true.
           if (c == plan%blocks(b)%first_closure .or. size(steps) == 0) cycle
           ! loops of one block without a common step are joined through the steps between their bases
           associate (others => plan%closures(c - 1)%loop%steps)
             if (size(others) == 0) cycle
             if (leader_of(leader, steps(1)) == leader_of(leader, others(1))) cycle
-            call unite_all([steps(1), others(1), steps_between(plan, plan%closures(c)%base, plan%closures(c - 1)%base)], leader)
+            call unite_all([steps(1), others(1), steps_between(plan, steps(1), others(1))], leader)
           end associate
         end associate
       end do

@@ -4,7 +4,7 @@
 !> the axis of the pair by which it was reached, with that axis as its z, so that a step with a fixed axis is one constant pose
 !> followed by one turn and one slide. A step that would reach a link already known makes a second frame of that link instead,
 !> and a *closure* says at which pose this frame must be. Steps are grouped in *blocks*: the chains whose closures are solved
-!> together; blocks are executed in order.
+!> together; blocks are executed in order. A coupling is a closure with one equation between the coordinates of some steps.
 !>
 !> An *arithmetic*, in space or in a plane, computes the poses and velocities of the frames of a block; a *constraint* gives
 !> the equations that a chain must satisfy. Both are abstract here.
@@ -13,6 +13,7 @@ module mech9_plan
   use mech9_error, only: error_type
   use mech9_pose, only: pose_type
   use mech9_pair, only: pair_slot_type
+  use mech9_coupling, only: coupling_slot_type
   use mech9_planar_plan, only: planar_plan_type
   use mech9_state, only: state_type
   implicit none
@@ -47,9 +48,12 @@ module mech9_plan
     integer :: stems(2) = 0
   end type loop_type
 
-  !> A closed chain: frame `closing` coincides with `in_target` of frame `target`.
+  !> A closed chain: frame `closing` coincides with `in_target` of frame `target`. Or a coupling: its loop consists of the steps of
+  !> its coordinates, one sign for all, and it has no frames.
   type :: closure_type
-    integer :: chain = 0           !< number of the closed chain, as in nrw
+    integer :: chain = 0           !< number of the closed chain, as in nrw; of a coupling: its number with a minus sign
+    integer :: coupling = 0        !< number of the coupling; 0 for a closed chain
+    real(wp) :: weight = 1.0_wp    !< factor of a coupling's equation
     integer :: closing = 0         !< the frame made by the chain's last step
     integer :: target = 0          !< the other frame of that link
     type(pose_type) :: in_target   !< pose that the closing frame must have in the target frame
@@ -70,12 +74,13 @@ module mech9_plan
     integer :: first_step = 0, last_step = 0         !< its steps
     integer :: last_moved = huge(1)                  !< last frame whose acceleration is used outside the block
     integer :: first_closure = 1, last_closure = 0   !< its closures, which are also its constraints
-    integer, allocatable :: chains(:)                !< numbers of its closed chains, as in nrw
+    integer, allocatable :: chains(:)                !< numbers of its closed chains, as in nrw, and of couplings, negative
     integer :: equations = 0                         !< number of equations of its constraints
     integer :: arithmetic = 1                        !< number among the plan's arithmetics; 0: each step in that of its own block
     logical :: is_shown = .false.                    !< some of its frames are planar and are read in space
     logical :: whole_loops = .false.                 !< all coordinates of the loops are unknowns, also those of earlier blocks
-    logical :: is_constant = .false.                 !< its Jacobian is constant, because nothing turns in its loops
+    logical :: is_constant = .false.                 !< its Jacobian is constant: nothing turns in its loops, couplings are linear
+    logical :: is_linear = .false.                   !< all its closures are linear couplings
     integer, allocatable :: unknowns(:)              !< steps of its dependent coordinates
     integer, allocatable :: coordinates(:)           !< its dependent coordinates, in the order of `unknowns`
   end type block_type
@@ -139,6 +144,7 @@ module mech9_plan
     integer, allocatable :: free(:)                 !< independent coordinates without a drive, ascending
     integer, allocatable :: free_places(:)          !< their places among the independent ones
     type(pair_slot_type), allocatable :: pairs(:)   !< (M) only pairs without a fixed axis are set
+    type(coupling_slot_type), allocatable :: couplings(:)   !< of the mechanism
     type(planar_plan_type) :: planar                !< the plan in planar arithmetic, as far as that can be used
   end type plan_type
 

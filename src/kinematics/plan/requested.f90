@@ -177,6 +177,9 @@ contains
     do c = block%first_closure, block%last_closure
       if (plan%closures(c)%target < block%first_step) frames(plan%closures(c)%target) = .true.
       if (plan%closures(c)%base < block%first_step) frames(plan%closures(c)%base) = .true.
+      ! the coordinates of a coupling must be known, as if their frames were used
+      if (plan%closures(c)%coupling > 0) frames(pack(plan%closures(c)%loop%steps, &
+                                                     plan%closures(c)%loop%steps < block%first_step)) = .true.
     end do
   end subroutine mark_outer_frames
 end module mech9_requested

@@ -5,7 +5,7 @@ module mech9_tree_paths
   use mech9_plan, only: plan_type, step_type, closure_type, block_type, loop_type
   implicit none
   private
-  public :: find_loop, split_loops, distance_between, mark_path
+  public :: find_loop, split_loops, distance_between, mark_path, ascending
 
 contains
 
@@ -63,6 +63,7 @@ contains
         own = closure%loop%steps >= block%first_step
         closure%part%steps = pack(closure%loop%steps, own)
         closure%part%signs = pack(closure%loop%signs, own)
+        if (closure%coupling > 0) cycle
         closure%part%stems = [frame_before(plan%steps, closure%closing, block%first_step, closure%base), &
                               frame_before(plan%steps, closure%target, block%first_step, closure%base)]
       end associate
@@ -102,6 +103,17 @@ contains
       end if
     end do
   end function distance_between
+
+  !> A few numbers in ascending order.
+  pure function ascending(numbers) result(sorted)
+    integer, intent(in) :: numbers(:)   !< all different
+    integer :: sorted(size(numbers))
+    integer :: i
+
+    do i = 1, size(numbers)
+      sorted(count(numbers <= numbers(i))) = numbers(i)
+    end do
+  end function ascending
 
   !> Mark the steps that lead from frame 0 to a frame.
   pure subroutine mark_path(steps, frame, marked)

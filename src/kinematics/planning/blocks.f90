@@ -5,7 +5,7 @@
 !> on each other, directly or through others, are a block (a strongly connected component); each block comes after those on
 !> which it depends. Matching and components together are the decomposition of Dulmage and Mendelsohn (docs/bibliography.md).
 module mech9_blocks
-  use mech9_tree_paths, only: find_loop, split_loops
+  use mech9_tree_paths, only: find_loop, split_loops, ascending
   use mech9_plan, only: plan_type, step_type, closure_type, block_type
   use mech9_chain_matching, only: loop_lists_type, match_chains
   use mech9_strong_components, only: graph_type, strong_components
@@ -47,6 +47,11 @@ contains
     block%coordinates = plan%steps(block%unknowns)%coordinate
     block%equations = sum(plan%closures(block%first_closure:block%last_closure)%rank)
     block%chains = plan%closures(block%first_closure:block%last_closure)%chain
+    block%is_linear = .true.
+    do s = block%first_closure, block%last_closure
+      block%is_linear = block%is_linear .and. plan%closures(s)%coupling > 0
+      if (block%is_linear) block%is_linear = plan%couplings(plan%closures(s)%coupling)%coupling%is_linear()
+    end do
   end subroutine count_block
 
   !> The steps with unknown coordinates on each loop, outermost first: the outermost steps are those of the chain itself.
@@ -252,8 +257,12 @@ contains
       associate (closure => closures(order(c)))
         closure%closing = place(closure%closing)
         closure%target = place(closure%target)
+        if (closure%coupling > 0) then
+          closure%loop%steps = ascending(place(closure%loop%steps))
+        else
+          call find_loop(plan%steps, closure)
+        end if
       end associate
-      call find_loop(plan%steps, closures(order(c)))
     end do
     call move_alloc(closures, plan%closures)
   end subroutine renumber_closures

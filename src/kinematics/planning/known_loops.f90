@@ -33,6 +33,9 @@ contains
     wanted = .false.
     complete = .false.
     do c = 1, size(plan%closures)
+      ranked(c) = plan%closures(c)%coupling > 0
+      complete(c) = ranked(c)
+      if (ranked(c)) cycle
       call find_closure(known, occurrences, coordinates_of(plan, plan%closures(c)), wanted, k)
       ranked(c) = k > 0
       if (k == 0) cycle
@@ -96,6 +99,7 @@ contains
     k = coordinates(minloc(occurrences%first(coordinates + 1) - occurrences%first(coordinates), 1))
     do i = occurrences%first(k), occurrences%first(k + 1) - 1
       found = occurrences%closures(i)
+      if (plan%closures(found)%coupling > 0) cycle
       if (size(plan%closures(found)%loop%steps) /= size(coordinates)) cycle
       if (all(wanted(coordinates_of(plan, plan%closures(found))))) exit
     end do

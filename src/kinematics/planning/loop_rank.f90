@@ -33,7 +33,7 @@ contains
     integer :: c, n
 
     do c = 1, size(plan%closures)
-      if (known(c)) cycle
+      if (known(c) .or. plan%closures(c)%coupling > 0) cycle
       n = size(plan%closures(c)%loop%steps)
       plan%closures(c)%independent_equations = min(plan%closures(c)%rank, n)
       if (plan%closures(c)%rank <= never_overconstrained .or. n > longest_loop) cycle
@@ -89,6 +89,7 @@ contains
     loop%n_coordinates = n
     loop%length = plan%length
     loop%data_tolerance = plan%data_tolerance
+    allocate (loop%couplings(0))
     loop%steps = plan%steps(closure%loop%steps)
     loop%unit_of = plan%unit_of(loop%steps%coordinate)
     allocate (loop%pairs(n))

@@ -49,7 +49,7 @@ contains
     call plan%arithmetics(1)%kind%place(plan, 1, plan%n_coordinates, state, err)
     if (allocated(err)) return
     do c = 1, size(plan%closures)
-      if (complete(c)) cycle
+      if (complete(c) .or. plan%closures(c)%coupling > 0) cycle
       call find_space(plan, state, merge(plan%closures(c)%rank, 6, ranked(c)), plan%closures(c), err)
       if (allocated(err)) return
       plan%constraints(c)%item%equations = plan%closures(c)%rank

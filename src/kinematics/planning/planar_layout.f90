@@ -4,7 +4,7 @@ module mech9_planar_layout
   use mech9_kinds, only: wp
   use mech9_tolerances, only: planar_round_off
   use mech9_failure, only: failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, &
-    failure_no_fixed_axis, failure_chain_off_plane
+    failure_no_fixed_axis, failure_chain_off_plane, failure_coupled
   use mech9_rotation, only: identity
   use mech9_pose, only: pose_type, pose_from_axis, default_zero
   use mech9_plan, only: plan_type, step_type
@@ -32,6 +32,8 @@ contains
     integer :: s, c
 
     do c = 1, size(plan%closures)
+      if (plan%closures(c)%coupling > 0) call refuse(failure_coupled, plan%planar)
+      if (plan%closures(c)%coupling > 0) return
       if (plan%closures(c)%rank == 3) cycle
       call refuse(failure_chain_dimensions, plan%planar)
       plan%planar%why_not%chains = [plan%closures(c)%chain]

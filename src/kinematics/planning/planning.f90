@@ -299,7 +299,7 @@ contains
     err%failure%chains = block%chains
   end subroutine refuse_block
 
-  !> Mark blocks whose Jacobian never changes because all steps of their loops slide.
+  !> Mark blocks whose Jacobian never changes because all steps of their loops slide and their couplings are linear.
   pure subroutine find_constants(plan)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     integer :: b, c
@@ -308,6 +308,10 @@ contains
       associate (block => plan%blocks(b))
         block%is_constant = size(block%unknowns) > 0
         do c = block%first_closure, block%last_closure
+          if (plan%closures(c)%coupling > 0) then
+            block%is_constant = block%is_constant .and. plan%couplings(plan%closures(c)%coupling)%coupling%is_linear()
+            cycle
+          end if
           associate (loop => plan%steps(plan%closures(c)%loop%steps))
             block%is_constant = block%is_constant .and. all(loop%is_screw) .and. .not. any(abs(loop%turn) > 0.0_wp)
           end associate

@@ -12,7 +12,7 @@ module mech9_spanning_tree
   use mech9_partition, only: partition_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, step_type, closure_type
-  use mech9_tree_paths, only: find_loop, distance_between
+  use mech9_tree_paths, only: find_loop, distance_between, ascending
   use mech9_scaling, only: find_size, find_units
   implicit none
   private
@@ -55,7 +55,9 @@ contains
     allocate (plan%steps(plan%n_coordinates), plan%step_of(plan%n_coordinates))
     allocate (plan%frame_of(plan%n_links), source=0)
     allocate (plan%link_in_frame(plan%n_links), plan%pairs(plan%n_coordinates))
-    allocate (plan%closures(plan%n_coordinates - plan%n_links + 1))
+    allocate (plan%couplings(0))
+    if (allocated(mechanism%couplings)) plan%couplings = mechanism%couplings
+    allocate (plan%closures(plan%n_coordinates - plan%n_links + 1 + size(plan%couplings)))
     call find_size(mechanism, start, plan)
     if (present(length)) plan%length = length
     call find_units(mechanism, plan)
@@ -70,6 +72,10 @@ contains
                  nws => partition%vectors%nws(chains(i)%first:chains(i)%last))
         call lay_out_chain(mechanism, partition, i, nrg, nws, chains(i)%closed, plan, layout)
       end associate
+    end do
+    do i = 1, size(plan%couplings)
+      layout%closures = layout%closures + 1
+      call make_coupling(i, plan, plan%closures(layout%closures))
     end do
   end subroutine lay_out_frames
 
@@ -261,4 +267,22 @@ contains
     closure%in_target = compose(layout%link_in(target), inverse(layout%link_in(closing)))
     call find_loop(plan%steps, closure)
   end subroutine make_closure
+
+  !> The closure that is a coupling. Full turns of its coordinates count, so that these have no period.
+  pure subroutine make_coupling(number, plan, closure)
+    integer, intent(in) :: number                !< of the coupling
+    type(plan_type), intent(inout) :: plan       !< with its steps, which lose their periods
+    type(closure_type), intent(inout) :: closure !< gets its equation; one of those of the plan
+
+    closure%chain = -number
+    closure%coupling = number
+    closure%rank = 1
+    closure%independent_equations = 1
+    associate (coupling => plan%couplings(number)%coupling)
+      closure%weight = coupling%weight(plan%unit_of(coupling%coordinates))
+      closure%loop%steps = ascending(plan%step_of(coupling%coordinates))
+    end associate
+    allocate (closure%loop%signs(size(closure%loop%steps)), source=1.0_wp)
+    plan%steps(closure%loop%steps)%period = 0.0_wp
+  end subroutine make_coupling
 end module mech9_spanning_tree

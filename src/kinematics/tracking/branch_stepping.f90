@@ -88,7 +88,8 @@ contains
     stepper%drives = drives_of_chains(drives, plan)
   end function new_branch_stepper
 
-  !> Numbers of the drives whose coordinates belong to closed chains. Those of open chains may move any distance in a step.
+  !> Numbers of the drives whose coordinates belong to closed chains. Those of open chains, and of linear couplings between open
+  !> chains, may move any distance in a step.
   pure function drives_of_chains(drives, plan) result(numbers)
     type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -97,10 +98,18 @@ contains
     integer :: b, c, i
 
     marked = .false.
-    do b = 1, size(plan%blocks)
+    ! later blocks first: a coupling hands the motion of its coordinates on to them
+    do b = size(plan%blocks), 1, -1
       do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
-        call mark_path(plan%steps, plan%closures(c)%closing, marked)
-        call mark_path(plan%steps, plan%closures(c)%target, marked)
+        associate (closure => plan%closures(c))
+          call mark_path(plan%steps, closure%closing, marked)
+          call mark_path(plan%steps, closure%target, marked)
+          if (closure%coupling == 0) cycle
+          if (plan%blocks(b)%is_linear .and. .not. any(marked(closure%loop%steps))) cycle
+          do i = 1, size(closure%loop%steps)
+            call mark_path(plan%steps, closure%loop%steps(i), marked)
+          end do
+        end associate
       end do
     end do
     do i = 1, size(drives)

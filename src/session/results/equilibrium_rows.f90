@@ -84,7 +84,8 @@ contains
       call make_reaction_plan(model%mechanism, plan, reaction_plan)
       reactions = new_reactions(plan, reaction_plan)
       call find_reactions(model%mechanism, plan, reaction_plan, state, reactions, err)
-      if (.not. allocated(err)) call columns%fill_forces(reactions%needed, reactions%force, reactions%moment, row)
+      if (.not. allocated(err)) &
+        call columns%fill_forces(reactions%needed, reactions%force, reactions%moment, reactions%couplings%values, row)
     end associate
   end subroutine fill_forces
 
@@ -190,7 +191,7 @@ contains
     end if
     n = size(columns%reacting)
     if (n == 0) return
-    wrenches = reshape(rows(at + size(columns%drives) + 1:at + columns%forces(), :), [3, 2, n, size(rows, 2)])
+    wrenches = reshape(rows(at + size(columns%drives) + 1:at + size(columns%drives) + 6*n, :), [3, 2, n, size(rows, 2)])
     part = wrenches(:, 1, :, :)
     call file%put('reaction_force', part, 'forces that the reference links pass to the moving links through the pairs, in the '// &
                   'fixed frame', 'N')
@@ -199,6 +200,13 @@ contains
     call file%put('reaction_moment', part, 'moments that they pass, about the origins of the pairs'' frames in the moving links', &
                   'N m')
     call file%attach_scales('reaction_moment', scales)
+    at = at + columns%forces() - columns%couplings
+    if (columns%couplings > 0) then
+      call file%put('coupling_force', rows(at + 1:at + columns%couplings, :), &
+                    'forces of the couplings on their second coordinates', &
+                    common_unit(columns%units(at + 1:at + columns%couplings)))
+      call file%attach_scales('coupling_force', [scales(1), '/coupling   '])
+    end if
     call write_uniqueness(file, columns, forces)
   end subroutine put_forces
 

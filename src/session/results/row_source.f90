@@ -77,7 +77,7 @@ contains
       call self%forces%find(self%simulation, force_plan, force_state, err)
       if (allocated(err)) return
       associate (found => self%forces%reactions)
-        call self%columns%fill_forces(found%needed, found%force, found%moment, row)
+        call self%columns%fill_forces(found%needed, found%force, found%moment, found%couplings%values, row)
       end associate
     end if
     call self%columns%fill_motors(self%simulation%model%mechanism, state, row, err)

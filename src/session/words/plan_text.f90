@@ -72,6 +72,10 @@ contains
     if (block%arithmetic > 1) call print_plane(unit, structure, plan, block)
     do c = block%first_closure, block%last_closure
       associate (closure => plan%closures(c))
+        if (closure%coupling > 0) then
+          call print_coupling(unit, plan, closure%coupling)
+          cycle
+        end if
         write (unit, '(a)') '  chain '//to_text(closure%chain)//' closes '// &
           place_of_closing(structure, plan%steps(closure%closing))//'; its motions span '//counted(closure%rank, 'dimension')
         call print_basis(unit, structure, plan, closure)
@@ -93,6 +97,18 @@ contains
       words = 'in the '//trim(joint_name(structure%joints(j)))
     end if
   end function place_of_closing
+
+  !> Write the equation of a coupling in words.
+  subroutine print_coupling(unit, plan, number)
+    integer, intent(in) :: unit            !< Fortran unit to write to
+    type(plan_type), intent(in) :: plan    !< the plan of the mechanism
+    integer, intent(in) :: number          !< of the coupling
+
+    associate (coupling => plan%couplings(number)%coupling)
+      write (unit, '(a)') '  coupling '//to_text(number)//' ('//trim(coupling%kind_name())//') of coordinates '// &
+        to_text(coupling%coordinates)
+    end associate
+  end subroutine print_coupling
 
   !> Write the plane of a planar block of a spatial mechanism.
   subroutine print_plane(unit, structure, plan, block)

@@ -74,8 +74,10 @@ contains
     type(structure_type), intent(in) :: structure  !< links and joints
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
 
-    write (unit, '(a)') counted(structure%shown_links(), 'link')//', '//counted(plan%n_coordinates, 'coordinate')//', '// &
-      counted(size(plan%closures), 'closed chain')
+    write (unit, '(a)', advance='no') counted(structure%shown_links(), 'link')//', '// &
+      counted(plan%n_coordinates, 'coordinate')//', '//counted(size(plan%closures) - size(plan%couplings), 'closed chain')
+    if (size(plan%couplings) > 0) write (unit, '(a)', advance='no') ', '//counted(size(plan%couplings), 'coupling')
+    write (unit, '(a)') ''
     write (unit, '(a)') 'independent: '//to_text(plan%independent)
   end subroutine print_counts
 
@@ -89,14 +91,20 @@ contains
 
     call print_counts(unit, structure, plan)
     write (unit, '(a)') 'mobility by the count: '//to_text(report%by_count)//' = '//counted(plan%n_coordinates, 'coordinate')// &
-      ' - '//counted(plan%n_coordinates - report%by_count, 'dimension')//' of the chains'' motions'
+      ' - '//counted(plan%n_coordinates - report%by_count - size(plan%couplings), 'dimension')//' of the chains'' motions'// &
+      couplings_in_count(size(plan%couplings))
     write (unit, '(a)') 'mobility by the rank: '//to_text(report%by_rank)//' = '// &
       counted(plan%n_coordinates, 'coordinate')//' - rank '//to_text(plan%n_coordinates - report%by_rank)
     if (.not. report%general) write (unit, '(a)') 'the ranks are those of the start: no other closed position was found near it'
     call print_ranks(unit, plan, report)
     do c = 1, size(plan%closures)
-      if (report%redundant(c) > 0) write (unit, '(a)') 'closed chain '//to_text(plan%closures(c)%chain)//': '// &
-        to_text(report%redundant(c))//' of its '//to_text(plan%closures(c)%rank)//' equations redundant'
+      if (report%redundant(c) == 0) cycle
+      if (plan%closures(c)%coupling > 0) then
+        write (unit, '(a)') chain_names(plan%closures(c:c)%chain)//': redundant, it follows from others'
+      else
+        write (unit, '(a)') 'closed chain '//to_text(plan%closures(c)%chain)//': '// &
+          to_text(report%redundant(c))//' of its '//to_text(plan%closures(c)%rank)//' equations redundant'
+      end if
     end do
     do i = 1, size(plan%independent)
       if (i <= most_lines) call print_alternatives(unit, plan, report, i)
@@ -149,6 +157,15 @@ contains
       end if
     end associate
   end function outer_link
+
+  !> " - 2 couplings" in the count of the mobility; nothing where there is none.
+  pure function couplings_in_count(n) result(words)
+    integer, intent(in) :: n                 !< number of couplings
+    character(len=:), allocatable :: words
+
+    words = ''
+    if (n > 0) words = ' - '//counted(n, 'coupling')
+  end function couplings_in_count
 
   !> Write equations and rank of each block; of many blocks only those that are singular at the start.
   subroutine print_ranks(unit, plan, report)

@@ -1,0 +1,204 @@
+!> Couplings from the groups &coupling of a checked document.
+module mech9_coupling_reader
+  use mech9_kinds, only: wp, pi
+  use mech9_text, only: to_text
+  use mech9_counted, only: counted
+  use mech9_pair, only: pair_slot_type
+  use mech9_coupling, only: coupling_slot_type
+  use mech9_linear_coupling, only: linear_coupling_type
+  use mech9_document, only: document_type, group_type
+  use mech9_lookup, only: groups_named, has_name, get_integers, get_real, get_reals, get_logical, get_text, span_of
+  use mech9_diagnostics, only: diagnostics_type
+  implicit none
+  private
+  public :: read_couplings
+
+contains
+
+  !> All couplings, in the order of the file; of use only where nothing is reported.
+  subroutine read_couplings(document, pairs, positions, angle_unit, couplings, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; a slot is empty where its group has an error
+    real(wp), intent(in) :: positions(:)                  !< (M) coordinates at the start, which give constants [rad, m]
+    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    type(coupling_slot_type), allocatable, intent(out) :: couplings(:)   !< one for each sound group
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    integer, allocatable :: numbers(:)
+    logical :: ok
+    integer :: i
+
+    numbers = groups_named(document, 'coupling')
+    allocate (couplings(size(numbers)))
+    if (size(positions) == 0) return
+    do i = 1, size(numbers)
+      associate (group => document%groups(numbers(i)))
+        call check_coordinates(group, size(positions), ok, diagnostics)
+        if (.not. ok) cycle
+        call read_linear(group, pairs, positions, angle_unit, couplings(i), diagnostics)
+        if (.not. allocated(couplings(i)%coupling)) cycle
+        couplings(i)%coupling%coordinates = get_integers(group, 'coordinates')
+        couplings(i)%coupling%place = diagnostics%place(group%span)
+      end associate
+    end do
+  end subroutine read_couplings
+
+  !> Report coordinates that do not exist, that are named twice, or of which there are too many.
+  pure subroutine check_coordinates(group, n_coordinates, ok, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    integer, intent(in) :: n_coordinates                  !< how many coordinates the mechanism has
+    logical, intent(out) :: ok                            !< whether nothing was reported
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    integer, allocatable :: k(:)
+    integer :: i
+
+    k = get_integers(group, 'coordinates')
+    ok = get_text(group, 'kind') == 'linear' .or. size(k) == 2
+    if (.not. ok) call diagnostics%add(span_of(group, 'coordinates', 3), 'a coupling of this kind joins two coordinates, and '// &
+                                       to_text(size(k))//' are given')
+    do i = 1, size(k)
+      if (k(i) > n_coordinates) then
+        call diagnostics%add(span_of(group, 'coordinates', i), 'there is no coordinate '//to_text(k(i))//'; they are 1 to '// &
+                             to_text(n_coordinates))
+      else if (any(k(:i - 1) == k(i))) then
+        call diagnostics%add(span_of(group, 'coordinates', i), 'coordinate '//to_text(k(i))//' is named twice; a coupling '// &
+                             'joins different coordinates')
+      else
+        cycle
+      end if
+      ok = .false.
+    end do
+  end subroutine check_coordinates
+
+  !> A coupling with a linear equation. The slot stays empty where an error was reported.
+  subroutine read_linear(group, pairs, positions, angle_unit, slot, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate
+    real(wp), intent(in) :: positions(:)                  !< (M) coordinates at the start [rad, m]
+    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    type(coupling_slot_type), intent(inout) :: slot       !< gets the coupling
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(linear_coupling_type) :: linear
+    integer, allocatable :: k(:)
+    real(wp), allocatable :: units(:)
+    integer :: known
+
+    known = diagnostics%known()
+    k = get_integers(group, 'coordinates')
+    units = units_of(k, pairs, angle_unit)
+    linear%name = get_text(group, 'kind')
+    if (linear%name == 'linear') then
+      linear%coefficients = get_reals(group, 'coefficients')
+      call check_coefficients(group, linear%coefficients, size(k), diagnostics)
+      if (diagnostics%known() > known) return
+      linear%coefficients = linear%coefficients/units
+      linear%constant = get_real(group, 'constant')
+    else
+      call check_kinds(group, k, pairs, diagnostics)
+      linear%coefficients = [-slope_of(group, diagnostics), 1.0_wp]
+      linear%constant = positions(k(2)) + linear%coefficients(1)*positions(k(1))
+      if (has_name(group, 'phase')) linear%constant = units(2)*get_real(group, 'phase')
+    end if
+    if (diagnostics%known() == known) allocate (slot%coupling, source=linear)
+  end subroutine read_linear
+
+  !> The units of some coordinates in the file.
+  pure function units_of(k, pairs, angle_unit) result(units)
+    integer, intent(in) :: k(:)                    !< numbers of the coordinates
+    type(pair_slot_type), intent(in) :: pairs(:)   !< (M) pairs by coordinate
+    real(wp), intent(in) :: angle_unit             !< unit of angles in the file [rad]
+    real(wp) :: units(size(k))
+    integer :: i
+
+    units = [(merge(angle_unit, 1.0_wp, turns(k(i), pairs)), i=1, size(k))]
+  end function units_of
+
+  !> Whether a coordinate is an angle.
+  pure logical function turns(k, pairs)
+    integer, intent(in) :: k                       !< number of the coordinate
+    type(pair_slot_type), intent(in) :: pairs(:)   !< (M) pairs by coordinate; a slot is empty where its group has an error
+
+    turns = .false.
+    if (k > size(pairs)) return
+    if (allocated(pairs(k)%pair)) turns = pairs(k)%pair%angular
+  end function turns
+
+  !> The change of the second coordinate per change of the first one [rad/rad, m/rad, m/m].
+  real(wp) function slope_of(group, diagnostics) result(slope)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    real(wp) :: radii(2)
+
+    select case (get_text(group, 'kind'))
+    case ('gear')
+      slope = get_real(group, 'ratio')
+      call refuse_zero(group, 'ratio', slope, diagnostics)
+    case ('rack')
+      slope = get_real(group, 'radius')
+      call refuse_zero(group, 'radius', slope, diagnostics)
+    case ('screw')
+      slope = get_real(group, 'pitch')/(2.0_wp*pi)
+      call refuse_zero(group, 'pitch', slope, diagnostics)
+    case default
+      radii = get_reals(group, 'radii')
+      slope = radii(1)/max(radii(2), tiny(slope))
+      if (get_logical(group, 'crossed')) slope = -slope
+    end select
+  end function slope_of
+
+  !> Report a number that must not be zero.
+  pure subroutine refuse_zero(group, name, value, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    character(len=*), intent(in) :: name                  !< name of the number
+    real(wp), intent(in) :: value                         !< the number
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+
+    if (.not. abs(value) > 0.0_wp) &
+      call diagnostics%add(span_of(group, name, 1), 'with '//name//'=0 the first coordinate would not move the second one')
+  end subroutine refuse_zero
+
+  !> Report coordinates that turn where they must slide, or slide where they must turn.
+  pure subroutine check_kinds(group, k, pairs, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    integer, intent(in) :: k(2)                           !< numbers of its coordinates
+    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; a slot is empty where its group has an error
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    integer :: i
+
+    do i = 1, 2
+      if (k(i) > size(pairs)) return
+      if (.not. allocated(pairs(k(i))%pair)) return
+    end do
+    select case (get_text(group, 'kind'))
+    case ('gear')
+      if (turns(k(1), pairs) .neqv. turns(k(2), pairs)) &
+        call diagnostics%add(span_of(group, 'coordinates'), 'one of the coordinates '//to_text(k)//' turns and the other one '// &
+                             'does not; kind=''rack'' or ''screw'' couples such coordinates')
+    case ('belt')
+      if (.not. (turns(k(1), pairs) .and. turns(k(2), pairs))) &
+        call diagnostics%add(span_of(group, 'coordinates'), 'a belt couples two coordinates that turn')
+    case default
+      if (.not. turns(k(1), pairs) .or. turns(k(2), pairs)) &
+        call diagnostics%add(span_of(group, 'coordinates'), 'a '//get_text(group, 'kind')//' couples a coordinate that turns, '// &
+                             'given first, and one that slides')
+    end select
+  end subroutine check_kinds
+
+  !> Report coefficients whose number is wrong, or that are zero.
+  pure subroutine check_coefficients(group, coefficients, n, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    real(wp), intent(in) :: coefficients(:)               !< its coefficients
+    integer, intent(in) :: n                              !< number of its coordinates
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    integer :: i
+
+    if (size(coefficients) /= n) then
+      call diagnostics%add(span_of(group, 'coefficients'), 'there are '//counted(size(coefficients), 'coefficient')//' for '// &
+                           counted(n, 'coordinate')//'; give one for each')
+      return
+    end if
+    do i = 1, n
+      if (.not. abs(coefficients(i)) > 0.0_wp) &
+        call diagnostics%add(span_of(group, 'coefficients', i), 'a coefficient of 0 couples nothing; leave its coordinate out')
+    end do
+  end subroutine check_coefficients
+end module mech9_coupling_reader

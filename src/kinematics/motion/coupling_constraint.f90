@@ -1,0 +1,179 @@
+!> The equation of a coupling as a constraint: a sum of functions of single coordinates, whatever the arithmetic of the frames.
+module mech9_coupling_constraint
+  use mech9_kinds, only: wp
+  use mech9_plan, only: plan_type, loop_type, constraint_type
+  use mech9_state, only: state_type
+  implicit none
+  private
+  public :: coupling_constraint_type, varied_coupling, bent_force
+
+  !> The constraint of one coupling.
+  type, extends(constraint_type) :: coupling_constraint_type
+    integer :: closure = 0   !< its number among the closures of the plan
+  contains
+    procedure :: residual
+    procedure :: jacobian
+    procedure :: column
+    procedure :: rates
+    procedure :: opening
+    procedure :: gap
+  end type coupling_constraint_type
+
+contains
+
+  !> The residual of the equation, weighed.
+  pure subroutine residual(self, plan, state, values)
+    class(coupling_constraint_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(state_type), intent(in) :: state                 !< with the coordinates
+    real(wp), intent(out), contiguous :: values(:)        !< (1) [rad, lengths of the mechanism]
+
+    integer :: i
+
+    values(1) = 0.0_wp
+    associate (coupling => plan%couplings(plan%closures(self%closure)%coupling)%coupling)
+      do i = 1, size(coupling%coordinates)
+        values(1) = values(1) + coupling%term(i, state%q(coupling%coordinates(i)), 0)
+      end do
+    end associate
+    values(1) = plan%closures(self%closure)%weight*values(1)
+  end subroutine residual
+
+  !> Derivatives with respect to the coordinates of steps of a loop, each in its unit.
+  pure subroutine jacobian(self, plan, loop, first, column_of, state, row, matrix)
+    class(coupling_constraint_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(loop_type), intent(in) :: loop                   !< steps of coupled coordinates
+    integer, intent(in) :: first                          !< earlier steps are left out
+    integer, intent(in), contiguous :: column_of(:)       !< column of step `first` and each later one; 0: none
+    type(state_type), intent(in) :: state                 !< with the coordinates
+    integer, intent(in) :: row                            !< number of rows of `matrix` before that of this constraint
+    real(wp), intent(inout), contiguous :: matrix(:, :)   !< Jacobian of the block; gets the row of this constraint
+    integer :: i, s
+
+    do i = 1, size(loop%steps)
+      s = loop%steps(i)
+      if (s < first) cycle
+      if (column_of(s - first + 1) == 0) cycle
+      call self%column(plan, s, loop%signs(i), state, matrix(row + 1:row + 1, column_of(s - first + 1)))
+    end do
+  end subroutine jacobian
+
+  !> The derivative with respect to the coordinate of one step, in its unit.
+  pure subroutine column(self, plan, s, sign, state, values)
+    class(coupling_constraint_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    integer, intent(in) :: s                              !< number of the step
+    real(wp), intent(in) :: sign                          !< without meaning
+    type(state_type), intent(in) :: state                 !< with the coordinates
+    real(wp), intent(out), contiguous :: values(:)        !< (1) [rad, lengths of the mechanism] per unit of the coordinate
+    integer :: i, k
+
+    k = plan%steps(s)%coordinate
+    associate (coupling => plan%couplings(plan%closures(self%closure)%coupling)%coupling)
+      do i = 1, size(coupling%coordinates) - 1
+        if (coupling%coordinates(i) == k) exit
+      end do
+      values(1) = plan%closures(self%closure)%weight*plan%unit_of(k)*coupling%term(i, state%q(k), 1)
+    end associate
+  end subroutine column
+
+  !> First or second time derivative at the rates, or rates and accelerations, in `state`.
+  pure subroutine rates(self, plan, order, state, values)
+    class(coupling_constraint_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    integer, intent(in) :: order                          !< 1: first derivative, 2: second derivative
+    type(state_type), intent(in) :: state                 !< with coordinates, rates and accelerations
+    real(wp), intent(out), contiguous :: values(:)        !< (1) [rad, lengths of the mechanism; per s or s^2]
+
+    integer :: i, k
+
+    values(1) = 0.0_wp
+    associate (coupling => plan%couplings(plan%closures(self%closure)%coupling)%coupling)
+      do i = 1, size(coupling%coordinates)
+        k = coupling%coordinates(i)
+        if (order == 1) then
+          values(1) = values(1) + coupling%term(i, state%q(k), 1)*state%dq(k)
+        else
+          values(1) = values(1) + coupling%term(i, state%q(k), 1)*state%ddq(k) + coupling%term(i, state%q(k), 2)*state%dq(k)**2
+        end if
+      end do
+    end associate
+    values(1) = plan%closures(self%closure)%weight*values(1)
+  end subroutine rates
+
+  !> The motion of frames does not enter a coupling.
+  pure subroutine opening(self, plan, state, w, v, values)
+    class(coupling_constraint_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(state_type), intent(in) :: state                 !< without meaning
+    real(wp), intent(in) :: w(3)                          !< without meaning
+    real(wp), intent(in) :: v(3)                          !< without meaning
+    real(wp), intent(out), contiguous :: values(:)        !< (1) zero
+
+    values = 0.0_wp
+  end subroutine opening
+
+  !> The residual as a length [m]: an angle times the mechanism's size.
+  pure real(wp) function gap(self, plan, state)
+    class(coupling_constraint_type), intent(in) :: self   !< the constraint
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(state_type), intent(in) :: state                 !< with the coordinates
+    real(wp) :: values(1)
+
+    call self%residual(plan, state, values)
+    gap = plan%length*abs(values(1))
+  end function gap
+
+  !> The variation of the equation, or of its first or second time derivative, from variations of the motion. The motion
+  !> itself is in `state`.
+  pure real(wp) function varied_coupling(plan, c, state, order, q, dq, ddq) result(change)
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    integer, intent(in) :: c                !< number of the closure that is the coupling
+    type(state_type), intent(in) :: state   !< coordinates, rates and accelerations
+    integer, intent(in) :: order            !< 0: of the equation; 1, 2: of its time derivatives
+    real(wp), intent(in) :: q(:)            !< (M) variations of the coordinates
+    real(wp), intent(in) :: dq(:)           !< (M) variations of the rates
+    real(wp), intent(in) :: ddq(:)          !< (M) variations of the accelerations
+    real(wp) :: slope, bend
+    integer :: i, k
+
+    change = 0.0_wp
+    associate (coupling => plan%couplings(plan%closures(c)%coupling)%coupling)
+      do i = 1, size(coupling%coordinates)
+        k = coupling%coordinates(i)
+        slope = coupling%term(i, state%q(k), 1)
+        bend = coupling%term(i, state%q(k), 2)
+        select case (order)
+        case (0)
+          change = change + slope*q(k)
+        case (1)
+          change = change + slope*dq(k) + bend*state%dq(k)*q(k)
+        case default
+          change = change + slope*ddq(k) + bend*(2.0_wp*state%dq(k)*dq(k) + state%ddq(k)*q(k)) &
+                   + coupling%term(i, state%q(k), 3)*state%dq(k)**2*q(k)
+        end select
+      end do
+    end associate
+    change = plan%closures(c)%weight*change
+  end function varied_coupling
+
+  !> Add to forces on coordinates the change of those of a coupling whose multiplier is held while coordinates vary.
+  pure subroutine bent_force(plan, c, state, multiplier, q, forces)
+    type(plan_type), intent(in) :: plan      !< the plan of the mechanism
+    integer, intent(in) :: c                 !< number of the closure that is the coupling
+    type(state_type), intent(in) :: state    !< with the coordinates
+    real(wp), intent(in) :: multiplier       !< of the weighed equation
+    real(wp), intent(in) :: q(:)             !< (M) variations of the coordinates
+    real(wp), intent(inout) :: forces(:)     !< (M) the sum [N m, N]
+
+    integer :: i, k
+
+    associate (coupling => plan%couplings(plan%closures(c)%coupling)%coupling)
+      do i = 1, size(coupling%coordinates)
+        k = coupling%coordinates(i)
+        forces(k) = forces(k) + plan%closures(c)%weight*multiplier*coupling%term(i, state%q(k), 2)*q(k)
+      end do
+    end associate
+  end subroutine bent_force
+end module mech9_coupling_constraint

@@ -1,0 +1,59 @@
+!> A coupling whose equation is linear: of gears, racks, belts and screws.
+module mech9_linear_coupling
+  use mech9_kinds, only: wp
+  use mech9_coupling, only: coupling_type, coupling_name_length
+  implicit none
+  private
+  public :: linear_coupling_type
+
+  !> The sum of coefficients times coordinates is a constant.
+  type, extends(coupling_type) :: linear_coupling_type
+    character(len=coupling_name_length) :: name = 'linear'   !< of the kind in the data file
+    real(wp), allocatable :: coefficients(:)   !< (n) of the coordinates [1/rad, 1/m, or others that give the unit of the constant]
+    real(wp) :: constant = 0.0_wp              !< the sum
+  contains
+    procedure :: term
+    procedure :: weight
+    procedure :: is_linear
+    procedure :: kind_name
+  end type linear_coupling_type
+
+contains
+
+  !> One term of the equation, or its derivative by its coordinate; the constant is part of the first term.
+  pure real(wp) function term(self, i, q, order)
+    class(linear_coupling_type), intent(in) :: self   !< the coupling
+    integer, intent(in) :: i                          !< number of the term, from 1 to n
+    real(wp), intent(in) :: q                         !< its coordinate [rad, m]
+    integer, intent(in) :: order                      !< 0: the term; 1, 2, 3: a derivative
+
+    term = 0.0_wp
+    if (order == 1) term = self%coefficients(i)
+    if (order > 0) return
+    term = self%coefficients(i)*q
+    if (i == 1) term = term - self%constant
+  end function term
+
+  !> The factor that makes the largest derivative of the equation one.
+  pure real(wp) function weight(self, units)
+    class(linear_coupling_type), intent(in) :: self   !< the coupling
+    real(wp), intent(in) :: units(:)                  !< (n) units of its coordinates: 1 rad, or the mechanism's size [m]
+
+    weight = 1.0_wp/maxval(abs(self%coefficients*units))
+  end function weight
+
+  !> The derivatives of all terms are constant.
+  pure logical function is_linear(self)
+    class(linear_coupling_type), intent(in) :: self   !< the coupling
+
+    is_linear = .true.
+  end function is_linear
+
+  !> The name of the kind in the data file.
+  pure function kind_name(self) result(name)
+    class(linear_coupling_type), intent(in) :: self   !< the coupling
+    character(len=coupling_name_length) :: name
+
+    name = self%name
+  end function kind_name
+end module mech9_linear_coupling

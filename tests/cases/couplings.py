@@ -1,0 +1,285 @@
+"""Couplings of coordinates: gears, racks, belts and screws against closed forms, among them Willis' formula for planetary gears and the
+differential; a geared five-bar linkage against the same linkage without its gear, whose cranks are both driven; a screw against a
+helical pair; reactions and modes against equations of motion of their own; energy; refusals with place and remedy.
+
+Compares the program with itself in part: other choices of independent coordinates give the same motion.
+
+usage: couplings.py MECH9K MECH9D
+"""
+import os
+import sys
+import tempfile
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import Checks, read_table, run, text_of
+
+# Round-off of a few operations on numbers of about one.
+ROUND_OFF = 1e-13
+TIGHT = '&solver relative_tolerance=1e-11, absolute_tolerance=1e-12 /\n'
+# Errors of steps at 1e-11 add up over some hundred steps of motions that do not enlarge them: 100 tolerances.
+NEAR = 1e-9
+
+TWO_WHEELS = """&mechanism angle_unit='{unit}' /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=1,3, kind='{second}', point=0.3,0.1,0, axis={axis} /
+&coupling coordinates=1,2, {words} /
+&initial coordinate=1, position={first} /
+&initial coordinate=2, position={other} /
+&drive coordinate=1, kind='polynomial', coefficients={first},2,0.5 /
+&time end=1, intervals=5 /
+"""
+
+# The carrier is link 2; sun, planet and ring turn on it. Teeth: 20, 16, 52.
+PLANETARY = """&structure cq={cq} /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /
+&pair coordinate=3, links=2,4, kind='revolute', point=0.09,0,0, axis=0,0,1 /
+&pair coordinate=4, links=2,5, kind='revolute', axis=0,0,1 /
+&coupling kind='gear', coordinates=2,3, ratio=-1.25 /
+&coupling kind='gear', coordinates=3,4, ratio=0.3076923076923077 /
+&body link=2, mass=1, centre=0.03,0,0, inertia=0,0,0.02,0,0,0 /
+&body link=3, mass=0.5, inertia=0,0,0.001,0,0,0 /
+&body link=4, mass=0.4, centre=0.09,0,0, inertia=0,0,0.0004,0,0,0 /
+&body link=5, mass=2, inertia=0,0,0.03,0,0,0 /
+"""
+
+FIVE_BAR = """&structure cq={cq} /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=1,3, kind='revolute', point=1,0,0, axis=0,0,1, moving_point=0,0,0 /
+&pair coordinate=3, links=2,4, kind='revolute', point=0.2,0,0, axis=0,0,1, moving_point=0,0,0 /
+&pair coordinate=4, links=3,5, kind='revolute', point=0.25,0,0, axis=0,0,1, moving_point=0,0,0 /
+&pair coordinate=5, links=4,5, kind='revolute', point=0.8,0,0, axis=0,0,1, moving_point=0.8,0,0 /
+&initial coordinate=1, position=0.3 /
+&initial coordinate=2, position=1.1 /
+&initial coordinate=3, position=0.4 /
+&initial coordinate=4, position=0.9 /
+&initial coordinate=5, position=-1 /
+&body link=2, mass=1, centre=0.1,0.02,0, inertia=0,0,0.03,0,0,0 /
+&body link=3, mass=1.3, centre=0.1,0,0, inertia=0,0,0.05,0,0,0 /
+&body link=4, mass=0.5, centre=0.4,0.1,0, inertia=0,0,0.01,0,0,0 /
+&body link=5, mass=0.6, centre=0.3,0,0, inertia=0,0,0.02,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&point name='P', link=4, position=0.8,0,0 /
+"""
+GEAR_OF_CRANKS = "&coupling kind='gear', coordinates=1,2, ratio=-2, phase={phase!r} /\n"
+
+
+def table(program, text, *options):
+    """The table of a run of a data file with this text; an exception with the messages where the run fails."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'case.nml')
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        done = run(program, path, '--table', os.path.join(folder, 'table'), *options, folder=folder)
+        if done.returncode != 0:
+            raise RuntimeError(f'{text}\nended with {done.returncode}:\n{done.stderr}')
+        return read_table(text_of(os.path.join(folder, 'table')))
+
+
+def output(program, text, *options):
+    """The finished run of a data file with this text."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'case.nml')
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        return run(program, path, *options, folder=folder)
+
+
+def check_linear_kinds(checks, kinematics):
+    """Two wheels, or a wheel and a slide: the second coordinate follows in position, rate and acceleration."""
+    turn, slide = ('revolute', '0,0,1'), ('prismatic', '1,0,0')
+    for unit in ('rad', 'deg'):
+        per_radian = 1.0 if unit == 'rad' else np.pi / 180
+        for words, (second, axis), slope in (
+                ("kind='gear', ratio=-2.5", turn, -2.5), ("kind='belt', radii=0.05,0.1", turn, 0.5),
+                ("kind='belt', radii=0.05,0.1, crossed=.true.", turn, -0.5),
+                ("kind='rack', radius=0.02", slide, 0.02 * per_radian),
+                ("kind='screw', pitch=0.005", slide, 0.005 * per_radian / (2 * np.pi)),
+                ("kind='linear', coefficients=5,2, constant=0.7", turn, None)):
+            for phase in ('', ', phase=0.25'):
+                if slope is None and phase:
+                    continue
+                text = TWO_WHEELS.format(unit=unit, second=second, axis=axis, words=words + phase, first=0.4, other=0.9)
+                result = table(kinematics, text)
+                rate, constant = slope, 0.25 if phase else None
+                if slope is None:
+                    rate, constant = -2.5, 0.35
+                elif constant is None:
+                    constant = 0.9 - slope * 0.4
+                checks.near(result['q2'], rate * result['q1'] + constant, ROUND_OFF, f'{words}{phase} in {unit}: position')
+                checks.near(result['dq2'], rate * result['dq1'], ROUND_OFF, f'{words} in {unit}: rate')
+                checks.near(result['ddq2'], rate * result['ddq1'], ROUND_OFF, f'{words} in {unit}: acceleration')
+
+
+def check_planetary(checks, kinematics, dynamics):
+    """Willis: (sun - carrier) z_sun = -(ring - carrier) z_ring, whichever of the three is driven or held."""
+    held_ring = "&coupling kind='linear', coordinates=1,4, coefficients=1,1 /\n"
+    drive = "&drive coordinate={k}, kind='polynomial', coefficients=0,{rate} /\n&time end=2, intervals=4 /\n"
+    for k in (1, 2, 3, 4):
+        result = table(kinematics, PLANETARY.format(cq=k) + held_ring + drive.format(k=k, rate=3))
+        carrier, sun, ring = result['q1'], result['q1'] + result['q2'], result['q1'] + result['q4']
+        checks.near(ring, 0 * ring, 1e-12, f'coordinate {k} drives: the ring stands')
+        checks.near(sun, carrier * (1 + 52 / 20), 1e-12, f'coordinate {k} drives: the sun turns 1 + 52/20 times as fast')
+    two = drive.format(k=1, rate=2) + drive.split('\n')[0].format(k=2, rate=-1) + '\n'
+    result = table(kinematics, PLANETARY.format(cq='1,2') + two)
+    checks.near((result['dq1'] + result['dq2'] - result['dq1']) * 20, -(result['dq4']) * 52, 1e-12, 'two driven: Willis')
+    # A torque on the sun alone: the torques on sun, carrier and ring must have no moment, and the power must be zero.
+    free = PLANETARY.format(cq='1,2') + "&load kind='torque', link=3, torque=0,0,0.7 /\n" \
+        '&initial coordinate=1, position=0 /\n&initial coordinate=2, position=0 /\n&time end=1, intervals=4 /\n' + TIGHT
+    result = table(dynamics, free + '&output reactions=.true. /\n')
+    checks.near(np.ptp(result['E.kinetic'] - 0.7 * (result['q1'] + result['q2'])), 0, NEAR, 'work of the torque is the energy')
+    spin = (0.02 + 0.03**2 + 0.4 * 0.09**2) * result['dq1'] + 0.001 * (result['dq1'] + result['dq2']) \
+        + 0.0004 * (result['dq1'] + result['dq3']) + 0.03 * (result['dq1'] + result['dq4'])
+    checks.near(spin, 0.7 * result['t'], NEAR, 'the moment of momentum grows by the torque')
+    # The equations of single wheels, with C1 and C2 as torques from the carrier's gears.
+    checks.near(result['C2'], 0.03 * (result['ddq1'] + result['ddq4']), NEAR, 'the second gear turns the ring')
+    checks.near(result['C1'] - 16 / 52 * result['C2'], 0.0004 * (result['ddq1'] + result['ddq3']), NEAR, 'both gears turn the planet')
+    checks.near(0.7 + 1.25 * result['C1'], 0.001 * (result['ddq1'] + result['ddq2']), NEAR, 'torque and first gear turn the sun')
+
+
+def check_differential(checks, dynamics):
+    """A bevel differential: the wheels' mean speed is the cage's, and equal torques go to both, whatever their loads."""
+    text = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=1,0,0 /
+&pair coordinate=3, links=2,4, kind='revolute', axis=1,0,0 /
+&pair coordinate=4, links=2,5, kind='revolute', axis=0,1,0 /
+&coupling kind='gear', coordinates=2,4, ratio=1.5 /
+&coupling kind='gear', coordinates=4,3, ratio=-0.66666666666666667 /
+&body link=2, mass=1, inertia=0.02,0.02,0.02,0,0,0 /
+&body link=3, mass=1, inertia=0.01,0,0,0,0,0 /
+&body link=4, mass=1, inertia=0.03,0,0,0,0,0 /
+&initial coordinate=1, position=0 /
+&initial coordinate=2, position=0 /
+&load kind='torque', link=2, torque=2,0,0 /
+&load kind='torque', link=3, torque=-0.5,0,0 /
+&time end=1, intervals=4 /
+&output reactions=.true. /
+"""
+    result = table(dynamics, text + TIGHT)
+    checks.near(result['dq2'] + result['dq3'], 0 * result['dq2'], 1e-12, 'the mean of both wheels is the cage')
+    left, right = result['ddq1'] + result['ddq2'], result['ddq1'] + result['ddq3']
+    checks.near(0.01 * left + 0.5, 0.03 * right, NEAR, 'both wheels get the same torque')
+    checks.near(result['C2'], 0.03 * right, NEAR, 'which is that of the coupling')
+
+
+def check_five_bar(checks, kinematics, dynamics):
+    """A five-bar linkage whose cranks are geared: its forces are those of the linkage without gear whose cranks have two drives."""
+    phase = 1.1 + 2 * 0.3
+    gear = GEAR_OF_CRANKS.format(phase=phase)
+    times = '&time end=0.5, intervals=10 /\n&output reactions=.true., drive_forces=.true. /\n'
+    geared = table(kinematics, FIVE_BAR.format(cq=1) + gear + times
+                   + "&drive coordinate=1, kind='polynomial', coefficients=0.3,1,2 /\n")
+    free = table(kinematics, FIVE_BAR.format(cq='1,2') + times
+                 + "&drive coordinate=1, kind='polynomial', coefficients=0.3,1,2 /\n"
+                 + f"&drive coordinate=2, kind='polynomial', coefficients={phase - 0.6!r},-2,-4 /\n")
+    for name in free:
+        if name[0] in 'qdPR':
+            # rates of the linkage are below ten times those of the cranks, and forces below some tens of newtons
+            checks.near(geared[name], free[name], 1e-10, f'geared five-bar: {name} as with two drives')
+    checks.near(geared['C1'], free['F2'], 1e-10, 'the force of the gear is that of the second drive')
+    checks.near(geared['F1'], free['F1'] - 2 * free['F2'], 1e-10, 'the drive bears both cranks')
+    # mech9d with several choices of the independent coordinate, merged blocks among them
+    motions = []
+    for cq in (1, 2, 3, 5):
+        text = FIVE_BAR.format(cq=cq) + gear + TIGHT + '&time end=0.6, intervals=6 /\n&output reactions=.true. /\n'
+        if not motions:
+            text += "&initial coordinate=1, velocity=2 /\n".replace('&initial', '&initial')
+            text = text.replace('&initial coordinate=1, position=0.3 /\n', '').replace(
+                '&initial coordinate=1, velocity=2', '&initial coordinate=1, position=0.3, velocity=2')
+        else:
+            first = motions[0]
+            for k in range(1, 6):
+                text = text.replace(f'&initial coordinate={k}, position=', f'&initial coordinate={k}, ! position=')
+                rate = f', velocity={float(first[f"dq{k}"][0])!r}' if k == cq else ''
+                text += f'&initial coordinate={k}, position={float(first[f"q{k}"][0])!r}{rate} /\n'
+            text = ''.join(line for line in text.splitlines(keepends=True) if '! position' not in line)
+        motions.append(table(dynamics, text))
+        energy = motions[-1]['E.total']
+        checks.near(energy, energy[0], NEAR, f'geared five-bar with cq={cq}: energy')
+        for name in motions[0]:
+            if name[0] in 'qdPRC':
+                checks.near(motions[-1][name], motions[0][name], 1e-7, f'geared five-bar with cq={cq}: {name} as with cq=1')
+
+
+def check_screw(checks, kinematics, dynamics):
+    """A helical pair is a revolute and a prismatic pair on one axis with a screw coupling."""
+    common = """&body link={last}, mass=1.2, centre=0.1,0.05,0.02, inertia=0.01,0.02,0.03,0.001,0,0 /
+&point name='P', link={last}, position=0.2,0.1,0.3 /
+&gravity acceleration=0,-3,-9.81 /
+&output reactions=.true., drive_forces=.true. /
+"""
+    axis = 'point=0.1,0.2,0.3, axis=1,2,3'
+    helical = "&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='helical', " + axis + ', pitch=0.4 /\n' + common.format(last=2)
+    coupled = "&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='revolute', " + axis + ' /\n' \
+        "&pair coordinate=2, links=2,3, kind='prismatic', " + axis + ' /\n' \
+        "&coupling kind='screw', coordinates=1,2, pitch=0.4 /\n" + common.format(last=3)
+    drive = "&drive coordinate=1, kind='polynomial', coefficients=0.2,3,-2 /\n&time end=1, intervals=5 /\n"
+    one, other = table(kinematics, helical + drive), table(kinematics, coupled + drive)
+    for name in one:
+        if name[0] in 'qdPF':
+            checks.near(other[name], one[name], 1e-12, f'screw coupling as a helical pair: {name}')
+    coupled = coupled.replace('pitch=0.4 /', 'pitch=0.4, phase=0 /')
+    start = '&initial coordinate=1, position=0.2, velocity=1 /\n&time end=1, intervals=5 /\n' + TIGHT
+    one, other = table(dynamics, helical + start), table(dynamics, coupled + start)
+    for name in ('q1', 'dq1', 'P.x', 'P.vz', 'E.total'):
+        checks.near(other[name], one[name], NEAR, f'screw coupling as a helical pair in mech9d: {name}')
+
+
+def check_pendulum(checks, dynamics):
+    """A pendulum that turns a flywheel by a gear: its frequency, its modes and its matrices in closed form."""
+    ratio, inertia, arm, mass, wheel = -3.0, 0.05, 0.4, 1.5, 0.02
+    text = f"""&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=1,3, kind='revolute', point=1,0,0, axis=0,0,1 /
+&coupling kind='gear', coordinates=1,2, ratio={ratio} /
+&initial coordinate=1, position=0.1 /
+&body link=2, mass={mass}, centre=0,{-arm},0, inertia=0,0,{inertia},0,0,0 /
+&body link=3, mass=2, centre=1,0,0, inertia=0,0,{wheel},0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+"""
+    frequency = np.sqrt(mass * 9.81 * arm / (inertia + mass * arm**2 + ratio**2 * wheel)) / (2 * np.pi)
+    modes = table(dynamics, text, '--modes')
+    checks.near(modes['frequency'], frequency, 1e-11, 'frequency of a geared pendulum')
+    checks.near(modes['q2.re'] / modes['q1.re'], ratio, 1e-12, 'its mode turns the wheel')
+    rest = table(dynamics, text, '--equilibrium')
+    checks.near(rest['q1'], 0, 1e-10, 'it rests below')
+
+
+def check_reports(checks, kinematics):
+    """Structure, mobility and plan name couplings; redundant ones are told; contradictions are refused with their place."""
+    wheels = TWO_WHEELS.format(unit='rad', second='revolute', axis='0,0,1', words="kind='gear', ratio=2", first=0.5, other=1)
+    again = "&coupling kind='belt', coordinates=2,1, radii=1,2 /\n"
+    done = output(kinematics, wheels + again, '--check')
+    checks.true(done.returncode == 0 and '2 couplings' in done.stdout and 'redundant' in done.stdout,
+                'a second gear with the same ratio is redundant', done.stdout + done.stderr)
+    checks.true('coupling 1 (gear) of coordinates 1, 2' in output(kinematics, wheels, '--plan').stdout, 'the plan names the gear')
+    for more, code, words in (
+            ("&coupling kind='gear', coordinates=1,2, ratio=3 /\n", (4,), 'couplings 1, 2 hold coordinates that cannot move'),
+            ("&coupling kind='gear', coordinates=1,2, ratio=2, phase=0.1 /\n", (5,), 'contradicts'),
+            ("&coupling kind='gear', coordinates=1,3, ratio=2 /\n", (3,), 'there is no coordinate 3'),
+            ("&coupling kind='gear', coordinates=1,1, ratio=2 /\n", (3,), 'named twice'),
+            ("&coupling kind='gear', coordinates=1,2, ratio=0 /\n", (3,), 'would not move'),
+            ("&coupling kind='rack', coordinates=1,2, radius=2 /\n", (3,), 'one that slides'),
+            ("&coupling kind='linear', coordinates=1,2, coefficients=2,1,1 /\n", (3,), '3 coefficients for 2 coordinates'),
+            ("&coupling kind='gear', coordinates=1,2 /\n", (3,), 'ratio')):
+        done = output(kinematics, wheels + more)
+        checks.true(done.returncode in code and words in done.stderr, f'refused: {more}', f'{done.returncode}: {done.stderr}')
+
+
+def main(kinematics, dynamics):
+    checks = Checks()
+    check_linear_kinds(checks, kinematics)
+    check_planetary(checks, kinematics, dynamics)
+    check_differential(checks, dynamics)
+    check_five_bar(checks, kinematics, dynamics)
+    check_screw(checks, kinematics, dynamics)
+    check_pendulum(checks, dynamics)
+    check_reports(checks, kinematics)
+    checks.finish()
+
+
+main(*sys.argv[1:])
