@@ -257,6 +257,11 @@ def check_reports(checks, kinematics):
     checks.true(done.returncode == 0 and '2 couplings' in done.stdout and 'redundant' in done.stdout,
                 'a second gear with the same ratio is redundant', done.stdout + done.stderr)
     checks.true('coupling 1 (gear) of coordinates 1, 2' in output(kinematics, wheels, '--plan').stdout, 'the plan names the gear')
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, 'case.nml'), 'w', encoding='utf-8') as file:
+            file.write(wheels)
+        run(kinematics, 'case.nml', '--graph', 'graph.dot', '--no-write', folder=folder)
+        checks.true('2 -- 3 [style=dashed' in text_of(os.path.join(folder, 'graph.dot')), 'the graph has an edge for the gear')
     for more, code, words in (
             ("&coupling kind='gear', coordinates=1,2, ratio=3 /\n", (4,), 'couplings 1, 2 hold coordinates that cannot move'),
             ("&coupling kind='gear', coordinates=1,2, ratio=2, phase=0.1 /\n", (5,), 'contradicts'),

@@ -85,8 +85,9 @@ contains
     end do
   end function passive_frames
 
-  !> Steps of revolute pairs that no load reads or moves, with free coordinates outside closed chains or with dependent ones
-  !> inside. All steps of one kind are followed by others of the same kind in a joint, since its chain has no branches.
+  !> Steps of revolute pairs that no load or coupling reads or moves, with free coordinates outside closed chains or with
+  !> dependent ones inside. All steps of one kind are followed by others of the same kind in a joint, since its chain has no
+  !> branches.
   function free_steps(mechanism, partition, plan) result(free)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(partition_type), intent(in) :: partition   !< of its coordinates
@@ -104,6 +105,7 @@ contains
     end do
     in_loop = .false.
     do i = 1, size(plan%closures)
+      if (plan%closures(i)%coupling > 0) loaded(plan%couplings(plan%closures(i)%coupling)%coupling%coordinates) = .true.
       in_loop(plan%closures(i)%loop%steps) = .true.
     end do
     do i = 1, plan%n_coordinates

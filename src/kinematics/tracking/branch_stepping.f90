@@ -280,7 +280,7 @@ contains
     real(wp), intent(inout) :: worst   !< raised to at least the measure of this step: at most 1 where it can be accepted
     real(wp) :: move, rate_change
 
-    if (size(block%unknowns) == 0) return
+    if (size(block%unknowns) == 0 .or. block%is_linear) return
     worst = max(worst, newton%correction/(trusted_correction*pivot))
     if (newton%correction > small_correction*pivot) worst = max(worst, newton%contraction/trusted_contraction)
     call find_changes(size(block%coordinates), block%coordinates, size(per_unit), per_unit, state%q, predictor%q, state%dq, &

@@ -2,7 +2,7 @@
 !>
 !> Links are nodes, and pairs are edges, drawn in the order of computation. Links that a block reaches first stand
 !> together in a cluster, and the pairs of the block have the colour of the cluster. Independent coordinates have thick
-!> edges.
+!> edges. Couplings are dashed edges between the moving links of their pairs.
 module mech9_structure_graph
   use mech9_error, only: error_type, raise, add_place, exit_file
   use mech9_text, only: string_type, to_text
@@ -111,8 +111,40 @@ contains
     do b = 1, size(plan%blocks)
       text = text//edges(mechanism, plan, b)
     end do
+    do b = 1, size(plan%couplings)
+      text = text//coupled_links(mechanism, plan, b)
+    end do
     text = text//'}'//line_end
   end function structure_graph
+
+  !> The dashed edges of a coupling, between the moving links of its pairs.
+  pure function coupled_links(mechanism, plan, number) result(text)
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    integer, intent(in) :: number                  !< of the coupling
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    associate (coupling => plan%couplings(number)%coupling)
+      do i = 2, size(coupling%coordinates)
+        text = text//'  '//to_text(shown_link(mechanism, coupling%coordinates(i - 1)))//' -- '// &
+               to_text(shown_link(mechanism, coupling%coordinates(i)))//' [style=dashed, constraint=false, color="#555555", '// &
+               'label="'//trim(coupling%kind_name())//' '//to_text(number)//'"];'//line_end
+      end do
+    end associate
+  end function coupled_links
+
+  !> The moving link of a pair; for a pair of a joint with several freedoms, that of the joint.
+  pure integer function shown_link(mechanism, coordinate) result(link)
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    integer, intent(in) :: coordinate              !< number of the pair's coordinate
+    integer :: j
+
+    link = mechanism%pairs(coordinate)%pair%moving
+    j = mechanism%structure%joint_of_link(link)
+    if (j > 0) link = mechanism%structure%joints(j)%ends(2)
+  end function shown_link
 
   !> The links that a block reaches first.
   pure function cluster(structure, plan, b) result(text)
