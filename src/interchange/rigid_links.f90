@@ -1,7 +1,7 @@
 !> Links that fixed joints join become one link each, with the masses of all.
 module mech9_rigid_links
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_data, exit_structure
+  use mech9_error, only: error_type, raise, exit_data
   use mech9_rotation, only: identity, rotation_between
   use mech9_pose, only: pose_type, compose, inverse, transformed
   use mech9_inertia, only: inertia_in_axes
@@ -49,7 +49,7 @@ contains
         point%link = number_of(bodies%first(point%link))
       end associate
     end do
-    call move_joints(robot, bodies, number_of, err)
+    call move_joints(robot, bodies, number_of)
     call move_alloc(links, robot%links)
     robot%n_links = n
     call robot%finish()
@@ -144,12 +144,11 @@ contains
     end do
   end subroutine add_masses
 
-  !> The other joints join bodies.
-  subroutine move_joints(robot, bodies, number_of, err)
+  !> The other joints join bodies. One whose two links are in the same body cannot move, and is left out with a note.
+  subroutine move_joints(robot, bodies, number_of)
     type(robot_type), intent(inout) :: robot           !< loses its fixed joints
     type(bodies_type), intent(in) :: bodies            !< the bodies
     integer, intent(in) :: number_of(:)                !< new number of each first link
-    type(error_type), allocatable, intent(out) :: err  !< allocated if a joint joins a body with itself
     integer :: i, k, n
 
     n = 0
@@ -163,9 +162,8 @@ contains
           joint%links(i) = number_of(bodies%first(joint%links(i)))
         end do
         if (joint%links(1) == joint%links(2)) then
-          call raise(err, exit_structure, joint%place//": fixed joints make both links of joint '"//joint%name// &
-                     "' one rigid body; take this joint out")
-          return
+          call robot%note_at(joint%place, "joint '"//joint%name//"', since fixed joints make both its links one rigid body")
+          n = n - 1
         end if
       end associate
     end do

@@ -214,6 +214,8 @@ def check_mjcf_loops(s):
     s.table(s.mech9k, re.sub('coefficients=[^ ]*', 'coefficients=0, 6', data))
     s.imports(MJCF_FOUR_BAR.replace('CLOSING', connect + '<joint joint1="O" joint2="C"/><connect active="false" body1="crank"/>'))
     s.checks.true("<joint> of <equality> for joint 'O' and joint 'C'" in s.said and 'not active' in s.said, 'told', s.said)
+    s.imports(MJCF_FOUR_BAR.replace('CLOSING', '<weld body1="rocker"/>'))
+    s.checks.true("not taken over: joint 'C', since fixed joints make both its links one rigid body" in s.said, 'a weld holds a joint', s.said)
     # a ball in a chain that does not move in a plane stays a ball
     spatial = MJCF_FOUR_BAR.replace('<joint name="C"/>', '<joint name="C" axis="0.1 0 1"/><joint name="D" axis="1 0 0"/><joint '
                                     'name="E" axis="0 1 0"/>')
