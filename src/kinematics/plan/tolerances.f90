@@ -156,7 +156,8 @@ module mech9_tolerances
   real(wp), parameter :: longest_prediction = 3.0_wp
   !> The highest term of the polynomial is only round-off where it is below this part of the coordinate or of its unit.
   real(wp), parameter :: round_off_term = 64.0_wp*epsilon(1.0_wp)
-  !> Weights serve again where all times agree within this part of the step with those for which they were found.
+  !> Weights serve again where all times, or of equal steps the latest one, agree within this part of the step with those for which
+  !> they were found.
   real(wp), parameter :: same_spacing = 1.0e-9_wp
   !> Earlier times are used as long as the distances between them are at least this part of the last step.
   real(wp), parameter :: least_spacing = 0.2_wp

@@ -25,6 +25,7 @@ module mech9_past_motion
     logical :: with_positions = .false.       !< predictions use positions and rates, not rates alone
     real(wp) :: long_step = 0.0_wp            !< length of the step that made predictions use positions [s]
     logical :: weighed = .false.              !< the weights below are valid
+    logical :: even = .false.                 !< they are those of equal steps
     real(wp) :: h = 0.0_wp                    !< step of the prediction from the latest time [s]
     real(wp) :: nodes(most) = 0.0_wp          !< times of the weights, counted from the latest one in steps of the prediction
     real(wp) :: of_positions(most) = 0.0_wp   !< weights of differences to the latest position
@@ -117,15 +118,19 @@ contains
     integer :: i, n
 
     per_h = 1.0_wp/h
+    past%h = h
+    ! outputs are mostly equidistant except for round-off: then the latest step tells whether the weights serve
+    if (past%weighed .and. past%even .and. past%count > most) then
+      if (abs((past%t(slot(past, 1)) - past%t(past%latest))*per_h + 1.0_wp) <= same_spacing) return
+    end if
     nodes = 0.0_wp
     do i = 1, past%count - 1
       nodes(i) = (past%t(slot(past, i)) - past%t(past%latest))*per_h
     end do
-    past%h = h
-    ! outputs are mostly equidistant except for round-off
     if (past%weighed .and. all(abs(nodes - past%nodes) <= same_spacing)) return
     past%nodes = nodes
     past%weighed = past%count > most
+    past%even = all(abs(nodes + [1, 2, 3, 4]) <= same_spacing)
     past%of_positions = 0.0_wp
     past%of_rates = 0.0_wp
     n = times_to_use(past%count - 1, nodes)
