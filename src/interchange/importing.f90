@@ -151,20 +151,30 @@ contains
     type(draft_type) :: draft
     type(draft_text_type) :: written
     type(model_type) :: model
-    logical :: moved
-    integer :: chains, k
+    logical :: moved, follows(size(series%pairs))
+    integer :: chains, k, leader
 
     q = robot%joints(series%pairs%joint)%start
     chains = count(series%closes)
     independent = .true.
     moved = .false.
-    if (chains > 0) then
+    do k = 1, size(q)
+      leader = robot%leader_of(series%pairs(k)%joint)
+      follows(k) = leader > 0
+      if (leader > 0) q(k) = robot%joints(series%pairs(k)%joint)%ratio*robot%joints(leader)%start + &
+                             robot%joints(series%pairs(k)%joint)%offset
+      if (leader > 0 .or. .not. allocated(robot%joints(series%pairs(k)%joint)%leader)) cycle
+      call robot%note_at(robot%joints(series%pairs(k)%joint)%place, "the coupling of joint '"// &
+                         robot%joints(series%pairs(k)%joint)%name//"' with joint '"// &
+                         robot%joints(series%pairs(k)%joint)%leader//"', which has not one freedom")
+    end do
+    if (chains > 0 .or. any(follows)) then
       independent(2:) = .false.
       call draft_of_robot(robot, series, independent, q, .false., draft)
       call take_model(draft, robot, model, err)
       if (allocated(err)) return
       preferred = robot%joints(series%pairs%joint)%is_preferred
-      if (.not. any(preferred)) preferred = .not. series%closes(series%pairs%joint)
+      if (.not. any(preferred)) preferred = .not. (series%closes(series%pairs%joint) .or. follows)
       call find_start(model%mechanism, preferred, q, independent, moved, err)
       if (allocated(err)) then
         err%message = printable(file)//': '//err%message

@@ -5,7 +5,7 @@ module mech9_mjcf_equality
   use mech9_text, only: to_text
   use mech9_pose, only: pose_type, compose, inverse
   use mech9_xml_tree, only: xml_tree_type
-  use mech9_xml_values, only: get_numbers
+  use mech9_xml_values, only: get_numbers, get_list
   use mech9_robot, only: robot_type, robot_joint_type, spherical_joint, fixed_joint
   use mech9_robot_poses, only: all_poses
   use mech9_mjcf_settings, only: mjcf_settings_type, from_quaternion
@@ -33,6 +33,8 @@ contains
           call robot%note(tree, e, '<'//tree%name(e)//'> that is not active')
         else if (tree%name(e) == 'connect' .or. tree%name(e) == 'weld') then
           call read_closing(tree, e, poses, robot, err)
+        else if (tree%name(e) == 'joint' .and. robot%find_joint(tree%attribute(e, 'joint2')) > 0) then
+          call read_polynomial(tree, e, robot, err)
         else
           call robot%note(tree, e, '<'//tree%name(e)//'> of <equality>'//names_of(tree, e))
         end if
@@ -41,6 +43,35 @@ contains
       group = tree%next_named(group, 'equality')
     end do
   end subroutine read_equalities
+
+  !> Read <joint>: a polynomial of the displacement of one joint is that of another. Those of the first degree are taken over.
+  subroutine read_polynomial(tree, element, robot, err)
+    type(xml_tree_type), intent(in) :: tree              !< the document
+    integer, intent(in) :: element                       !< number of the element
+    type(robot_type), intent(inout) :: robot             !< its first joint follows the second one
+    type(error_type), allocatable, intent(inout) :: err  !< the failure
+    real(wp) :: factors(5)
+    real(wp), allocatable :: list(:)
+    integer :: first, second, n
+
+    first = robot%find_joint(tree%attribute(element, 'joint1'))
+    second = robot%find_joint(tree%attribute(element, 'joint2'))
+    if (first == 0) call tree%fail(element, "there is no joint '"//tree%attribute(element, 'joint1')//"'", err)
+    factors = [0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
+    call get_list(tree, element, 'polycoef', list, err)
+    n = min(5, size(list))
+    factors(:n) = list(:n)
+    if (allocated(err)) return
+    if (any(abs(factors(3:)) > 0.0_wp)) then
+      call robot%note(tree, element, '<joint> of <equality>'//names_of(tree, element)//', which is not linear')
+      return
+    end if
+    associate (joint => robot%joints(first), leader => robot%joints(second))
+      joint%leader = leader%name
+      joint%ratio = factors(2)
+      joint%offset = joint%start + factors(1) - factors(2)*leader%start
+    end associate
+  end subroutine read_polynomial
 
   !> The joints that a constraint names, for a note.
   function names_of(tree, element) result(text)

@@ -46,6 +46,9 @@ module mech9_robot
     real(wp) :: stiffness = 0.0_wp            !< of a spring on each of its coordinates [N m/rad or N/m]
     real(wp) :: rest = 0.0_wp                 !< coordinate at which this spring is at rest [rad or m]
     real(wp) :: damping = 0.0_wp              !< [N m s/rad or N s/m]
+    character(len=:), allocatable :: leader   !< name of a joint that its coordinate follows; not allocated: none
+    real(wp) :: ratio = 1.0_wp                !< its change per change of the coordinate of the leader
+    real(wp) :: offset = 0.0_wp               !< its coordinate where that of the leader is zero [rad or m]
     logical :: is_preferred = .false.         !< the file wants its coordinate independent
     logical :: closes = .false.               !< it closes a chain: better not independent
     character(len=:), allocatable :: remark   !< a change of the joint, in words; not allocated where there is none
@@ -85,6 +88,7 @@ module mech9_robot
     procedure :: add_point
     procedure :: find_link
     procedure :: find_joint
+    procedure :: leader_of
     procedure :: note
     procedure :: note_at
     procedure :: finish
@@ -189,6 +193,20 @@ contains
       if (self%joints(number)%name == name) return
     end do
   end function find_joint
+
+  !> The number of the joint that a joint follows; 0 where it follows none, or one or the other has not one freedom.
+  pure integer function leader_of(self, number) result(leader)
+    class(robot_type), intent(in) :: self  !< the robot
+    integer, intent(in) :: number          !< number of the joint
+    integer, parameter :: single(3) = [revolute_joint, prismatic_joint, helical_joint]
+
+    leader = 0
+    if (.not. allocated(self%joints(number)%leader)) return
+    leader = self%find_joint(self%joints(number)%leader)
+    if (leader == number) leader = 0
+    if (leader == 0) return
+    if (all(single /= self%joints(number)%kind) .or. all(single /= self%joints(leader)%kind)) leader = 0
+  end function leader_of
 
   !> Note that something about an element is not taken over.
   subroutine note(self, tree, element, text)

@@ -31,7 +31,7 @@ contains
     type(draft_group_type), allocatable :: groups(:)
     integer :: n, k
 
-    allocate (draft%groups(4 + 4*size(q) + robot%n_points + 2*size(robot%links)))
+    allocate (draft%groups(4 + 5*size(q) + robot%n_points + 2*size(robot%links)))
     draft%head = ''
     n = 0
     call begin_group(draft, n, 'mechanism', '')
@@ -42,6 +42,9 @@ contains
     call add(draft%groups(n), 'cq', to_text(pack([(k, k=1, size(q))], independent), ', '))
     do k = 1, size(q)
       call add_pair(robot, series, k, draft, n)
+    end do
+    do k = 1, size(q)
+      call add_coupling(robot, series, k, draft, n)
     end do
     do k = 1, size(q)
       if (independent(k) .and. with_drives) cycle
@@ -146,6 +149,26 @@ contains
       if (differ .and. pair%kind /= universal_joint) call add(draft%groups(n), 'moving_zero', numbers_text(zeros(:, 2)))
     end associate
   end subroutine add_pair
+
+  !> Add the coupling of a coordinate that follows another one.
+  subroutine add_coupling(robot, series, k, draft, n)
+    type(robot_type), intent(in) :: robot     !< the robot
+    type(series_type), intent(in) :: series   !< its pairs
+    integer, intent(in) :: k                  !< number of the coordinate
+    type(draft_type), intent(inout) :: draft  !< the data file
+    integer, intent(inout) :: n               !< number of its groups
+    integer :: leader
+
+    leader = robot%leader_of(series%pairs(k)%joint)
+    if (leader == 0) return
+    associate (joint => robot%joints(series%pairs(k)%joint))
+      call begin_group(draft, n, 'coupling', 'joint '//joint%name//' follows joint '//joint%leader)
+      call add(draft%groups(n), 'kind', "'linear'")
+      call add(draft%groups(n), 'coordinates', to_text([k, findloc(series%pairs%joint, leader, dim=1)], ', '))
+      call add(draft%groups(n), 'coefficients', numbers_text([1.0_wp, -joint%ratio]))
+      call add(draft%groups(n), 'constant', number_text(joint%offset))
+    end associate
+  end subroutine add_coupling
 
   !> The comment on a pair: its joint and the range of that.
   function pair_comment(series, k, joint) result(text)

@@ -208,6 +208,9 @@ contains
     call get_axis(tree, tree%child(element, 'axis2'), joint%second, err)
     if (words(place) /= 'continuous') call read_limit(tree, tree%child(element, 'limit'), joint, err)
     call get_number(tree, tree%child(element, 'dynamics'), 'damping', joint%damping, err)
+    if (tree%child(element, 'mimic') > 0) joint%leader = tree%attribute(tree%child(element, 'mimic'), 'joint')
+    call get_number(tree, tree%child(element, 'mimic'), 'multiplier', joint%ratio, err)
+    call get_number(tree, tree%child(element, 'mimic'), 'offset', joint%offset, err)
     joint%is_preferred = is_true(tree%attribute(element, 'independent'))
     call note_parts(tree, element, joint%name, robot, err)
     call robot%add_joint(tree, element, joint, err)
@@ -273,7 +276,7 @@ contains
     e = tree%first_child(element)
     do while (e > 0)
       select case (tree%name(e))
-      case ('parent', 'child', 'predecessor', 'successor', 'origin', 'axis', 'axis2')
+      case ('parent', 'child', 'predecessor', 'successor', 'origin', 'axis', 'axis2', 'mimic')
       case ('dynamics')
         call get_number(tree, e, 'friction', friction, err)
         if (abs(friction) > 0.0_wp) call robot%note(tree, e, "the friction of joint '"//name//"'")
@@ -281,8 +284,6 @@ contains
         if (tree%has(e, 'lower') .or. tree%has(e, 'upper')) call robot%note(tree, e, 'ranges of joints, which data files do '// &
                                                                             'not have; comments of the data file tell them')
         if (tree%has(e, 'effort') .or. tree%has(e, 'velocity')) call robot%note(tree, e, 'limits of efforts and velocities')
-      case ('mimic')
-        call robot%note(tree, e, "<mimic> of joint '"//name//"', which is free of joint '"//tree%attribute(e, 'joint')//"' now")
       case default
         call robot%note(tree, e, '<'//tree%name(e)//'> of joints')
       end select

@@ -212,8 +212,14 @@ def check_mjcf_loops(s):
     data = s.imports(half.replace('CLOSING', '<weld body1="rocker" body2="end"/>'))
     s.checks.true(data.count('&pair') == 4 and data.count('&body') == 3, 'weld: two bodies become one', data)
     s.table(s.mech9k, re.sub('coefficients=[^ ]*', 'coefficients=0, 6', data))
-    s.imports(MJCF_FOUR_BAR.replace('CLOSING', connect + '<joint joint1="O" joint2="C"/><connect active="false" body1="crank"/>'))
-    s.checks.true("<joint> of <equality> for joint 'O' and joint 'C'" in s.said and 'not active' in s.said, 'told', s.said)
+    s.imports(MJCF_FOUR_BAR.replace('CLOSING', connect + '<connect active="false" body1="crank"/>'))
+    s.checks.true('not active' in s.said, 'told', s.said)
+    data = s.imports(MJCF_FOUR_BAR.replace('CLOSING', '<joint joint1="C" joint2="O" polycoef="0.2 -3 0 0 0"/>').replace(
+        'joint name="O"', 'joint name="O" ref="0.1"'))
+    found = s.table(s.mech9k, re.sub('(coordinate=1, .*)coefficients=[^ ]*', r'\1coefficients=0.1, 0.5', data))
+    s.checks.near(found['q2'], 0.2 - 3 * (found['q1'] - 0.1), ROUND_OFF, 'an equality of joints')
+    s.imports(MJCF_FOUR_BAR.replace('CLOSING', '<joint joint1="C" joint2="O" polycoef="0 1 1 0 0"/>'))
+    s.checks.true("joint 'C' and joint 'O', which is not linear" in s.said, 'a square is told', s.said)
     s.imports(MJCF_FOUR_BAR.replace('CLOSING', '<weld body1="rocker"/>'))
     s.checks.true("not taken over: joint 'C', since fixed joints make both its links one rigid body" in s.said, 'a weld holds a joint', s.said)
     # a ball in a chain that does not move in a plane stays a ball

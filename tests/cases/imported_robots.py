@@ -72,7 +72,6 @@ ARM = """<?xml version="1.0" encoding="utf-8"?>
   <joint name="wrist" type="continuous">
     <parent link="slider"/><child link="hand"/>
     <origin xyz="0.2 0 0.1" rpy="-0.3 0.9 2.1"/>
-    <mimic joint="shoulder" multiplier="2"/>
   </joint>
   <joint name="tip" type="fixed">
     <parent link="hand"/><child link="tool 0"/>
@@ -200,7 +199,7 @@ def check_arm(s):
     _, _, _, last, _ = arm_by_newton_euler(found['t'][-1])
     s.checks.near(found['E.potential'][-1] - found['E.potential'][0], last - first, 100 * ROUND_OFF, 'potential energy', scale=10.0)
     for note in ('arm.urdf:10: not taken over: <visual> of links', 'arm.urdf:38: not taken over: ranges of joints',
-                 "the friction of joint 'shoulder'", "<mimic> of joint 'wrist'"):
+                 "the friction of joint 'shoulder'"):
         s.checks.true(note in s.said, f'told: {note}', s.said)
         s.checks.true(note.split('not taken over: ')[-1] in data, f'in the data file: {note}')
     for comment in ('! joint shoulder, range -1.5 to 1.5', '! Link 2: upper', "title='Arm ''ä'''"):
@@ -285,6 +284,18 @@ def check_freedoms(s):
                           f'{kind}: place of a point', scale=1.0)
 
 
+def check_mimic(s):
+    """A joint that follows another one is coupled to it, and dependent."""
+    robot = ARM.replace('<parent link="slider"/>', '<mimic joint="shoulder" multiplier="2" offset="0.3"/><parent link="slider"/>')
+    data = s.imports(robot)
+    s.checks.true("&coupling kind='linear', coordinates=3, 1, coefficients=1, -2, constant=0.3 /" in data, 'mimic is a coupling', data)
+    s.checks.true('cq=1, 2 ' in data, 'the joint that follows is dependent', data)
+    found = s.table(s.mech9k, re.sub('(coordinate=1, .*)coefficients=[^ ]*', r'\1coefficients=0.1, 0.5', data))
+    s.checks.near(found['q3'], 2 * found['q1'] + 0.3, ROUND_OFF, 'it follows')
+    s.imports(robot.replace('mimic joint="shoulder"', 'mimic joint="flange"'))
+    s.checks.true("the coupling of joint 'wrist' with joint 'flange'" in s.said, 'a joint that does not move leads none', s.said)
+
+
 def check_inertia(s):
     """An inertia that no body has is left out and told; the rest is taken over."""
     data = s.imports(ARM.replace('iyy="0.002"', 'iyy="0.2"'))
@@ -366,6 +377,7 @@ def main():
             check_four_bar(s)
             check_freedoms(s)
             check_inertia(s)
+            check_mimic(s)
             check_refusals(s)
             check_command_line(s)
             s.survives([ARM, FOUR_BAR.replace('LOOP', LOOP)], 120)
