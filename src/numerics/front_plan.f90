@@ -11,7 +11,7 @@ module mech9_front_plan
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: front_plan_type, front_type, new_front_plan
+  public :: front_plan_type, front_type, row_groups_type, new_front_plan, add_diagonal
 
   !> Fronts are used where they need at most this part of the operations of the full matrix.
   real(wp), parameter :: worthwhile_part = 0.5_wp
@@ -47,6 +47,14 @@ module mech9_front_plan
     integer :: sign = 1                     !< of the determinant of the permutations of rows and columns, where m = n
   end type front_plan_type
 
+  !> The rows of a matrix in groups, one behind the other.
+  type :: row_groups_type
+    integer :: n = 0                     !< number of columns of the matrix
+    integer, allocatable :: sizes(:)     !< (groups) number of rows of each group
+    integer, allocatable :: first(:)     !< (groups+1) columns of group g are members(first(g):first(g+1)-1)
+    integer, allocatable :: members(:)   !< columns in which the rows of each group are not zero
+  end type row_groups_type
+
   !> A list of numbers.
   type :: list_type
     integer, allocatable :: items(:)   !< the numbers
@@ -65,22 +73,19 @@ module mech9_front_plan
 
 contains
 
-  !> The plan for a matrix of n columns, whose rows come in groups. It is used only where it saves work.
-  pure function new_front_plan(n, sizes, lists, members) result(plan)
-    integer, intent(in) :: n            !< number of columns
-    integer, intent(in) :: sizes(:)     !< (groups) number of rows of each group, one behind the other
-    integer, intent(in) :: lists(:)     !< (groups+1) columns of group g are members(lists(g):lists(g+1)-1)
-    integer, intent(in) :: members(:)   !< columns in which the rows of each group are not zero
+  !> The plan for a matrix whose rows come in groups. It is used only where it saves work.
+  pure function new_front_plan(groups) result(plan)
+    type(row_groups_type), intent(in) :: groups   !< the rows of the matrix
     type(front_plan_type) :: plan
     type(graph_type) :: graph
     integer, allocatable :: cost(:)
     integer :: c
 
-    plan%m = sum(sizes)
-    plan%n = n
+    plan%m = sum(groups%sizes)
+    plan%n = groups%n
     allocate (plan%fronts(0), plan%rows(0), plan%columns(0))
-    if (n < least_columns .or. plan%m < n .or. size(sizes) < 2) return
-    graph = new_graph(n, sizes, lists, members)
+    if (plan%n < least_columns .or. plan%m < plan%n .or. size(groups%sizes) < 2) return
+    graph = new_graph(plan%n, groups%sizes, groups%first, groups%members)
     allocate (cost(size(graph%members)))
     do c = 1, size(cost)
       cost(c) = cost_of(graph, c)
@@ -89,12 +94,33 @@ contains
       call add_front(graph, minloc(cost, 1, cost > 0), plan, cost)
       if (plan%fronts(size(plan%fronts))%rows < plan%fronts(size(plan%fronts))%pivots) return
     end do
-    if (sum(plan%fronts%pivots) < n) return
+    if (sum(plan%fronts%pivots) < plan%n) return
     call find_places(plan)
     plan%used = sum(2.0_wp*plan%fronts%pivots*plan%fronts%rows*plan%fronts%columns) <= &
-                worthwhile_part*(4.0_wp/3.0_wp)*plan%m*real(n, wp)**2
-    if (plan%used .and. plan%m == n) plan%sign = sign_of(plan)
+                worthwhile_part*(4.0_wp/3.0_wp)*plan%m*real(plan%n, wp)**2
+    if (plan%used .and. plan%m == plan%n) plan%sign = sign_of(plan)
   end function new_front_plan
+
+  !> Add one row for each column, in which no other column occurs. Columns that occur in the same groups share a group of such rows,
+  !> so that they remain a class.
+  pure subroutine add_diagonal(groups, row_of)
+    type(row_groups_type), intent(inout) :: groups   !< the rows of the matrix; gets those of the diagonal behind them
+    integer, intent(out) :: row_of(:)                !< (columns) number of the row of each column
+    integer :: class_of(groups%n), n_classes, class, i, m
+
+    m = sum(groups%sizes)
+    call find_classes(groups%n, size(groups%sizes), groups%first, groups%members, class_of, n_classes)
+    do class = 1, n_classes
+      do i = 1, groups%n
+        if (class_of(i) /= class) cycle
+        m = m + 1
+        row_of(i) = m
+        groups%members = [groups%members, i]
+      end do
+      groups%sizes = [groups%sizes, count(class_of == class)]
+      groups%first = [groups%first, size(groups%members) + 1]
+    end do
+  end subroutine add_diagonal
 
   !> The groups of rows and the classes of columns of a matrix.
   pure function new_graph(n, sizes, lists, members) result(graph)

@@ -3,19 +3,12 @@ program test_fronts
   use mech9_kinds, only: wp
   use mech9_random, only: random_type
   use mech9_random_geometry, only: random_matrix
-  use mech9_front_plan, only: front_plan_type, new_front_plan
+  use mech9_front_plan, only: front_plan_type, row_groups_type, new_front_plan, add_diagonal
   use mech9_least_squares, only: least_squares_type
   use mech9_lapack, only: dgesvd
   use mech9_testing, only: tester_type
   implicit none
 
-  !> Groups of rows, and the columns in which each is not zero.
-  type :: structure_type
-    integer :: n = 0                     !< number of columns
-    integer, allocatable :: sizes(:)     !< (groups) number of rows
-    integer, allocatable :: lists(:)     !< (groups+1) columns of group g are members(lists(g):lists(g+1)-1)
-    integer, allocatable :: members(:)   !< the columns
-  end type structure_type
   type(tester_type) :: test
   type(random_type) :: random
   integer :: trial
@@ -29,6 +22,9 @@ program test_fronts
     call check_structure(two_floors(), 'a platform on a platform')
     call check_structure(random_structure(), 'a structure at random')
   end do
+  do trial = 1, 10
+    call check_structure(with_diagonal(platform(6, 6, 5)), 'a platform on six legs with a diagonal')
+  end do
   call test%finish()
 
 contains
@@ -38,12 +34,12 @@ contains
     integer, intent(in) :: legs        !< number of legs
     integer, intent(in) :: equations   !< rows of each group
     integer, intent(in) :: unknowns    !< columns of each leg
-    type(structure_type) :: structure
+    type(row_groups_type) :: structure
     integer :: leg, i
 
     structure%n = legs*unknowns
     allocate (structure%sizes(legs - 1), source=equations)
-    structure%lists = [(2*unknowns*leg + 1, leg=0, legs - 1)]
+    structure%first = [(2*unknowns*leg + 1, leg=0, legs - 1)]
     structure%members = [([(i, i=1, unknowns), (leg*unknowns + i, i=1, unknowns)], leg=1, legs - 1)]
   end function platform
 
@@ -51,43 +47,43 @@ contains
   pure function ladder(loops, equations) result(structure)
     integer, intent(in) :: loops       !< number of loops
     integer, intent(in) :: equations   !< rows of each group
-    type(structure_type) :: structure
+    type(row_groups_type) :: structure
     integer :: loop, i
 
     structure%n = loops*equations
     allocate (structure%sizes(loops), source=equations)
-    structure%lists = [((equations + 2)*(loop - 1) + 1, loop=1, loops), (equations + 2)*loops - 1]
+    structure%first = [((equations + 2)*(loop - 1) + 1, loop=1, loops), (equations + 2)*loops - 1]
     structure%members = [(equations*(loop - 1) + [(i, i=1, equations + 2)], loop=1, loops - 1), &
                          [(structure%n - equations + i, i=1, equations)]]
   end function ladder
 
   !> Two platforms of three legs, the second on the first; the two share no leg, but the unknowns of the first platform's leg.
   pure function two_floors() result(structure)
-    type(structure_type) :: structure
+    type(row_groups_type) :: structure
     integer :: i
 
     structure%n = 24
     structure%sizes = [6, 6, 6, 6]
-    structure%lists = [1, 11, 21, 35, 49]
+    structure%first = [1, 11, 21, 35, 49]
     structure%members = [[(i, i=1, 10)], [(i, i=1, 5)], [(10 + i, i=1, 5)], [(i, i=1, 5)], [(15 + i, i=1, 9)], &
                          [(i, i=1, 5)], [(15 + i, i=1, 4)], [(19 + i, i=1, 5)]]
   end function two_floors
 
   !> Up to eight groups of three or six rows in which unknowns occur at random.
   function random_structure() result(structure)
-    type(structure_type) :: structure
+    type(row_groups_type) :: structure
     integer :: groups, g, i, n, rows
     logical, allocatable :: occurs(:)
 
     groups = 3 + int(2.5_wp*(1.0_wp + random%symmetric()))
-    allocate (structure%sizes(groups), structure%lists(groups + 1), structure%members(0))
+    allocate (structure%sizes(groups), structure%first(groups + 1), structure%members(0))
     do g = 1, groups
       structure%sizes(g) = merge(3, 6, random%symmetric() > 0.0_wp)
     end do
     rows = sum(structure%sizes)
     n = rows - max(0, int(3.0_wp*random%symmetric()))
     structure%n = n
-    structure%lists(1) = 1
+    structure%first(1) = 1
     do g = 1, groups
       ! every unknown occurs in the group whose rows have its number, so that the matrix is regular in general
       occurs = [(i > sum(structure%sizes(:g - 1)) .and. i <= sum(structure%sizes(:g)), i=1, n)]
@@ -97,20 +93,40 @@ contains
       ! the first two unknowns are a class, or belong to one
       occurs(2) = occurs(1)
       structure%members = [structure%members, pack([(i, i=1, n)], occurs)]
-      structure%lists(g + 1) = size(structure%members) + 1
+      structure%first(g + 1) = size(structure%members) + 1
     end do
   end function random_structure
 
+  !> A structure with one more row for each column.
+  function with_diagonal(structure) result(longer)
+    type(row_groups_type), intent(in) :: structure   !< groups and columns
+    type(row_groups_type) :: longer
+    integer :: row_of(structure%n), m, i, g
+
+    longer = structure
+    call add_diagonal(longer, row_of)
+    m = sum(structure%sizes)
+    call test%is_true(sum(longer%sizes) == m + structure%n .and. minval(row_of) == m + 1 .and. maxval(row_of) == m + structure%n &
+                      .and. all([(count(row_of == m + i) == 1, i=1, structure%n)]), 'each column has a row of its own')
+    do i = 1, structure%n
+      do g = 1, size(longer%sizes)
+        if (row_of(i) <= sum(longer%sizes(:g))) exit
+      end do
+      call test%is_true(any(longer%members(longer%first(g):longer%first(g + 1) - 1) == i), &
+                        'a column occurs in the group of its own row')
+    end do
+  end function with_diagonal
+
   !> A matrix with this structure, with entries at random.
   function matrix_of(structure) result(a)
-    type(structure_type), intent(in) :: structure   !< groups and columns
+    type(row_groups_type), intent(in) :: structure   !< groups and columns
     real(wp), allocatable :: a(:, :)
     integer :: g, i, row
 
     allocate (a(sum(structure%sizes), structure%n), source=0.0_wp)
     row = 0
     do g = 1, size(structure%sizes)
-      do i = structure%lists(g), structure%lists(g + 1) - 1
+      do i = structure%first(g), structure%first(g + 1) - 1
         a(row + 1:row + structure%sizes(g), structure%members(i:i)) = random_matrix(random, structure%sizes(g), 1)
       end do
       row = row + structure%sizes(g)
@@ -119,24 +135,27 @@ contains
 
   !> Each leg of a platform is a front, and the leg that all groups share is the last one.
   subroutine fronts_follow_the_structure()
-    type(structure_type) :: structure
+    type(row_groups_type) :: structure
     type(front_plan_type) :: plan
 
     structure = platform(6, 6, 5)
-    plan = new_front_plan(structure%n, structure%sizes, structure%lists, structure%members)
+    plan = new_front_plan(structure)
     call test%is_true(plan%used, 'fronts save work on a platform')
     call test%is_true(all(plan%fronts%rows == [6, 6, 6, 6, 6, 5]), &
                       'a front has the rows of a closure, and the last one those that remain')
     call test%is_true(all(plan%fronts%pivots == 5), 'every front eliminates a leg')
     call test%is_true(all(plan%fronts(:5)%parent == 6), 'the legs pass their rows on to the last front')
+    plan = new_front_plan(with_diagonal(structure))
+    call test%is_true(plan%used .and. all(plan%fronts%pivots == 5) .and. all(plan%fronts(:5)%rows == 11), &
+                      'with a diagonal, every leg remains a front')
     structure = platform(2, 6, 3)
-    plan = new_front_plan(structure%n, structure%sizes, structure%lists, structure%members)
+    plan = new_front_plan(structure)
     call test%is_true(.not. plan%used, 'one group is a full matrix')
   end subroutine fronts_follow_the_structure
 
   !> Regular, nearly singular, and singular matrices of one structure.
   subroutine check_structure(structure, name)
-    type(structure_type), intent(in) :: structure   !< groups and columns
+    type(row_groups_type), intent(in) :: structure   !< groups and columns
     character(len=*), intent(in) :: name            !< of the structure, for the report of a failure
     real(wp), allocatable :: a(:, :)
     integer :: exponent, j
@@ -144,7 +163,7 @@ contains
     a = matrix_of(structure)
     call check_matrix(structure, a, name)
     ! a column of the first group becomes dependent, or nearly dependent, on another of the same group
-    j = structure%lists(1)
+    j = structure%first(1)
     associate (first => a(:structure%sizes(1), structure%members(j)), second => a(:structure%sizes(1), structure%members(j + 1)))
       do exponent = 1, 4
         second = first + 10.0_wp**(-4*exponent)*second
@@ -158,14 +177,13 @@ contains
 
   !> Pivots, rank, least singular value, sign and solutions of a matrix by fronts and as a full one.
   subroutine check_matrix(structure, a, name)
-    type(structure_type), intent(in) :: structure   !< groups and columns
+    type(row_groups_type), intent(in) :: structure   !< groups and columns
     real(wp), intent(in) :: a(:, :)                 !< the matrix
     character(len=*), intent(in) :: name            !< for the report of a failure
     type(least_squares_type) :: by_fronts, full
     real(wp) :: b(size(a, 1)), side(size(a, 1)), x(size(a, 2)), y(size(a, 2)), remainder, expected, s(size(a, 2)), allowed
 
-    call by_fronts%create(size(a, 1), size(a, 2), &
-                          new_front_plan(structure%n, structure%sizes, structure%lists, structure%members))
+    call by_fronts%create(size(a, 1), size(a, 2), new_front_plan(structure))
     call full%create(size(a, 1), size(a, 2))
     b = reshape(random_matrix(random, size(b), 1), [size(b)])
     call test%near(by_fronts%distance(a, 3.0_wp*a), full%distance(a, 3.0_wp*a), 1.0e-14_wp, &

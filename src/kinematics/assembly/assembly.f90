@@ -8,12 +8,13 @@ module mech9_assembly
   use mech9_tolerances, only: allowed_gap, closed_singular, closed_to_round_off, newton_radius, regular_correction
   use mech9_error, only: error_type
   use mech9_least_squares, only: least_squares_type
+  use mech9_front_plan, only: front_plan_type
   use mech9_random, only: random_type
   use mech9_plan, only: plan_type, block_type, within_range, without_periods
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type, newton_outcome_type, close_block, apply_change
   use mech9_frame_motion, only: place_frames
-  use mech9_block_equations, only: block_jacobian, block_residual
+  use mech9_block_equations, only: block_jacobian, block_residual, damped_fronts
   implicit none
   private
   public :: assemble_block, assembly_outcome_type
@@ -130,16 +131,18 @@ contains
     type(least_squares_type) :: damped
     real(wp) :: right(block%equations + size(block%unknowns)), before(size(block%unknowns))
     real(wp) :: damping, trial_norm, norm_then
-    integer :: step
+    type(front_plan_type) :: fronts
+    integer :: row_of(size(block%unknowns)), step
 
     damping = damping_at_first
-    call damped%create(block%equations + size(block%unknowns), size(block%unknowns))
+    call damped_fronts(plan, block, work%column_of, fronts, row_of)
+    call damped%create(block%equations + size(block%unknowns), size(block%unknowns), fronts)
     call find_residual(plan, block, state, work, residual_norm, err)
     if (allocated(err)) return
     norm_then = residual_norm
     do step = 1, most_steps
       if (residual_norm <= small_enough .or. size(before) == 0) exit
-      call damped_change(plan, block, state, damping, damped, right, work)
+      call damped_change(plan, block, state, damping, row_of, damped, right, work)
       before = state%q(block%coordinates)
       call apply_change(plan, block, work%change, state)
       call find_residual(plan, block, state, work, trial_norm, err)
@@ -163,11 +166,12 @@ contains
   end subroutine reduce_errors
 
   !> Find the change of the unknowns in a damped linear step, in work%change, from the residual in work%right.
-  subroutine damped_change(plan, block, state, damping, damped, right, work)
+  subroutine damped_change(plan, block, state, damping, row_of, damped, right, work)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
     real(wp), intent(in) :: damping   !< factor of the squared changes that are added to the squared residual
+    integer, intent(in) :: row_of(:)   !< (unknowns) the damped equation of each
     type(least_squares_type), intent(inout) :: damped   !< the damped equations; overwritten
     real(wp), intent(out) :: right(:)   !< right-hand side of the damped equations
     type(block_work_type), intent(inout) :: work   !< scratch of the block
@@ -177,7 +181,7 @@ contains
     call block_jacobian(plan, block, state, work%column_of, damped%a(:m, :))
     damped%a(m + 1:, :) = 0.0_wp
     do i = 1, size(block%unknowns)
-      damped%a(m + i, i) = sqrt(damping)
+      damped%a(row_of(i), i) = sqrt(damping)
     end do
     right(:m) = -work%right
     right(m + 1:) = 0.0_wp

@@ -1,12 +1,12 @@
 !> The equations of a block: residuals, Jacobian and rates of its constraints, one below the other.
 module mech9_block_equations
   use mech9_kinds, only: wp
-  use mech9_front_plan, only: front_plan_type, new_front_plan
+  use mech9_front_plan, only: front_plan_type, row_groups_type, new_front_plan, add_diagonal
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   implicit none
   private
-  public :: block_residual, block_jacobian, block_rates, block_fronts, constraint_wrench, largest_gap
+  public :: block_residual, block_jacobian, block_rates, block_fronts, damped_fronts, constraint_wrench, largest_gap
 
 contains
 
@@ -103,22 +103,52 @@ contains
     type(block_type), intent(in) :: block       !< the block
     integer, intent(in) :: column_of(:)         !< (steps of the block) column of each step's coordinate; 0: not an unknown
     type(front_plan_type) :: fronts
-    integer, allocatable :: members(:), columns(:)
-    integer :: sizes(block%last_closure - block%first_closure + 1), lists(size(sizes) + 1), c, i
+    type(row_groups_type) :: groups
 
-    allocate (members(0))
-    lists(1) = 1
-    do i = 1, size(sizes)
-      c = block%first_closure + i - 1
-      sizes(i) = plan%constraints(c)%item%equations
-      columns = plan%closures(c)%part%steps
-      if (block%whole_loops) columns = plan%closures(c)%loop%steps
-      columns = column_of(pack(columns, columns >= block%first_step) - block%first_step + 1)
-      members = [members, pack(columns, columns > 0)]
-      lists(i + 1) = size(members) + 1
-    end do
-    fronts = new_front_plan(size(block%unknowns), sizes, lists, members)
+    groups = block_groups(plan, block, column_of)
+    fronts = new_front_plan(groups)
   end function block_fronts
+
+  !> The fronts of the Jacobian with one more row for each unknown, in which only this unknown occurs: `row_of` tells it.
+  pure subroutine damped_fronts(plan, block, column_of, fronts, row_of)
+    type(plan_type), intent(in) :: plan             !< the plan of the mechanism
+    type(block_type), intent(in) :: block           !< the block
+    integer, intent(in) :: column_of(:)             !< (steps of the block) column of each step's coordinate; 0: not an unknown
+    type(front_plan_type), intent(out) :: fronts    !< of the matrix of equations + unknowns rows
+    integer, intent(out) :: row_of(:)               !< (unknowns) the row that is added for each
+    type(row_groups_type) :: groups
+
+    groups = block_groups(plan, block, column_of)
+    call add_diagonal(groups, row_of)
+    fronts = new_front_plan(groups)
+  end subroutine damped_fronts
+
+  !> The groups of rows of a block's Jacobian, one for each constraint.
+  pure function block_groups(plan, block, column_of) result(groups)
+    type(plan_type), intent(in) :: plan         !< the plan of the mechanism
+    type(block_type), intent(in) :: block       !< the block
+    integer, intent(in) :: column_of(:)         !< (steps of the block) column of each step's coordinate; 0: not an unknown
+    type(row_groups_type) :: groups
+    integer, allocatable :: columns(:)
+    integer :: c, i, n
+
+    n = block%last_closure - block%first_closure + 1
+    groups%n = size(block%unknowns)
+    allocate (groups%sizes(n), groups%first(n + 1), groups%members(0))
+    groups%first(1) = 1
+    do i = 1, n
+      c = block%first_closure + i - 1
+      groups%sizes(i) = plan%constraints(c)%item%equations
+      if (block%whole_loops) then
+        columns = plan%closures(c)%loop%steps
+      else
+        columns = plan%closures(c)%part%steps
+      end if
+      columns = column_of(pack(columns, columns >= block%first_step) - block%first_step + 1)
+      groups%members = [groups%members, pack(columns, columns > 0)]
+      groups%first(i + 1) = size(groups%members) + 1
+    end do
+  end function block_groups
 
   !> The largest gap of any constraint that the plan's blocks solve: a length [m]; rotations are multiplied by the
   !> mechanism's size.
