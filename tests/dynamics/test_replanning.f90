@@ -1,5 +1,7 @@
 !> Plans in other independent coordinates that are made from the plan before: they give the accelerations of plans that are made from
 !> the beginning, and blocks that do not change are not planned anew.
+!>
+!> Compares the program with itself: plans made from the plan before and plans made from the beginning.
 program test_replanning
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
