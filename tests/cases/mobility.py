@@ -10,7 +10,7 @@ import tempfile
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
 
-from mech9_cases import REFERENCE, Checks, run
+from mech9_cases import REFERENCE, TREE, Checks, run
 
 DONE, USAGE, DATA, STRUCTURE, ASSEMBLY, SINGULAR = 0, 2, 3, 4, 5, 6
 
@@ -197,6 +197,29 @@ def branches(s):
         s.ends(s.mech9k, USAGE, four_bar(), '--branches', '--starts=' + wrong)
 
 
+# the crank and rocker of examples/rsur, with joints of several freedoms
+RSUR = """
+&mechanism links=4, coordinates=7 /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=0,0,0 /
+&pair coordinates=2,3,4, links=2,3, kind='spherical', point=0.2,0,0 /
+&pair coordinates=5,6, links=3,4, kind='universal', axis=0.5,0,-0.1, moving_axis=0,1,0, point=0.3,0.5,0.5 /
+&pair coordinate=7, links=1,4, kind='revolute', axis=1,0,0, point=0.3,0.5,-0.1 /
+&drive coordinate=1, kind='polynomial', coefficients=0, 6.283185307179586 /
+"""
+
+
+def postures(s):
+    """Settings of joints and turns of rods make no assemblies: the rocker has two angles."""
+    example = os.path.join(TREE, 'examples', 'rsur', 'rsur.nml')
+    with open(example, encoding='utf-8') as file:
+        text = file.read()
+    for data, links in (RSUR, '3'), (text, '3, 4, 5, 6'):
+        done = s.ends(s.mech9k, DONE, data, '--branches')
+        s.says(done.stdout, '! 2 assemblies found from 100 starts')
+        s.says(done.stdout, f'their settings are not counted: {links}\n')
+
+
 def open_chains(s):
     done = s.ends(s.mech9k, ASSEMBLY, four_bar().replace('point=1.2,0,0', 'point=4,0,0'))
     s.says(done.stderr, 'closed chain 1', 'stays open by')
@@ -212,6 +235,7 @@ def main():
         reports(s)
         wrong_choices(s)
         branches(s)
+        postures(s)
         open_chains(s)
         s.checks.finish()
 

@@ -56,7 +56,7 @@ contains
         rockers = rocker_angles(length, guess(1))
         call test%near(minval(abs(cos(state%q(4) - rockers) - 1.0_wp)), 0.0_wp, 1.0e-14_wp, &
                        'an assembled four-bar has one of its two rocker angles')
-        call find_assemblies(plan, state, 50, list)
+        call find_assemblies(model%mechanism, plan, state, 50, list)
         call test%is_true(size(list%found) == 2, 'a four-bar has two assemblies')
         if (size(list%found) == 2) call test%near(abs(cos(list%q(4, 1) - list%q(4, 2)) - cos(rockers(1) - rockers(2))), &
           0.0_wp, 1.0e-13_wp, 'the two assemblies of a four-bar are its two rocker angles')
@@ -129,7 +129,7 @@ contains
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, 'a slider-crank is assembled')
     if (allocated(err)) return
-    call find_assemblies(plan, state, 60, list)
+    call find_assemblies(model%mechanism, plan, state, 60, list)
     call test%is_true(size(list%found) == 2, 'a slider-crank has two assemblies')
     if (size(list%found) /= 2) return
     slides = crank*cos(angle) + [-1.0_wp, 1.0_wp]*sqrt(rod**2 - (crank*sin(angle))**2)
@@ -181,7 +181,7 @@ contains
     end if
     call test%no_error(err, 'a platform is assembled')
     if (allocated(err)) return
-    call find_assemblies(plan, state, 400, list)
+    call find_assemblies(model%mechanism, plan, state, 400, list)
     call test%is_true(size(list%found) == expected, 'the platform has as many assemblies as counted')
     most = max(most, expected)
   end subroutine platform
@@ -255,7 +255,7 @@ contains
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, 'six revolutes are assembled')
     if (allocated(err)) return
-    call find_assemblies(plan, state, 1500, list)
+    call find_assemblies(model%mechanism, plan, state, 1500, list)
     call test%is_true(size(list%found) == 16, 'six revolutes have sixteen assemblies')
   end subroutine six_revolutes
 

@@ -1,8 +1,9 @@
 !> The assemblies of a mechanism in words, for --branches.
 module mech9_assemblies_text
-  use mech9_text, only: to_text
+  use mech9_text, only: to_text, some_of
   use mech9_counted, only: counted
   use mech9_mechanism, only: mechanism_type
+  use mech9_joint_words, only: shown_of
   use mech9_result_units, only: unit_of
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -10,6 +11,9 @@ module mech9_assemblies_text
   implicit none
   private
   public :: print_assemblies
+
+  !> So many links are listed at most.
+  integer, parameter :: most_links = 24
 
 contains
 
@@ -26,12 +30,14 @@ contains
     character(len=:), allocatable :: words
     integer :: i, k
 
-    call find_assemblies(plan, start, n_starts, list)
+    call find_assemblies(mechanism, plan, start, n_starts, list)
     write (unit, '(a)') '! '//counted(size(list%found), 'assembly')//' found from '//counted(list%starts, 'start')// &
       ', of which '//to_text(list%closed)//' could be closed'
+    if (size(list%unseen) > 0) call print_unseen(unit, shown_of(mechanism%structure, list%unseen))
     do i = 1, size(list%found)
       words = ''
       if (i == 1) words = '; that of the data file'
+      if (i > 1 .and. list%found(i) == 0) words = '; found on the way from others'
       write (unit, '(a)') '! assembly '//to_text(i)//', from '//counted(list%found(i), 'start')//words
       do k = 1, plan%n_coordinates
         if (.not. plan%steps(plan%step_of(k))%dependent) cycle
@@ -40,4 +46,17 @@ contains
       end do
     end do
   end subroutine print_assemblies
+
+  !> Say which settings make no assembly of their own.
+  subroutine print_unseen(unit, links)
+    integer, intent(in) :: unit       !< Fortran unit to write to
+    integer, intent(in) :: links(:)   !< links of joints and rods, but for those that the user does not know
+
+    if (size(links) > 0) then
+      write (unit, '(a)') '! these links only form joints, or rods between joints, and their settings are not counted: '// &
+        trim(some_of(links, most_links))
+    else
+      write (unit, '(a)') '! settings of the angles of one joint are not counted'
+    end if
+  end subroutine print_unseen
 end module mech9_assemblies_text
