@@ -20,7 +20,7 @@ EOT
       name["six_bar"] = "six-bar"; size["six_bar"] = "6, 7"
       name["fig1"] = "Fig. 1"; size["fig1"] = "6, 7"
       name["rsur"] = "spatial R-S-U-R"; size["rsur"] = "7, 7"
-      name["stewart_gough"] = "Stewart-Gough platform"; size["stewart_gough"] = "32, 36"
+      name["stewart_gough"] = "Stewart-Gough platform"; size["stewart_gough"] = "14, 36"
     }
     NR > 1 { printf "| %s | %s | %.3f | %.1f | %.3f | %.1f |\n", name[$1], size[$1], $2, $4, $3, $5 }
   ' "$work/positions.dat"

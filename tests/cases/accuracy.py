@@ -24,7 +24,7 @@ MECHANISMS = (
     ('R-S-U-R', os.path.join(TREE, 'examples', 'rsur', 'rsur.nml'), 1.0),
     ('Jansen leg', os.path.join(TREE, 'examples', 'jansen_leg', 'jansen_leg.nml'), 1.0),
     ('class III group', os.path.join(TREE, 'examples', 'class_three_group', 'class_three_group.nml'), 1.0),
-    ('Stewart-Gough platform', os.path.join(TREE, 'examples', 'stewart_gough', 'stewart_gough.nml'), 1.0),
+    ('Stewart-Gough platform', os.path.join(REFERENCE, 'stewart_gough_by_hand.nml'), 1.0),
 )
 # A position is closed to round-off; 1e-13 for it and 1e-11 for accelerations are asked of chains well away from
 # their singular positions, as all of these are.

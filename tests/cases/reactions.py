@@ -24,8 +24,10 @@ def gallery(checks, mech9k, mech9d):
         compare(checks, mech9d, example(name, file), name, intervals=2)
     rng = np.random.default_rng(5)
     for name in ('fig1', 'slider_crank', 'watt_parallel_motion', 'peaucellier', 'jansen_leg', 'whitworth', 'class_three_group', 'bennett',
-                 'sarrus', 'double_hooke', 'rsur', 'stewart_gough', 'palletising_arm'):
+                 'sarrus', 'double_hooke', 'rsur', 'palletising_arm'):
         compare(checks, mech9k, with_masses(rng, example(name)), name, intervals=3)
+    platform = parse(text_of(os.path.join(TREE, 'tests', 'reference', 'stewart_gough_by_hand.nml')))
+    compare(checks, mech9k, with_masses(rng, platform), 'stewart_gough', intervals=3)
     for name in ('fig1', 'slider_crank', 'peaucellier', 'jansen_leg', 'whitworth', 'class_three_group', 'palletising_arm'):
         compare(checks, mech9k, with_masses(rng, example(name), flat=True), f'{name}, flat', intervals=2)
     for name, load in (('force', {'kind': ['force'], 'link': [3], 'force': [0.0, 0.0, 2.0]}),
