@@ -19,6 +19,7 @@ module mech9_reader
   use mech9_body_reader, only: read_bodies, read_gravity
   use mech9_load_reader, only: read_loads
   use mech9_motor_reader, only: read_motors
+  use mech9_rod_holding, only: hold_idle_rods
   use mech9_output_reader, only: read_output
   use mech9_cam_reader, only: read_cams
   use mech9_diagnostics, only: diagnostics_type
@@ -70,6 +71,7 @@ contains
                                              model%mechanism%loads, model%mechanism%n_motors, diagnostics)
     call check_drives(checked, needs_drives, model, diagnostics)
     if (.not. needs_drives) call check_motors(checked, model, diagnostics)
+    if (.not. diagnostics%failed()) call hold_idle_rods(needs_drives, model)
   end subroutine read_model
 
   !> Set a structure and its partition to the form that means unknown: no links and no coordinates.

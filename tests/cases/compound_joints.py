@@ -15,7 +15,7 @@ import tempfile
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
 
-from mech9_cases import Checks, run, table_and_report, table_of, text_of
+from mech9_cases import REFERENCE, TREE, Checks, run, table_and_report, table_of, text_of
 
 DATA, STRUCTURE = 3, 4
 AXES = {'x': '1,0,0', 'y': '0,1,0', 'z': '0,0,1'}
@@ -251,6 +251,77 @@ def check_shown(cases):
         cases.checks.equal(list(file['pair'][()]), [1, 2, 5, 7], 'HDF5: pairs with wrenches')
 
 
+def check_platform(cases):
+    """The platform of the examples, written with joints, moves as the one by hand, whose massless links have numbers."""
+    example = os.path.join(TREE, 'examples', 'stewart_gough', 'stewart_gough.nml')
+    one, other = (table_of(cases.mech9k, path) for path in (example, os.path.join(REFERENCE, 'stewart_gough_by_hand.nml')))
+    cases.checks.equal(list(one), list(other), 'the platform: the same columns')
+    # round-off times the conditioning of the chains
+    cases.same(one, other, 1e-12, 'the platform')
+
+
+def check_shaft(cases):
+    """A universal joint between two shafts at the angle beta: tan(q2) = cos(beta) tan(q1), the law of Cardan and Hooke."""
+    for beta in (0.1, 0.5, 1.2):
+        c, s = math.cos(beta), math.sin(beta)
+        text = '&structure cq=1 /\n' + "&pair coordinate=1, links=1,2, kind='revolute', axis=1,0,0, zero=0,1,0 /\n" \
+            f"&pair coordinate=4, links=1,3, kind='revolute', axis={c!r},{s!r},0, zero={-s!r},{c!r},0 /\n" \
+            "&pair coordinates=2,3, links=2,3, kind='universal', axis=0,0,1, moving_axis={0!r},{1!r},0 /\n".format(-s, c) + \
+            "&drive coordinate=1, kind='polynomial', coefficients=0.1, 1 /\n&time end=12, intervals=240 /\n"
+        table = cases.table(cases.mech9k, text)
+        q1 = table['q1']
+        # the fork of the driving shaft is along z at q1 = 0, so that the law holds from there; both shafts turn on and on
+        law = np.unwrap(np.arctan2(np.sin(q1) * c, np.cos(q1)))
+        rate = c / (np.cos(q1) ** 2 + np.sin(q1) ** 2 * c * c)
+        error = float(np.max(np.abs(table['q4'] - law)))
+        cases.checks.true(error < 1e-13, f'a shaft with a universal joint at {beta}: its law ({error:.2g})')
+        error = float(np.max(np.abs(table['dq4'] - rate)))
+        cases.checks.true(error < 1e-12, f'a shaft with a universal joint at {beta}: its rate ({error:.2g})')
+
+
+RSSR = [dict(coordinate=1, links=(1, 2), kind='revolute', point='0,0,0', axis='0,0,1', zero='1,0,0'),
+        dict(coordinates=(2, 3, 4), links=(2, 3), kind='spherical', point='0.2,0,0', moving_point='0,0,0'),
+        dict(coordinates=(5, 6, 7), links=(3, 4), kind='spherical', point='1.0,0,0', moving_point='0,0.6,0'),
+        dict(coordinate=8, links=(1, 4), kind='revolute', point='1.0,0.2,0.1', axis='1,0,0.2', moving_point='0,0,0',
+             moving_axis='1,0,0')]
+
+
+def check_rod(cases):
+    """A rod between two balls turns about itself: the program holds one angle, and the rest moves as it does with another one given."""
+    joints, _ = both(RSSR, 4)
+    rest = "&drive coordinate=1, kind='harmonic', mean=0.3, amplitude=0.2, angular_frequency=4 /\n&point name='P', link=3, " \
+        'position=0.4,0,0 /\n&time end=1.5, intervals=15 /\n'
+    reference = None
+    for more in ('', "&structure cq=1,2 /\n&drive coordinate=2, kind='polynomial', coefficients=0.7, 0.2 /\n"):
+        text = (more or '&structure cq=1 /\n') + joints + rest
+        done = run(cases.mech9k, cases.write(text), '--no-write')
+        cases.checks.equal(done.returncode, 0, 'a rod between balls: moved')
+        said = 'note: link 3 can turn by itself between the spherical joint of coordinates 2, 3, 4 and the spherical joint of ' \
+            'coordinates 5, 6, 7; coordinate 5 is held at 0'
+        cases.checks.equal(said in done.stderr, not more, 'a rod between balls: the note')
+        table = cases.table(cases.mech9k, text)
+        if reference is None:
+            reference = table
+            cases.checks.true(float(np.max(np.abs(table['q5']))) <= 0.0, 'a rod between balls: the angle is held')
+        for name in ('q8', 'dq8', 'ddq8', 'P.x', 'P.y', 'P.z', 'P.vx', 'P.az'):
+            error = float(np.max(np.abs(table[name] - reference[name])))
+            cases.checks.true(error < 1e-10, f'a rod between balls: {name} does not depend on its turn ({error:.2g})')
+    done = run(cases.mech9k, cases.write('&structure cq=1 /\n' + joints + rest), '--check')
+    cases.checks.true('idle: coordinates' in done.stdout and 'the spherical joint of coordinates 5, 6, 7) can move while links 2 and 4 '
+                      'stand still' in done.stdout, 'a rod between balls: --check names the joints', done.stdout)
+    bodies = '&body link=2, mass=1, centre=0.1,0,0, inertia=0.1,0.1,0.1,0,0,0 /\n' \
+        '&body link=4, mass=1, centre=0,0.3,0, inertia=0.1,0.1,0.1,0,0,0 /\n&gravity acceleration=0,0,-9.81 /\n' \
+        '&initial coordinate=1, position=0.3, velocity=1 /\n&time end=0.3, intervals=6 /\n' \
+        '&solver relative_tolerance=1e-11, absolute_tolerance=1e-12 /\n'
+    # without mass, slender, and with a moment of inertia about its line, which lets it turn freely
+    for rod in ('', '&body link=3, mass=1, centre=0.5,0,0, inertia=0,0.1,0.1,0,0,0 /\n',
+                '&body link=3, mass=1, centre=0.5,0,0, inertia=0.02,0.1,0.1,0,0,0 /\n'):
+        table = cases.table(cases.mech9d, '&structure cq=1 /\n' + joints + bodies + rod)
+        spread = float(np.ptp(table['E.total']))
+        cases.checks.true(spread < 1e-8, f'a rod between balls in mech9d: its energy keeps ({spread:.2g})')
+        cases.checks.equal(float(np.max(np.abs(table['q5']))) > 0.0, '0.02' in rod, 'a rod between balls in mech9d: held or free')
+
+
 BAD = [
     ('a coordinate twice in a joint', "&pair coordinates=2,3,3, links=2,3, kind='spherical' /", '2:23', 'coordinate 3 is named twice'),
     ('a coordinate of another pair', "&pair coordinates=2,1,4, links=2,3, kind='spherical' /", '2:21',
@@ -302,6 +373,9 @@ def main():
         check_free_motion(cases)
         check_structure(cases)
         check_shown(cases)
+        check_platform(cases)
+        check_shaft(cases)
+        check_rod(cases)
         check_bad_input(cases)
         cases.checks.finish()
 
