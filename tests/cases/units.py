@@ -39,11 +39,19 @@ SPRING_AT_PIN = """
 """
 
 
+def sliding(groups):
+    """The coordinates of slides, by their numbers, and the couplings whose forces act along slides, as C1."""
+    slides = {pair['coordinate'][0] for group, pair in groups if group == 'pair' and pair['kind'][0] in ('prismatic', 'path')}
+    couplings = [items for group, items in groups if group == 'coupling']
+    return slides | {f'C{i}' for i, items in enumerate(couplings, 1) if items['coordinates'][-1] in slides}
+
+
 def scaled(groups, s):
     """The groups with lengths that are s times as large: kg and s stay, so that forces are s times as large and moments s^2."""
-    slides = {pair['coordinate'][0] for group, pair in groups if group == 'pair' and pair['kind'][0] in ('prismatic', 'path')}
+    slides = sliding(groups)
     powers = {'point': {'position': 1}, 'body': {'centre': 1, 'inertia': 2}, 'gravity': {'acceleration': 1},
               'pair': {'point': 1, 'moving_point': 1, 'pitch': 1},
+              'coupling': {'radius': 1, 'radii': 1, 'pitch': 1},
               'spring': {'position': 1, 'second_position': 1, 'free_length': 1},
               'force': {'position': 1, 'force': 1}, 'torque': {'torque': 2}}
     along = {'initial': {'position': 1, 'velocity': 1},
@@ -66,7 +74,7 @@ def scaled(groups, s):
 
 def in_degrees(groups):
     """The groups with angles in degrees, by the rules of the data file: forces and stiffnesses stay those per rad."""
-    slides = {pair['coordinate'][0] for group, pair in groups if group == 'pair' and pair['kind'][0] in ('prismatic', 'path')}
+    slides = sliding(groups)
     always = {'drive': ['angular_frequency', 'phase']}
     of_turns = {'initial': ['position', 'velocity'], 'drive': ['coefficients', 'mean', 'amplitude', 'values'],
                 'coordinate': ['rest']}
@@ -101,16 +109,22 @@ def power_of(column, slides):
     drive = re.fullmatch(r'F(\d+)', column)
     if drive:
         return 1 if int(drive.group(1)) in slides else 2
+    if re.fullmatch(r'C\d+', column):
+        return 1 if column in slides else 2
     if re.fullmatch(r'R\d+\.m[xyz]', column):
         return 2
     return 1 if '.' in column else 0
 
 
+def vector_of(column):
+    """The vector of which a column is a component, the same for the forces of all pairs; for other columns their own name."""
+    component = re.fullmatch(r'(.+\.[avfm]?)[xyz]', column)
+    return re.sub(r'^R\d+', 'R', component[1]) if component else column
+
+
 def largest_like(column, table):
-    """The largest magnitude in a column; of a force in a pair, or a moment, that in all of them, whose round-off each contains."""
-    of_pair = re.fullmatch(r'R\d+\.([fm])[xyz]', column)
-    alike = [name for name in table if re.fullmatch(rf'R\d+\.{of_pair[1]}[xyz]', name)] if of_pair else [column]
-    return max(np.max(np.abs(table[name])) for name in alike)
+    """The largest magnitude in a column and in the other components of its vector, whose round-off each component contains."""
+    return max(np.max(np.abs(table[name])) for name in table if vector_of(name) == vector_of(column))
 
 
 class Units:
