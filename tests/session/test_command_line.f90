@@ -111,6 +111,10 @@ contains
       end if
       if (name == 'edit' .or. name == 'resume') then
         call parse(trim(word), options, err)       ! they name the file themselves
+      else if (name == 'import') then
+        call parse(trim(word), options, err)       ! it makes the data file
+      else if (name == 'out') then
+        call parse('--import|a.urdf|'//trim(word), options, err)
       else if (name == 'mode') then
         call parse('a.nml|--modes|--animate|a.svg|'//trim(word), options, err, program_name)
       else
