@@ -146,23 +146,25 @@ contains
     end do
     points = points(:, :n)
     spans = spans(:n)
-    if (diagnostics%count == found .and. n < fewest_points) &
-      call diagnostics%add(span_type(number, 0, 0), 'a smooth curve needs at least '//to_text(fewest_points)// &
-                           ' points, and the file has '//to_text(n)//'; '//owner_words(diagnostics, asked_at)//' follows it')
+    if (diagnostics%count == found .and. n < fewest_points) call report_few_points(number, n, asked_at, diagnostics)
     ok = diagnostics%count == found
   end subroutine read_curve_file
 
-  !> The pair that names a file, by its place: "the pair in line 3 of bead.nml".
-  pure function owner_words(diagnostics, asked_at) result(words)
-    type(diagnostics_type), intent(in) :: diagnostics   !< knows the sources
-    type(span_type), intent(in) :: asked_at             !< place of the file's name
-    character(len=:), allocatable :: words
+  !> Report a file with too few points for a smooth curve, and which pair follows the curve.
+  pure subroutine report_few_points(number, n, asked_at, diagnostics)
+    integer, intent(in) :: number                         !< of the file among the sources
+    integer, intent(in) :: n                              !< number of its points
+    type(span_type), intent(in) :: asked_at               !< place of the file's name in the data file
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    character(len=:), allocatable :: pair
     type(place_type) :: place
 
     place = diagnostics%place(asked_at)
-    words = 'a pair'
-    if (place%line > 0) words = 'the pair in line '//to_text(place%line)//' of '//printable(diagnostics%sources(1)%name)
-  end function owner_words
+    pair = 'a pair'
+    if (place%line > 0) pair = 'the pair in line '//to_text(place%line)//' of '//printable(diagnostics%sources(1)%name)
+    call diagnostics%add(span_type(number, 0, 0), 'a smooth curve needs at least '//to_text(fewest_points)// &
+                         ' points, and the file has '//to_text(n)//'; '//pair//' follows it')
+  end subroutine report_few_points
 
   !> Keep the words of the chosen columns of a line. A line without some of them is reported.
   pure subroutine choose_fields(chosen, whole, count, fields, ok, diagnostics)
