@@ -30,6 +30,8 @@ module mech9_assemblies
 
   !> For each random start so many steps along curves are made at most, which take about twice its time, and so many on one curve.
   integer, parameter :: steps_for_start = 50, longest_curve = 2000
+  !> Starts beyond this number ask for no more steps, since the steps must remain an integer that can be represented.
+  integer, parameter :: counted_starts = 40000000
 
 contains
 
@@ -64,7 +66,7 @@ contains
       list%found(number) = list%found(number) + 1
     end do
     if (plan%n_coordinates > most_free_coordinates .or. n_starts < 1) return
-    call search_along_curves(plan, posture, start, steps_for_start*min(n_starts, huge(i)/steps_for_start), list)
+    call search_along_curves(plan, posture, start, steps_for_start*min(n_starts, counted_starts), list)
   end subroutine find_assemblies
 
   !> Close blocks, the last of which does not close with the others at their present positions, from starts farther and
