@@ -1,0 +1,98 @@
+!> The explanations of the names that concern cams, times, the integration and the results.
+module mech9_run_explanations
+  use mech9_name_explanation, only: explanation_type
+  implicit none
+  private
+  public :: cam_texts, run_texts
+
+  type(explanation_type), parameter :: cam_texts(*) = [ &
+    explanation_type('cam', 'link', '', &
+                  'A cam is a link whose shape moves another link, its follower, as the drives say. The option --cam computes '// &
+                  'this shape. Name the link by its number. Enter goes on without a further cam.', '2'), &
+    explanation_type('cam', 'follower', '', &
+                  'Name the link that touches the cam. It is guided by a pair of its own, and moved by drives.', '3'), &
+    explanation_type('cam', 'point', '', &
+                  'Give the centre of the roller, or any point of the flat face, in the system of the follower.', &
+                  '0, 0.05, 0'), &
+    explanation_type('cam', 'roller', '', &
+                  'The follower touches the cam with a roller of this radius. With 0 it touches with an edge.', '0.01'), &
+    explanation_type('cam', 'face', '', &
+                  'A flat face can touch the cam in place of a roller. Give the direction across the face towards the cam, in '// &
+                  'the system of the follower.', '0, -1, 0 (the face looks down on the cam)'), &
+    explanation_type('cam', 'side', '', &
+                  'The cam lies inside of the path of its roller as a disk does, or outside as a ring or the outer wall of a '// &
+                  'groove does.', 'outer'), &
+    explanation_type('cam', 'axis', '', &
+                  'The profile lies in a plane. Give the direction across this plane, in the system of the cam, if the cam '// &
+                  'does not turn about it.', '0, 0, 1'), &
+    explanation_type('cam', 'guide', '', &
+                  'The pressure angle is the angle between the force of the cam and the motion that a pair of the follower '// &
+                  'allows. Name this pair by its coordinate where the follower has several.', '2')]
+
+  type(explanation_type), parameter :: run_texts(*) = [ &
+    explanation_type('time', 'start', '', &
+                  'The first result is given at this time.', '0'), &
+    explanation_type('time', 'end', '', &
+                  'The last result is given at this time. A motion can also run backwards, to an earlier time than it '// &
+                  'starts at.', '2.5'), &
+    explanation_type('time', 'intervals', '', &
+                  'The time from start to end is divided into this number of equal steps, with a result at the end of '// &
+                  'each; 0 gives the start alone.', '200 (201 results)'), &
+    explanation_type('solver', 'method', '', &
+                  'The method integrates the equations of motion; auto serves nearly always: it makes the steps of '// &
+                  'prince-dormand, of order 8, and those of bdf while very stiff springs or dampers would hold them down.', &
+                  'bdf'), &
+    explanation_type('solver', 'accuracy', '', &
+                  'At each result, no coordinate and no point may be wrong by more than this, in rad and in m. The program '// &
+                  'runs the motion several times, finds the tolerances by which this is so, and tells the error of each '// &
+                  'result in the column error. 0 leaves all to the tolerances.', '1e-8'), &
+    explanation_type('solver', 'relative_tolerance', '', &
+                  'In each step the error may be this part of the coordinates and of their rates. A smaller number is '// &
+                  'more accurate and takes longer.', '1e-10'), &
+    explanation_type('solver', 'absolute_tolerance', '', &
+                  'In each step the error may be this much, in rad, in m and in their rates, also where a coordinate is '// &
+                  'nearly 0.', '1e-12'), &
+    explanation_type('solver', 'maximum_steps', '', &
+                  'The run ends with a message if it needs more steps than this from one result to the next.', '10000'), &
+    explanation_type('output', 'table', '', &
+                  'The results are written to this file, as a table in plain text with a line for each time.', 'crank.dat'), &
+    explanation_type('output', 'hdf5', '', &
+                  'The results are also written to this file in HDF5, which Python, MATLAB and other programs read.', &
+                  'crank.h5'), &
+    explanation_type('output', 'sketch', '', &
+                  'The mechanism in its first position is drawn to this file, which any browser shows.', 'crank.svg'), &
+    explanation_type('output', 'animation', '', &
+                  'The moving mechanism is shown by this file. One that ends with .html is a page with buttons for a '// &
+                  'browser; .svg and .gif are pictures that repeat the motion.', 'crank.html'), &
+    explanation_type('output', 'view', '', &
+                  'This is the direction from which the drawings are seen: two letters are the axes to the right and up, '// &
+                  'iso is a view at an angle, and three numbers point to the viewer.', 'xz'), &
+    explanation_type('output', 'poses', '', &
+                  'The HDF5 file then holds the position and the rotation of every link too, and a file that ends with '// &
+                  '.xdmf beside it shows the links in ParaView.', 'yes'), &
+    explanation_type('output', 'compression', '', &
+                  'The HDF5 file is compressed by this much: 0 is not at all and the fastest, 9 gives the smallest file '// &
+                  'and is the slowest.', '4'), &
+    explanation_type('output', 'conditioning', '', &
+                  'The results then have a column that falls to 0 where the mechanism comes to a singular position.', 'yes'), &
+    explanation_type('output', 'coordinates', '', &
+                  'Only these coordinates are recorded; chains that nothing recorded depends on are not solved, which '// &
+                  'saves time.', '5, 7'), &
+    explanation_type('output', 'derivatives', '', &
+                  'With 0 the results hold positions alone, with 1 velocities too, with 2 accelerations too.', '0'), &
+    explanation_type('output', 'energies', '', &
+                  'The results hold the kinetic energy, the potential energy and their sum, which stays the same where '// &
+                  'no load takes or gives energy.', 'no'), &
+    explanation_type('output', 'reactions', '', &
+                  'The results then hold the force and the moment that pass through each pair, for bearings and links that '// &
+                  'must bear them. Masses, gravity and loads count in mech9k, too.', 'yes'), &
+    explanation_type('output', 'reaction_pairs', '', &
+                  'The forces and moments of these pairs alone are recorded.', '1, 4'), &
+    explanation_type('output', 'drive_forces', '', &
+                  'The results then hold the force, or the torque, that each drive needs: what a motor must give.', 'yes'), &
+    explanation_type('output', 'force_arrows', '', &
+                  'Drawing and film then show the forces in the pairs as arrows; the longest arrow is the largest force.', 'yes'), &
+    explanation_type('user', 'parameters', '', &
+                  'Every user procedure of yours receives these numbers, so that they can be changed without linking it '// &
+                  'again.', '0.1, 2.0')]
+end module mech9_run_explanations
