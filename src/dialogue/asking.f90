@@ -9,10 +9,11 @@ module mech9_asking
   use mech9_answer, only: read_answer, yes_or_no
   use mech9_short_answers, only: word_meant
   use mech9_draft, only: draft_type, integer_of
-  use mech9_draft_check, only: problem_with
+  use mech9_draft_check, only: problem_with, problem_with_joint
+  use mech9_draft_joints, only: joints_text, give_joints
   use mech9_outline, only: ways, drop_empty_guesses
   use mech9_interview, only: most_parts
-  use mech9_questions, only: question_type, entry_name, is_seldom, label_of, ask_item, ask_seldom, ask_way
+  use mech9_questions, only: question_type, entry_name, is_seldom, label_of, ask_item, ask_seldom, ask_way, ask_joints
   use mech9_question_words, only: default_type, default_of, prompt_of, heading_of, words_for, seldom_names
   use mech9_question_help, only: gist_of, help_of, refusal_of_enter
   use mech9_conversation, only: conversation_type, going
@@ -106,6 +107,8 @@ contains
       call take_seldom(conversation, question, line)
     case (ask_way)
       call take_way(conversation, line)
+    case (ask_joints)
+      call take_joints(conversation, line)
     case default
       call take_guesses(conversation, line)
     end select
@@ -151,6 +154,11 @@ contains
         end if
       case (ask_way)
         prompt = '  structure by pairs, matrix or vectors ['//trim(outline%way)//']: '
+      case (ask_joints)
+        heading = joints_text(draft)
+        if (heading == '') heading = 'none'
+        if (len(heading) > 40) heading = 'as now'
+        prompt = '  joints with several freedoms ['//heading//']: '
       case default
         prompt = '  guesses of the dependent coordinates, to choose an assembly [no]: '
         if (outline%guesses) prompt = prompt(:index(prompt, '[', back=.true.))//'yes]: '
@@ -215,10 +223,17 @@ contains
     character(len=*), intent(in) :: text                     !< the answer as a data file writes it
 
     call conversation%interview%note(text)
-    if (conversation%interview%dropped /= '') &
-      call conversation%say('(dropped, as it has no meaning any more: '//conversation%interview%dropped//')')
+    call tell_dropped(conversation)
     call move_on(conversation)
   end subroutine keep_answer
+
+  !> The names that the last answer made meaningless are told.
+  subroutine tell_dropped(conversation)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+
+    if (conversation%interview%dropped /= '') &
+      call conversation%say('(dropped, as it has no meaning any more: '//conversation%interview%dropped//')')
+  end subroutine tell_dropped
 
   !> The next question becomes due, and the answers are kept in the draft's file.
   subroutine move_on(conversation)
@@ -253,7 +268,11 @@ contains
       end if
       trial = interview%draft
       call trial%give(group, question%place, name, text)
-      call problem_with(trial, interview%outline, conversation%draft_path, group, question%place, name, problem)
+      if (group == 'pair' .and. (name == 'kind' .or. name == 'coordinates')) then
+        call problem_with_joint(trial, interview%outline, conversation%draft_path, question%place, problem)
+      else
+        call problem_with(trial, interview%outline, conversation%draft_path, group, question%place, name, problem)
+      end if
     end associate
   end subroutine hold_against_rest
 
@@ -301,11 +320,10 @@ contains
     end do
     associate (words => words_of(plain))
       do i = 1, size(words)
-        k = findloc([(item_table(rows(k))%name == words(i), k=1, size(rows))], .true., dim=1)
-        if (k > 0) then
-          asked(rows(k)) = .true.
-          cycle
-        end if
+        associate (meant => [(item_table(rows(k))%name == words(i), k=1, size(rows))])
+          asked(pack(rows, meant)) = .true.
+          if (any(meant)) cycle
+        end associate
         hint = nearest_name(trim(words(i)), item_table(rows)%name)
         if (hint /= '') hint = '; did you mean '//hint//'?'
         problem = ''''//printable(trim(words(i)), 40)//''' is none of these names'//hint
@@ -339,6 +357,28 @@ contains
     end associate
     call move_on(conversation)
   end subroutine take_way
+
+  !> The answer about joints with several freedoms is taken.
+  subroutine take_joints(conversation, line)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: line                     !< the answer, without blanks around it
+    character(len=:), allocatable :: joints, problem
+
+    joints = lower(line)
+    if (joints == 'none' .or. joints == 'no') joints = ''
+    associate (interview => conversation%interview)
+      if (line /= '') then
+        call give_joints(interview%draft, joints, problem)
+        if (problem /= '') then
+          call conversation%say(problem)
+          return
+        end if
+        call interview%refresh('joints')
+      end if
+    end associate
+    if (line /= '') call tell_dropped(conversation)
+    call move_on(conversation)
+  end subroutine take_joints
 
   !> The answer about guesses of the dependent coordinates at the start is taken.
   subroutine take_guesses(conversation, line)

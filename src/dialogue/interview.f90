@@ -8,7 +8,7 @@ module mech9_interview
   use mech9_draft, only: draft_type, plain_name
   use mech9_draft_check, only: fault_type, read_draft_structure
   use mech9_topics, only: can_be_left_out
-  use mech9_outline, only: outline_type, ways, new_outline, make_groups, drop_foreign, wants_forces
+  use mech9_outline, only: outline_type, ways, new_outline, make_pairs, make_groups, drop_foreign, wants_forces
   use mech9_questions, only: question_type, make_questions, label_of, find_question, entry_name, &
                              is_seldom, ask_item, check_structure, check_start, check_all
   use mech9_question_words, only: is_lacking
@@ -64,7 +64,7 @@ contains
     if (.not. self%outline%structure_known) return
     ! counts that are not in the file are added
     if (self%draft%has('mechanism', 1, 'links') .and. self%draft%has('mechanism', 1, 'coordinates')) return
-    call self%draft%give('mechanism', 1, 'links', to_text(self%structure%n_links))
+    call self%draft%give('mechanism', 1, 'links', to_text(self%structure%shown_links()))
     call self%draft%give('mechanism', 1, 'coordinates', to_text(self%structure%n_coordinates))
     call self%refresh('')
   end subroutine start
@@ -81,15 +81,19 @@ contains
   pure subroutine refresh(self, label)
     class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
     character(len=*), intent(in) :: label         !< label of the question that is due then; empty: the number of the question stays
+    character(len=:), allocatable :: pairs
     integer :: found
 
+    call make_pairs(self%draft, pairs)
     call read_draft_structure(self%draft, self%outline, self%structure, self%partition, self%faults)
     self%outline%structure_known = size(self%faults) == 0 .and. counts_agree(self)
     if (self%outline%structure_known) then
       self%outline%independent = self%partition%independent()
-      self%outline%links = self%structure%links
+      self%outline%links = links_of_pairs(self%structure)
     end if
     call drop_foreign(self%draft, self%outline, self%dropped)
+    if (pairs /= '' .and. self%dropped /= '') pairs = pairs//', '
+    self%dropped = pairs//self%dropped
     call make_groups(self%draft, self%outline)
     call make_questions(self%draft, self%outline, self%questions)
     found = 0
@@ -97,6 +101,19 @@ contains
     if (found > 0) self%at = found
     self%at = max(1, min(self%at, size(self%questions)))
   end subroutine refresh
+
+  !> The links of the pairs as the user knows them; the first coordinate of a joint with several freedoms has those of the joint.
+  pure function links_of_pairs(structure) result(links)
+    type(structure_type), intent(in) :: structure  !< links of the pairs, and the joints with several freedoms
+    integer, allocatable :: links(:, :)
+    integer :: j
+
+    links = structure%links
+    if (.not. allocated(structure%joints)) return
+    do j = 1, size(structure%joints)
+      links(:, structure%joints(j)%numbers(1)) = structure%joints(j)%ends
+    end do
+  end function links_of_pairs
 
   !> Whether the structure has so few parts that a conversation can ask about them one by one.
   pure logical function counts_agree(self)
@@ -266,13 +283,17 @@ contains
     class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
     character(len=*), intent(in) :: text          !< the answer as a data file writes it
     type(question_type) :: question
-    logical :: with_forces
+    logical :: with_forces, was_known
 
     question = self%due()
     with_forces = wants_forces(self%draft)
+    was_known = self%outline%structure_known
     call self%draft%give(trim(group_table(question%group_row)%name), question%place, entry_name(question), text)
     call self%refresh(label_of(question))
     if (wants_forces(self%draft) .and. .not. with_forces) call go_on_with_masses(self)
+    ! pairs that a joint leaves need their links before the conversation goes on
+    if (group_table(question%group_row)%name == 'pair' .and. was_known .and. .not. self%outline%structure_known .and. &
+        self%return_to == '') self%return_to = label_of(self%questions(min(self%at + 1, size(self%questions))))
   end subroutine note
 
   !> A correction that asks for forces leads on to the questions about bodies, gravity and loads, if these come only now, and none

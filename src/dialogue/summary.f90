@@ -3,6 +3,7 @@ module mech9_summary
   use mech9_text, only: to_text, lower
   use mech9_grammar, only: group_table, find_group_row, words_of
   use mech9_draft, only: draft_type, integer_of, unquoted
+  use mech9_draft_joints, only: number_in, pair_with
   use mech9_paragraph, only: print_paragraph
   use mech9_topics, only: is_numbered
   implicit none
@@ -67,7 +68,7 @@ contains
     row = find_group_row(title)
     if (row == 0) return
     if (is_numbered(row)) then
-      title = title//' '//draft%value(title, draft%place_of(group), 'coordinate')
+      title = title//' '//to_text(number_in(draft, title, draft%place_of(group)))
     else if (group_table(row)%repeats) then
       title = title//' '//to_text(draft%place_of(group))
     end if
@@ -156,7 +157,11 @@ contains
       if (size(words) > 1) then
         if (integer_of(trim(words(2))) > 0) then
           place = integer_of(trim(words(2)))
-          if (is_numbered(row)) place = draft%with_number(trim(words(1)), 'coordinate', place)
+          if (trim(words(1)) == 'pair') then
+            place = pair_with(draft, place)
+          else if (is_numbered(row)) then
+            place = draft%with_number(trim(words(1)), 'coordinate', place)
+          end if
           next = 3
         end if
       end if

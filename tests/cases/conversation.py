@@ -36,13 +36,13 @@ class Talks:
         trouble = ('Backtrace', 'Fortran runtime error', 'SIGSEGV', 'AddressSanitizer', 'runtime error:')
         self.checks.true(not any(word in text for word in trouble), f'{why}: no crash', text[-2000:])
 
-    def pipe(self, program, steps, why, code=DONE, arguments=(), folder=None):
+    def pipe(self, program, steps, why, code=DONE, arguments=(), folder=None, width=80):
         """A conversation through a pipe, all of whose prompts come in order."""
         done = piped(program, *arguments, folder=folder, answers=answers_of(steps))
         self.checks.true(done.returncode == code, f'{why}: exit code {code}', f'it was {done.returncode}\n{done.stderr}')
         missing = first_missing(done.stderr, steps)
         self.checks.true(missing is None, f'{why}: every prompt comes in its turn', f'{missing} is missing\n{done.stderr}')
-        self.checks.true(max(map(len, done.stderr.splitlines())) < 80, f'{why}: lines fit 80 columns',
+        self.checks.true(max(map(len, done.stderr.splitlines())) < width, f'{why}: lines fit {width} columns',
                          max(done.stderr.splitlines(), key=len))
         self.sound(done.stderr, why)
         return done
@@ -185,8 +185,8 @@ def structure_and_start(talks):
         talks.checks.true('dropped' not in done.stderr, 'drives of which nothing was entered go without a word', done.stderr)
     # in open chains all coordinates are independent
     arm = [('title', 'Arm'), ('links: ', '3'), ('coordinates: ', '2'), ('angle_unit', ''), ('[pairs]', 'default'),
-           ('links of pair 1', '1-2'), ('links of pair 2', '2-3'), ('cq: ', '1'), ('no chain is closed, and so all 2 are', '1 2'),
-           ('which of them', 'default'), ('Pair 1', 'quit')]
+           ('several freedoms', 'no'), ('links of pair 1', '1-2'), ('links of pair 2', '2-3'), ('cq: ', '1'),
+           ('no chain is closed, and so all 2 are', '1 2'), ('which of them', 'default'), ('Pair 1', 'quit')]
     with tempfile.TemporaryDirectory() as folder:
         talks.pipe(talks.mech9k, arm, 'too few independent coordinates', folder=folder)
     # rare items of the mechanism are not asked for, but can be given by their names wherever an answer can be changed
@@ -208,11 +208,11 @@ def structure_and_start(talks):
 def edited_files(talks):
     """Data files opened with --edit and saved are the same mechanism; an answer can be changed by its number
     or name, groups added and removed."""
-    for name in ('fig1', 'andrews', 'bricard'):
+    for name in ('fig1', 'andrews', 'bricard', 'stewart_gough'):
         folder_of = os.path.join(TREE, 'examples', name)
         with tempfile.TemporaryDirectory() as folder:
             shutil.copy(os.path.join(folder_of, name + '.nml'), folder)
-            program = talks.mech9k if name == 'fig1' else talks.mech9d
+            program = talks.mech9k if name in ('fig1', 'stewart_gough') else talks.mech9d
             steps = [('Enter if all is right', ''), ('[both]', 'save'), (f'data file [{name}.nml]', 'copy.nml')]
             talks.pipe(program, steps, f'--edit {name}', arguments=('--edit', name + '.nml'), folder=folder)
             tables = []
@@ -334,7 +334,7 @@ def drives_and_motors(talks):
 def short_answers(talks):
     """A slider-crank with a screw in short answers: the data file has full forms, and a reader of data files takes no
     others. After the slide, Enter means a hinge about the axis of the hinges."""
-    steps = [('title', 'Crank'), ('links: ', '4'), ('coordinates: ', '4'), ('angle_unit', 'd'), ('[pairs]', 'p'),
+    steps = [('title', 'Crank'), ('links: ', '4'), ('coordinates: ', '4'), ('angle_unit', 'd'), ('[pairs]', 'p'), ('several freedoms', ''),
              ('links of pair 1', '1-2'), ('links of pair 2', '1 - 4'), ('links of pair 3', '2-3'), ('links of pair 4', '3-4'),
              ('cq: ', '1'), ('which of them', 'zero'), ('kind [revolute]', 'rev'), ('point', ''), ('axis: ', ''),
              ('This must be given', 'z'), ('zero', '-x'),
@@ -367,6 +367,67 @@ def gravity(talks):
             steps += [(prompt, ''), ('Gravity must be given', answer)] if is_gravity else [(prompt, usual)]
         text = text_saved(talks, talks.mech9d, steps, f'gravity {answer}')
         talks.checks.true(f'&gravity acceleration={written} /' in text, f'gravity: {answer} is {written}', text)
+
+
+CHAIN = '''&mechanism links=4, coordinates=7 /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinates=2,3,4, links=2,3, kind='spherical', point=0.3,0,0 /
+&pair coordinates=5,6, links=3,4, kind='universal', point=1,0.5,0.2, axis=1,0,0, moving_axis=0,0,1 /
+&pair coordinate=7, links=4,1, kind='revolute', point=1,0,0.2, axis=1,0,0 /
+&drive coordinate=1, kind='polynomial', coefficients=0,0.3 /
+&point name='P', link=4, position=1,0.5,0.2 /
+&time intervals=20 /
+'''
+CHAIN_COUNTS = [('title', 'chain'), ('links: ', '4'), ('coordinates: ', '7'), ('angle_unit', '')]
+CHAIN_BY = {'pairs': [('[pairs]', ''), ('freedoms [none]', '2 sphere'), ('Answer none, or', '?'), ('a ball joint', '5 free'),
+                      ('has the coordinates 5 to 10', '2 ball, 3 universal'), ('belong to another joint', '2 ball, 5 univ'),
+                      ('links of pair 1', 'back'), ('[2 spherical, 5 universal]', ''), ('links of pair 1', '1-2'),
+                      ('links of pair 2, 3, 4', '2-3'), ('links of pair 5, 6', '3-4'), ('links of pair 7', '4-1'), ('cq: ', '1')],
+            'matrix': [('[pairs]', 'm'), ('freedoms [none]', '2 ball 5 universal'), ('row 1 of c', '0 1 0 7'),
+                       ('row 2 of c', '1 0 2 0'), ('row 3 of c', '0 2 0 5'), ('row 4 of c', '7 0 5 0'), ('cq: ', '1')],
+            'vectors': [('[pairs]', 'v'), ('freedoms [none]', '2 ball, 5 universal'), ('cq [', '1'), ('nrg', '1 2 3 4 1'),
+                        ('nws', '0 1 2 5 7'), ('rdw', '1 1 0 0 0'), ('nrw', '')]}
+CHAIN_GEOMETRY = [('which of them', ''), ('Pair 1, from', ''), ('point', ''), ('axis: ', 'z'),
+                  ('Pair 2 (coordinates 2, 3, 4)', ''), ('coordinates [2, 3, 4]', ''), ('point', '0.3 0 0'),
+                  ('Pair 5 (coordinates 5, 6)', ''), ('coordinates [5, 6]', ''), ('point', '1 .5 .2'), ('axis: ', 'x'),
+                  ('moving_axis: ', 'z'), ('Pair 7, from', ''), ('point', '1 0 .2'), ('axis [', 'x'), ('coupling 1', '')]
+
+
+def joints_with_several_freedoms(talks):
+    """A chain with a ball joint and a universal joint gives the table of a data file that is written by hand. A joint that
+    becomes a hinge leaves pairs, whose links are asked for at once."""
+    rest = [('Drive of coordinate 1', ''), ('coefficients', '0 .3'), ('guesses', ''), ('point 1, name', 'P'), ('link: ', '4'),
+            ('position', '1 .5 .2'), ('point 2, name', ''), ('start', ''), ('end', ''), ('intervals', '20'), *scripts.RESULTS,
+            *scripts.END]
+    for way, structure in CHAIN_BY.items():
+        with tempfile.TemporaryDirectory() as folder:
+            why = f'a chain with joints, by {way}'
+            with open(os.path.join(folder, 'by_hand.nml'), 'w', encoding='utf-8') as file:
+                file.write(CHAIN)
+            # the last hinge goes from the rocker to the frame; matrix and second set have its links the other way round
+            geometry = CHAIN_GEOMETRY if way == 'pairs' else CHAIN_GEOMETRY[:-2] + [('axis [', '-x'), CHAIN_GEOMETRY[-1]]
+            # the report of the run lists six coordinates in a line
+            talks.pipe(talks.mech9k, CHAIN_COUNTS + structure + geometry + rest, why, folder=folder, width=90)
+            for path in ('by_hand.nml', 'chain.nml'):
+                done = run(talks.mech9k, path, '--table', 'again.dat', '--quiet', folder=folder)
+                talks.checks.true(done.returncode == DONE and done.stderr == '', f'{why}: {path} runs', done.stderr)
+                table, again = (read_table(text_of(os.path.join(folder, name))) for name in ('chain.dat', 'again.dat'))
+                # links named in the other order change the round-off
+                talks.checks.near(table['P.z'], again['P.z'], 1e-13, f'{why}: the table of {path}')
+            if way == 'pairs':
+                run(talks.mech9k, 'by_hand.nml', '--table', 'again.dat', '--quiet', folder=folder)
+                same = rows_of(os.path.join(folder, 'chain.dat')) == rows_of(os.path.join(folder, 'again.dat'))
+                talks.checks.true(same, f'{why}: the table is the same to the last bit')
+            text = text_of(os.path.join(folder, 'chain.nml'))
+            talks.checks.true('coordinates=2, 3, 4' in text and 'coordinate=2' not in text and 'coordinate=3' not in text,
+                              f'{why}: a joint is one group', text)
+    steps = CHAIN_COUNTS + CHAIN_BY['pairs'] + CHAIN_GEOMETRY[:4]
+    steps += [('Pair 2 (coordinates', 'rev'), ('links of pair 3', '2-3'), ('links of pair 4', '2-3'), ('point', 'back'),
+              ('kind [revolute]', 'ball'), ('coordinates [2, 3, 4]', '2 3 9'), ('there is no coordinate 9', ''),
+              ('point', '.3 0 0'), ('Pair 5 (coordinates', 'quit')]
+    with tempfile.TemporaryDirectory() as folder:
+        talks.pipe(talks.mech9k, steps, 'a joint becomes a hinge and a joint again', folder=folder)
 
 
 # bodies, gravity and loads of a bar, as mech9k asks for them
@@ -452,6 +513,7 @@ def main():
     short_answers(talks)
     gravity(talks)
     forces_of_drives(talks)
+    joints_with_several_freedoms(talks)
     unsaved_runs(talks)
     refusals(talks)
     cut_off_anywhere(talks)

@@ -3,12 +3,15 @@
 !> unit that is asked for. A group that was begun can be left out, and nothing is proposed that was meant for something else.
 program test_questions
   use mech9_text, only: string_type
-  use mech9_grammar, only: group_table, item_table, find_group_row
+  use mech9_grammar, only: group_table, item_table, find_group_row, item_row_for_kind
+  use mech9_compound_joint, only: compound_kinds
+  use mech9_draft_joints, only: give_joints, joints_text
   use mech9_draft, only: draft_type
   use mech9_topics, only: topics, groups_of_topic, is_numbered
   use mech9_outline, only: ways
   use mech9_interview, only: interview_type
-  use mech9_questions, only: question_type, label_of, find_question, ask_item, ask_seldom, check_structure, check_start, check_all
+  use mech9_questions, only: question_type, label_of, find_question, ask_item, ask_seldom, ask_joints, &
+                             check_structure, check_start, check_all
   use mech9_question_words, only: default_type, default_of, prompt_of, words_for
   use mech9_question_help, only: help_of
   use mech9_explanations, only: find_explanation, explanations
@@ -24,6 +27,7 @@ program test_questions
   call leaving_out(tester)
   call proposals(tester)
   call dropped_drives(tester)
+  call changed_joints(tester)
   call tester%finish()
 
 contains
@@ -58,6 +62,11 @@ contains
           call look_at(tester, interview, asked)
         end do
       end do
+    end do
+    do way = 1, size(compound_kinds)
+      call begin_joint(trim(compound_kinds(way)), interview)
+      call tester%is_true(interview%outline%structure_known, trim(compound_kinds(way))//': the structure is known')
+      call look_at(tester, interview, asked)
     end do
     do row = 1, size(item_table)
       associate (item => item_table(row))
@@ -120,6 +129,27 @@ contains
     call interview%refresh('')
   end subroutine begin
 
+  !> A bar on a joint with several freedoms, all of which are independent.
+  subroutine begin_joint(kind, interview)
+    character(len=*), intent(in) :: kind                !< kind of the joint
+    type(interview_type), intent(out) :: interview      !< gets all questions about the bar
+    type(draft_type) :: draft
+    character(len=:), allocatable :: coordinates
+
+    call draft%clear()
+    coordinates = '1, 2, 3, 4, 5, 6'
+    coordinates = coordinates(:3*item_table(item_row_for_kind('pair', 'coordinates', kind))%low - 2)
+    call draft%give('mechanism', 1, 'links', '2')
+    call draft%give('mechanism', 1, 'coordinates', coordinates(len(coordinates):))
+    call draft%give('structure', 1, 'cq', coordinates)
+    call draft%give('pair', 1, 'coordinate', '1')
+    call draft%give('pair', 1, 'kind', ''''//kind//'''')
+    call draft%give('pair', 1, 'links', '1, 2')
+    call interview%start('mech9d', draft)
+    interview%outline%asked = .true.
+    call interview%refresh('')
+  end subroutine begin_joint
+
   !> The structure of a four-bar, driven at its first pair.
   subroutine structure_in(way, draft)
     character(len=*), intent(in) :: way        !< in which the structure is given
@@ -157,6 +187,9 @@ contains
       if (question%kind == ask_seldom .and. group_table(question%group_row)%name == 'output') &
         call tester%is_true(index(help_of(question, interview%draft, interview%outline), 'view: axes of both pictures') > 0, &
                             'seldom names are explained one by one')
+      if (question%kind == ask_joints) &
+        call tester%is_true(index(help_of(question, interview%draft, interview%outline), 'spherical') > 0, &
+                            'the help about joints with several freedoms names them')
       if (question%kind /= ask_item) cycle
       asked(question%row) = .true.
       associate (item => item_table(question%row))
@@ -338,4 +371,38 @@ contains
     call interview%refresh('')
     call tester%is_true(interview%dropped == 'drive 1', 'a drive with a kind is named when it is dropped')
   end subroutine dropped_drives
+
+  !> A joint takes the pairs of its coordinates; they come back when it becomes a hinge, and the structure is asked for first.
+  subroutine changed_joints(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    type(interview_type) :: interview
+    character(len=:), allocatable :: problem
+
+    call begin('mech9k', 'pairs', 'polynomial', interview)
+    call give_joints(interview%draft, '3 universal', problem)
+    call tester%is_true(problem == '', 'pair 3 becomes a universal joint')
+    call interview%refresh('')
+    call tester%is_true(interview%draft%count_of('pair') == 3 .and. interview%dropped == 'pair 4', &
+                        'pair 4 with its data is named when a joint takes its coordinate')
+    call tester%is_true(interview%draft%value('pair', 3, 'coordinates') == '3, 4' .and. &
+                        .not. interview%draft%has('pair', 3, 'coordinate'), 'the joint has the coordinates 3 and 4')
+    call tester%is_true(joints_text(interview%draft) == '3 universal', 'the joint is listed by its number and kind')
+    call give_joints(interview%draft, '3 spherical', problem)
+    call tester%is_true(index(problem, '3 to 5') > 0, 'a joint cannot have more coordinates than there are')
+    call give_joints(interview%draft, '2 universal, 3 cylindrical', problem)
+    call tester%is_true(index(problem, 'another joint') > 0, 'two joints cannot have the same coordinate')
+    call give_joints(interview%draft, '3', problem)
+    call tester%is_true(index(problem, 'such as') > 0, 'a joint without a kind is refused')
+    call interview%refresh('')
+    call interview%draft%give('mechanism', 1, 'links', '3')
+    call interview%draft%give('pair', 3, 'links', '3, 1')
+    call interview%refresh('')
+    call tester%is_true(interview%outline%structure_known, 'the structure with the joint is known')
+    interview%at = find_question(interview%questions, 'pair(3).kind')
+    call interview%note("'revolute'")
+    call tester%is_true(interview%draft%count_of('pair') == 4 .and. interview%draft%value('pair', 3, 'coordinate') == '3' &
+                        .and. .not. interview%draft%has('pair', 3, 'coordinates'), 'the hinge has one coordinate again')
+    call interview%step()
+    call tester%is_true(label_of(interview%due()) == 'pair(4).links', 'the links of the pair that came back are asked for')
+  end subroutine changed_joints
 end program test_questions

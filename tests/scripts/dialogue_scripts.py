@@ -13,9 +13,9 @@ SECOND_SET = {'nrg': '1 2 3 4 1 1 6 5 3', 'nws': '0 5 4 7 6 0 1 2 3', 'rdw': '1 
               'nrw': '0 0 0 0 1 1 1 1 2'}
 
 MECHANISM = [('title [', TITLE_FIG1), ('links: ', '6'), ('coordinates: ', '7'), ('angle_unit [rad]', '')]
-BY_PAIRS = [('[pairs]', '')] + [(f'links of pair {k}', LINKS[k]) for k in LINKS] + [('cq: ', '5')]
-BY_MATRIX = [('[pairs]', 'matrix')] + [(f'row {i} of c', row) for i, row in enumerate(MATRIX, 1)] + [('cq: ', '5')]
-BY_VECTORS = [('[pairs]', 'vectors')] + [(name, values) for name, values in SECOND_SET.items()]
+BY_PAIRS = [('[pairs]', ''), ('several freedoms [none]', '')] + [(f'links of pair {k}', LINKS[k]) for k in LINKS] + [('cq: ', '5')]
+BY_MATRIX = [('[pairs]', 'matrix'), ('several freedoms', '')] + [(f'row {i} of c', row) for i, row in enumerate(MATRIX, 1)] + [('cq: ', '5')]
+BY_VECTORS = [('[pairs]', 'vectors'), ('several freedoms', '')] + [(name, values) for name, values in SECOND_SET.items()]
 
 
 def pairs(with_links):

@@ -12,10 +12,12 @@ module mech9_draft_check
   use mech9_diagnostics, only: diagnostics_type
   use mech9_draft, only: draft_type
   use mech9_draft_text, only: draft_text_type, write_draft, locate
-  use mech9_outline, only: outline_type, kind_in
+  use mech9_draft_joints, only: kind_in, numbers_in, number_in, has_joints, pair_with, settle_joints
+  use mech9_compound_joint, only: is_compound
+  use mech9_outline, only: outline_type
   implicit none
   private
-  public :: fault_type, read_draft, read_draft_structure, problem_with, faults_of
+  public :: fault_type, read_draft, read_draft_structure, problem_with, problem_with_joint, faults_of
 
   !> One error, and the entry of the draft that it concerns.
   type :: fault_type
@@ -72,29 +74,66 @@ contains
     call read_structure_only(document, structure, partition, diagnostics)
   end subroutine read_part
 
-  !> The part of a draft that gives the structure: counts, structural data, and the links of the pairs if the structure is
-  !> given by them. Pairs get some kind, since they cannot be read without one.
+  !> The part of a draft that gives the structure: counts, structural data, and the pairs if the structure is given by them or
+  !> has joints with several freedoms. Plain pairs get some kind, since they cannot be read without one. Where the structure is
+  !> not given by the pairs, they have the links that it gives them.
   pure function structural_part(draft, outline) result(part)
     type(draft_type), intent(in) :: draft      !< groups and names with their values as text
     type(outline_type), intent(in) :: outline  !< facts known beside the draft
     type(draft_type) :: part
+    character(len=11), parameter :: from_pairs(3) = [character(len=11) :: 'coordinate', 'coordinates', 'links']
     integer :: i, j, place
-    character(len=:), allocatable :: name
+    character(len=:), allocatable :: name, kind
+    logical :: with_pairs
 
+    with_pairs = outline%way == 'pairs' .or. has_joints(draft)
     call part%clear()
     do i = 1, size(draft%groups)
       name = draft%groups(i)%name
-      if (.not. (name == 'mechanism' .or. name == 'structure' .or. (name == 'pair' .and. outline%way == 'pairs'))) cycle
+      if (.not. (name == 'mechanism' .or. name == 'structure' .or. (name == 'pair' .and. with_pairs))) cycle
       place = part%count_of(name) + 1
       do j = 1, size(draft%groups(i)%entries)
         associate (entry => draft%groups(i)%entries(j))
-          if (name == 'pair' .and. entry%name /= 'coordinate' .and. entry%name /= 'links') cycle
+          if (name == 'pair' .and. all(entry%name /= from_pairs)) cycle
+          if (name == 'pair' .and. entry%name == 'links' .and. outline%way /= 'pairs') cycle
           call part%give(name, place, entry%name, entry%text)
         end associate
       end do
-      if (name == 'pair') call part%give(name, place, 'kind', '''revolute''')
+      if (name /= 'pair') cycle
+      kind = kind_in(draft, i)
+      if (.not. is_compound(kind)) kind = 'revolute'
+      call part%give(name, place, 'kind', ''''//kind//'''')
+      call complete(part, name, place, without='links')
+      if (outline%way /= 'pairs') call give_links(draft, outline%way, part, place)
     end do
   end function structural_part
+
+  !> A pair gets the links between which its first coordinate stands in the coincidence matrix or in the second set; none where
+  !> it does not stand there.
+  pure subroutine give_links(draft, way, part, place)
+    type(draft_type), intent(in) :: draft     !< the whole draft
+    character(len=*), intent(in) :: way       !< way in which the structure is given: matrix or vectors
+    type(draft_type), intent(inout) :: part   !< draft with the structure alone
+    integer, intent(in) :: place              !< place of the pair among the pairs of the part
+    integer, allocatable :: row(:), nrg(:)
+    integer :: i, j, k
+
+    k = number_in(part, 'pair', place)
+    if (k == 0) return
+    if (way == 'vectors') then
+      nrg = numbers_in(draft%value('structure', 1, 'nrg'))
+      j = findloc(numbers_in(draft%value('structure', 1, 'nws')), k, dim=1)
+      if (j > 1 .and. j <= size(nrg)) call part%give('pair', place, 'links', to_text(nrg(j - 1:j)))
+      return
+    end if
+    do i = 1, draft%number('mechanism', 1, 'links')
+      row = numbers_in(draft%value('structure', 1, 'c('//to_text(i)//',:)'))
+      j = findloc(row, k, dim=1)
+      if (j == 0) cycle
+      call part%give('pair', place, 'links', to_text([i, j]))
+      return
+    end do
+  end subroutine give_links
 
   !> Places in a part of a draft are replaced by those in the whole, which are found by names.
   pure subroutine translate(part, draft, faults)
@@ -179,16 +218,38 @@ contains
     end do
   end subroutine problem_with
 
+  !> The errors of the kind and the coordinates of a pair, once it has as many coordinates as its kind; empty if there are none.
+  subroutine problem_with_joint(draft, outline, path, place, problem)
+    type(draft_type), intent(in) :: draft                  !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline              !< facts known beside the draft
+    character(len=*), intent(in) :: path                   !< path of the data file; tables of drives are sought beside it
+    integer, intent(in) :: place                           !< place among the pairs, from 1
+    character(len=:), allocatable, intent(out) :: problem  !< messages, a line each; empty: nothing is wrong
+    type(draft_type) :: trial
+    character(len=:), allocatable :: dropped
+    integer :: now
+
+    trial = draft
+    call settle_joints(trial, dropped)
+    now = pair_with(trial, number_in(draft, 'pair', place))
+    if (now == 0) now = place
+    call problem_with(trial, outline, path, 'pair', now, 'kind', problem)
+    if (problem == '' .and. trial%has('pair', now, 'coordinates')) &
+      call problem_with(trial, outline, path, 'pair', now, 'coordinates', problem)
+  end subroutine problem_with_joint
+
   !> The values that a group needs and lacks are taken from the examples of the table of names.
-  pure subroutine complete(draft, group, place)
+  pure subroutine complete(draft, group, place, without)
     type(draft_type), intent(inout) :: draft  !< draft whose group is completed
     character(len=*), intent(in) :: group     !< name of the group
     integer, intent(in) :: place              !< place among the groups of that name, from 1
+    character(len=*), intent(in), optional :: without  !< name that is not given; not present: all are
     integer, allocatable :: rows(:)
     integer :: i
     character(len=:), allocatable :: kind
 
     rows = rows_of_group(group)
+    if (present(without)) rows = pack(rows, item_table(rows)%name /= without)
     kind = kind_in(draft, draft%find(group, place))
     do i = 1, size(rows)
       associate (row => item_table(rows(i)))

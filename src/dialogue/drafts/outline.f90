@@ -1,12 +1,13 @@
 !> The facts that a conversation knows beside the draft: the way in which the structure is given, the rarely used names
 !> that the user wants, and the independent coordinates. The groups that follow from them are made here.
 module mech9_outline
-  use mech9_text, only: to_text, lower
+  use mech9_text, only: to_text
   use mech9_grammar, only: item_table, find_item_rows, item_row_for_kind
-  use mech9_draft, only: draft_type, plain_name, unquoted
+  use mech9_draft, only: draft_type, plain_name
+  use mech9_draft_joints, only: kind_in, coordinates_of_pair, number_in, settle_joints
   implicit none
   private
-  public :: outline_type, ways, new_outline, make_groups, drop_empty_guesses, drop_foreign, kind_in, wants_forces
+  public :: outline_type, ways, new_outline, make_pairs, make_groups, drop_empty_guesses, drop_foreign, wants_forces
 
   !> The ways to give the structure: the links of each pair, the rows of the coincidence matrix, or the second set.
   character(len=7), parameter :: ways(3) = [character(len=7) :: 'pairs', 'matrix', 'vectors']
@@ -19,7 +20,7 @@ module mech9_outline
     logical :: guesses = .false.                            !< guesses of the dependent coordinates at the start are wanted
     logical :: structure_known = .false.
     logical, allocatable :: independent(:)                  !< (M) which coordinates are independent, once the structure is known
-    integer, allocatable :: links(:, :)                     !< (2,M) links of the pairs, once the structure is known
+    integer, allocatable :: links(:, :)                     !< (2,M) links of the pairs, of a joint at its first coordinate, once the structure is known
   end type outline_type
 
 contains
@@ -46,24 +47,6 @@ contains
     end do
   end function new_outline
 
-  !> The kind of a group, in lower case, and after a blank its law, as in law:harmonic; empty if it has none.
-  pure function kind_in(draft, group) result(kind)
-    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
-    integer, intent(in) :: group           !< index of the group in the draft
-    character(len=:), allocatable :: kind
-    integer :: i
-
-    kind = ''
-    associate (entries => draft%groups(group)%entries)
-      do i = 1, size(entries)
-        if (entries(i)%name == 'kind') kind = lower(unquoted(entries(i)%text))
-      end do
-      do i = 1, size(entries)
-        if (entries(i)%name == 'law') kind = kind//' law:'//lower(unquoted(entries(i)%text))
-      end do
-    end associate
-  end function kind_in
-
   !> Whether the results of the draft hold forces, for which bodies, gravity and loads count in mech9k, too.
   pure logical function wants_forces(draft)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
@@ -77,15 +60,23 @@ contains
     end do
   end function wants_forces
 
-  !> The groups that are needed are made: a pair for each coordinate, a drive or initial values for each independent
+  !> Pairs are made for the coordinates that have none; each pair gets as many coordinates as its kind has.
+  pure subroutine make_pairs(draft, dropped)
+    type(draft_type), intent(inout) :: draft               !< groups and names with their values as text
+    character(len=:), allocatable, intent(out) :: dropped  !< pairs with data that were removed, with commas between; empty: none
+    logical :: all(max(draft%number('mechanism', 1, 'coordinates'), 0))
+
+    all = .true.
+    call settle_joints(draft, dropped)
+    call make_numbered(draft, 'pair', all)
+  end subroutine make_pairs
+
+  !> The groups that are needed beside the pairs are made: a drive or initial values for each independent
   !> coordinate (in mech9d initial values for those without a drive), and guesses for the other coordinates if they are wanted.
   pure subroutine make_groups(draft, outline)
     type(draft_type), intent(inout) :: draft   !< groups and names with their values as text
     type(outline_type), intent(in) :: outline  !< facts known beside the draft
-    logical :: all(max(draft%number('mechanism', 1, 'coordinates'), 0))
 
-    all = .true.
-    call make_numbered(draft, 'pair', all)
     if (.not. outline%structure_known) return
     if (outline%way /= 'pairs') call give_links(draft, outline%links)
     if (outline%program_name == 'mech9k') then
@@ -128,12 +119,12 @@ contains
   !> The pairs get their links from the structure, unless they have them already in either order.
   pure subroutine give_links(draft, links)
     type(draft_type), intent(inout) :: draft  !< groups and names with their values as text
-    integer, intent(in) :: links(:, :)        !< (2,M) reference link and moving link of each pair
+    integer, intent(in) :: links(:, :)        !< (2,M) reference link and moving link of each pair; of a joint at its first coordinate
     integer :: k, place
     character(len=:), allocatable :: given
 
     do place = 1, draft%count_of('pair')
-      k = draft%number('pair', place, 'coordinate')
+      k = number_in(draft, 'pair', place)
       if (k < 1 .or. k > size(links, 2)) cycle
       given = draft%value('pair', place, 'links')
       if (given == to_text(links(:, k)) .or. given == to_text(links(2:1:-1, k))) cycle
@@ -147,12 +138,14 @@ contains
     character(len=*), intent(in) :: group     !< name of the groups
     logical, intent(in) :: wanted(:)          !< (M) coordinates that need a group
     logical :: there(size(wanted))
+    integer, allocatable :: numbers(:)
     integer :: k, place
 
     there = .false.
     do place = 1, draft%count_of(group)
-      k = draft%number(group, place, 'coordinate')
-      if (k >= 1 .and. k <= size(there)) there(k) = .true.
+      numbers = [draft%number(group, place, 'coordinate')]
+      if (group == 'pair') numbers = coordinates_of_pair(draft, place)
+      there(pack(numbers, numbers >= 1 .and. numbers <= size(there))) = .true.
     end do
     place = draft%count_of(group)
     do k = 1, size(wanted)

@@ -6,7 +6,7 @@ module mech9_question_help
   use mech9_draft, only: draft_type, unquoted
   use mech9_topics, only: can_be_left_out
   use mech9_outline, only: outline_type
-  use mech9_questions, only: question_type, is_seldom, ask_item, ask_seldom, ask_way, ask_guesses
+  use mech9_questions, only: question_type, is_seldom, ask_item, ask_seldom, ask_way, ask_guesses, ask_joints
   use mech9_question_words, only: coordinate_kind, angle_unit, unit_here, is_needed, seldom_names
   use mech9_explanations, only: find_explanation, explanations
   implicit none
@@ -55,6 +55,11 @@ contains
       text = 'These names have defaults that mostly serve:'//line_end//list_of_seldom(question, outline)// &
              'Answer yes to be asked for all of them, or name those that you want to give.'//line_end//'For example: '// &
              names(:index(names//',', ',') - 1)
+    case (ask_joints)
+      text = 'Some joints have several freedoms: spherical (a ball joint) and planar have three coordinates, universal and '// &
+             'cylindrical two, free six. Name each by its first coordinate and its kind, with commas between; the joint has '// &
+             'the coordinates that follow, too. Its first coordinate stands for it in C and in nws.'//line_end// &
+             'For example: 4 spherical, 7 universal (coordinates 4, 5, 6 and 7, 8)'
     case (ask_guesses)
       text = 'The same links can be put together in several ways. Rough values of the dependent coordinates choose '// &
              'one; without them the search starts from zeros, the position in which the mechanism is described. '// &

@@ -6,9 +6,11 @@ module mech9_question_words
   use mech9_data_help, only: default_text
   use mech9_draft, only: draft_type, unquoted
   use mech9_topics, only: groups_of_topic, can_be_left_out
-  use mech9_outline, only: outline_type, kind_in
+  use mech9_compound_joint, only: compound_kinds
+  use mech9_draft_joints, only: kind_in, number_in, coordinates_of_pair, kind_of_coordinate
+  use mech9_outline, only: outline_type
   use mech9_questions, only: question_type, entry_name, is_seldom, ask_item, ask_seldom, ask_way, &
-                             ask_guesses
+                             ask_guesses, ask_joints
   implicit none
   private
   public :: default_type, default_of, prompt_of, heading_of, unit_here, coordinate_kind, angle_unit, words_for
@@ -126,7 +128,7 @@ contains
 
     associate (row => item_table(question%row))
       is_needed = row%needed .or. index(row%default, '(needed') == 1
-      if (row%name == 'axis' .and. row%group == 'pair') is_needed = .not. draft%has('pair', question%place, 'dh')
+      if (row%group == 'pair' .and. draft%has('pair', question%place, 'dh')) is_needed = is_needed .and. row%name /= 'axis'
       if (row%needed .and. .not. group_table(question%group_row)%repeats) &
         is_needed = draft%count_of(trim(row%group)) > 0
       select case (row%group)
@@ -173,7 +175,9 @@ contains
       if (item_table(question%row)%name == 'links') return
       links = draft%value(group, question%place, 'links')
       comma = index(links, ',')
-      text = 'Pair '//draft%value(group, question%place, 'coordinate')
+      text = 'Pair '//to_text(number_in(draft, group, question%place))
+      if (size(coordinates_of_pair(draft, question%place)) > 1) &
+        text = text//' (coordinates '//to_text(coordinates_of_pair(draft, question%place))//')'
       if (comma > 0) text = text//', from link '//links(:comma - 1)//' (reference) to link '// &
                             trim(adjustl(links(comma + 1:)))//' (moving)'
     case ('drive')
@@ -198,7 +202,7 @@ contains
         text = '  '//trim(row%group)//', '//trim(row%name)
       if (question%line > 0) text = '  row '//to_text(question%line)//' of c'
       if (row%group == 'pair' .and. row%name == 'links') &
-        text = '  links of pair '//draft%value('pair', question%place, 'coordinate')
+        text = '  links of pair '//to_text(coordinates_of_pair(draft, question%place))
       if (question%is_new) text = '  '//trim(row%group)//' '//to_text(question%place)//', '//trim(row%name)
       unit = unit_here(question, draft)
       if (unit /= '') text = text//' ('//unit//')'
@@ -252,12 +256,8 @@ contains
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
     character(len=:), allocatable :: kind
-    integer :: place
 
-    kind = ''
-    place = draft%with_number('pair', 'coordinate', draft%number(trim(group_table(question%group_row)%name), &
-                                                                 question%place, 'coordinate'))
-    if (place > 0) kind = kind_in(draft, draft%find('pair', place))
+    kind = kind_of_coordinate(draft, number_in(draft, trim(group_table(question%group_row)%name), question%place))
   end function coordinate_kind
 
   !> The unit of angles in this data file.
@@ -316,6 +316,7 @@ contains
     rows = rows_of_group(group_table(question%group_row)%name)
     do i = 1, size(rows)
       if (.not. is_seldom(outline, item_table(rows(i)))) cycle
+      if (index(', '//text//',', ', '//trim(item_table(rows(i))%name)//',') > 0) cycle
       if (text /= '') text = text//', '
       text = text//trim(item_table(rows(i))%name)
     end do
@@ -340,6 +341,12 @@ contains
       list = 'yes no '//list//' '
     case (ask_guesses)
       list = 'yes no '
+    case (ask_joints)
+      list = 'none'
+      do i = 1, size(compound_kinds)
+        list = list//' '//trim(compound_kinds(i))
+      end do
+      list = list//' '
     case default
       list = trim(item_table(question%row)%words)//' '
       if (question%is_new) list = list//'none '

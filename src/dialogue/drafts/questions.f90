@@ -7,16 +7,17 @@ module mech9_questions
   use mech9_grammar, only: group_table, item_table, for_forces, item_row_type, rows_of_group, takes_kind, find_item_rows
   use mech9_draft, only: draft_type
   use mech9_topics, only: topics, groups_of_topic, is_numbered, can_be_left_out
-  use mech9_outline, only: outline_type, kind_in, wants_forces
+  use mech9_draft_joints, only: kind_in, has_joints
+  use mech9_outline, only: outline_type, wants_forces
   implicit none
   private
   public :: question_type, make_questions, label_of, find_question, entry_name, is_open, is_seldom
-  public :: ask_item, ask_seldom, ask_way, ask_guesses, check_structure, check_start, check_all
+  public :: ask_item, ask_seldom, ask_way, ask_guesses, ask_joints, check_structure, check_start, check_all
 
-  !> The kinds of questions: about a name of a group, about the rarely used names of a group, about the way in which the
-  !> structure is given, and about guesses of dependent coordinates. Checks between the questions are kinds of their own.
-  integer, parameter :: ask_item = 1, ask_seldom = 2, ask_way = 3, ask_guesses = 4
-  integer, parameter :: check_structure = 5, check_start = 6, check_all = 7
+  !> The kinds of questions: a name of a group, the rarely used names of a group, the way in which the structure is given,
+  !> joints with several freedoms, and guesses of dependent coordinates. Checks between the questions are kinds of their own.
+  integer, parameter :: ask_item = 1, ask_seldom = 2, ask_way = 3, ask_guesses = 4, ask_joints = 5
+  integer, parameter :: check_structure = 6, check_start = 7, check_all = 8
 
   !> One question.
   type :: question_type
@@ -141,7 +142,7 @@ contains
     integer :: i
 
     order = rows
-    if (group_table(template%group_row)%name == 'pair') order = dh_first(rows)
+    if (group_table(template%group_row)%name == 'pair') order = rows_of_pair(rows)
     do i = 1, size(order)
       question = template
       question%row = order(i)
@@ -149,16 +150,19 @@ contains
     end do
   end subroutine ask_about_one
 
-  !> The rows of a pair, in an order that has the Denavit-Hartenberg parameters before the names that they replace.
-  pure function dh_first(rows) result(order)
+  !> The rows of a pair, in an order that has its kind before its coordinates, and the Denavit-Hartenberg parameters before the
+  !> names that they replace.
+  pure function rows_of_pair(rows) result(order)
     integer, intent(in) :: rows(:)  !< rows of the names of a pair in item_table
     integer, allocatable :: order(:)
     integer :: i
 
-    order = [pack(rows, [(.not. replaced(item_table(rows(i))%name) .and. item_table(rows(i))%name /= 'dh', i=1, size(rows))]), &
+    order = [pack(rows, item_table(rows)%name == 'links'), pack(rows, item_table(rows)%name == 'kind'), pack(rows, &
+             [(.not. replaced(item_table(rows(i))%name) .and. all(item_table(rows(i))%name /= ['links', 'kind ', 'dh   ']), &
+               i=1, size(rows))]), &
              pack(rows, item_table(rows)%name == 'dh'), &
              pack(rows, [(replaced(item_table(rows(i))%name), i=1, size(rows))])]
-  end function dh_first
+  end function rows_of_pair
 
   !> Whether the Denavit-Hartenberg parameters replace a name of a pair.
   pure logical function replaced(name)
@@ -279,6 +283,8 @@ contains
 
     question = question_type(topic=topic, group_row=group_row, place=1)
     call append(questions, count, question_type(kind=ask_way, topic=topic, group_row=group_row))
+    if (draft%number('mechanism', 1, 'coordinates') > 1) &
+      call append(questions, count, question_type(kind=ask_joints, topic=topic, group_row=group_row))
     if (outline%way == 'pairs') then
       rows = find_item_rows('pair', 'links')
       pair_row = findloc(group_table%name, 'pair     ', dim=1)
@@ -291,7 +297,7 @@ contains
       question%row = rows(i)
       if (item_table(rows(i))%name == 'c') then
         if (outline%way == 'matrix') call ask_about_matrix(draft, question, questions, count)
-      else if (has_place_in(outline%way, item_table(rows(i))%name) &
+      else if (has_place_in(outline%way, item_table(rows(i))%name, has_joints(draft)) &
                .or. draft%has('structure', 1, trim(item_table(rows(i))%name))) then
         call append(questions, count, question)
       end if
@@ -299,15 +305,16 @@ contains
     call append(questions, count, question_type(kind=check_structure, topic=topic))
   end subroutine ask_about_structure
 
-  !> Whether a structural name belongs to the way in which the structure is given. The second set takes the place of cq;
-  !> other names belong to every way.
-  pure logical function has_place_in(way, name)
+  !> Whether a structural name belongs to the way in which the structure is given. The second set takes the place of cq unless
+  !> there are joints with several freedoms; other names belong to every way.
+  pure logical function has_place_in(way, name, joints)
     character(len=*), intent(in) :: way   !< way in which the structure is given, one of `ways` of mech9_outline
     character(len=*), intent(in) :: name  !< the name, without a subscript
+    logical, intent(in) :: joints         !< there are joints with several freedoms
 
     select case (name)
     case ('cq')
-      has_place_in = way /= 'vectors'
+      has_place_in = way /= 'vectors' .or. joints
     case ('nrg', 'nws', 'rdw', 'nrw')
       has_place_in = way == 'vectors'
     case default
@@ -368,6 +375,8 @@ contains
       label = 'more of '//trim(group_table(question%group_row)%name)
     case (ask_way)
       label = 'way of structure'
+    case (ask_joints)
+      label = 'joints'
     case (ask_guesses)
       label = 'guesses'
     case (check_structure)

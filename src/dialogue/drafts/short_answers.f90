@@ -53,6 +53,10 @@ contains
       kind = 'prismatic'
     case ('screw')
       kind = 'helical'
+    case ('ball')
+      kind = 'spherical'
+    case ('cardan', 'hooke')
+      kind = 'universal'
     case ('curve', 'wire', 'rail')
       kind = 'path'
     case default

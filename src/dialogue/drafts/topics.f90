@@ -13,7 +13,8 @@ module mech9_topics
   end type topic_type
 
   type(topic_type), parameter :: topics(*) = [ &
-    topic_type('The mechanism', 'mechanism', 'Link 1 is the frame; each pair between two links has one coordinate.'), &
+    topic_type('The mechanism', 'mechanism', 'Link 1 is the frame; a pair between two links has one coordinate, '// &
+               'a ball joint three.'), &
     topic_type('Structure', 'structure', ''), &
     topic_type('Pairs', 'pair', 'Directions and points are three numbers, x y z. The easiest way: choose one position of the '// &
                'mechanism and give all points and directions in the frame, as they are in that position; all coordinates are '// &
