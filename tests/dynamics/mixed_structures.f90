@@ -5,12 +5,13 @@ module mech9_mixed_structures
   use mech9_pose, only: pose_type
   use mech9_random, only: random_type
   use mech9_model, only: model_type
+  use mech9_plan, only: plan_type
   use mech9_sample_mechanisms, only: new_mechanism, add_revolute, add_prismatic, frame
   use mech9_loaded_mechanisms, only: load_everything
   use mech9_random_geometry, only: random_vector, random_unit
   implicit none
   private
-  public :: structure_type, add_open_link, add_loop, add_ladder, add_spatial_loop, random_structure, finished, below
+  public :: structure_type, add_open_link, add_loop, add_ladder, add_spatial_loop, random_structure, finished, below, exchange_some
 
   !> A mechanism under construction.
   type :: structure_type
@@ -219,4 +220,27 @@ contains
 
     below = min(n - 1, int(0.5_wp*n*(1.0_wp + random%symmetric())))
   end function below
+
+  !> The independent coordinates of a plan, where some blocks exchange the first one of their loops for an unknown of their own.
+  subroutine exchange_some(random, plan, independent)
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    type(plan_type), intent(in) :: plan          !< the plan
+    logical, intent(out) :: independent(:)       !< (M) the other choice
+    integer :: b, i, k
+
+    independent = .false.
+    independent(plan%independent) = .true.
+    do b = 1, size(plan%blocks)
+      if (size(plan%blocks(b)%unknowns) == 0 .or. below(random, 2) == 0) cycle
+      associate (steps => plan%closures(plan%blocks(b)%first_closure)%loop%steps)
+        do i = 1, size(steps)
+          k = plan%steps(steps(i))%coordinate
+          if (.not. independent(k)) cycle
+          independent(k) = .false.
+          independent(plan%blocks(b)%coordinates(1 + below(random, size(plan%blocks(b)%coordinates)))) = .true.
+          exit
+        end do
+      end associate
+    end do
+  end subroutine exchange_some
 end module mech9_mixed_structures

@@ -11,7 +11,7 @@ program test_known_loops
   use mech9_requested, only: requested_type, requested_by_results
   use mech9_planning, only: make_plan
   use mech9_known_loops, only: take_known_loops
-  use mech9_mixed_structures, only: structure_type, random_structure, below, finished
+  use mech9_mixed_structures, only: structure_type, random_structure, exchange_some, finished
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
@@ -66,7 +66,7 @@ contains
     logical :: independent(plan%n_coordinates)
     logical, allocatable :: ranked(:), complete(:)
 
-    call exchange(random, plan, independent)
+    call exchange_some(random, plan, independent)
     requested = requested_by_results(model%mechanism, model%request%output, pictures=.true.)
     call model%problem%partition%with_independent(model%mechanism%structure, independent, partition)
     bare = plan
@@ -85,29 +85,6 @@ contains
     taken = taken + count(ranked)
     alike = alike + count(complete)
   end subroutine compare_change
-
-  !> The independent coordinates of a plan, where some blocks exchange the first one of their loops for an unknown of their own.
-  subroutine exchange(random, plan, independent)
-    type(random_type), intent(inout) :: random   !< source of the random numbers
-    type(plan_type), intent(in) :: plan          !< the plan
-    logical, intent(out) :: independent(:)       !< (M) the other choice
-    integer :: b, i, k
-
-    independent = .false.
-    independent(plan%independent) = .true.
-    do b = 1, size(plan%blocks)
-      if (size(plan%blocks(b)%unknowns) == 0 .or. below(random, 2) == 0) cycle
-      associate (steps => plan%closures(plan%blocks(b)%first_closure)%loop%steps)
-        do i = 1, size(steps)
-          k = plan%steps(steps(i))%coordinate
-          if (.not. independent(k)) cycle
-          independent(k) = .false.
-          independent(plan%blocks(b)%coordinates(1 + below(random, size(plan%blocks(b)%coordinates)))) = .true.
-          exit
-        end do
-      end associate
-    end do
-  end subroutine exchange
 
   !> Two plans have the same steps, blocks and closures, and their equations span the same spaces.
   subroutine compare_plans(a, b)

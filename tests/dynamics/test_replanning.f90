@@ -17,7 +17,7 @@ program test_replanning
   use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_lagrange_work, only: new_lagrange_work
   use mech9_lagrange, only: find_motion, complete_accelerations
-  use mech9_mixed_structures, only: structure_type, random_structure, add_ladder, below, finished
+  use mech9_mixed_structures, only: structure_type, random_structure, add_ladder, exchange_some, finished
   use mech9_testing, only: tester_type
   implicit none
   !> Beside a position with a worse conditioned block, round-off would decide the comparison.
@@ -51,7 +51,7 @@ contains
       call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
       if (allocated(err)) cycle
       associate (chosen => independent(:plan%n_coordinates))
-        call exchange(random, plan, chosen)
+        call exchange_some(random, plan, chosen)
         call compare_change(model, plan, state, chosen, other, other_state, found, same)
         served = served + merge(1, 0, found)
         unserved = unserved + merge(0, 1, found)
@@ -134,29 +134,6 @@ contains
     conditioning = work%conditioning
     accelerations = state%ddq
   end subroutine find_accelerations
-
-  !> The independent coordinates of a plan, where some blocks exchange the first one of their loops for an unknown of their own.
-  subroutine exchange(random, plan, independent)
-    type(random_type), intent(inout) :: random   !< source of the random numbers
-    type(plan_type), intent(in) :: plan          !< the plan
-    logical, intent(out) :: independent(:)       !< (M) the other choice
-    integer :: b, i, k
-
-    independent = .false.
-    independent(plan%independent) = .true.
-    do b = 1, size(plan%blocks)
-      if (size(plan%blocks(b)%unknowns) == 0 .or. below(random, 2) == 0) cycle
-      associate (steps => plan%closures(plan%blocks(b)%first_closure)%loop%steps)
-        do i = 1, size(steps)
-          k = plan%steps(steps(i))%coordinate
-          if (.not. independent(k)) cycle
-          independent(k) = .false.
-          independent(plan%blocks(b)%coordinates(1 + below(random, size(plan%blocks(b)%coordinates)))) = .true.
-          exit
-        end do
-      end associate
-    end do
-  end subroutine exchange
 
   !> In a row of windows, the first upright exchanges its place with a coordinate of the first window: that window is planned anew,
   !> the others stay as they are, whatever their number. A block that is worse conditioned than is wanted makes the change one in vain.
