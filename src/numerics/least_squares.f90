@@ -33,6 +33,7 @@ module mech9_least_squares
     real(wp), allocatable :: a(:, :)            !< (m,n): the matrix; overwritten by `factorize`
     integer, allocatable, private :: pivot(:)   !< column of the matrix at each place
     real(wp), allocatable, private :: lengths(:)      !< of the pivots, not increasing
+    real(wp) :: regular_pivot = 0.0_wp          !< pivots of matrices that are far from singular, where this is known; 0: it is not
     logical :: by_cofactors = .false.           !< a is still the matrix, and `inverse` solves
     real(wp) :: inverse(3, 3) = 0.0_wp          !< of the matrix, where that is solved by cofactors
     logical, private :: by_fronts = .false.     !< a is still the matrix, and `fronts` solves
@@ -292,8 +293,8 @@ contains
     if (self%n > 0 .and. self%m >= self%n) least_pivot = self%lengths(self%n)
   end function least_pivot
 
-  !> Least against largest pivot: about the reciprocal condition number; 0 where columns depend on
-  !> each other, 1 where there are none.
+  !> Least against largest pivot, or against a regular pivot that is larger: about the reciprocal condition number; 0 where columns
+  !> depend on each other, 1 where there are none. A single column is judged by its regular pivot alone.
   real(wp) function conditioning(self)
     class(least_squares_type), intent(inout) :: self   !< the least squares problem: its matrix and factors
 
@@ -302,7 +303,7 @@ contains
     if (self%n == 0) return
     conditioning = 0.0_wp
     if (self%m < self%n) return
-    if (self%lengths(1) > 0.0_wp) conditioning = self%lengths(self%n)/self%lengths(1)
+    if (self%lengths(1) > 0.0_wp) conditioning = self%lengths(self%n)/max(self%lengths(1), self%regular_pivot)
   end function conditioning
 
   !> The least singular value, by inverse iteration with the factors; 0 where columns depend on each

@@ -69,6 +69,7 @@ contains
     else
       call work%equations%create(block%equations, size(block%unknowns))
     end if
+    work%equations%regular_pivot = block%regular_pivot
     allocate (work%right(block%equations), work%change(size(block%unknowns)), source=0.0_wp)
   end function new_block_work
 

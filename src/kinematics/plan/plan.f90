@@ -81,6 +81,7 @@ module mech9_plan
     logical :: whole_loops = .false.                 !< all coordinates of the loops are unknowns, also those of earlier blocks
     logical :: is_constant = .false.                 !< its Jacobian is constant: nothing turns in its loops, couplings are linear
     logical :: is_linear = .false.                   !< all its closures are linear couplings
+    real(wp) :: regular_pivot = 0.0_wp               !< far from singular positions, by a coupling that is not linear; 0: none
     integer, allocatable :: unknowns(:)              !< steps of its dependent coordinates
     integer, allocatable :: coordinates(:)           !< its dependent coordinates, in the order of `unknowns`
   end type block_type

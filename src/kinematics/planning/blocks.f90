@@ -5,6 +5,7 @@
 !> on each other, directly or through others, are a block (a strongly connected component); each block comes after those on
 !> which it depends. Matching and components together are the decomposition of Dulmage and Mendelsohn (docs/bibliography.md).
 module mech9_blocks
+  use mech9_kinds, only: wp
   use mech9_tree_paths, only: find_loop, split_loops, ascending
   use mech9_plan, only: plan_type, step_type, closure_type, block_type
   use mech9_chain_matching, only: loop_lists_type, match_chains
@@ -49,8 +50,11 @@ contains
     block%chains = plan%closures(block%first_closure:block%last_closure)%chain
     block%is_linear = .true.
     do s = block%first_closure, block%last_closure
-      block%is_linear = block%is_linear .and. plan%closures(s)%coupling > 0
-      if (block%is_linear) block%is_linear = plan%couplings(plan%closures(s)%coupling)%coupling%is_linear()
+      if (plan%closures(s)%coupling > 0) then
+        if (plan%couplings(plan%closures(s)%coupling)%coupling%is_linear()) cycle
+        block%regular_pivot = 1.0_wp           ! the weights of couplings make their greatest derivatives one
+      end if
+      block%is_linear = .false.
     end do
   end subroutine count_block
 
