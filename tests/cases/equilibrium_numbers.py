@@ -32,10 +32,12 @@ class Case:
         self.program, self.folder = program, folder
 
     def __call__(self, groups, *options):
-        """Table of a run, or None where it fails."""
+        """Table of a run, or None where it fails with a message; an exception where a signal ends it."""
         with open(os.path.join(self.folder, 'case.nml'), 'w', encoding='utf-8') as file:
             file.write(write(groups))
         done = run(self.program, 'case.nml', '--quiet', '--table', '-', *options, folder=self.folder)
+        if done.returncode < 0:
+            raise RuntimeError(f'{write(groups)}\nended by signal {-done.returncode}:\n{done.stderr}')
         return read_table(done.stdout) if done.returncode == 0 else None
 
 

@@ -81,7 +81,7 @@ contains
       allocate (per_unit(n, n))
       do i = 1, n
         per_unit(:, i) = 1.0_wp/(resting%plan%unit_of(resting%free)*resting%plan%unit_of(resting%free(i)))
-        found%modes%shapes(i, :) = found%modes%shapes(i, :)*resting%plan%unit_of(resting%free(i))
+        found%modes%shapes(i, :found%modes%count) = found%modes%shapes(i, :found%modes%count)*resting%plan%unit_of(resting%free(i))
       end do
       found%inertia = per_unit*0.5_wp*(m + transpose(m))
       found%damping = per_unit*c
