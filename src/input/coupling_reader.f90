@@ -1,17 +1,24 @@
 !> Couplings from the groups &coupling of a checked document.
 module mech9_coupling_reader
   use mech9_kinds, only: wp, pi
+  use mech9_error, only: error_type
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_pair, only: pair_slot_type
   use mech9_coupling, only: coupling_slot_type
   use mech9_linear_coupling, only: linear_coupling_type
+  use mech9_table_coupling, only: table_coupling_type, new_table_coupling
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, has_name, get_integers, get_real, get_reals, get_logical, get_text, span_of
+  use mech9_table_file, only: read_table_file, beside
+  use mech9_explanation, only: explain
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
   public :: read_couplings
+
+  !> A table is a whole turn long, and ends as it begins, within this part of a turn or of its range: numbers of six digits serve.
+  real(wp), parameter :: same_end = 1.0e-5_wp
 
 contains
 
@@ -34,7 +41,12 @@ contains
       associate (group => document%groups(numbers(i)))
         call check_coordinates(group, size(positions), ok, diagnostics)
         if (.not. ok) cycle
-        call read_linear(group, pairs, positions, angle_unit, couplings(i), diagnostics)
+        if (get_text(group, 'kind') == 'table') then
+          call read_table(beside(document%source%name, get_text(group, 'file')), group, pairs, angle_unit, couplings(i), &
+                          diagnostics)
+        else
+          call read_linear(group, pairs, positions, angle_unit, couplings(i), diagnostics)
+        end if
         if (.not. allocated(couplings(i)%coupling)) cycle
         couplings(i)%coupling%coordinates = get_integers(group, 'coordinates')
         couplings(i)%coupling%place = diagnostics%place(group%span)
@@ -101,6 +113,94 @@ contains
     if (diagnostics%known() == known) allocate (slot%coupling, source=linear)
   end subroutine read_linear
 
+  !> A coupling by a table. The slot stays empty where an error was reported.
+  subroutine read_table(path, group, pairs, angle_unit, slot, diagnostics)
+    character(len=*), intent(in) :: path                  !< of the table
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate
+    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    type(coupling_slot_type), intent(inout) :: slot       !< gets the coupling
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(table_coupling_type) :: table
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: x(:), y(:), units(:)
+    real(wp) :: gain
+    integer :: k(2)
+    logical :: ok
+
+    k = get_integers(group, 'coordinates')
+    if (.not. are_given(k, pairs)) return
+    units = units_of(k, pairs, angle_unit)
+    if (.not. turns(k(1), pairs)) then
+      call diagnostics%add(span_of(group, 'coordinates', 1), 'a table couples a coordinate that turns, given first, and any '// &
+                           'other; coordinate '//to_text(k(1))//' does not turn')
+      return
+    end if
+    call read_table_file(path, span_of(group, 'file', 1), 'q'//to_text(k(1)), 'q'//to_text(k(2)), x, y, ok, diagnostics)
+    if (.not. ok) return
+    x = units(1)*x
+    y = units(2)*y
+    call close_turn(group, k, pairs, angle_unit, x, y, gain, ok, diagnostics)
+    if (.not. ok) return
+    call new_table_coupling(x, y, gain, table, err)
+    if (allocated(err)) then
+      call explain(err)
+      call diagnostics%add(span_of(group, 'file', 1), err%message, err%code)
+    else
+      allocate (slot%coupling, source=table)
+    end if
+  end subroutine read_table
+
+  !> Make a table exactly one turn long, with a second coordinate that ends as it begins or whole turns on; report one that is not.
+  subroutine close_turn(group, k, pairs, angle_unit, x, y, gain, ok, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    integer, intent(in) :: k(2)                           !< numbers of the coordinates
+    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate
+    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    real(wp), intent(inout) :: x(:)                       !< (n) values of the first coordinate [rad]; the last one is moved
+    real(wp), intent(inout) :: y(:)                       !< (n) values of the second coordinate [rad, m]; the last one is moved
+    real(wp), intent(out) :: gain                         !< change of the second coordinate per rad of the first one, over the turn
+    logical, intent(out) :: ok                            !< whether nothing was reported
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    real(wp), parameter :: turn = 2.0_wp*pi
+    real(wp) :: rise
+    integer :: n
+
+    n = size(x)
+    gain = 0.0_wp
+    ok = abs(x(n) - x(1) - turn) <= same_end*turn
+    if (.not. ok) then
+      call diagnostics%add(span_of(group, 'file', 1), 'the table goes from '//to_text(x(1)/angle_unit)//' to '// &
+                           to_text(x(n)/angle_unit)//'; it must cover one full turn of coordinate '//to_text(k(1))// &
+                           ', whose last point has the place of the first one again')
+      return
+    end if
+    rise = y(n) - y(1)
+    if (turns(k(2), pairs)) rise = turn*anint(rise/turn)
+    if (.not. turns(k(2), pairs)) rise = 0.0_wp
+    ok = abs(y(n) - y(1) - rise) <= same_end*max(abs(rise), maxval(y) - minval(y))
+    if (.not. ok) then
+      call diagnostics%add(span_of(group, 'file', 1), 'the table repeats after a turn of coordinate '//to_text(k(1))// &
+                           ' and would jump there: coordinate '//to_text(k(2))//' begins at '// &
+                           to_text(y(1)/unit_of(k(2), pairs, angle_unit))//' and ends at '// &
+                           to_text(y(n)/unit_of(k(2), pairs, angle_unit))//'; let it end as it begins'// &
+                           trim(merge(', or whole turns on', '                   ', turns(k(2), pairs))))
+      return
+    end if
+    x(n) = x(1) + turn
+    y(n) = y(1) + rise
+    gain = rise/turn
+  end subroutine close_turn
+
+  !> The unit of a coordinate in the file.
+  pure real(wp) function unit_of(k, pairs, angle_unit)
+    integer, intent(in) :: k                       !< number of the coordinate
+    type(pair_slot_type), intent(in) :: pairs(:)   !< (M) pairs by coordinate
+    real(wp), intent(in) :: angle_unit             !< unit of angles in the file [rad]
+
+    unit_of = merge(angle_unit, 1.0_wp, turns(k, pairs))
+  end function unit_of
+
   !> The units of some coordinates in the file.
   pure function units_of(k, pairs, angle_unit) result(units)
     integer, intent(in) :: k(:)                    !< numbers of the coordinates
@@ -109,8 +209,17 @@ contains
     real(wp) :: units(size(k))
     integer :: i
 
-    units = [(merge(angle_unit, 1.0_wp, turns(k(i), pairs)), i=1, size(k))]
+    units = [(unit_of(k(i), pairs, angle_unit), i=1, size(k))]
   end function units_of
+
+  !> Whether the pairs of both coordinates are known, without errors in their groups.
+  pure logical function are_given(k, pairs)
+    integer, intent(in) :: k(2)                    !< numbers of the coordinates
+    type(pair_slot_type), intent(in) :: pairs(:)   !< (M) pairs by coordinate; a slot is empty where its group has an error
+
+    are_given = all(k <= size(pairs))
+    if (are_given) are_given = allocated(pairs(k(1))%pair) .and. allocated(pairs(k(2))%pair)
+  end function are_given
 
   !> Whether a coordinate is an angle.
   pure logical function turns(k, pairs)
@@ -162,12 +271,8 @@ contains
     integer, intent(in) :: k(2)                           !< numbers of its coordinates
     type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; a slot is empty where its group has an error
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-    integer :: i
 
-    do i = 1, 2
-      if (k(i) > size(pairs)) return
-      if (.not. allocated(pairs(k(i))%pair)) return
-    end do
+    if (.not. are_given(k, pairs)) return
     select case (get_text(group, 'kind'))
     case ('gear')
       if (turns(k(1), pairs) .neqv. turns(k(2), pairs)) &

@@ -155,7 +155,7 @@ contains
     logical :: ok
 
     span = span_of(group, 'file', 1)
-    call read_table_file(beside(document%source%name, get_text(group, 'file')), span, t, q, ok, diagnostics)
+    call read_table_file(beside(document%source%name, get_text(group, 'file')), span, 't', 'q', t, q, ok, diagnostics)
     if (.not. ok) return
     call build_spline(t, unit*q, table%spline, err)
     if (allocated(err)) then
@@ -221,7 +221,7 @@ contains
     end if
   end subroutine check_period
 
-  !> The files that drives, laws of loads and motors and curves of pairs are read from, in a document that may be unchecked yet.
+  !> The files that drives, laws of loads and motors, curves of pairs and couplings are read from, in a document that may be unchecked yet.
   pure subroutine files_of_groups(document, paths)
     type(document_type), intent(in) :: document              !< the data file as groups and items
     type(string_type), allocatable, intent(out) :: paths(:)  !< path of each file, from the working directory
@@ -233,7 +233,7 @@ contains
     n = 0
     do i = 1, size(paths)
       associate (group => document%groups(i))
-        if (all(group%name /= ['drive', 'load ', 'motor', 'pair ']) .or. .not. allocated(group%items)) cycle
+        if (all(group%name /= ['drive   ', 'load    ', 'motor   ', 'pair    ', 'coupling']) .or. .not. allocated(group%items)) cycle
         call take_file(document%source%name, group%items, paths, n)
       end associate
     end do

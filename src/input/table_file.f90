@@ -21,10 +21,12 @@ module mech9_table_file
 contains
 
   !> Read the points of a table. Errors are reported with their places in that file; `ok` is false where there are any.
-  subroutine read_table_file(path, asked_at, t, q, ok, diagnostics)
+  subroutine read_table_file(path, asked_at, of_first, of_second, t, q, ok, diagnostics)
     character(len=*), intent(in) :: path                  !< path of the table
     type(span_type), intent(in) :: asked_at               !< place of its name in the data file
-    real(wp), allocatable, intent(out) :: t(:)            !< times [s]
+    character(len=*), intent(in) :: of_first              !< name of the first number of each line, for messages
+    character(len=*), intent(in) :: of_second             !< name of the second one
+    real(wp), allocatable, intent(out) :: t(:)            !< times [s], or values of a coordinate, in the unit of the file
     real(wp), allocatable, intent(out) :: q(:)            !< values of the coordinate, in the unit of the file
     logical, intent(out) :: ok                            !< whether no error was reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
@@ -47,7 +49,7 @@ contains
     n = 0
     may_be_names = .true.
     do line = 1, size(source%line_start)
-      call read_point(source, number, line, may_be_names, t, q, n, diagnostics)
+      call read_point(source, number, line, of_first, of_second, may_be_names, t, q, n, diagnostics)
     end do
     t = t(:n)
     q = q(:n)
@@ -58,12 +60,14 @@ contains
   end subroutine read_table_file
 
   !> Take the point of a line, if there is one.
-  pure subroutine read_point(source, number, line, may_be_names, t, q, n, diagnostics)
+  pure subroutine read_point(source, number, line, of_first, of_second, may_be_names, t, q, n, diagnostics)
     type(source_type), intent(in) :: source               !< the text of the table
     integer, intent(in) :: number                         !< number of the table as a source, for spans
     integer, intent(in) :: line                           !< number of the line, from 1
+    character(len=*), intent(in) :: of_first              !< name of its first number
+    character(len=*), intent(in) :: of_second             !< name of its second number
     logical, intent(inout) :: may_be_names                !< whether no earlier line held a name or a number
-    real(wp), intent(inout) :: t(:)                       !< times [s]; the first n are in use
+    real(wp), intent(inout) :: t(:)                       !< times or values, in the unit of the file; the first n are in use
     real(wp), intent(inout) :: q(:)                       !< values, in the unit of the file; the first n are in use
     integer, intent(inout) :: n                           !< how many points are in use
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
@@ -75,7 +79,8 @@ contains
     call find_words(source, number, line, may_be_names, fields, count, whole)
     if (count == 0) return
     if (count /= 2) then
-      call diagnostics%add(whole, 'each line holds two numbers, t and q; this one has '//to_text(count))
+      call diagnostics%add(whole, 'each line holds two numbers, '//of_first//' and '//of_second//'; this one has '// &
+                           to_text(count))
       return
     end if
     call read_words(source, fields, numbers, ok, diagnostics)
@@ -83,7 +88,7 @@ contains
     if (n > 0) then
       ! between nearer points a slope would be round-off only
       if (numbers(1) - t(n) <= 1.0e-13_wp*max(abs(numbers(1)), abs(t(n)))) then
-        call diagnostics%add(fields(1), 't must increase from line to line')
+        call diagnostics%add(fields(1), of_first//' must increase from line to line')
         return
       end if
     end if

@@ -275,6 +275,78 @@ def check_reports(checks, kinematics):
         checks.true(done.returncode in code and words in done.stderr, f'refused: {more}', f'{done.returncode}: {done.stderr}')
 
 
+def check_tables(checks, kinematics, dynamics):
+    """Couplings by tables: a cam with a harmonic law, a gear that is not round, and what is refused."""
+    turn = np.linspace(0, 2 * np.pi, 361)
+    # A quintic spline over steps of h misses sin by about h^6/1000 = 3e-14 (O(h^6) with a small constant), its slopes and curvatures by
+    # h^5 and h^4 times as small constants: 1e-12 and 1e-10.
+    near = {'q2': 1e-12, 'dq2': 1e-10, 'ddq2': 1e-8}
+    with tempfile.TemporaryDirectory() as folder:
+        def write(name, x, y):
+            path = os.path.join(folder, name)
+            np.savetxt(path, np.column_stack([x, y]), fmt='%.17g')
+            return path
+
+        # several turns of the cam, from before its table to beyond it
+        cam = write('cam.dat', turn, 0.01 * (1 - np.cos(turn)))
+        text = TWO_WHEELS.format(unit='rad', second='prismatic', axis='0,1,0', words=f"kind='table', file='{cam}'", first=-9, other=0)
+        found = table(kinematics, text.replace('-9,2,0.5', '-9,20,0.5'), '--set', 'time.intervals=50')
+        q, dq, ddq = found['q1'], found['dq1'], found['ddq1']
+        true = {'q2': 0.01 * (1 - np.cos(q)), 'dq2': 0.01 * np.sin(q) * dq,
+                'ddq2': 0.01 * (np.cos(q) * dq ** 2 + np.sin(q) * ddq)}
+        for name, values in true.items():
+            checks.near(found[name], values, near[name], f'cam by a table: {name}')
+
+        # a wheel that turns twice as far as the first one, unevenly, in degrees
+        wheel = write('wheel.dat', np.degrees(turn), np.degrees(2 * turn + 0.3 * np.sin(turn)))
+        text = TWO_WHEELS.format(unit='deg', second='revolute', axis='0,0,1', words=f"kind='table', file='{wheel}'", first=700, other=1400)
+        found = table(kinematics, text.replace('700,2,', '700,200,'), '--set', 'time.intervals=20')
+        q = np.radians(found['q1'])
+        checks.near(np.radians(found['q2']), 2 * q + 0.3 * np.sin(q), 1e-11, 'a gear that is not round')
+        checks.near(np.radians(found['dq2']), (2 + 0.3 * np.cos(q)) * np.radians(found['dq1']), 1e-9, 'its rate')
+
+        # a flywheel drives a sprung follower with mass through the cam: energy, and the law of the follower
+        text = f"""&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=1,3, kind='prismatic', axis=0,1,0, point=0,0.1,0 /
+&coupling kind='table', coordinates=1,2, file='{cam}' /
+&initial coordinate=1, position=0.4, velocity=5 /
+&body link=2, mass=1, inertia=0,0,0.05,0,0,0 /
+&body link=3, mass=0.5 /
+&load kind='coordinate', coordinate=2, stiffness=40, rest=-0.01 /
+&gravity acceleration=0,-9.81,0 /
+&time end=5, intervals=100 /
+&output reactions=.true. /
+"""
+        found = table(dynamics, text + TIGHT)
+        q, dq, ddq = found['q1'], found['dq1'], found['ddq1']
+        energy = found['E.total']
+        checks.near(energy, np.full_like(energy, energy[0]), NEAR, 'the energy of a cam and its follower stays')
+        checks.true(np.ptp(q) > 2 * np.pi, 'the cam turns more than once', str(np.ptp(q)))
+        checks.near(found['q2'], 0.01 * (1 - np.cos(q)), 1e-12, 'the follower keeps its law in dynamics')
+        # Newton's law of the follower: its acceleration by closed form, the forces of spring and weight, and that of the cam
+        rise = 0.01 * (np.cos(q) * dq ** 2 + np.sin(q) * ddq)
+        checks.near(found['C1'], 0.5 * rise + 0.5 * 9.81 + 40 * (found['q2'] + 0.01), 1e-8, 'the force of the cam on its follower')
+        other = table(dynamics, text.replace('cq=1', 'cq=2').replace(
+            '&initial coordinate=1, position=0.4, velocity=5 /',
+            f'&initial coordinate=2, position={0.01 * (1 - np.cos(0.4))!r}, velocity={0.05 * np.sin(0.4)!r} /\n'
+            '&initial coordinate=1, position=0.4 /') + TIGHT)
+        checks.near(other['q1'], q, 1e-7, 'the follower as the independent coordinate: through its dead points')
+
+        broken = {'half.dat': (turn[:181], turn[:181], 'one full turn'), 'jump.dat': (turn, 0.1 * turn, 'would jump'),
+                  'back.dat': (-turn, turn, 'q1 must increase')}
+        for name, (x, y, words) in broken.items():
+            text = TWO_WHEELS.format(unit='rad', second='prismatic', axis='0,1,0', words=f"kind='table', file='{write(name, x, y)}'",
+                                     first=0, other=0)
+            done = output(kinematics, text)
+            checks.true(done.returncode == 3 and words in done.stderr, f'refused: {name}', f'{done.returncode}: {done.stderr}')
+        text = TWO_WHEELS.format(unit='rad', second='prismatic', axis='0,1,0', words=f"kind='table', file='{cam}'", first=0, other=0)
+        done = output(kinematics, text.replace('coordinates=1,2,', 'coordinates=2,1,'))
+        checks.true(done.returncode == 3 and 'does not turn' in done.stderr, 'refused: a slide first', f'{done.returncode}: {done.stderr}')
+        done = output(kinematics, text.replace(cam, 'missing.dat'))
+        checks.true(done.returncode == 8 and 'missing.dat' in done.stderr, 'refused: no file', f'{done.returncode}: {done.stderr}')
+
+
 def main(kinematics, dynamics):
     checks = Checks()
     check_linear_kinds(checks, kinematics)
@@ -284,6 +356,7 @@ def main(kinematics, dynamics):
     check_screw(checks, kinematics, dynamics)
     check_pendulum(checks, dynamics)
     check_reports(checks, kinematics)
+    check_tables(checks, kinematics, dynamics)
     checks.finish()
 
 

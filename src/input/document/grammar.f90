@@ -179,8 +179,9 @@ module mech9_grammar
                   'direction in the moving link along zero, or along the tangent', '1, 0, 0', seldom=.true.)]
 
   type(item_row_type), parameter :: coupling_items(*) = [ &
-    item_row_type('coupling', 'kind', 'text', 1, 1, '', needed, '', '', 'gear rack belt screw linear', '', &
-                  'which machine part couples the coordinates, or linear for a sum with coefficients', '''gear'''), &
+    item_row_type('coupling', 'kind', 'text', 1, 1, '', needed, '', '', 'gear rack belt screw linear table', '', &
+                  'which machine part couples the coordinates; linear: a sum with coefficients; table: a function from a file', &
+                  '''gear'''), &
     item_row_type('coupling', 'coordinates', 'integer', 2, unlimited, '', needed, '', '>=1', '', '', &
                   'numbers of the coordinates: two, of which the first moves the second, or any for linear', '2, 5'), &
     item_row_type('coupling', 'ratio', 'real', 1, 1, '', needed, '', '', '', 'gear', &
@@ -196,6 +197,9 @@ module mech9_grammar
     item_row_type('coupling', 'phase', 'real', 1, 1, 'q', optional, '(from &initial)', '', '', 'gear rack belt screw', &
                   'the second coordinate where the first one is zero; by default from the positions in &initial', '0', &
                   seldom=.true.), &
+    item_row_type('coupling', 'file', 'text', 1, 1, '', needed, '', '', '', 'table', &
+                  'a text file with both coordinates in each line, over a full turn of the first one, beside the data file', &
+                  '''cam.dat'''), &
     item_row_type('coupling', 'coefficients', 'real', 2, unlimited, '1 per q', needed, '', '', '', 'linear', &
                   'coefficients of the coordinates in the sum, for the units of this file', '1, -2, 1'), &
     item_row_type('coupling', 'constant', 'real', 1, 1, '', optional, '0', '', '', 'linear', &
