@@ -98,8 +98,14 @@ contains
 
     last = self%n_outputs + 1 == self%expected
     if (mod(self%n_outputs, self%path_stride) == 0 .or. last) call take_points(self, mechanism, plan, state)
-    if (self%n_frames < size(self%times) .and. (mod(self%n_outputs, self%frame_stride) == 0 .or. last)) &
-      call take_frame(self, plan, state, row, force)
+    if (self%n_frames < size(self%times) .and. (mod(self%n_outputs, self%frame_stride) == 0 .or. last)) then
+      ! gfortran forms the bounds of an absent array from memory that was never set, so that absent forces are not handed on
+      if (present(force)) then
+        call take_frame(self, plan, state, row, force)
+      else
+        call take_frame(self, plan, state, row)
+      end if
+    end if
     self%n_outputs = self%n_outputs + 1
   end subroutine take
 
