@@ -41,6 +41,7 @@ contains
     integer, intent(in), optional :: n_coordinates                !< M, where known; else the greatest coordinate named
     logical, intent(in), optional :: inner(:)                     !< (M) another coordinate of its joint stands for it in nws
     type(finding_list_type) :: list
+    logical, allocatable :: is_inner(:)
     integer :: n_inner
 
     call check_sizes(vectors, list)
@@ -61,7 +62,9 @@ contains
     allocate (structure%links(2, structure%n_coordinates), source=0)
     allocate (independent(structure%n_coordinates), source=.false.)
     call check_head(vectors, list)
-    call walk(vectors, structure, independent, list, inner)
+    allocate (is_inner(structure%n_coordinates), source=.false.)
+    if (present(inner)) is_inner = inner(:structure%n_coordinates)
+    call walk(vectors, structure, independent, list, is_inner)
     call check_kinds(vectors, list)
     if (size(vectors%nrw) > 0) then
       call check_closures(vectors, list)
@@ -178,18 +181,17 @@ contains
   end subroutine check_head
 
   !> Run through the chains: take links and kinds of the coordinates, and note errors.
-  pure subroutine walk(vectors, structure, independent, list, inner)
+  pure subroutine walk(vectors, structure, independent, list, is_inner)
     type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
     type(structure_type), intent(inout) :: structure       !< gets the links of the coordinates
     logical, intent(inout) :: independent(:)               !< (M) gets the kinds of the coordinates
     type(finding_list_type), intent(inout) :: list         !< gets the findings
-    logical, intent(in), optional :: inner(:)              !< (M) another coordinate of its joint stands for it in nws
+    logical, intent(in) :: is_inner(:)                     !< (M) another coordinate of its joint stands for it in nws
     logical :: known(structure%n_links), used(structure%n_coordinates)
     logical :: may_go_on       ! false after a step that closed its chain
     integer :: i
 
-    used = .false.
-    if (present(inner)) used = inner(:size(used))
+    used = is_inner
     known = .false.
     known(1) = .true.
     may_go_on = .true.
@@ -197,7 +199,7 @@ contains
       if (.not. is_link(vectors%nrg(i), structure%n_links)) then
         call list%add('nrg', [i, 0], 'nrg('//to_text(i)//') = '//to_text(vectors%nrg(i))// &
                       ' is no link; the links are 1 to '//to_text(structure%n_links))
-        if (vectors%nws(i) /= 0) call take_step(vectors, structure, independent, used, i, list, inner)
+        if (vectors%nws(i) /= 0) call take_step(vectors, structure, independent, used, i, list, is_inner)
         may_go_on = .true.
       else if (vectors%nws(i) == 0) then
         call check_restart(vectors, known, i, list)
@@ -206,7 +208,7 @@ contains
         if (.not. may_go_on) &
           call list%add('nws', [i, 0], 'position '//to_text(i)//' goes on after link '//to_text(vectors%nrg(i - 1))// &
                         ' has closed the chain; restart there with a known link and nws = 0')
-        call take_step(vectors, structure, independent, used, i, list, inner)
+        call take_step(vectors, structure, independent, used, i, list, is_inner)
         may_go_on = .not. known(vectors%nrg(i))
       end if
       if (is_link(vectors%nrg(i), structure%n_links)) known(vectors%nrg(i)) = .true.
@@ -232,24 +234,21 @@ contains
   end subroutine check_restart
 
   !> Take links and kind of the coordinate of a step, and note an error.
-  pure subroutine take_step(vectors, structure, independent, used, i, list, inner)
+  pure subroutine take_step(vectors, structure, independent, used, i, list, is_inner)
     type(structural_vectors_type), intent(in) :: vectors   !< the second set of data
     type(structure_type), intent(inout) :: structure   !< gets the links of the coordinates
     logical, intent(inout) :: independent(:)        !< (M) gets the kinds of the coordinates
     logical, intent(inout) :: used(:)               !< coordinates met so far
     integer, intent(in) :: i                        !< a position with nws /= 0
     type(finding_list_type), intent(inout) :: list   !< gets the findings
-    logical, intent(in), optional :: inner(:)        !< (M) another coordinate of its joint stands for it in nws
+    logical, intent(in) :: is_inner(:)              !< (M) another coordinate of its joint stands for it in nws
     integer :: k
-    logical :: is_inner
 
     k = vectors%nws(i)
-    is_inner = .false.
-    if (present(inner) .and. k >= 1 .and. k <= structure%n_coordinates) is_inner = inner(k)
     if (k < 1 .or. k > structure%n_coordinates) then
       call list%add('nws', [i, 0], 'nws('//to_text(i)//') = '//to_text(k)// &
                     ' is no coordinate; they are 1 to '//to_text(structure%n_coordinates))
-    else if (is_inner) then
+    else if (is_inner(k)) then
       call list%add('nws', [i, 0], 'nws('//to_text(i)//') = '//to_text(k)//': a joint with several coordinates stands in nws '// &
                     'by the first of them; leave the others out')
     else if (used(k)) then
