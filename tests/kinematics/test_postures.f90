@@ -3,7 +3,6 @@ program test_postures
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_body, only: body_type
-  use mech9_point, only: point_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -68,7 +67,7 @@ contains
     call find_joint_links(model%mechanism, near, roles)
     call test%is_true(all(roles == [posture_link, posture_link, (leg, i=1, 6)]), &
                       'universal joints, ball joints and legs between them are found')
-    model%mechanism%points = [point_type(name='P', link=4), point_type(name='Q', link=2)]
+    call give_points(model, [4, 2])
     call find_joint_links(model%mechanism, near, roles)
     call test%is_true(all(roles(3:7) == leg), 'a point on a leg leaves it a leg')
     model%mechanism%points%link = 6
@@ -98,7 +97,7 @@ contains
     call add_revolute(model, 4, 1, 4, frame(origin, x + y), frame(origin, y))
     call find_joint_links(model%mechanism, near, roles)
     call test%is_true(all(roles == posture_link), 'links of a spherical four-bar')
-    model%mechanism%points = [point_type(name='P', link=2)]
+    call give_points(model, [2])
     call find_joint_links(model%mechanism, near, roles)
     call test%is_true(all(roles == posture_link), 'links of a spherical four-bar with a point')
   end subroutine links_of_chains
@@ -162,7 +161,8 @@ contains
     call find_assemblies(model%mechanism, plan, state, 60, list)
     call test%is_true(size(list%found) == 2, 'a rocker has two angles')
     do i = 0, 1
-      model%mechanism%points = [point_type(name='P', link=5, position=0.3_wp*x + 0.1_wp*i*y)]
+      call give_points(model, [5])
+      model%mechanism%points(1)%position = 0.3_wp*x + 0.1_wp*i*y
       call find_assemblies(model%mechanism, plan, state, 60, others)
       call test%is_true(size(others%found) == 2 + 2*i, &
                         'a point beside the line of a rod tells how it is turned, one on it does not')
@@ -185,4 +185,19 @@ contains
     call add_revolute(model, 7, 1, 7, frame(1.0_wp*x + 0.2_wp*z, x), frame(origin, x))
     model%problem%initial%position(1) = 0.4_wp
   end subroutine crank_and_rocker
+
+  !> Give a mechanism points at the origins of some links, in place of those that it has.
+  subroutine give_points(model, links)
+    type(model_type), intent(inout) :: model   !< the model
+    integer, intent(in) :: links(:)            !< numbers of the links
+    integer :: i
+
+    if (allocated(model%mechanism%points)) deallocate (model%mechanism%points)
+    allocate (model%mechanism%points(size(links)))
+    do i = 1, size(links)
+      model%mechanism%points(i)%name = 'P'
+      model%mechanism%points(i)%link = links(i)
+      model%mechanism%points(i)%position = origin
+    end do
+  end subroutine give_points
 end program test_postures
