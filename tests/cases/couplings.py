@@ -329,7 +329,7 @@ def check_tables(checks, kinematics, dynamics):
         checks.near(found['C1'], 0.5 * rise + 0.5 * 9.81 + 40 * (found['q2'] + 0.01), 1e-8, 'the force of the cam on its follower')
         other = table(dynamics, text.replace('cq=1', 'cq=2').replace(
             '&initial coordinate=1, position=0.4, velocity=5 /',
-            f'&initial coordinate=2, position={0.01 * (1 - np.cos(0.4))!r}, velocity={0.05 * np.sin(0.4)!r} /\n'
+            f'&initial coordinate=2, position={float(0.01 * (1 - np.cos(0.4)))!r}, velocity={float(0.05 * np.sin(0.4))!r} /\n'
             '&initial coordinate=1, position=0.4 /') + TIGHT)
         checks.near(other['q1'], q, 1e-7, 'the follower as the independent coordinate: through its dead points')
 
