@@ -73,6 +73,7 @@ contains
       if (.not. is_child(tree, 'joint', 'child', tree%attribute(e, 'name')) .and. &
           .not. is_child(tree, 'loop', 'successor', tree%attribute(e, 'name'))) then
         if (root > 0) then
+          call refuse_unknown_child(tree, err)
           call tree%fail(e, "link '"//tree%attribute(e, 'name')//"' hangs on no joint, and neither does link '"// &
                          tree%attribute(root, 'name')//"'; only one link, the frame, may be without one", err)
           return
@@ -83,6 +84,36 @@ contains
     end do
     if (root == 0) root = tree%child(1, 'link')
   end subroutine find_root
+
+  !> Fail where a joint names a child that is no link of the robot.
+  subroutine refuse_unknown_child(tree, err)
+    type(xml_tree_type), intent(in) :: tree              !< the document
+    type(error_type), allocatable, intent(inout) :: err  !< the failure
+    character(len=:), allocatable :: link
+    integer :: e
+
+    e = tree%child(1, 'joint')
+    do while (e > 0 .and. .not. allocated(err))
+      link = tree%attribute(tree%child(e, 'child'), 'link')
+      if (link /= '' .and. named_element(tree, 'link', link) == 0) &
+        call tree%fail(tree%child(e, 'child'), "there is no link '"//link//"', which joint '"//tree%attribute(e, 'name')// &
+                       "' names", err)
+      e = tree%next_named(e, 'joint')
+    end do
+  end subroutine refuse_unknown_child
+
+  !> The first child of the root with a name of its own, as link or joint; 0: there is none.
+  integer function named_element(tree, kind, name) result(element)
+    type(xml_tree_type), intent(in) :: tree  !< the document
+    character(len=*), intent(in) :: kind     !< name of the element: link or joint
+    character(len=*), intent(in) :: name     !< value of its attribute `name`
+
+    element = tree%child(1, kind)
+    do while (element > 0)
+      if (tree%attribute(element, 'name') == name) return
+      element = tree%next_named(element, kind)
+    end do
+  end function named_element
 
   !> Whether a link is the child of a joint, or the successor of a loop.
   logical function is_child(tree, joints, side, link)
@@ -208,7 +239,12 @@ contains
     call get_axis(tree, tree%child(element, 'axis2'), joint%second, err)
     if (words(place) /= 'continuous') call read_limit(tree, tree%child(element, 'limit'), joint, err)
     call get_number(tree, tree%child(element, 'dynamics'), 'damping', joint%damping, err)
-    if (tree%child(element, 'mimic') > 0) joint%leader = tree%attribute(tree%child(element, 'mimic'), 'joint')
+    if (tree%child(element, 'mimic') > 0) then
+      joint%leader = needed_attribute(tree, tree%child(element, 'mimic'), 'joint', err)
+      if (.not. allocated(err) .and. named_element(tree, 'joint', joint%leader) == 0) &
+        call tree%fail(tree%child(element, 'mimic'), "there is no joint '"//joint%leader//"', which joint '"//joint%name// &
+                       "' follows", err)
+    end if
     call get_number(tree, tree%child(element, 'mimic'), 'multiplier', joint%ratio, err)
     call get_number(tree, tree%child(element, 'mimic'), 'offset', joint%offset, err)
     joint%is_preferred = is_true(tree%attribute(element, 'independent'))
