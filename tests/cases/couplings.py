@@ -333,6 +333,16 @@ def check_tables(checks, kinematics, dynamics):
             '&initial coordinate=1, position=0.4 /') + TIGHT)
         checks.near(other['q1'], q, 1e-7, 'the follower as the independent coordinate: through its dead points')
 
+        # a torque holds the cam on its slope: V'' = S'' f + S'^2 k and M = J + m S'^2, with the force f of spring and weight
+        rest = text.replace('velocity=5', 'velocity=0') + "&load kind='coordinate', coordinate=1, force=0.02 /\n"
+        modes = table(dynamics, rest, '--modes')
+        q = table(dynamics, rest, '--equilibrium')['q1'][0]
+        slope, bend = 0.01 * np.sin(q), 0.01 * np.cos(q)
+        force = 40 * (0.02 - 0.01 * np.cos(q)) + 0.5 * 9.81
+        checks.near(slope * force, 0.02, 1e-12, 'the torque holds the cam')
+        checks.near(modes['eigenvalue.im'][0] ** 2, (bend * force + 40 * slope ** 2) / (0.05 + 0.5 * slope ** 2), 1e-8,
+                    'the frequency of the cam about its place of rest')
+
         broken = {'half.dat': (turn[:181], turn[:181], 'one full turn'), 'jump.dat': (turn, 0.1 * turn, 'would jump'),
                   'back.dat': (-turn, turn, 'q1 must increase')}
         for name, (x, y, words) in broken.items():
