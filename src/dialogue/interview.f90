@@ -131,6 +131,9 @@ contains
 
     if (self%return_to == '') then
       self%at = min(self%at + 1, size(self%questions))
+      do while (self%questions(self%at)%on_request .and. self%at < size(self%questions))
+        self%at = self%at + 1
+      end do
       return
     end if
     goal = find_question(self%questions, self%return_to)
@@ -160,7 +163,8 @@ contains
                  one%place == other%place .and. .not. other%is_new
   end function same_group
 
-  !> The question before becomes due; checks are passed over. `done` is false at the first question.
+  !> The question before becomes due; checks, and questions that begin groups on request, are passed over. `done` is false at
+  !> the first question.
   pure subroutine back(self, done)
     class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
     logical, intent(out) :: done                  !< false at the first question
@@ -168,7 +172,7 @@ contains
 
     done = .false.
     do i = self%at - 1, 1, -1
-      if (any(self%questions(i)%kind == [check_structure, check_start, check_all])) cycle
+      if (any(self%questions(i)%kind == [check_structure, check_start, check_all]) .or. self%questions(i)%on_request) cycle
       self%at = i
       done = .true.
       return

@@ -9,13 +9,11 @@ module mech9_motion_reader
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, has_name, get_integer, get_real, get_reals, get_text, span_of
   use mech9_drive_reader, only: unit_of_coordinate
-  use mech9_diagnostics, only: diagnostics_type, printable
+  use mech9_name_check, only: check_name
+  use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
   public :: read_initial, read_points, check_link
-
-  character(len=*), parameter :: name_letters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_'
-  integer, parameter :: longest_name = 40
 
 contains
 
@@ -78,17 +76,6 @@ contains
       end associate
     end do
   end subroutine read_points
-
-  !> Check a name of a point, which becomes part of names of columns, such as P.x.
-  pure subroutine check_name(group, name, diagnostics)
-    type(group_type), intent(in) :: group                 !< the group of the data file
-    character(len=*), intent(in) :: name                  !< name of the point
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-
-    if (len(name) > 0 .and. len(name) <= longest_name .and. verify(name, name_letters) == 0) return
-    call diagnostics%add(span_of(group, 'name', 1), '''name'' must be of letters (a to z), digits and _, at most '// &
-                         to_text(longest_name)//' of them, not '''//printable(name, longest_name)//'''')
-  end subroutine check_name
 
   !> Report the number of a link that does not exist.
   pure subroutine check_link(group, name, position, n_links, diagnostics)

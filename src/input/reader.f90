@@ -10,6 +10,7 @@ module mech9_reader
   use mech9_document, only: document_type, group_type
   use mech9_checker, only: check_document
   use mech9_lookup, only: groups_named, group_or_empty, has_group, has_name, get_integer, get_real, get_reals, get_text, span_of
+  use mech9_parameter_reader, only: read_parameters
   use mech9_structure_reader, only: read_structure
   use mech9_pair_reader, only: read_pairs
   use mech9_drive_reader, only: read_drives
@@ -25,7 +26,7 @@ module mech9_reader
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_structure_only, read_model
+  public :: read_structure_only, read_model, read_checked
 
   !> Largest data_tolerance [rad, parts of the mechanism's size]; a chain that stays open by more is not closed.
   real(wp), parameter :: largest_data_tolerance = 1.0e-3_wp
@@ -49,30 +50,41 @@ contains
   end subroutine read_structure_only
 
   !> The model, in m, rad, kg, s. All errors are collected in the diagnostics, which may hold some from
-  !> reading the document already; the model is of use only where there are none. Motors are left out where all independent
-  !> coordinates are driven.
+  !> reading the document already; the model is of use only where there are none.
   subroutine read_model(document, needs_drives, model, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
     type(model_type), intent(out) :: model                !< the mechanism, its problem, and the request for results
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     type(document_type) :: checked
-    logical :: known
 
     if (size(document%groups) == 0) return          ! the reason was reported when the file was read
     checked = document
     call check_document(checked, diagnostics)
-    call read_settings(checked, model%mechanism, diagnostics)
-    call read_request(checked, model%request, diagnostics)
-    call read_structure(checked, model%mechanism%structure, model%problem%partition, known, diagnostics)
-    if (.not. known) call forget(model%mechanism%structure, model%problem%partition)
-    call read_parts(checked, model%mechanism, model%problem, model%request, diagnostics)
-    if (.not. needs_drives) call read_motors(checked, model%mechanism%pairs, model%mechanism%angle_unit, &
-                                             model%mechanism%loads, model%mechanism%n_motors, diagnostics)
-    call check_drives(checked, needs_drives, model, diagnostics)
-    if (.not. needs_drives) call check_motors(checked, model, diagnostics)
-    if (.not. diagnostics%failed()) call hold_idle_rods(needs_drives, model)
+    call read_parameters(checked, model%parameters, diagnostics)
+    call read_checked(checked, needs_drives, model, diagnostics)
   end subroutine read_model
+
+  !> The model of a document that is checked and in which the parameters have set their numbers; see read_model. Motors are left
+  !> out where all independent coordinates are driven.
+  subroutine read_checked(document, needs_drives, model, diagnostics)
+    type(document_type), intent(in) :: document           !< checked
+    logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
+    type(model_type), intent(inout) :: model              !< with its parameters; gets all else
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    logical :: known
+
+    call read_settings(document, model%mechanism, diagnostics)
+    call read_request(document, model%request, diagnostics)
+    call read_structure(document, model%mechanism%structure, model%problem%partition, known, diagnostics)
+    if (.not. known) call forget(model%mechanism%structure, model%problem%partition)
+    call read_parts(document, model%mechanism, model%problem, model%request, diagnostics)
+    if (.not. needs_drives) call read_motors(document, model%mechanism%pairs, model%mechanism%angle_unit, &
+                                             model%mechanism%loads, model%mechanism%n_motors, diagnostics)
+    call check_drives(document, needs_drives, model, diagnostics)
+    if (.not. needs_drives) call check_motors(document, model, diagnostics)
+    if (.not. diagnostics%failed()) call hold_idle_rods(needs_drives, model)
+  end subroutine read_checked
 
   !> Set a structure and its partition to the form that means unknown: no links and no coordinates.
   pure subroutine forget(structure, partition)

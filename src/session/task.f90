@@ -21,6 +21,7 @@ module mech9_task
   use mech9_structure_text, only: print_structure, print_mobility, print_mobility_report
   use mech9_geometry_text, only: print_dimensions
   use mech9_held_text, only: print_held
+  use mech9_parameter_text, only: print_parameters, print_parameter_notes
   use mech9_check_notes, only: print_notes
   use mech9_plan_text, only: print_plan
   use mech9_force_text, only: print_uniqueness, print_undetermined, print_forceless
@@ -109,6 +110,8 @@ contains
     logical, intent(in) :: with_masses              !< bodies count in this program
 
     call print_held(output_unit, model)
+    call print_parameter_notes(output_unit, model)
+    call print_parameters(output_unit, model)
     call print_dimensions(output_unit, model%mechanism)
     call print_notes(output_unit, model, with_masses)
   end subroutine print_given
@@ -220,6 +223,7 @@ contains
 
     if (.not. options%has('quiet') .and. model%mechanism%title /= '') write (error_unit, '(a)') model%mechanism%title
     if (.not. options%has('quiet')) call print_held(error_unit, model)
+    if (.not. options%has('quiet')) call print_parameter_notes(error_unit, model)
     if (.not. options%has('verbose')) return
     call print_structure(error_unit, model%mechanism%structure, model%problem%partition%vectors)
     call print_mobility(error_unit, model%mechanism%structure, plan)

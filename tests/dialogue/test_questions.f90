@@ -123,6 +123,7 @@ contains
     if (drive /= 'user') call draft%give('load', 1, 'law', ''''//drive//'''')
     call draft%give('point', 1, 'name', '''P''')
     call draft%give('body', 1, 'link', '2')
+    call draft%give('parameter', 1, 'name', '''crank''')
     call interview%start(program_name, draft)
     interview%outline%asked = .true.
     interview%outline%guesses = .true.

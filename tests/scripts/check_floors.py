@@ -10,7 +10,7 @@ import sys
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from mech9_cases import TREE, Checks, text_of
 
-FLOORS = ['base', 'system', 'numerics', 'spatial', 'structure', 'model/couplings', 'model/laws', 'model', 'user',
+FLOORS = ['base', 'system', 'numerics', 'spatial', 'structure', 'model/couplings', 'model/laws', 'model/request', 'model', 'user',
           'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
           'ode', 'dynamics', 'dynamics/variations', 'simulation', 'analyses/reactions', 'analyses/equilibrium',
           'analyses', 'wording', 'input/document', 'input', 'output', 'pictures/plots', 'pictures/scene', 'pictures/films',

@@ -6,7 +6,7 @@ module mech9_questions
   use mech9_text, only: to_text
   use mech9_grammar, only: group_table, item_table, for_forces, item_row_type, rows_of_group, takes_kind, find_item_rows
   use mech9_draft, only: draft_type
-  use mech9_topics, only: topics, groups_of_topic, is_numbered, can_be_left_out
+  use mech9_topics, only: topics, groups_of_topic, is_numbered, can_be_left_out, is_on_request
   use mech9_draft_joints, only: kind_in, has_joints
   use mech9_outline, only: outline_type, wants_forces
   implicit none
@@ -28,6 +28,7 @@ module mech9_questions
     integer :: row = 0             !< row of the name in item_table
     integer :: line = 0            !< row of the coincidence matrix; 0: none
     logical :: is_new = .false.    !< the answer begins a new group, or none
+    logical :: on_request = .false.   !< it is passed over unless the user asks for it
   end type question_type
 
   !> Names that give the place of a pair instead of the Denavit-Hartenberg parameters.
@@ -115,9 +116,9 @@ contains
       if (outline%program_name == 'mech9k' .or. .not. all(outline%independent)) &
         call append(questions, count, question_type(kind=ask_guesses, topic=topic, group_row=group_row))
     else if (any(item_table(rows)%seldom) .and. group /= 'mechanism' .and. &
-             (all(group /= ['load    ', 'motor   ', 'cam     ', 'coupling']) .or. draft%count_of(group) > 0)) then
+             (all(group /= ['load     ', 'motor    ', 'cam      ', 'coupling ', 'parameter']) .or. draft%count_of(group) > 0)) then
       ! a conversation does not begin with rarely used names; those of the mechanism can be changed by their names, and
-      ! those of loads, motors, cams and couplings are for the ones that are there
+      ! those of loads, motors, cams, couplings and parameters are for the ones that are there
       call append(questions, count, question_type(kind=ask_seldom, topic=topic, group_row=group_row))
     end if
     do place = 1, merge(draft%count_of(group), 1, group_table(group_row)%repeats)
@@ -125,7 +126,7 @@ contains
     end do
     if (can_be_left_out(group_row, outline%program_name)) &
       call append(questions, count, question_type(topic=topic, group_row=group_row, place=draft%count_of(group) + 1, &
-                                                  row=rows(1), is_new=.true.))
+                                                  row=rows(1), is_new=.true., on_request=is_on_request(group_row)))
     if (group == 'initial') call append(questions, count, question_type(kind=check_start, topic=topic))
   end subroutine ask_about_group
 

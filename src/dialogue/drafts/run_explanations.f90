@@ -1,9 +1,9 @@
-!> The explanations of the names that concern cams, times, the integration and the results.
+!> The explanations of the names that concern cams, parameters, times, the integration and the results.
 module mech9_run_explanations
   use mech9_name_explanation, only: explanation_type
   implicit none
   private
-  public :: cam_texts, run_texts
+  public :: cam_texts, study_texts, run_texts
 
   type(explanation_type), parameter :: cam_texts(*) = [ &
     explanation_type('cam', 'link', '', &
@@ -28,6 +28,33 @@ module mech9_run_explanations
     explanation_type('cam', 'guide', '', &
                   'The pressure angle is the angle between the force of the cam and the motion that a pair of the follower '// &
                   'allows. Name this pair by its coordinate where the follower has several.', '2')]
+
+  type(explanation_type), parameter :: study_texts(*) = [ &
+    explanation_type('parameter', 'name', '', &
+                  'A parameter gives one name to numbers of this file that change together, such as the length of a bar and '// &
+                  'the place of its mass centre. Results call it by this name, and --set parameter(1).value changes it. '// &
+                  'Enter goes on without a further parameter.', 'crank'), &
+    explanation_type('parameter', 'sets', '', &
+                  'Name each number as --set does: the group, its place among the groups of this name where there are several, '// &
+                  'the name in it, and the place of the number in a list.', 'pair(2).point(1), body(1).centre(1)'), &
+    explanation_type('parameter', 'factors', '', &
+                  'A number can be a multiple of the parameter: the mass centre of a bar lies at half its length.', '1, 0.5'), &
+    explanation_type('parameter', 'terms', '', &
+                  'A number can be the parameter and something more, which does not change.', '0, 0.02'), &
+    explanation_type('parameter', 'value', '', &
+                  'The numbers follow from this value. Where the parameter sets one number only, no value is needed, and the '// &
+                  'number stands as it is written.', '0.3'), &
+    explanation_type('parameter', 'low', '', &
+                  'Studies and optimisations go no further down than this.', '0.25'), &
+    explanation_type('parameter', 'high', '', &
+                  'Studies and optimisations go no further up than this.', '0.35'), &
+    explanation_type('parameter', 'count', '', &
+                  'A study on a grid takes so many values from the least to the largest, both included.', '11'), &
+    explanation_type('parameter', 'spread', '', &
+                  'A study of tolerances draws values about the given one that scatter by so much: the standard deviation, or '// &
+                  'half the width where all values are equally likely.', '0.001'), &
+    explanation_type('parameter', 'distribution', '', &
+                  'Errors of many small causes are normal; uniform means equally likely within the spread.', 'uniform')]
 
   type(explanation_type), parameter :: run_texts(*) = [ &
     explanation_type('time', 'start', '', &

@@ -3,12 +3,12 @@ module mech9_topics
   use mech9_grammar, only: group_table, find_group_row, words_of
   implicit none
   private
-  public :: topic_type, topics, groups_of_topic, is_numbered, can_be_left_out
+  public :: topic_type, topics, groups_of_topic, is_numbered, can_be_left_out, is_on_request
 
   !> One topic.
   type :: topic_type
     character(len=24) :: title
-    character(len=20) :: groups       !< names of its groups; empty: all groups without another topic
+    character(len=24) :: groups       !< names of its groups; empty: all groups without another topic
     character(len=370) :: opening     !< text at the beginning of the topic
   end type topic_type
 
@@ -38,6 +38,8 @@ module mech9_topics
     topic_type('Computation', 'solver', ''), &
     topic_type('Results', 'output', ''), &
     topic_type('User procedures', 'user', ''), &
+    topic_type('Parameters', 'parameter', 'A parameter is a name for numbers of this file that change together, as a length '// &
+               'does that stands at several places. A parameter begun by mistake is left out by remove.'), &
     topic_type('Further data', '', '')]
 
 contains
@@ -74,6 +76,13 @@ contains
 
     is_numbered = group_table(group_row)%key == 'coordinate'
   end function is_numbered
+
+  !> Whether a conversation begins groups of a name only where the user asks for one by add.
+  pure logical function is_on_request(group_row)
+    integer, intent(in) :: group_row  !< row of the group in group_table
+
+    is_on_request = group_table(group_row)%name == 'parameter'
+  end function is_on_request
 
   !> Whether there can be any number of groups of a name, which the user begins one by one. In mech9d, drives are among them:
   !> an independent coordinate without one is free.

@@ -67,6 +67,8 @@ module mech9_grammar
                    'a motor on an independent coordinate without a drive: direct current, or set by a PID controller'), &
     group_row_type('cam', .true., '', 'mech9k', &
                    'a cam whose profile mech9k computes from the motion of its follower (option --cam)'), &
+    group_row_type('parameter', .true., 'name', 'both', &
+                   'a number by name that sets numbers of this file, for studies, sensitivities and optimisation'), &
     group_row_type('time', .false., '', 'both', &
                    'the times of the results: start + (end - start) i/intervals, i = 0 .. intervals'), &
     group_row_type('solver', .false., '', 'mech9d', 'method and tolerances of the integration'), &
@@ -383,6 +385,32 @@ module mech9_grammar
                   'coordinate of the pair that guides the follower, for the pressure angle; by default its pair with link 1', '2', &
                   seldom=.true.)]
 
+  type(item_row_type), parameter :: study_items(*) = [ &
+    item_row_type('parameter', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
+                  'its name in results; letters, digits and _', '''crank'''), &
+    item_row_type('parameter', 'sets', 'text', 1, unlimited, '', needed, '', '', '', '', &
+                  'the numbers that it sets, named as in --set: number 1 of point in the second &pair, for instance', &
+                  '''pair(2).point(1)'''), &
+    item_row_type('parameter', 'factors', 'real', 1, unlimited, '', optional, '1', '', '', '', &
+                  'each number is its factor times the value, plus its term: a factor for each number, or one for all', '1, 0.5', &
+                  seldom=.true.), &
+    item_row_type('parameter', 'terms', 'real', 1, unlimited, '', optional, '0', '', '', '', &
+                  'the part of each number that does not depend on the value: a term for each number, or one for all', '0, 0.1', &
+                  seldom=.true.), &
+    item_row_type('parameter', 'value', 'real', 1, 1, '', optional, '(from the number)', '', '', '', &
+                  'its value; by default the one with which the only number that it sets stays as it is written', '0.3'), &
+    item_row_type('parameter', 'low', 'real', 1, 1, '', optional, '(none)', '', '', '', &
+                  'its least value in studies and optimisations', '0.2', seldom=.true.), &
+    item_row_type('parameter', 'high', 'real', 1, 1, '', optional, '(none)', '', '', '', &
+                  'its largest value in studies and optimisations', '0.4', seldom=.true.), &
+    item_row_type('parameter', 'count', 'integer', 1, 1, '', optional, '(none)', '>=1', '', '', &
+                  'how many values from low to high a grid has', '11', seldom=.true.), &
+    item_row_type('parameter', 'spread', 'real', 1, 1, '', optional, '(none)', '>0', '', '', &
+                  'how far it scatters about its value: standard deviation, or half the width of a uniform distribution', '0.001', &
+                  seldom=.true.), &
+    item_row_type('parameter', 'distribution', 'text', 1, 1, '', optional, '''normal''', '', 'normal uniform', '', &
+                  'the distribution of which spread is the measure', '''uniform''', seldom=.true.)]
+
   type(item_row_type), parameter :: run_items(*) = [ &
     item_row_type('time', 'start', 'real', 1, 1, 's', optional, '0', '', '', '', 'time of the first result', '0'), &
     item_row_type('time', 'end', 'real', 1, 1, 's', optional, '1', '', '', '', 'time of the last result', '2.5'), &
@@ -443,7 +471,8 @@ module mech9_grammar
                   'numbers that every user procedure receives', '0.1, 2.0')]
 
   type(item_row_type), parameter :: item_table(*) = &
-    [general_items, pair_items, coupling_items, motion_items, body_items, load_items, motor_items, cam_items, run_items]
+    [general_items, pair_items, coupling_items, motion_items, body_items, load_items, motor_items, cam_items, study_items, &
+     run_items]
 
 contains
 

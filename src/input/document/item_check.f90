@@ -9,7 +9,7 @@ module mech9_item_check
   use mech9_diagnostics, only: diagnostics_type, printable
   implicit none
   private
-  public :: check_item, known_word, is_sensible
+  public :: check_item, known_word, is_sensible, is_in_range
 
 contains
 
@@ -160,23 +160,29 @@ contains
     character(len=*), intent(in) :: name                  !< name of the item, for the message
     type(item_row_type), intent(in) :: row                !< the name, as a row of item_table
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-    logical :: inside
+
+    if (.not. is_in_range(value%number, row)) &
+      call diagnostics%add(value%span, ''''//name//''' must be '//trim(row%range)//', not '//diagnostics%text_of(value%span))
+  end subroutine check_range
+
+  !> Whether a number lies in the range of its name.
+  pure logical function is_in_range(number, row)
+    real(wp), intent(in) :: number          !< in the units of the file
+    type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
 
     select case (row%range)
     case ('>0')
-      inside = value%number > 0.0_wp
+      is_in_range = number > 0.0_wp
     case ('>=0')
-      inside = value%number >= 0.0_wp
+      is_in_range = number >= 0.0_wp
     case ('>=1')
-      inside = value%number >= 1.0_wp
+      is_in_range = number >= 1.0_wp
     case ('>0 and <1')
-      inside = value%number > 0.0_wp .and. value%number < 1.0_wp
+      is_in_range = number > 0.0_wp .and. number < 1.0_wp
     case default
-      inside = .true.
+      is_in_range = .true.
     end select
-    if (.not. inside) call diagnostics%add(value%span, ''''//name//''' must be '//trim(row%range)//', not '// &
-                                           diagnostics%text_of(value%span))
-  end subroutine check_range
+  end function is_in_range
 
   !> Report a text that is not one of the allowed words.
   pure subroutine check_word(value, name, row, diagnostics)

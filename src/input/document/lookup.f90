@@ -11,7 +11,7 @@ module mech9_lookup
   implicit none
   private
   public :: groups_named, group_or_empty, has_group, has_unsound, has_name, find_item, span_of
-  public :: get_integer, get_integers, get_real, get_reals, get_logical, get_text, count_values, get_word
+  public :: row_of, get_integer, get_integers, get_real, get_reals, get_logical, get_text, count_values, get_word
 
 contains
 
