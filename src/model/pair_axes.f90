@@ -18,6 +18,7 @@ module mech9_pair_axes
     real(wp) :: points(3, 2) = 0.0_wp   !< of the axis [m]; of a free pair that of the moving link that is led (side 2)
     real(wp) :: axes(3, 2) = 0.0_wp     !< its direction, of length 1; zero for a free pair
     real(wp) :: tangent(3) = 0.0_wp     !< direction in the moving link that follows the tangent of a curve; zero: none does
+    real(wp) :: sides(3, 2) = 0.0_wp    !< directions in the moving link that keep parallel to the plane of a curve; zero: none do
     type(pose_type) :: home             !< pose of the moving link in the reference link at q = 0; not known for a free pair
     real(wp), allocatable :: guide(:, :)   !< (3,n) places of the curve along which it leads, in the reference link [m]; none: n = 0
   end type pair_axes_type
@@ -46,7 +47,11 @@ contains
       if (.not. is_screw) then
         call pairs(k)%pair%guide(guide)
         all(k)%guide = guide%points
-        if (guide%turns) all(k)%tangent = in_moving%r(:, 1)
+        if (guide%turns) then
+          all(k)%tangent = in_moving%r(:, 1)
+        else if (size(guide%points, 2) > 0) then
+          all(k)%sides = in_moving%r(:, :2)
+        end if
         do i = 1, size(guide%points, 2)
           all(k)%guide(:, i) = transformed(factors%before, guide%points(:, i))
         end do

@@ -356,7 +356,7 @@ def refusals(s):
 
 
 def symbols(s):
-    """A link that turns with its curve is a block on it, another one a diamond; a closed curve of a moving link is a cam."""
+    """A link that turns with its curve is a block on it, another one a square; a closed curve of a moving link is a cam."""
     angle = 2 * math.pi * np.arange(25) / 24
     s.curve(closed(np.c_[np.cos(angle), np.sin(angle)]))
     text = """&structure cq=1,2 /
@@ -366,12 +366,12 @@ def symbols(s):
 &drive coordinate=2, kind='polynomial', coefficients=0, 1 /
 """
     picture = os.path.join(s.folder, 'path.svg')
-    for links, orientation, symbol, curve in (('1,3', 'tangent', 'block', 'curve'), ('1,3', 'fixed', 'free', 'curve'),
-                                              ('2,3', 'tangent', 'block', 'cam'), ('2,3', 'fixed', 'free', 'cam')):
+    for links, orientation, symbol, curve in (('1,3', 'tangent', 'block', 'curve'), ('1,3', 'fixed', 'plate sheet', 'curve'),
+                                              ('2,3', 'tangent', 'block', 'cam'), ('2,3', 'fixed', 'plate sheet', 'cam')):
         done = run(s.mech9k, s.write('case.nml', text.format(links=links, orientation=orientation)), '--no-write', '--sketch', picture)
         s.checks.equal(done.returncode, 0, f'a path is drawn: {done.stderr}')
         drawn = text_of(picture)
-        other = {'block': 'free', 'free': 'block'}[symbol]
+        other = {'block': 'plate sheet', 'plate sheet': 'block'}[symbol]
         s.checks.true(f'<g class="{symbol}' in drawn and f'<g class="{other}' not in drawn, f'{orientation}: the symbol is {symbol}')
         s.checks.true(f'<g class="{curve}' in drawn, f'links {links}: the curve is drawn as {curve}')
 

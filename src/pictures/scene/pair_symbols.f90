@@ -3,16 +3,15 @@
 !> Pairs at one place are drawn as one joint. Two axes make a universal joint and three a ball; an axis along which one
 !> pair slides and about which another one turns makes a cylindrical joint.
 module mech9_pair_symbols
-  use mech9_kinds, only: wp, pi
+  use mech9_kinds, only: wp
   use mech9_rotation, only: cross, unit
-  use mech9_pose, only: default_zero
   use mech9_text, only: to_text
   use mech9_film, only: film_type
   use mech9_pair_axes, only: turning, sliding, screwing, free
   use mech9_skeleton, only: skeleton_type, place_type
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, open_path, facing_path, segments, spring, mark, in_guide, in_ground, in_hatch, &
-                         in_block, in_pin, in_pin_end, in_cross, in_thread, as_stand, as_ring, as_ball, as_free
+  use mech9_symbol_shapes, only: add_block, add_pin, add_led_link, add_whole_joint, find_plane, block_half, guide_more
+  use mech9_scene, only: scene_type, open_path, segments, mark, in_guide, in_ground, in_hatch, as_stand, as_ring, as_ball
   implicit none
   private
   public :: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols, add_ground
@@ -23,14 +22,13 @@ module mech9_pair_symbols
     integer, allocatable :: node(:)          !< (M) node of each pair
     !> (2,M) nodes of the ends of the guide of a sliding pair; of a tube and its rod, nodes of their far ends.
     integer, allocatable :: guide(:, :)
+    integer, allocatable :: plane(:, :)      !< (4,M) for the last pair of a planar joint, nodes of the corners of its plane; else 0
     integer, allocatable :: joint(:)         !< (M) first pair of the joint that the pair belongs to
     logical, allocatable :: hangs(:)         !< (M) for the first pair of each joint: it hangs from its stand
   end type symbols_type
 
   !> Sizes on the page [px].
-  real(wp), parameter :: block_half = 13.0_wp, guide_more = 9.0_wp, block_side = 10.0_wp, hatch_step = 7.0_wp, &
-                         hatch_length = 7.0_wp, pin_half = 10.0_wp, pin_radius = 5.0_wp
-  integer, parameter :: corners = 14         !< corners of the round end of a pin
+  real(wp), parameter :: block_side = 10.0_wp, hatch_step = 7.0_wp, hatch_length = 7.0_wp
   !> Pairs nearer to each other than this part of the mechanism's size are one joint; axes with a sine of their angle
   !> below the second number are parallel.
   real(wp), parameter :: same = 0.004_wp, parallel = 0.01_wp
@@ -45,17 +43,18 @@ contains
     logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     type(symbols_type), intent(out) :: symbols       !< nodes and joints of the pairs
-    real(wp) :: more, ends(3, 2)
+    real(wp) :: more, ends(3, 2), rim(3, 4)
     integer :: k, i, side, links(2)
 
     symbols%planar = planar
     allocate (symbols%node(size(skeleton%places)), symbols%guide(2, size(skeleton%places)))
+    allocate (symbols%plane(4, size(skeleton%places)), source=0)
     symbols%guide = 0
     more = projection%metres(block_half + guide_more)
     do k = 1, size(skeleton%places)
       associate (place => skeleton%places(k))
         call scene%add_node(place%links(place%carrier), place%points(:, place%carrier), symbols%node(k))
-        if (place%kind /= sliding .and. place%kind /= screwing) cycle
+        if ((place%kind /= sliding .and. place%kind /= screwing) .or. place%drawn_by > 0) cycle
         if (place%telescopic) then
           links = place%links
           ends = place%pins
@@ -71,6 +70,17 @@ contains
       end associate
     end do
     symbols%joint = joints_of(film, skeleton)
+    do k = 1, size(skeleton%places)
+      associate (place => skeleton%places(k))
+        if (place%drawn_by == 0) cycle
+        symbols%node(k) = symbols%node(place%drawn_by)
+        if (place%drawn_by /= k .or. place%plane_from == 0) cycle
+        call find_plane(film, skeleton, place%plane_from, k, projection, links(1), rim)
+        do i = 1, 4
+          call scene%add_node(links(1), rim(:, i), symbols%plane(i, k))
+        end do
+      end associate
+    end do
     allocate (symbols%hangs(size(symbols%joint)), source=.false.)
   end subroutine prepare_symbols
 
@@ -83,26 +93,35 @@ contains
     real(wp) :: at(3, size(skeleton%places))
     integer :: link, i, j, a, b, k
 
-    allocate (joint(size(skeleton%places)))
+    joint = [(k, k=1, size(skeleton%places))]
     do k = 1, size(joint)
-      joint(k) = k
       associate (place => skeleton%places(k))
         at(:, k) = film%position(1, place%links(place%carrier), place%points(:, place%carrier))
+        ! coordinates of a joint that is drawn as a whole belong together wherever it is
+        if (place%drawn_by > 0) joint(k) = findloc(skeleton%places%drawn_by, place%drawn_by, dim=1)
       end associate
     end do
     do link = 1, skeleton%graph%n_links
       do i = skeleton%graph%first(link), skeleton%graph%first(link + 1) - 1
         a = skeleton%graph%pair_at(i)
-        if (at_guide(skeleton%places(a), link)) cycle
+        if (at_guide(skeleton%places(a), link) .or. is_within(skeleton%places(a), a)) cycle
         do j = skeleton%graph%first(link), i - 1
           b = skeleton%graph%pair_at(j)
-          if (at_guide(skeleton%places(b), link)) cycle
+          if (at_guide(skeleton%places(b), link) .or. is_within(skeleton%places(b), b)) cycle
           if (maxval(abs(at(:, a) - at(:, b))) > same*skeleton%size) cycle
           where (joint == max(joint(a), joint(b))) joint = min(joint(a), joint(b))
         end do
       end do
     end do
   end function joints_of
+
+  !> Whether a pair is within a joint that another pair draws as a whole.
+  elemental logical function is_within(place, k)
+    type(place_type), intent(in) :: place  !< place and axes of the pair
+    integer, intent(in) :: k               !< its number
+
+    is_within = place%drawn_by > 0 .and. place%drawn_by /= k
+  end function is_within
 
   !> Whether a link only guides the pair, so that the pair is no fixed place of it.
   pure logical function at_guide(place, link)
@@ -124,7 +143,8 @@ contains
 
     do k = 1, size(skeleton%places)
       associate (place => skeleton%places(k))
-        if (all(place%links /= 1) .or. (place%kind /= sliding .and. place%kind /= screwing)) cycle
+        if (place%drawn_by == k .and. place%plane_from > 0) call add_plane(projection, symbols%plane(:, k), scene)
+        if (all(symbols%guide(:, k) == 0) .or. all(place%links /= 1)) cycle
         ends(:, 1) = scene%node_at(:, symbols%guide(1, k))
         ends(:, 2) = scene%node_at(:, symbols%guide(2, k))
         call scene%add_item(open_path, in_guide, symbols%guide(:, k))
@@ -137,6 +157,33 @@ contains
       end associate
     end do
   end subroutine add_guides
+
+  !> The plane of a planar joint on the frame is added: its rim, hatched on the side that is lowest in the picture. The plane of a
+  !> joint on a moving link is a part of the link's shape.
+  subroutine add_plane(projection, rim, scene)
+    type(projection_type), intent(in) :: projection !< from space to the page
+    integer, intent(in) :: rim(4)                   !< numbers of the nodes at its corners, in turn
+    type(scene_type), intent(inout) :: scene        !< nodes and items of the picture
+    real(wp) :: at(3, 4), middle(3), down(3), lowest, height
+    integer :: i, side
+
+    if (scene%node_link(rim(1)) /= 1) return
+    at = scene%node_at(:, rim)
+    call scene%add_item(open_path, in_guide, [rim, rim(1)])
+    middle = sum(at, 2)/4
+    side = 1
+    lowest = huge(lowest)
+    do i = 1, 4
+      height = dot_product(0.5_wp*(at(:, i) + at(:, 1 + modulo(i, 4))) - middle, projection%view%up)
+      if (height >= lowest) cycle
+      lowest = height
+      side = i
+    end do
+    associate (from => at(:, side), to => at(:, 1 + modulo(side, 4)))
+      down = unit(0.5_wp*(from + to) - middle)
+      call add_ground(projection, reshape([from, to], [3, 2]), unit(to - from), down, 0.0_wp, scene)
+    end associate
+  end subroutine add_plane
 
   !> A hatched line of the frame is added, beside a guide or where a spring ends.
   subroutine add_ground(projection, ends, axis, down, aside, scene)
@@ -179,34 +226,40 @@ contains
     done = .false.
     do k = 1, size(skeleton%places)
       associate (place => skeleton%places(k))
-        if (place%kind /= turning .or. all(place%links /= 1) .or. done(symbols%joint(k))) cycle
+        if (place%kind /= turning .or. all(place%links /= 1) .or. place%drawn_by > 0 .or. done(symbols%joint(k))) cycle
         done(symbols%joint(k)) = .true.
         direction = [0.0_wp, 1.0_wp]
-        symbols%hangs(symbols%joint(k)) = hangs(film, skeleton, projection, k)
+        symbols%hangs(symbols%joint(k)) = hangs(film, skeleton, projection, symbols%joint, k)
         if (symbols%hangs(symbols%joint(k))) direction = -direction
         call scene%add_item(mark, as_stand, symbols%node(k:k), shift=direction)
       end associate
     end do
   end subroutine add_stands
 
-  !> Whether the links at a joint of the frame are below it in all frames.
-  pure logical function hangs(film, skeleton, projection, k)
+  !> Whether the links at a joint of the frame are below it in all frames. The other joints of these links tell it, since pairs of
+  !> one joint stand at one place.
+  pure logical function hangs(film, skeleton, projection, joint, k)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
-    integer, intent(in) :: k                         !< number of the pair
+    integer, intent(in) :: joint(:)                  !< (M) first pair of the joint that each pair belongs to
+    integer, intent(in) :: k                         !< number of a pair of the joint on the frame
+    logical :: moved(skeleton%graph%n_links)
     real(wp) :: below, apart(3)
-    integer :: frame, i, j, other
+    integer :: frame, j
 
+    moved = .false.
+    do j = 1, size(joint)
+      if (joint(j) == joint(k)) moved(skeleton%places(j)%links) = .true.
+    end do
+    moved(1) = .false.
     below = 0.0_wp
     hangs = .true.
-    associate (graph => skeleton%graph, place => skeleton%places(k))
-      other = maxval(place%links)
+    associate (place => skeleton%places(k))
       do frame = 1, film%n_frames, max(1, film%n_frames/40)
-        do i = graph%first(other), graph%first(other + 1) - 1
-          j = graph%pair_at(i)
-          if (j == k) cycle
+        do j = 1, size(joint)
           associate (neighbour => skeleton%places(j))
+            if (joint(j) == joint(k) .or. .not. any(moved(neighbour%links))) cycle
             apart = film%position(frame, neighbour%links(neighbour%carrier), neighbour%points(:, neighbour%carrier)) &
                     - film%position(frame, place%links(1), place%points(:, 1))
           end associate
@@ -246,7 +299,7 @@ contains
     integer, intent(in) :: pairs(:)                  !< numbers of the pairs of the joint
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
-    integer, allocatable :: turns(:)
+    integer, allocatable :: single(:), turns(:)
     integer :: i, above(4)
     character(len=:), allocatable :: names
 
@@ -256,21 +309,22 @@ contains
     end do
     names = names_of(pairs)
     do i = 1, size(pairs)
-      if (skeleton%places(pairs(i))%kind == free) then
-        if (any(abs(skeleton%places(pairs(i))%tangent) > 0.0_wp)) then
-          call add_runner(skeleton%places(pairs(i)), projection, above, names, scene)
-        else
-          call scene%add_item(mark, as_free, symbols%node(pairs(i):pairs(i)), above=above, text=names)
+      associate (place => skeleton%places(pairs(i)))
+        if (place%drawn_by > 0) then
+          if (place%drawn_by == pairs(i)) call add_whole_joint(place, projection, above, names, scene)
+        else if (place%kind == free) then
+          call add_led_link(place, symbols%node(pairs(i)), projection, above, names, scene)
+        else if (place%kind == sliding .or. place%kind == screwing) then
+          call add_block(place, symbols%guide(:, pairs(i)), projection, above, names, scene)
         end if
-      end if
-      if (skeleton%places(pairs(i))%kind == sliding .or. skeleton%places(pairs(i))%kind == screwing) &
-        call add_block(skeleton%places(pairs(i)), pairs(i), projection, above, names, scene, symbols)
+      end associate
     end do
-    turns = turning_axes(film, skeleton, pairs)
-    if (count(skeleton%places(pairs)%kind == turning) == 0) return
+    single = pack(pairs, skeleton%places(pairs)%drawn_by == 0)
+    turns = turning_axes(film, skeleton, single)
+    if (count(skeleton%places(single)%kind == turning) == 0) return
     if (symbols%planar) then
       call scene%add_item(mark, as_ring, symbols%node(pairs(1):pairs(1)), above=above, text=names)
-    else if (size(turns) >= 3) then
+    else if (size(turns) >= 3 .or. any(skeleton%places(single)%ball)) then
       call scene%add_item(mark, as_ball, symbols%node(pairs(1):pairs(1)), above=above, text=names)
     else
       do i = 1, size(turns)
@@ -318,71 +372,4 @@ contains
     end do
     chosen = pack(pairs, new)
   end function turning_axes
-
-  !> The block of a sliding pair is added, or the nut of a helical one with the thread on which it runs.
-  subroutine add_block(place, k, projection, above, names, scene, symbols)
-    type(place_type), intent(in) :: place            !< place and axes of the pair
-    integer, intent(in) :: k                         !< number of the pair
-    type(projection_type), intent(in) :: projection  !< from space to the page
-    integer, intent(in) :: above(4)                  !< numbers of the items that the symbol lies upon; 0: none
-    character(len=*), intent(in) :: names            !< names of the coordinates of the joint
-    type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
-    type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
-    integer :: from, to
-
-    if (place%telescopic) return
-    if (place%kind == screwing) call scene%add_item(spring, in_thread, symbols%guide(:, k), above=above)
-    associate (point => place%points(:, place%carrier), axis => place%axes(:, place%carrier), &
-               link => place%links(place%carrier))
-      call scene%add_node(link, point - projection%metres(block_half)*axis, from)
-      call scene%add_node(link, point + projection%metres(block_half)*axis, to)
-      call scene%add_item(open_path, in_block, [from, to], link, above=above, text=names)
-    end associate
-  end subroutine add_block
-
-  !> The block that runs along the curve of a path pair and turns with it is added.
-  subroutine add_runner(place, projection, above, names, scene)
-    type(place_type), intent(in) :: place            !< place of the pair
-    type(projection_type), intent(in) :: projection  !< from space to the page
-    integer, intent(in) :: above(4)                  !< numbers of the items that the symbol lies upon; 0: none
-    character(len=*), intent(in) :: names            !< names of the coordinates of the joint
-    type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
-    integer :: ends(2), i
-
-    do i = 1, 2
-      call scene%add_node(place%links(2), place%points(:, 2) + (2*i - 3)*projection%metres(block_half)*place%tangent, ends(i))
-    end do
-    call scene%add_item(open_path, in_block, ends, place%links(2), above=above, text=names)
-  end subroutine add_runner
-
-  !> A pin is added: a short cylinder along the axis. Only the end that is turned to the viewer is drawn.
-  subroutine add_pin(place, px, crossed, above, names, scene)
-    type(place_type), intent(in) :: place     !< place and axes of the pair
-    real(wp), intent(in) :: px                !< length of 1 px in the mechanism [m]
-    logical, intent(in) :: crossed            !< the pin is one of two, a bar of the cross that they make
-    integer, intent(in) :: above(4)           !< numbers of the items that the symbol lies upon; 0: none
-    character(len=*), intent(in) :: names     !< names of the coordinates of the joint
-    type(scene_type), intent(inout) :: scene  !< nodes and items of the picture
-    real(wp) :: across(3), third(3), angle
-    integer :: ends(2), around(corners), i, j
-
-    associate (point => place%points(:, 1), axis => place%axes(:, 1), link => place%links(1))
-      do i = 1, 2
-        call scene%add_node(link, point + (2*i - 3)*px*pin_half*axis, ends(i))
-      end do
-      call scene%add_item(open_path, merge(in_cross, in_pin, crossed), ends, above=above, text=names)
-      if (crossed) return
-      across = default_zero(axis)
-      across = unit(across - dot_product(across, axis)*axis)
-      do i = 1, 2
-        ! each end is counterclockwise as seen from outside
-        third = (2*i - 3)*cross(axis, across)
-        do j = 1, corners
-          angle = 2.0_wp*pi*j/corners
-          call scene%add_node(link, scene%node_at(:, ends(i)) + px*pin_radius*(cos(angle)*across + sin(angle)*third), around(j))
-        end do
-        call scene%add_item(facing_path, in_pin_end, around, above=above)
-      end do
-    end associate
-  end subroutine add_pin
 end module mech9_pair_symbols

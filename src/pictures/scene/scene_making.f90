@@ -65,7 +65,9 @@ contains
     call add_symbols(film, skeleton, projection, shapes, scene, symbols)
     scene%last_sorted = scene%n_items
     call add_points(mechanism, with_masses, nodes, scene)
-    call add_labels(mechanism, film, projection, symbols, nodes, shown_by(outlines, shapes, scene), scene)
+    associate (shown => mechanism%structure%shown_links())
+      call add_labels(mechanism, film, projection, symbols, nodes, shown_by(outlines(:shown), shapes(:shown), scene), scene)
+    end associate
   end subroutine make_scene
 
   !> The points that a link joins: its pairs, traced points and ends of springs, and its mass centre if it has one pair
@@ -84,7 +86,9 @@ contains
         k = graph%pair_at(i)
         associate (place => skeleton%places(k))
           side = merge(1, 2, place%links(1) == link)
-          if (place%kind == turning .or. side == place%carrier) then
+          if (place%drawn_by > 0) then
+            call add_whole_joint(skeleton, symbols, k, link, scene, outline)
+          else if (place%kind == turning .or. side == place%carrier) then
             call add_to_outline(outline, place%points(:, side), symbols%node(k))
           else if (place%telescopic .or. place%kind == free) then
             cycle
@@ -111,6 +115,28 @@ contains
       if (mechanism%bodies(i)%link == link) call add_place(scene, link, mechanism%bodies(i)%centre, outline)
     end do
   end subroutine find_outline
+
+  !> The place of a planar or a free joint on its moving link is added to the outline of the link, and the plane of a planar joint
+  !> to that of its reference link.
+  subroutine add_whole_joint(skeleton, symbols, k, link, scene, outline)
+    type(skeleton_type), intent(in) :: skeleton   !< places at which the pairs are drawn
+    type(symbols_type), intent(in) :: symbols     !< nodes and joints of the pairs
+    integer, intent(in) :: k                      !< number of a pair of the joint
+    integer, intent(in) :: link                   !< number of the link
+    type(scene_type), intent(in) :: scene         !< nodes and items of the picture
+    type(outline_type), intent(inout) :: outline  !< points that give the link its shape
+    integer :: i
+
+    associate (place => skeleton%places(k))
+      if (place%drawn_by == k .and. place%links(2) == link) call add_to_outline(outline, place%points(:, 2), symbols%node(k))
+      if (place%plane_from /= k .or. place%links(1) /= link) return
+      do i = 1, 4
+        associate (corner => symbols%plane(i, place%drawn_by))
+          call add_to_outline(outline, scene%node_at(:, corner), corner)
+        end associate
+      end do
+    end associate
+  end subroutine add_whole_joint
 
   !> A point of a link gets a node, and is added to the outline of the link.
   subroutine add_place(scene, link, at, outline)

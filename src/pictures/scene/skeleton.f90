@@ -23,6 +23,10 @@ module mech9_skeleton
     !> the tube and of the rod, each in the system of its link.
     logical :: telescopic = .false.
     real(wp) :: pins(3, 2) = 0.0_wp
+    !> A planar or a free joint is drawn as a whole at its last pair, which has this number; 0: the pair is in no such joint.
+    integer :: drawn_by = 0
+    logical :: ball = .false.          !< the pair is one of the three of a spherical joint
+    integer :: plane_from = 0          !< of a planar joint that is drawn as a whole, its first pair; 0: of a free one
   end type place_type
 
   !> The places of all pairs, and the graph of links and pairs.
@@ -55,9 +59,32 @@ contains
       skeleton%places(k)%pair_axes_type = axes(k)
       if (axes(k)%kind == free) skeleton%places(k)%carrier = 2
     end do
+    call mark_joints(mechanism, skeleton%places)
     call draw_near(film, skeleton)
     skeleton%size = size_of(mechanism, film, skeleton%places)
   end subroutine make_skeleton
+
+  !> The pairs of planar and free joints get the number of the pair that draws them, and those of balls are marked.
+  pure subroutine mark_joints(mechanism, places)
+    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
+    type(place_type), intent(inout) :: places(:)      !< (M) places at which the pairs are drawn
+    integer :: j, i
+
+    if (.not. allocated(mechanism%structure%joints)) return
+    do j = 1, size(mechanism%structure%joints)
+      associate (joint => mechanism%structure%joints(j))
+        if (joint%kind == 'spherical') places(joint%coordinates())%ball = .true.
+        if (joint%kind /= 'planar' .and. joint%kind /= 'free') cycle
+        do i = 1, joint%freedoms
+          associate (place => places(joint%numbers(i)))
+            place%drawn_by = joint%numbers(joint%freedoms)
+            if (joint%kind == 'planar') place%plane_from = joint%numbers(1)
+            place%carrier = 2
+          end associate
+        end do
+      end associate
+    end do
+  end subroutine mark_joints
 
   !> Points that are far from everything else are moved along their axes.
   subroutine draw_near(film, skeleton)

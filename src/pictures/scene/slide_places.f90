@@ -19,6 +19,7 @@ module mech9_slide_places
   type :: pins_type
     integer :: count = 0
     logical :: alone = .true.           !< the link has no traced points at other places
+    real(wp) :: beside(2) = 0.0_wp      !< reach of such points from the first pin, along the axis of the slide and against it [m]
     real(wp), allocatable :: at(:, :)   !< (3,count)
   contains
     procedure :: all_at_one_place
@@ -36,8 +37,9 @@ contains
 
     do k = 1, size(skeleton%places)
       if (skeleton%places(k)%kind /= sliding .and. skeleton%places(k)%kind /= screwing) cycle
+      if (skeleton%places(k)%drawn_by > 0) cycle
       do side = 1, 2
-        call find_pins(mechanism, skeleton, k, skeleton%places(k)%links(side), pins(side))
+        call find_pins(mechanism, skeleton, k, side, pins(side))
       end do
       call judge_telescopic(film, pins, skeleton%size, skeleton%places(k))
       if (.not. skeleton%places(k)%telescopic) then
@@ -50,15 +52,16 @@ contains
 
   !> The places of the other pairs of a link that turn or are the user's; if there are none, the places of its traced
   !> points.
-  subroutine find_pins(mechanism, skeleton, k, link, pins)
+  subroutine find_pins(mechanism, skeleton, k, slide_side, pins)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(skeleton_type), intent(in) :: skeleton    !< places at which the pairs are drawn
     integer, intent(in) :: k                       !< number of the sliding pair
-    integer, intent(in) :: link                    !< number of one of its links
+    integer, intent(in) :: slide_side              !< 1: its reference link is looked at, 2: its moving link
     type(pins_type), intent(out) :: pins           !< places of the other pairs of the link
+    real(wp) :: along
     integer :: i, j, side, own
 
-    associate (graph => skeleton%graph)
+    associate (graph => skeleton%graph, link => skeleton%places(k)%links(slide_side))
       allocate (pins%at(3, graph%first(link + 1) - graph%first(link) + size(mechanism%points)), source=0.0_wp)
       do i = graph%first(link), graph%first(link + 1) - 1
         j = graph%pair_at(i)
@@ -67,16 +70,18 @@ contains
         if (skeleton%places(j)%kind == turning .or. (skeleton%places(j)%kind == free .and. side == 2)) &
           call add_pin(pins, skeleton%places(j)%points(:, side))
       end do
+      own = pins%count
+      do i = 1, size(mechanism%points)
+        if (mechanism%points(i)%link /= link) cycle
+        if (own == 0) then
+          call add_pin(pins, mechanism%points(i)%position)
+        else if (norm2(mechanism%points(i)%position - pins%at(:, 1)) > same*skeleton%size) then
+          pins%alone = .false.
+          along = dot_product(mechanism%points(i)%position - pins%at(:, 1), skeleton%places(k)%axes(:, slide_side))
+          pins%beside = max(pins%beside, [along, -along])
+        end if
+      end do
     end associate
-    own = pins%count
-    do i = 1, size(mechanism%points)
-      if (mechanism%points(i)%link /= link) cycle
-      if (own == 0) then
-        call add_pin(pins, mechanism%points(i)%position)
-      else if (norm2(mechanism%points(i)%position - pins%at(:, 1)) > same*skeleton%size) then
-        pins%alone = .false.
-      end if
-    end do
   end subroutine find_pins
 
   !> A point is added to the pins of a link.
@@ -115,7 +120,8 @@ contains
   end function off_line
 
   !> A sliding pair is a tube and a rod if each of its two moving links has its pins at one place of the axis, and these
-  !> places never come together.
+  !> places never come together. Other points of the links may stand beside the tube and the rod, but not beyond their ends, as the
+  !> tip of a lever does that slides through a block.
   subroutine judge_telescopic(film, pins, size, place)
     type(film_type), intent(in) :: film       !< poses and values at the outputs of the run
     type(pins_type), intent(in) :: pins(2)    !< pins of the reference link and of the moving link
@@ -124,7 +130,7 @@ contains
     real(wp) :: apart, least, most
     integer :: frame, side
 
-    if (any(place%links == 1) .or. .not. all(pins%alone)) return
+    if (any(place%links == 1)) return
     do side = 1, 2
       if (.not. pins(side)%all_at_one_place(place%points(:, side), place%axes(:, side), same*size)) return
       place%pins(:, side) = pins(side)%at(:, 1)
@@ -137,7 +143,11 @@ contains
       least = min(least, apart)
       most = max(most, apart)
     end do
-    place%telescopic = least > 5.0_wp*same*size .or. most < -5.0_wp*same*size
+    if (least > 5.0_wp*same*size) then
+      place%telescopic = all([pins(1)%beside, pins(2)%beside] <= [least, 0.0_wp, 0.0_wp, least] + same*size)
+    else if (most < -5.0_wp*same*size) then
+      place%telescopic = all([pins(1)%beside, pins(2)%beside] <= [0.0_wp, -most, -most, 0.0_wp] + same*size)
+    end if
     if (.not. place%telescopic) return
     place%carrier = 1
     if (least < 0.0_wp) least = most

@@ -86,7 +86,7 @@ contains
     is_damper = abs(load%damping) > 0.0_wp
     if (.not. (is_spring .or. is_damper)) return
     associate (place => skeleton%places(k))
-      if (place%kind == sliding) then
+      if (place%kind == sliding .and. place%drawn_by == 0) then
         if (place%telescopic) then
           nodes = symbols%guide(:, k)
         else
