@@ -2,8 +2,9 @@
 module mech9_importing
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_done, exit_internal, exit_usage
+  use mech9_error, only: error_type, raise, exit_done, exit_internal, exit_usage, exit_data
   use mech9_text, only: to_text, string_type
+  use mech9_counted, only: counted
   use mech9_printable, only: printable
   use mech9_path, only: name_of
   use mech9_same_file, only: file_place_type, find_place, same_place
@@ -20,6 +21,7 @@ module mech9_importing
   use mech9_xml_reader, only: read_xml
   use mech9_robot, only: robot_type
   use mech9_urdf_reader, only: read_urdf, read_loops
+  use mech9_mjcf_includes, only: follow_includes
   use mech9_mjcf_reader, only: read_mjcf
   use mech9_sdf_reader, only: read_sdf
   use mech9_robot_poses, only: make_planar_loops_planar
@@ -44,11 +46,12 @@ contains
     logical, intent(in) :: quiet                   !< write errors only
     integer, intent(out) :: code                   !< exit code of the program
     type(robot_type) :: robot
+    type(string_type), allocatable :: files(:)
     character(len=:), allocatable :: text, summary
     type(error_type), allocatable :: err
 
-    call refuse_overwriting(inputs, output, err)
-    if (.not. allocated(err)) call make_data_file(program_name, inputs, robot, text, summary, err)
+    call make_data_file(program_name, inputs, robot, files, text, summary, err)
+    if (.not. allocated(err)) call refuse_overwriting(files, output, err)
     if (.not. allocated(err)) then
       if (output == '' .or. output == '-') then
         call save_text('-', text, err)
@@ -67,31 +70,33 @@ contains
   end subroutine import_robot
 
   !> From the files of the robot to the text of a data file.
-  subroutine make_data_file(program_name, inputs, robot, text, summary, err)
+  subroutine make_data_file(program_name, inputs, robot, files, text, summary, err)
     character(len=*), intent(in) :: program_name           !< mech9k or mech9d
     type(string_type), intent(in) :: inputs(:)             !< path of the robot, and perhaps that of its loops
     type(robot_type), intent(out) :: robot                 !< the robot, with notes about what is not taken over
+    type(string_type), allocatable, intent(out) :: files(:)   !< paths of all files that were read
     character(len=:), allocatable, intent(out) :: text     !< the data file
     character(len=:), allocatable, intent(out) :: summary  !< numbers of links and so on, in words
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(series_type) :: series
 
-    call read_robot(inputs, robot, err)
+    call read_robot(inputs, robot, files, err)
     if (.not. allocated(err)) call join_rigid_links(robot, err)
     if (allocated(err)) return
     call make_planar_loops_planar(robot)
     call find_series(robot, series, err)
     if (allocated(err)) return
     if (size(series%pairs) == 0) then
-      call raise(err, exit_usage, inputs(1)%text//': the robot has no joints that move')
+      call raise(err, exit_data, printable(inputs(1)%text)//': the robot has no joints that move, so that there is no '// &
+                 'motion to compute; a mechanism needs one joint at least that is not fixed')
     else
       call write_robot(program_name, name_of(inputs(1)%text), robot, series, text, summary, err)
     end if
   end subroutine make_data_file
 
   !> Fail if the data file would be written over a file that is read.
-  subroutine refuse_overwriting(inputs, output, err)
-    type(string_type), intent(in) :: inputs(:)         !< paths of the files that are read
+  subroutine refuse_overwriting(files, output, err)
+    type(string_type), intent(in) :: files(:)          !< paths of the files that are read
     character(len=*), intent(in) :: output             !< path of the data file
     type(error_type), allocatable, intent(out) :: err  !< allocated if it would
     type(file_place_type) :: from, to
@@ -99,20 +104,21 @@ contains
 
     if (output == '' .or. output == '-') return
     call find_place(output, to)
-    do i = 1, size(inputs)
-      call find_place(inputs(i)%text, from)
+    do i = 1, size(files)
+      call find_place(files(i)%text, from)
       if (.not. (from%exists .and. same_place(from, to))) cycle
-      call raise(err, exit_usage, "--out '"//output//"' would overwrite '"//inputs(i)%text// &
+      call raise(err, exit_usage, "--out '"//output//"' would overwrite '"//files(i)%text// &
                  "', which is read; give it another name")
       return
     end do
   end subroutine refuse_overwriting
 
   !> Read the files; the root of the first one tells its format.
-  subroutine read_robot(inputs, robot, err)
-    type(string_type), intent(in) :: inputs(:)         !< path of the robot, and perhaps that of its loops
-    type(robot_type), intent(out) :: robot             !< the robot
-    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
+  subroutine read_robot(inputs, robot, files, err)
+    type(string_type), intent(in) :: inputs(:)                !< path of the robot, and perhaps that of its loops
+    type(robot_type), intent(out) :: robot                    !< the robot
+    type(string_type), allocatable, intent(out) :: files(:)   !< paths of all files that were read
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(xml_tree_type) :: tree, loops
 
     call read_xml(inputs(1)%text, tree, err)
@@ -123,13 +129,17 @@ contains
       call read_urdf(tree, robot, err)
     case ('mujoco')
       call robot%begin('MJCF')
-      call read_mjcf(tree, robot, err)
+      call follow_includes(tree, err)
+      if (.not. allocated(err)) call read_mjcf(tree, robot, err)
     case ('sdf')
       call robot%begin('SDF')
       call read_sdf(tree, robot, err)
     case default
       call tree%fail(1, '<'//tree%name(1)//'> is no robot: the file must begin with <robot> (URDF), <mujoco> (MJCF) or <sdf>', err)
     end select
+    allocate (files(size(tree%files) + size(inputs) - 1))
+    files(:size(tree%files)) = tree%files
+    if (size(inputs) > 1) files(size(files))%text = inputs(2)%text
     if (size(inputs) > 1 .and. .not. allocated(err)) then
       call read_xml(inputs(2)%text, loops, err)
       if (.not. allocated(err)) call read_loops(loops, robot, err)
@@ -188,8 +198,8 @@ contains
     if (moved) draft%head = draft%head//'!'//eol//'! '//beside_singular//eol
     call write_draft(draft, '', written)
     call move_alloc(written%text, text)
-    summary = to_text(series%n_links)//' links, '//to_text(size(q))//' coordinates, '//to_text(chains)//' closed '// &
-              trim(merge('chain ', 'chains', chains == 1))//'; independent: '//to_text(pack([(k, k=1, size(q))], independent), ', ')
+    summary = counted(series%n_links, 'link')//', '//counted(size(q), 'coordinate')//', '//counted(chains, 'closed chain')// &
+              '; independent: '//to_text(pack([(k, k=1, size(q))], independent), ', ')
     if (moved) summary = summary//eol//beside_singular
   end subroutine write_robot
 

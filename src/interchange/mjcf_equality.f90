@@ -8,7 +8,8 @@ module mech9_mjcf_equality
   use mech9_xml_values, only: get_numbers, get_list
   use mech9_robot, only: robot_type, robot_joint_type, spherical_joint, fixed_joint
   use mech9_robot_poses, only: all_poses
-  use mech9_mjcf_settings, only: mjcf_settings_type, from_quaternion
+  use mech9_orientations, only: from_quaternion
+  use mech9_mjcf_settings, only: mjcf_settings_type
   implicit none
   private
   public :: read_equalities

@@ -8,7 +8,8 @@ module mech9_mjcf_masses
   use mech9_xml_tree, only: xml_tree_type
   use mech9_xml_values, only: get_numbers, get_number, get_list, place_in
   use mech9_robot, only: robot_type, robot_link_type
-  use mech9_mjcf_settings, only: mjcf_settings_type, orientation_from_z
+  use mech9_orientations, only: orientation_from_z
+  use mech9_mjcf_settings, only: mjcf_settings_type
   use mech9_shapes, only: solid_of, shape_names
   implicit none
   private

@@ -6,7 +6,7 @@ module mech9_mjcf_reader
   use mech9_rotation, only: unit, about_axis
   use mech9_pose, only: pose_type, compose
   use mech9_xml_tree, only: xml_tree_type
-  use mech9_xml_values, only: get_numbers, get_number, is_true, place_in
+  use mech9_xml_values, only: get_numbers, get_number, is_true, place_in, one_of
   use mech9_robot, only: robot_type, robot_joint_type, fixed_joint, revolute_joint, prismatic_joint, &
                          spherical_joint, free_joint
   use mech9_mjcf_settings, only: mjcf_settings_type, read_settings
@@ -18,7 +18,7 @@ module mech9_mjcf_reader
 
 contains
 
-  !> Read a document whose root is <mujoco>. The world is the frame.
+  !> Read a document whose root is <mujoco>, without elements <include>. The world is the frame.
   subroutine read_mjcf(tree, robot, err)
     type(xml_tree_type), intent(in) :: tree            !< the document
     type(robot_type), intent(inout) :: robot           !< an empty robot; gets links and joints
@@ -57,7 +57,7 @@ contains
 
     do e = 1, tree%count
       select case (tree%name(e))
-      case ('include', 'attach', 'composite', 'flexcomp', 'replicate')
+      case ('attach', 'composite', 'flexcomp', 'replicate')
         call tree%fail(e, '<'//tree%name(e)//'> is not followed; let MuJoCo write the whole model into one file '// &
                        '(mj_saveLastXML)', err)
         return
@@ -181,7 +181,7 @@ contains
     word = tree%attribute(settings%holder(tree, element, class, 'type'), 'type')
     if (tree%name(element) == 'freejoint') word = 'free'
     place = place_in(words, word)
-    if (place == 0) call tree%fail(element, "unknown type '"//word//"' of a joint", err)
+    if (place == 0) call tree%fail(element, "unknown type '"//word//"' of a joint; "//one_of(words(2:)), err)
     if (allocated(err)) return
     joint%kind = kinds(place)
     joint%name = tree%attribute(element, 'name')

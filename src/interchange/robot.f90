@@ -6,6 +6,7 @@ module mech9_robot
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
+  use mech9_rotation, only: cross
   use mech9_pose, only: pose_type
   use mech9_xml_tree, only: xml_tree_type
   implicit none
@@ -20,6 +21,9 @@ module mech9_robot
   !> Kinds of joints.
   integer, parameter :: fixed_joint = 0, revolute_joint = 1, prismatic_joint = 2, helical_joint = 3, cylindrical_joint = 4, &
                         universal_joint = 5, spherical_joint = 6, planar_joint = 7, free_joint = 8
+
+  !> Axes of a universal joint are parallel below this sine of their angle.
+  real(wp), parameter :: least_sine = 1.0e-6_wp
 
   !> A link.
   type :: robot_link_type
@@ -126,7 +130,7 @@ contains
     end if
     self%n_links = self%n_links + 1
     self%links(self%n_links)%name = name
-    self%links(self%n_links)%place = tree%path//':'//to_text(tree%line(element))
+    self%links(self%n_links)%place = tree%line_place(element)
   end subroutine add_link
 
   !> Add a joint.
@@ -142,6 +146,8 @@ contains
     if (self%n_joints == most_joints) &
       call tree%fail(element, 'the robot has more than '//to_text(most_joints)//' joints, which are too many', err)
     if (self%find_joint(joint%name) > 0) call tree%fail(element, "there are two joints '"//joint%name//"'", err)
+    if (joint%kind == universal_joint .and. norm2(cross(joint%axis, joint%second)) <= least_sine) &
+      call tree%fail(element, "the two axes of joint '"//joint%name//"' are parallel; give the second one another direction", err)
     if (allocated(err)) return
     if (self%n_joints == size(self%joints)) then
       allocate (longer(2*self%n_joints + 8))
@@ -215,7 +221,7 @@ contains
     integer, intent(in) :: element            !< number of the element that is meant
     character(len=*), intent(in) :: text      !< the thing that is not taken over
 
-    call self%note_at(tree%path//':'//to_text(tree%line(element)), text)
+    call self%note_at(tree%line_place(element), text)
   end subroutine note
 
   !> Note that something is not taken over. Equal notes are counted, and the place of the first one is kept.

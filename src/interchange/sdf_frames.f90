@@ -1,97 +1,203 @@
 !> Poses in SDF: each stands in a frame that it may name, which stands in another one.
+!>
+!> Models may hold models. Names of frames in a nested model have its name before them: `arm::hand` is the frame `hand` of the
+!> model `arm`. The frame of a model itself is `__model__`.
 module mech9_sdf_frames
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type
-  use mech9_pose, only: pose_type, compose
+  use mech9_pose, only: pose_type, compose, inverse
   use mech9_xml_tree, only: xml_tree_type
   use mech9_xml_values, only: numbers_in, is_true
-  use mech9_urdf_reader, only: rotation_of_rpy
+  use mech9_orientations, only: rotation_of_rpy, from_quaternion
+  use mech9_robot, only: robot_type
   implicit none
   private
   public :: sdf_frames_type, list_frames, own_pose
 
   integer, parameter :: most_frames = 5000
   real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp
+  character(len=*), parameter :: model_frame = '__model__'
 
-  !> The frames of a model: its own, those of links, joints and elements <frame>.
+  !> The frames of a model: its own, those of links, joints, elements <frame> and models in it.
   type :: sdf_frames_type
     integer :: count = 0                          !< number of frames
-    type(string_type), allocatable :: names(:)    !< their names
-    type(string_type), allocatable :: parents(:)  !< names of the frames in which their poses stand; empty: the model
-    type(pose_type), allocatable :: poses(:)      !< in these frames
+    type(string_type), allocatable :: names(:)    !< their names, with those of the models around them
+    type(string_type), allocatable :: parents(:)  !< names of the frames in which their poses stand
+    type(string_type), allocatable :: holders(:)  !< names of the frames or links to which they are attached; empty: none
+    type(pose_type), allocatable :: poses(:)      !< in the frames of `parents`
+    type(pose_type) :: model                      !< of the outermost model in the world
   contains
     procedure :: in_model
+    procedure :: find_link
     procedure, private :: add
+    procedure, private :: up_to
+    procedure, private :: find
   end type sdf_frames_type
 
 contains
 
-  !> List the frames of a model.
+  !> List the frames of a model and of those in it.
   subroutine list_frames(tree, model, frames, err)
     type(xml_tree_type), intent(in) :: tree            !< the document
     integer, intent(in) :: model                       !< number of the element <model>
     type(sdf_frames_type), intent(out) :: frames       !< its frames
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
-    character(len=:), allocatable :: parent
-    integer :: e
+    type(pose_type) :: placed
+    character(len=:), allocatable :: frame
 
-    allocate (frames%names(64), frames%parents(64), frames%poses(64))
+    allocate (frames%names(64), frames%parents(64), frames%holders(64), frames%poses(64))
+    frame = tree%attribute(tree%child(model, 'pose'), 'relative_to')
+    if (frame /= '' .and. frame /= 'world') &
+      call tree%fail(model, "the model stands in the frame '"//frame//"' of the world; give its <pose> in the world itself", err)
+    call own_pose(tree, model, frames%model, err)
+    call frames%add(tree, 0, model_frame, '', canonical_of(tree, model), '', err)
+    call list_scope(tree, model, '', frames, err)
+    call place_of_model(tree, model, '', frames, placed, err)
+    frames%model = compose(frames%model, inverse(placed))
+  end subroutine list_frames
+
+  !> List the frames in a model, which may hold others.
+  recursive subroutine list_scope(tree, model, prefix, frames, err)
+    type(xml_tree_type), intent(in) :: tree              !< the document
+    integer, intent(in) :: model                         !< number of the element <model>
+    character(len=*), intent(in) :: prefix               !< names of the models around its frames, each with :: behind it
+    type(sdf_frames_type), intent(inout) :: frames       !< gets its frames
+    type(error_type), allocatable, intent(inout) :: err  !< the failure
+    character(len=:), allocatable :: own, name
+    type(pose_type) :: placed
+    integer :: e, n
+
     e = tree%first_child(model)
     do while (e > 0 .and. .not. allocated(err))
-      parent = ''
+      own = prefix//tree%attribute(e, 'name')
       select case (tree%name(e))
       case ('link')
-        call frames%add(tree, e, parent, err)
+        call frames%add(tree, e, own, prefix//model_frame, own, prefix, err)
       case ('joint')
         ! the frame of a joint stands in that of its child
-        if (tree%child(e, 'child') > 0) parent = tree%content(tree%child(e, 'child'))
-        call frames%add(tree, e, parent, err)
+        name = ''
+        if (tree%child(e, 'child') > 0) name = tree%content(tree%child(e, 'child'))
+        call frames%add(tree, e, own, scoped(prefix, name), scoped(prefix, name), prefix, err)
       case ('frame')
-        parent = tree%attribute(e, 'attached_to')
-        call frames%add(tree, e, parent, err)
+        name = scoped(prefix, tree%attribute(e, 'attached_to'))
+        call frames%add(tree, e, own, name, name, prefix, err)
+      case ('model')
+        call frames%add(tree, e, own, prefix//model_frame, scoped(own//'::', canonical_of(tree, e)), prefix, err)
+        n = frames%count
+        call frames%add(tree, 0, own//'::'//model_frame, own, own, prefix, err)
+        call list_scope(tree, e, own//'::', frames, err)
+        call place_of_model(tree, e, own//'::', frames, placed, err)
+        if (.not. allocated(err)) frames%poses(n) = compose(frames%poses(n), inverse(placed))
       end select
       e = tree%next_sibling(e)
     end do
-  end subroutine list_frames
+  end subroutine list_scope
+
+  !> The name of the link, or of the model in it, that a model's own frame is attached to.
+  function canonical_of(tree, model) result(name)
+    type(xml_tree_type), intent(in) :: tree  !< the document
+    integer, intent(in) :: model             !< number of the element <model>
+    character(len=:), allocatable :: name
+
+    name = tree%attribute(model, 'canonical_link')
+    if (name == '') name = tree%attribute(tree%child(model, 'link'), 'name')
+    if (name == '') name = tree%attribute(tree%child(model, 'model'), 'name')
+  end function canonical_of
+
+  !> The pose in a model of the frame that its <pose> places: that of `placement_frame`, or its own.
+  subroutine place_of_model(tree, model, prefix, frames, pose, err)
+    type(xml_tree_type), intent(in) :: tree              !< the document
+    integer, intent(in) :: model                         !< number of the element <model>
+    character(len=*), intent(in) :: prefix               !< names of the models around its frames
+    type(sdf_frames_type), intent(in) :: frames          !< the frames, with those of the model
+    type(pose_type), intent(out) :: pose                 !< in the model
+    type(error_type), allocatable, intent(inout) :: err  !< the failure
+
+    if (allocated(err) .or. .not. tree%has(model, 'placement_frame')) return
+    call frames%up_to(tree, model, scoped(prefix, tree%attribute(model, 'placement_frame')), prefix//model_frame, pose, err)
+  end subroutine place_of_model
+
+  !> A name in a model with the names of the models around it; an empty one is the model's own frame.
+  pure function scoped(prefix, name) result(full)
+    character(len=*), intent(in) :: prefix  !< names of the models, each with :: behind it
+    character(len=*), intent(in) :: name    !< name in the innermost of them
+    character(len=:), allocatable :: full
+
+    full = prefix//name
+    if (name == '' .or. name == 'world') full = prefix//model_frame
+  end function scoped
 
   !> Add the frame of an element, which may name another one for its pose.
-  subroutine add(self, tree, element, parent, err)
+  subroutine add(self, tree, element, name, parent, holder, prefix, err)
     class(sdf_frames_type), intent(inout) :: self        !< the frames
     type(xml_tree_type), intent(in) :: tree              !< the document
-    integer, intent(in) :: element                       !< number of the element
+    integer, intent(in) :: element                       !< number of the element; 0: none, the pose is the identity
+    character(len=*), intent(in) :: name                 !< its name with those of the models around it
     character(len=*), intent(in) :: parent               !< frame of its pose, unless it names one
+    character(len=*), intent(in) :: holder               !< link or frame to which it is attached
+    character(len=*), intent(in) :: prefix               !< names of the models around it
     type(error_type), allocatable, intent(inout) :: err  !< the failure
-    type(string_type), allocatable :: names(:), parents(:)
+    type(string_type), allocatable :: names(:), parents(:), holders(:)
     type(pose_type), allocatable :: poses(:)
+    character(len=:), allocatable :: frame
     integer :: n
 
     n = self%count
-    if (n == most_frames) call tree%fail(element, 'the model has too many frames', err)
+    if (n == most_frames) call tree%fail(max(element, 1), 'the model has too many frames', err)
+    if (allocated(err)) return
     if (n == size(self%names)) then
-      allocate (names(2*n), parents(2*n), poses(2*n))
+      allocate (names(2*n), parents(2*n), holders(2*n), poses(2*n))
       names(:n) = self%names
       parents(:n) = self%parents
+      holders(:n) = self%holders
       poses(:n) = self%poses
       call move_alloc(names, self%names)
       call move_alloc(parents, self%parents)
+      call move_alloc(holders, self%holders)
       call move_alloc(poses, self%poses)
     end if
     n = n + 1
-    self%names(n)%text = tree%attribute(element, 'name')
-    self%parents(n)%text = parent
-    if (tree%attribute(tree%child(element, 'pose'), 'relative_to') /= '') &
-      self%parents(n)%text = tree%attribute(tree%child(element, 'pose'), 'relative_to')
-    call own_pose(tree, element, self%poses(n), err)
     self%count = n
+    self%names(n)%text = name
+    self%parents(n)%text = parent
+    self%holders(n)%text = holder
+    if (element == 0) return
+    frame = tree%attribute(tree%child(element, 'pose'), 'relative_to')
+    if (frame /= '') self%parents(n)%text = scoped(prefix, frame)
+    call own_pose(tree, element, self%poses(n), err)
   end subroutine add
 
-  !> The pose of a frame in the model.
-  subroutine in_model(self, tree, element, name, pose, err)
+  !> Number of the frame of a name; 0: there is none.
+  pure integer function find(self, name) result(number)
+    class(sdf_frames_type), intent(in) :: self  !< the frames
+    character(len=*), intent(in) :: name        !< with the names of the models around it
+
+    do number = self%count, 1, -1
+      if (self%names(number)%text == name) return
+    end do
+  end function find
+
+  !> The pose of a frame in the outermost model.
+  subroutine in_model(self, tree, element, prefix, name, pose, err)
     class(sdf_frames_type), intent(in) :: self           !< the frames
     type(xml_tree_type), intent(in) :: tree              !< the document
     integer, intent(in) :: element                       !< number of the element that names it, for messages
-    character(len=*), intent(in) :: name                 !< the frame; empty, __model__ or world: the model
+    character(len=*), intent(in) :: prefix               !< names of the models around that element
+    character(len=*), intent(in) :: name                 !< the frame; empty, __model__ or world: that of the model
+    type(pose_type), intent(out) :: pose                 !< its pose
+    type(error_type), allocatable, intent(inout) :: err  !< the failure
+
+    call self%up_to(tree, element, scoped(prefix, name), model_frame, pose, err)
+  end subroutine in_model
+
+  !> The pose of a frame in one around it.
+  subroutine up_to(self, tree, element, name, root, pose, err)
+    class(sdf_frames_type), intent(in) :: self           !< the frames
+    type(xml_tree_type), intent(in) :: tree              !< the document
+    integer, intent(in) :: element                       !< number of the element that names it, for messages
+    character(len=*), intent(in) :: name                 !< the frame, with the names of the models around it
+    character(len=*), intent(in) :: root                 !< the frame around it
     type(pose_type), intent(out) :: pose                 !< its pose
     type(error_type), allocatable, intent(inout) :: err  !< the failure
     character(len=:), allocatable :: frame
@@ -99,10 +205,8 @@ contains
 
     frame = name
     steps = 0
-    do while (.not. (frame == '' .or. frame == '__model__' .or. frame == 'world') .and. .not. allocated(err))
-      do i = self%count, 1, -1
-        if (self%names(i)%text == frame) exit
-      end do
+    do while (frame /= root .and. .not. allocated(err))
+      i = self%find(frame)
       if (i == 0) call tree%fail(element, "there is no frame '"//frame//"'", err)
       steps = steps + 1
       if (steps > self%count) call tree%fail(element, "the frame '"//name//"' stands in itself, by way of others", err)
@@ -110,7 +214,27 @@ contains
       pose = compose(self%poses(i), pose)
       frame = self%parents(i)%text
     end do
-  end subroutine in_model
+  end subroutine up_to
+
+  !> The number of a link of a robot, or of the link to which a frame is attached; 0: there is none.
+  integer function find_link(self, robot, prefix, name) result(link)
+    class(sdf_frames_type), intent(in) :: self  !< the frames
+    type(robot_type), intent(in) :: robot       !< the robot with its links
+    character(len=*), intent(in) :: prefix      !< names of the models around the element that names it
+    character(len=*), intent(in) :: name        !< name of the link or frame
+    character(len=:), allocatable :: frame
+    integer :: i, steps
+
+    frame = prefix//name
+    link = robot%find_link(frame)
+    do steps = 1, self%count
+      if (link > 0) return
+      i = self%find(frame)
+      if (i == 0) return
+      frame = self%holders(i)%text
+      link = robot%find_link(frame)
+    end do
+  end function find_link
 
   !> The pose that an element tells by <pose>; the identity where it has none.
   subroutine own_pose(tree, element, pose, err)
@@ -118,20 +242,28 @@ contains
     integer, intent(in) :: element                       !< number of the element
     type(pose_type), intent(out) :: pose                 !< in the frame that it names
     type(error_type), allocatable, intent(inout) :: err  !< the failure
-    real(wp) :: numbers(6)
+    real(wp) :: numbers(7)
+    character(len=:), allocatable :: format
     integer :: e
 
     e = tree%child(element, 'pose')
-    if (e == 0) return
+    if (e == 0 .or. allocated(err)) return
     if (tree%content(e) == '') return
-    if (tree%attribute(e, 'rotation_format') == 'quat_xyzw') then
-      call tree%fail(e, 'poses with quaternions are not known; write roll, pitch and yaw', err)
-      return
-    end if
     numbers = 0.0_wp
-    call numbers_in(tree, e, tree%content(e), '<pose>', numbers, err)
-    if (is_true(tree%attribute(e, 'degrees'))) numbers(4:) = numbers(4:)*degree
+    format = tree%attribute(e, 'rotation_format')
+    select case (format)
+    case ('', 'euler_rpy')
+      call numbers_in(tree, e, tree%content(e), '<pose>', numbers(:6), err)
+      if (is_true(tree%attribute(e, 'degrees'))) numbers(4:) = numbers(4:)*degree
+      pose%r = rotation_of_rpy(numbers(4:6))
+    case ('quat_xyzw')
+      call numbers_in(tree, e, tree%content(e), '<pose>', numbers, err)
+      if (.not. any(abs(numbers(4:)) > 0.0_wp)) call tree%fail(e, 'the quaternion of <pose> is zero; no rotation is 0 0 0 1', err)
+      if (is_true(tree%attribute(e, 'degrees'))) call tree%fail(e, 'a quaternion has no degrees; leave degrees out', err)
+      pose%r = from_quaternion([numbers(7), numbers(4:6)])
+    case default
+      call tree%fail(e, "unknown rotation_format '"//format//"'; the formats are euler_rpy and quat_xyzw", err)
+    end select
     pose%p = numbers(:3)
-    pose%r = rotation_of_rpy(numbers(4:))
   end subroutine own_pose
 end module mech9_sdf_frames

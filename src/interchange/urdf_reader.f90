@@ -3,16 +3,17 @@ module mech9_urdf_reader
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
-  use mech9_rotation, only: unit, about_axis
+  use mech9_rotation, only: unit
   use mech9_pose, only: pose_type
   use mech9_inertia, only: inertia_in_axes
   use mech9_xml_tree, only: xml_tree_type
-  use mech9_xml_values, only: get_numbers, get_number, needed_attribute, is_true, place_in
+  use mech9_xml_values, only: get_numbers, get_number, needed_attribute, is_true, place_in, one_of
+  use mech9_orientations, only: rotation_of_rpy
   use mech9_robot, only: robot_type, robot_joint_type, fixed_joint, revolute_joint, prismatic_joint, cylindrical_joint, &
                          universal_joint, spherical_joint, planar_joint, free_joint, most_links, most_joints
   implicit none
   private
-  public :: read_urdf, read_loops, rotation_of_rpy
+  public :: read_urdf, read_loops
 
   !> Words for the kinds of joints; those from `spherical` on are of loops.
   character(len=*), parameter :: words(*) = [character(len=11) :: 'fixed', 'revolute', 'continuous', 'prismatic', 'floating', &
@@ -222,7 +223,7 @@ contains
     joint%name = needed_attribute(tree, element, 'name', err)
     word = needed_attribute(tree, element, 'type', err)
     place = place_in(words, word)
-    if (place == 0) call tree%fail(element, "unknown type '"//word//"' of a joint", err)
+    if (place == 0) call tree%fail(element, "unknown type '"//word//"' of a joint; "//one_of(words), err)
     if (allocated(err)) return
     joint%kind = kinds(place)
     joint%links(1) = link_of(tree, element, first, robot, err)
@@ -340,13 +341,4 @@ contains
     call get_numbers(tree, element, 'rpy', rpy, err)
     pose%r = rotation_of_rpy(rpy)
   end subroutine get_origin
-
-  !> The rotation of roll, pitch and yaw: turns about the fixed axes x, y and z, in this order.
-  pure function rotation_of_rpy(rpy) result(r)
-    real(wp), intent(in) :: rpy(3)  !< angles [rad]
-    real(wp) :: r(3, 3)
-
-    r = matmul(about_axis([0.0_wp, 0.0_wp, 1.0_wp], rpy(3)), &
-               matmul(about_axis([0.0_wp, 1.0_wp, 0.0_wp], rpy(2)), about_axis([1.0_wp, 0.0_wp, 0.0_wp], rpy(1))))
-  end function rotation_of_rpy
 end module mech9_urdf_reader

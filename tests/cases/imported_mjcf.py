@@ -7,13 +7,12 @@ import math
 import os
 import re
 import sys
-import tempfile
 
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from imported import DATA, ROUND_OFF, Session, about
-from mech9_cases import Checks
+from imported import DATA, DONE, FILE, ROUND_OFF, USAGE, about, test_imports
+from mech9_cases import run
 
 # All ways to tell an orientation, classes of defaults, a frame, two joints in one body, references, shapes.
 MJCF = """<mujoco model="shapes">
@@ -230,31 +229,66 @@ def check_mjcf_loops(s):
     s.table(s.mech9k, data)
 
 
+def check_includes(s):
+    """A model in several files is that of one file; files that are missing, or that include each other, are told with their places."""
+    expected = s.imports(MJCF, program=s.mech9d)
+    inner = MJCF[MJCF.index('        <frame pos'):MJCF.index('        </frame>')] + '</frame>'
+    defaults = MJCF[MJCF.index('  <default>'):MJCF.index('  <worldbody>')]
+    outer = MJCF.replace(inner[:-len('</frame>')] + '        </frame>', '<include file="parts/hand.xml"></include>').replace(
+        defaults, '<include file="parts/defaults.xml"/>\n')
+    os.makedirs(os.path.join(s.folder, 'parts'), exist_ok=True)
+    s.write('parts/hand.xml', f'<mujocoinclude>\n{inner}</mujocoinclude>')
+    # names of files are relative to the model, in included files too
+    s.write('parts/defaults.xml', '<mujoco><include file="parts/empty.xml"/><include file="parts/more.xml"/></mujoco>')
+    s.write('parts/more.xml', f'<mujoco>{defaults}</mujoco>')
+    s.write('parts/empty.xml', '<mujoco/>')
+    s.checks.equal(s.imports(outer, program=s.mech9d), expected, 'three files are one')
+    s.checks.true("parts/hand.xml:4: not taken over: the armature of joint 'wrist'" in s.said, 'a note in an included file', s.said)
+    s.write('parts/hand.xml', f'<mujocoinclude>{inner}</mujocoinclude>'.replace('mass="0.9"', 'mass="heavy"'))
+    s.refuses('a wrong number in an included file', DATA, "parts/hand.xml:4:13: 'mass': 'heavy' is not a number", outer)
+    s.write('parts/hand.xml', f'<mujocoinclude>{inner}')
+    s.refuses('an included file that is cut', DATA, 'parts/hand.xml:13:9: this is not well-formed XML: no element found', outer)
+    os.remove(os.path.join(s.folder, 'parts/hand.xml'))
+    place = f'robot.xml:{outer[:outer.index("<include file=" + chr(34) + "parts/hand")].count(chr(10)) + 1}'
+    s.refuses('a missing file', FILE, 'parts/hand.xml: cannot be read: there is no such file', outer)
+    s.refuses('a missing file at its place', FILE, place, outer)
+    s.write('parts/hand.xml', f'<mujocoinclude>{inner}</mujocoinclude>')
+    s.write('parts/empty.xml', '<mujoco>\n<include file="parts/../parts/defaults.xml"/></mujoco>')
+    s.refuses('a circle', DATA, "parts/empty.xml:2:1: 'parts/../parts/defaults.xml' includes itself", outer)
+    s.refuses('a file that includes itself', DATA, "robot.xml:1:9: 'robot.xml' includes itself", '<mujoco><include file="robot.xml"/></mujoco>')
+    s.write('parts/empty.xml', '<mujoco><include file="parts/more.xml"/></mujoco>')
+    s.refuses('a file twice', DATA, "parts/empty.xml:1:9: 'parts/more.xml' is included a second time", outer)
+    s.refuses('no name', DATA, "robot.xml:1:9: <include> needs 'file'", '<mujoco><include/></mujoco>')
+    s.refuses('a folder', DATA, "'parts' is not a file that can be included", '<mujoco><include file="parts"/></mujoco>')
+    s.write('parts/empty.xml', '<mujoco>' + 200 * '<body>' + '<include file="parts/deep.xml"/>' + 200 * '</body>' + '</mujoco>')
+    s.write('parts/deep.xml', '<mujoco>' + 200 * '<body>' + 200 * '</body>' + '</mujoco>')
+    s.refuses('deep in two files', DATA, 'parts/deep.xml:1:303: elements are nested more than 250 deep', '<mujoco><include file="parts/empty.xml"/></mujoco>')
+    s.write('parts/empty.xml', '<mujoco/>')
+    done = run(s.mech9k, '--import', 'robot.xml', '--out', 'parts/hand.xml', folder=s.folder)
+    s.checks.equal(done.returncode, DATA, 'robot.xml is still the last one')
+    s.write('robot.xml', outer)
+    done = run(s.mech9k, '--import', 'robot.xml', '--out', 'parts/hand.xml', folder=s.folder)
+    s.checks.true(done.returncode == USAGE and "would overwrite 'parts/hand.xml'" in done.stderr, 'over an included file', done.stderr)
+    elsewhere = os.path.join(s.folder, 'parts')
+    done = run(s.mech9d, '--import', '../robot.xml', folder=elsewhere)
+    s.checks.equal((done.returncode, done.stdout), (DONE, expected), 'from another folder')
+
+
 def check_refusals(s):
     """Models that are not known, each with its place."""
     for why, code, says, robot in (
-            ('an included file', DATA, 'robot.xml:1:9: <include> is not followed', '<mujoco><include file="x.xml"/></mujoco>'),
+            ('a model without joints', DATA, 'robot.xml: the robot has no joints that move', '<mujoco/>'),
+            ('a copied body', DATA, 'robot.xml:1:20: <replicate> is not followed', '<mujoco><worldbody><replicate/></worldbody></mujoco>'),
             ('an unknown class', DATA, "no class 'light'", MJCF.replace('childclass="heavy"', 'childclass="light"')),
             ('an unknown body', DATA, "no body 'rod'", MJCF_FOUR_BAR.replace('CLOSING', '<connect body1="rod" anchor="0 0 0"/>')),
             ('global coordinates', DATA, "coordinate='global'", MJCF.replace('<compiler', '<compiler coordinate="global"')),
             ('wrong Euler angles', DATA, "'eulerseq' must be", MJCF.replace('zYx', 'zy')),
-            ('an unknown joint of MJCF', DATA, "unknown type 'slip'", MJCF.replace('type="slide"', 'type="slip"')),
+            ('an unknown joint of MJCF', DATA, "unknown type 'slip' of a joint; the types are hinge, slide, ball and free", MJCF.replace('type="slide"', 'type="slip"')),
             ('a shape without size', DATA, "'size' must hold", MJCF.replace(' size="0.07"', '')),
             ('no orientation', DATA, 'no direction', MJCF.replace('quat="0.8 0.1 -0.3 0.5"', 'quat="0 0 0 0"'))):
         s.refuses(why, code, says, robot)
 
 
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        s = Session(checks, folder, *sys.argv[1:3])
-        if not s.without_expat():
-            check_mjcf(s)
-            check_mjcf_loops(s)
-            check_refusals(s)
-            s.survives([MJCF, MJCF_FOUR_BAR.replace('CLOSING', '<connect body1="coupler" body2="rocker" anchor="0.5 0 0"/>')], 120)
-    checks.finish()
-
-
 if __name__ == '__main__':
-    main()
+    test_imports([check_mjcf, check_includes, check_mjcf_loops, check_refusals],
+                 [MJCF, MJCF_FOUR_BAR.replace('CLOSING', '<connect body1="coupler" body2="rocker" anchor="0.5 0 0"/>')])

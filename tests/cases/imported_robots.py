@@ -14,8 +14,8 @@ import xml.etree.ElementTree as ElementTree
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from imported import ASSEMBLY, DATA, DONE, FILE, ROUND_OFF, STRUCTURE, USAGE, Session, about, rpy
-from mech9_cases import TREE, Checks, run, text_of
+from imported import ASSEMBLY, DATA, DONE, FILE, ROUND_OFF, STRUCTURE, USAGE, about, rpy, test_imports
+from mech9_cases import TREE, run, text_of
 
 GRAVITY = np.array([0.0, 0.0, -9.81])
 
@@ -313,7 +313,7 @@ def check_refusals(s):
         ('a cut file', DATA, 'this is not well-formed XML', ARM[:900]),
         ('another root', DATA, '<html> is no robot', '<html/>'),
         ('no link', DATA, 'robot.xml:1:1: the robot has no <link>', '<robot/>'),
-        ('no joint', USAGE, 'no joints that move', '<robot><link name="a"/></robot>'),
+        ('no joint', DATA, 'no joints that move', '<robot><link name="a"/></robot>'),
         ('two links of one name', DATA, "there are two links 'plate'", ARM.replace('name="hand"', 'name="plate"')),
         ('two joints of one name', DATA, "two joints 'slide'", ARM.replace('name="wrist"', 'name="slide"')),
         ('an unknown child', DATA, "there is no link 'hnd', which joint 'wrist' names", ARM.replace('child link="hand"', 'child link="hnd"')),
@@ -322,7 +322,7 @@ def check_refusals(s):
         ('no leader', DATA, "'joint'", ARM.replace('<parent link="slider"/>', '<mimic multiplier="2"/><parent link="slider"/>')),
         ('an unknown link', DATA, "there is no link 'hnd', which joint 'wrist' names", ARM.replace('parent link="slider"', 'parent link="hnd"')),
         ('two roots', DATA, 'only one link, the frame', ARM.replace('</robot>', '<link name="other"/></robot>')),
-        ('an unknown type', DATA, "unknown type 'hinge'", ARM.replace('type="prismatic"', 'type="hinge"')),
+        ('an unknown type', DATA, "unknown type 'hinge' of a joint; the types are fixed, revolute, continuous,", ARM.replace('type="prismatic"', 'type="hinge"')),
         ('a wrong number', DATA, "robot.xml:6:7: 'xyz': '0.1m' is not a number", ARM.replace('"0.1 0.02 0.3"', '"0.1m 0.02 0.3"')),
         ('two numbers', DATA, "'xyz' must hold 3 numbers, not 2", ARM.replace('"0.1 0.02 0.3"', '"0.1 0.02"')),
         ('infinite', DATA, 'is not a finite number', ARM.replace('"0.1 0.02 0.3"', '"inf 0 0"')),
@@ -344,6 +344,9 @@ def check_refusals(s):
     ]
     for why, code, says, robot in cases:
         s.refuses(why, code, says, robot)
+    s.refuses('a universal joint with parallel axes', DATA, 'robot.xml:51:3: the two axes of joint \'wrist\' are parallel',
+              ARM.replace('<joint name="wrist" type="continuous">', '<joint name="wrist" type="universal"><axis xyz="0 0 1"/>'
+                          '<axis2 xyz="0 0 -2"/>'))
     s.write('large.xml', '<robot>' + ' ' * 50000000 + '</robot>')
     done = run(s.mech9k, '--import', 'large.xml', folder=s.folder)
     s.checks.true(done.returncode == DATA and 'too large' in done.stderr, 'a large file', done.stderr)
@@ -359,6 +362,14 @@ def check_command_line(s):
     s.checks.true(done.returncode == DONE and done.stderr == '' and '&pair' in done.stdout, 'to standard output, quietly', done.stderr)
     again = run(s.mech9k, '--import=robot.xml', '--out', '-', folder=s.folder)
     s.checks.equal(again.stdout, done.stdout, '--out - is standard output')
+    s.write('robot.nml', '\ufeff\n ' + ARM)
+    for why, name in (('a robot', 'robot.xml'), ('a robot behind a mark of its encoding', 'robot.nml')):
+        done = run(s.mech9k, name, folder=s.folder)
+        s.checks.true(done.returncode == DATA and f'{name}: this is XML' in done.stderr and '--import FILE --out' in done.stderr,
+                      f'{why} in the place of a data file is told', done.stderr)
+    s.imports('<robot><link name="a"/><link name="b"/><joint name="j" type="revolute"><parent link="a"/><child link="b"/></joint></robot>')
+    s.checks.true('mech9k: 2 links, 1 coordinate, 0 closed chains; independent: 1' in s.said, 'one coordinate', s.said)
+    s.write('robot.xml', ARM)
     for why, words, says in (
             ('over its input', ['--import', 'robot.xml', '--out', './robot.xml'], 'would overwrite'),
             ('with a data file', ['x.nml', '--import', 'robot.xml'], 'a data file is given beside --import'),
@@ -372,21 +383,6 @@ def check_command_line(s):
     s.checks.equal(s.text('robot.xml'), ARM, 'the input is as it was')
 
 
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        s = Session(checks, folder, *sys.argv[1:3])
-        if not s.without_expat():
-            check_arm(s)
-            check_four_bar(s)
-            check_freedoms(s)
-            check_inertia(s)
-            check_mimic(s)
-            check_refusals(s)
-            check_command_line(s)
-            s.survives([ARM, FOUR_BAR.replace('LOOP', LOOP)], 120)
-    checks.finish()
-
-
 if __name__ == '__main__':
-    main()
+    test_imports([check_arm, check_four_bar, check_freedoms, check_inertia, check_mimic, check_refusals, check_command_line],
+                 [ARM, FOUR_BAR.replace('LOOP', LOOP)])

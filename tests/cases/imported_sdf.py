@@ -7,13 +7,11 @@ import math
 import os
 import re
 import sys
-import tempfile
 
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from imported import DATA, ROUND_OFF, Session, about, rpy
-from mech9_cases import Checks
+from imported import DATA, ROUND_OFF, about, rpy, test_imports
 
 ARM = """<?xml version="1.0"?>
 <sdf version="1.10">
@@ -69,6 +67,31 @@ FOUR_BAR = """<sdf version="1.9"><model name="four-bar">
 """
 
 
+# Two models in a model, one of them placed by a frame of its own; a joint from the frame of one to the link of the other.
+NESTED = """<sdf version="1.11"><model name="whole">
+  <pose>0.3 0.1 0 0 0.2 0</pose>
+  <link name="base"/>
+  <joint name="hold" type="fixed"><parent>world</parent><child>base</child></joint>
+  <model name="left">
+    <pose>0.2 -0.1 0.4 0.3 0.2 0.1</pose>
+    <link name="rod"><pose>0.1 0.2 0.3 0 0 0.5</pose></link>
+    <frame name="eye" attached_to="rod"><pose>0 0.4 0 0.1 0 0</pose></frame>
+  </model>
+  <model name="right" placement_frame="pin">
+    <pose relative_to="left::rod">0.7 0 0.1 0 0.4 0</pose>
+    <link name="bar"><pose relative_to="pin">0.3 0.2 0.1 0 0.3 0</pose></link>
+    <frame name="pin"><pose>5 6 7 0.8 0.9 0.1</pose></frame>
+  </model>
+  <joint name="turn" type="revolute"><parent>base</parent><child>left</child><axis><xyz>0 1 0</xyz></axis></joint>
+  <joint name="hinge" type="revolute">
+    <parent>left::eye</parent><child>right::bar</child><axis><xyz expressed_in="left">0 0 1</xyz></axis>
+  </joint>
+</model></sdf>
+"""
+DEGREES = '<pose degrees="true" relative_to="upper">0.2 0.1 0.6 10 20 30</pose>'
+QUATERNION = '<pose relative_to="upper" rotation_format="quat_xyzw">0.2 0.1 0.6 {} {} {} {}</pose>'
+
+
 def drive(data, values):
     """The data file with drives that hold other values."""
     for k, value in enumerate(values, 1):
@@ -100,13 +123,69 @@ def check_arm(s):
     s.checks.true('<visual> of links' in s.said, 'shapes are told', s.said)
 
 
+def check_forms(s):
+    """Other forms of the same arm, joints that follow others, and what is not taken over."""
+    data = s.imports(ARM)
+    expected = s.table(s.mech9k, drive(data, (0.4, -0.9)), '--set', 'time.intervals=1')
+    w, (x, y, z) = quaternion(rpy(np.radians((10, 20, 30))))
+    # a quaternion of any length
+    found = s.table(s.mech9k, drive(s.imports(ARM.replace(DEGREES, QUATERNION.format(3 * x, 3 * y, 3 * z, 3 * w))), (0.4, -0.9)),
+                    '--set', 'time.intervals=1')
+    for name in ('hand.x', 'hand.y', 'hand.z'):
+        s.checks.near(found[name], expected[name], 10 * ROUND_OFF, f'{name} with a quaternion', scale=1.0)
+    mimic = '<mimic joint="shoulder"><multiplier>-2</multiplier><offset>0.3</offset><reference>0.1</reference></mimic>'
+    data = s.imports(ARM.replace('0 0.6 0.8</xyz>', '0 0.6 0.8</xyz>' + mimic))
+    found = s.table(s.mech9k, drive(data, ('0.1, 0.5',)))
+    s.checks.near(found['q2'], -2 * (found['q1'] - 0.1) + 0.3, ROUND_OFF, 'a joint that follows another one')
+    s.imports(ARM.replace('0 0.6 0.8</xyz>', '0 0.6 0.8</xyz>' + mimic.replace('joint=', 'axis="axis2" joint=')))
+    s.checks.equal(s.said.count("the coupling of joint 'wrist' with the second axis of joint 'shoulder'"), 1, 'a second axis is told')
+    cross = ARM.replace('"screw"', '"KIND"').replace('<screw_thread_pitch>0.05</screw_thread_pitch>',
+                                                     '<axis2><xyz>1 0.2 0</xyz><limit><lower>0</lower></limit></axis2>')
+    data = s.imports(cross.replace('KIND', 'universal'))
+    s.checks.equal(s.imports(cross.replace('KIND', 'revolute2')), data, 'revolute2 is a universal joint')
+    s.checks.equal(s.said.count("<limit> of <axis2> of joint 'wrist'"), 1, 'a limit that is not taken over is told')
+    geared = ARM.replace('</model>', """<joint name="gear" type="gearbox"><parent>upper</parent><child>hand</child>
+        <gearbox_ratio>2</gearbox_ratio></joint></model>""").replace('<gravity>', '<light name="l"/><gravity>')
+    s.imports(geared)
+    s.checks.equal(s.said.count("robot.xml:38: not taken over: joint 'gear' of the type gearbox"), 1, 'a gearbox is told once')
+    s.checks.equal(s.said.count('robot.xml:4: not taken over: <light> of worlds'), 1, 'a light is told once')
+
+
+def quaternion(r):
+    """Scalar part and vector of a rotation by less than half a turn."""
+    w = math.sqrt(1 + np.trace(r)) / 2
+    return w, np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]]) / (4 * w)
+
+
+def check_nested(s):
+    """Models in a model: the same motion as that of frames and axes that numpy computes."""
+    data = s.imports(NESTED)
+    s.checks.true('! Link 2: left::rod' in data and '! Link 3: right::bar' in data, 'names of links in nested models', data)
+    points = "&point name='L', link=2, position=0,0,0 /\n&point name='R', link=3, position=0,0,0 /\n"
+    found = s.table(s.mech9k, drive(data, (0.4, -0.9)) + points, '--set', 'time.intervals=1')
+    whole = rpy((0, 0.2, 0)), np.array([0.3, 0.1, 0])
+    left = rpy((0.3, 0.2, 0.1)), np.array([0.2, -0.1, 0.4])
+    rod = left[0] @ rpy((0, 0, 0.5)), left[1] + left[0] @ (0.1, 0.2, 0.3)
+    pin = rod[0] @ rpy((0, 0.4, 0)), rod[1] + rod[0] @ (0.7, 0, 0.1)
+    bar = pin[1] + pin[0] @ (0.3, 0.2, 0.1)
+    # the frame of the first joint is that of the model left, about whose y axis it turns
+    turn, hinge = about(left[0] @ (0, 1, 0), 0.4), left[0] @ (0, 0, 1)
+    for name, place in (('L', rod[1]), ('R', bar)):
+        s.checks.near([found[f'{name}.{c}'][0] for c in 'xyz'], whole[1] + whole[0] @ (left[1] + turn @ (place - left[1])),
+                      10 * ROUND_OFF, f'place of {name}', scale=1.0)
+    mark = s.table(s.mech9k, drive(data, (0.4, -0.9)) + "&point name='M', link=3, position=1,0,0 /\n", '--set', 'time.intervals=1')
+    at = bar + about(hinge, -0.9) @ (pin[0] @ rpy((0, 0.3, 0)) @ (1, 0, 0))
+    s.checks.near([mark[f'M.{c}'][0] for c in 'xyz'], whole[1] + whole[0] @ (left[1] + turn @ (at - left[1])), 10 * ROUND_OFF,
+                  'a point of the bar', scale=1.0)
+
+
 def check_free(s):
     """A model that nothing holds falls; a static one cannot move."""
     robot = '<sdf version="1.9"><model name="m"><pose>0 0 5 0 0 0</pose><link name="a"/>{}</model></sdf>'
     data = s.imports(robot.format(''), program=s.mech9d)
     found = s.table(s.mech9d, data)
     s.checks.near(found['a.z'], 5 - 4.9 * found['t']**2, 1e-8, 'a free model falls')
-    s.refuses('a static model', 2, 'no joints that move', robot.format('<static>true</static>'))
+    s.refuses('a static model', DATA, 'no joints that move', robot.format('<static>true</static>'))
 
 
 def check_four_bar(s):
@@ -125,8 +204,22 @@ def check_four_bar(s):
 def check_refusals(s):
     for why, says, robot in (
             ('no model', 'there is no <model>', '<sdf version="1.9"/>'),
-            ('a nested model', '<include> in a model is not followed', ARM.replace('<frame', '<include/><frame')),
-            ('an unknown type', "joints of the type 'gearbox' are not known", ARM.replace('"screw"', '"gearbox"')),
+            ('an included model', '<include> in a model is not followed', ARM.replace('<frame', '<include/><frame')),
+            ('an unknown type', "unknown type 'hinge' of a joint; the types are fixed, revolute,", ARM.replace('"screw"', '"hinge"')),
+            ('an unknown form of rotations', "unknown rotation_format 'axis'", ARM.replace('degrees="true"', 'rotation_format="axis"')),
+            ('six numbers of a quaternion', '<pose> must hold 7 numbers, not 6', ARM.replace('degrees="true"', 'rotation_format="quat_xyzw"')),
+            ('no quaternion', 'the quaternion of <pose> is zero', ARM.replace(DEGREES, QUATERNION.format(0, 0, 0, 0))),
+            ('degrees of a quaternion', 'has no degrees', ARM.replace(DEGREES, QUATERNION.format(0, 0, 0, 1).replace('<pose', '<pose degrees="1"'))),
+            ('parallel axes', "robot.xml:33:7: the two axes of joint 'wrist' are parallel",
+             ARM.replace('"screw"', '"revolute2"').replace('<screw_', '<axis2><xyz>0 -0.6 -0.8</xyz></axis2><screw_')),
+            ('an unknown leader', "robot.xml:33:7: there is no joint 'sholder', which joint 'wrist' follows", ARM.replace(
+                '0 0.6 0.8</xyz>', '0 0.6 0.8</xyz><mimic joint="sholder"><multiplier>1</multiplier></mimic>')),
+            ('no multiplier', '<mimic> needs <multiplier>', ARM.replace('0 0.6 0.8</xyz>', '0 0.6 0.8</xyz><mimic joint="shoulder"/>')),
+            ('a frame of the world', "the model stands in the frame 'mark' of the world",
+             ARM.replace('<pose>0.5 -0.2', '<pose relative_to="mark">0.5 -0.2')),
+            ('a nested frame in a circle', 'stands in itself', NESTED.replace('relative_to="left::rod"', 'relative_to="right::bar"')),
+            ('an unknown link of a nested model', "there is no link 'left::rd', which joint 'hinge' names",
+             NESTED.replace('<parent>left::eye', '<parent>left::rd')),
             ('an unknown frame', "there is no frame 'mrk'", ARM.replace('relative_to="mark"', 'relative_to="mrk"')),
             ('frames in a circle', 'stands in itself', ARM.replace('attached_to="base"', 'attached_to="shoulder"')),
             ('an unknown parent', "there is no link 'arm'", ARM.replace('<parent>upper</parent>', '<parent>arm</parent>')),
@@ -137,18 +230,5 @@ def check_refusals(s):
         s.refuses(why, DATA, says, robot)
 
 
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        s = Session(checks, folder, *sys.argv[1:3])
-        if not s.without_expat():
-            check_arm(s)
-            check_free(s)
-            check_four_bar(s)
-            check_refusals(s)
-            s.survives([ARM, FOUR_BAR.replace('KIND', 'ball')], 120)
-    checks.finish()
-
-
 if __name__ == '__main__':
-    main()
+    test_imports([check_arm, check_forms, check_nested, check_free, check_four_bar, check_refusals], [ARM, NESTED, FOUR_BAR.replace('KIND', 'ball')])

@@ -33,7 +33,7 @@ module mech9_source
 contains
 
   !> Read a whole file, or a pipe. Fails with exit_file where it cannot be read, and with exit_data
-  !> where it is empty or not a text.
+  !> where it is empty, not a text, or XML.
   subroutine read_source(path, source, err)
     character(len=*), intent(in) :: path               !< path of the file or pipe
     type(source_type), intent(out) :: source           !< its text with the places of the lines
@@ -50,7 +50,20 @@ contains
       if (text(:3) == char(239)//char(187)//char(191)) text = text(4:)   ! the byte order mark of UTF-8
     end if
     source = source_from_text(path, text)
+    if (begins_as_xml(text)) call raise(err, exit_data, 'this is XML, not a data file; --import makes a data file of a robot '// &
+                                        'in URDF, MJCF or SDF: --import FILE --out NEW.nml')
   end subroutine read_source
+
+  !> Whether the first thing in a text is an element, a declaration or a comment of XML.
+  pure logical function begins_as_xml(text)
+    character(len=*), intent(in) :: text  !< the whole text
+    integer :: at
+
+    at = verify(text, ' '//achar(9)//line_feed//carriage_return)
+    begins_as_xml = .false.
+    if (at > 0 .and. at < len(text)) &
+      begins_as_xml = text(at:at) == '<' .and. scan(text(at + 1:at + 1), '?!abcdefghijklmnopqrstuvwxyz') == 1
+  end function begins_as_xml
 
   !> A source made from a text.
   pure function source_from_text(name, text, is_file) result(source)

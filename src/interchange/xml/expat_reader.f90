@@ -10,13 +10,13 @@ module mech9_expat_reader
   use mech9_file_bytes, only: read_bytes
   use mech9_libexpat, only: parser_create, parser_free, set_user_data, set_element_handler, set_character_handler, &
                             set_doctype_handler, stop_parser, parse, error_code, error_string, current_line, current_column
-  use mech9_xml_tree, only: xml_tree_type
+  use mech9_xml_tree, only: xml_tree_type, deepest_element
   implicit none
   private
   public :: read_xml
 
-  !> No robot has a larger description, or elements nested more deeply.
-  integer, parameter :: largest_file = 50000000, deepest = 250
+  !> No robot has a larger description.
+  integer, parameter :: largest_file = 50000000
 
   !> The data of the handlers: expat passes their address.
   type :: builder_type
@@ -81,7 +81,7 @@ contains
       call take_string(error_string(error_code(builder%parser)), reason)
       reason = 'this is not well-formed XML: '//reason
     end if
-    call raise(err, exit_data, builder%tree%path//':'//to_text(int(current_line(builder%parser)))//':'// &
+    call raise(err, exit_data, builder%tree%files(1)%text//':'//to_text(int(current_line(builder%parser)))//':'// &
                to_text(int(current_column(builder%parser)) + 1)//': '//reason)
   end subroutine explain_failure
 
@@ -99,8 +99,8 @@ contains
     if (allocated(builder%refusal)) return
     call take_string(name, text)
     builder%depth = builder%depth + 1
-    if (builder%depth > deepest) then
-      call refuse(builder, 'elements are nested more than '//to_text(deepest)//' deep, which no robot needs')
+    if (builder%depth > deepest_element) then
+      call refuse(builder, 'elements are nested more than '//to_text(deepest_element)//' deep, which no robot needs')
       return
     end if
     call builder%tree%add_element(builder%open, text, int(current_line(builder%parser)), &

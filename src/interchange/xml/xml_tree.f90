@@ -1,11 +1,15 @@
-!> An XML document as a tree of elements, each with its attributes and its place in the file.
+!> An XML document as a tree of elements, each with its attributes and its place in its file. The elements of other documents
+!> may be inserted into it.
 module mech9_xml_tree
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_text, only: to_text
+  use mech9_text, only: string_type, to_text
   use mech9_printable, only: printable
   implicit none
   private
-  public :: xml_tree_type
+  public :: xml_tree_type, deepest_element
+
+  !> No robot has elements that are nested more deeply; those who read trees may call themselves for elements in elements.
+  integer, parameter :: deepest_element = 250
 
   !> One element. Its name and text are ranges of the tree's pool of bytes.
   type :: element_type
@@ -13,6 +17,8 @@ module mech9_xml_tree
     integer :: child = 0         !< number of the first element in it; 0: none
     integer :: newest = 0        !< number of the last element in it
     integer :: next = 0          !< number of the next element in the same one; 0: none
+    integer :: depth = 1         !< number of elements from the root to it, with both
+    integer :: file = 1          !< number of its file
     integer :: line = 0          !< place of its beginning in the file, from 1 on
     integer :: column = 0
     integer :: name(2) = 0       !< first and last byte in the pool
@@ -23,7 +29,7 @@ module mech9_xml_tree
 
   !> The document. Elements are known by their numbers, in the order in which they begin; 1 is the root, 0 means none.
   type :: xml_tree_type
-    character(len=:), allocatable :: path                     !< the file, as the user named it
+    type(string_type), allocatable :: files(:)                !< paths of the document and of those that were inserted
     integer :: count = 0                                      !< number of elements
     type(element_type), allocatable, private :: elements(:)
     integer, allocatable, private :: attributes(:, :)         !< (4,n) ranges of name and value in the pool
@@ -44,7 +50,10 @@ module mech9_xml_tree
     procedure :: next_sibling
     procedure :: child
     procedure :: next_named
-    procedure :: line
+    procedure :: insert
+    procedure :: depth
+    procedure :: file
+    procedure :: line_place
     procedure :: place
     procedure :: fail
   end type xml_tree_type
@@ -56,7 +65,9 @@ contains
     class(xml_tree_type), intent(inout) :: self  !< the tree
     character(len=*), intent(in) :: path         !< the file, as the user named it
 
-    self%path = path
+    if (allocated(self%files)) deallocate (self%files)
+    allocate (self%files(1))
+    self%files(1)%text = path
     self%count = 0
     self%n_attributes = 0
     self%used = 0
@@ -85,6 +96,7 @@ contains
     self%elements(e) = element_type(parent=parent, line=line, column=column, first=self%n_attributes + 1, last=self%n_attributes)
     call keep(self, name, self%elements(e)%name)
     if (parent == 0) return
+    self%elements(e)%depth = self%elements(parent)%depth + 1
     if (self%elements(parent)%newest == 0) then
       self%elements(parent)%child = e
     else
@@ -268,13 +280,127 @@ contains
     end associate
   end function is_named
 
-  !> The line at which an element begins.
-  pure integer function line(self, element)
+  !> Put the elements in the root of another document in the place of an element, which is part of the tree no more.
+  subroutine insert(self, element, other)
+    class(xml_tree_type), intent(inout) :: self  !< the tree
+    integer, intent(in) :: element               !< number of the element, which is not the root
+    type(xml_tree_type), intent(in) :: other     !< the other document
+    type(element_type), allocatable :: elements(:)
+    integer, allocatable :: attributes(:, :)
+    integer :: range(2), shift, n
+
+    shift = self%count - 1
+    allocate (elements(shift + other%count + 1), attributes(4, self%n_attributes + other%n_attributes + 1))
+    elements(:self%count) = self%elements(:self%count)
+    elements(self%count + 1:shift + other%count) = other%elements(2:other%count)
+    n = self%n_attributes
+    attributes(:, :n) = self%attributes(:, :n)
+    attributes(:, n + 1:n + other%n_attributes) = other%attributes(:, :other%n_attributes) + self%used
+    call shift_elements(elements(self%count + 1:shift + other%count), shift, n, self%used, size(self%files), &
+                        elements(element)%depth - 2)
+    where (elements(self%count + 1:shift + other%count)%parent == shift + 1) &
+      elements(self%count + 1:shift + other%count)%parent = elements(element)%parent
+    call keep(self, other%pool(:other%used), range)
+    call join_files(self%files, other%files)
+    call replace_link(elements, element, merge(other%elements(1)%child + shift, 0, other%elements(1)%child > 0), &
+                      other%elements(1)%newest + shift)
+    self%count = shift + other%count
+    self%n_attributes = n + other%n_attributes
+    call move_alloc(elements, self%elements)
+    call move_alloc(attributes, self%attributes)
+  end subroutine insert
+
+  !> Number elements, attributes, files and bytes of the pool as in the tree to which elements are added.
+  pure subroutine shift_elements(elements, shift, attributes, bytes, files, levels)
+    type(element_type), intent(inout) :: elements(:)  !< the elements
+    integer, intent(in) :: shift                      !< number of elements before them
+    integer, intent(in) :: attributes                 !< number of attributes before theirs
+    integer, intent(in) :: bytes                      !< number of bytes before theirs
+    integer, intent(in) :: files                      !< number of files before theirs
+    integer, intent(in) :: levels                     !< number of levels above theirs
+    integer :: i
+
+    do i = 1, size(elements)
+      associate (e => elements(i))
+        e%parent = e%parent + shift
+        if (e%child > 0) e%child = e%child + shift
+        if (e%newest > 0) e%newest = e%newest + shift
+        if (e%next > 0) e%next = e%next + shift
+        e%depth = e%depth + levels
+        e%file = e%file + files
+        e%name = e%name + bytes
+        if (e%text(2) > 0) e%text = e%text + bytes
+        e%first = e%first + attributes
+        e%last = e%last + attributes
+      end associate
+    end do
+  end subroutine shift_elements
+
+  !> Let the neighbours of an element follow and precede a series of others.
+  pure subroutine replace_link(elements, element, first, last)
+    type(element_type), intent(inout) :: elements(:)  !< all elements
+    integer, intent(in) :: element                    !< number of the element that goes
+    integer, intent(in) :: first                      !< number of the first of the others; 0: there are none
+    integer, intent(in) :: last                       !< number of the last of the others, if there are any
+    integer :: parent, before, after
+
+    parent = elements(element)%parent
+    after = elements(element)%next
+    if (first > 0) then
+      elements(last)%next = after
+      after = first
+    end if
+    before = 0
+    if (elements(parent)%child == element) then
+      elements(parent)%child = after
+    else
+      before = elements(parent)%child
+      do while (elements(before)%next /= element)
+        before = elements(before)%next
+      end do
+      elements(before)%next = after
+    end if
+    if (elements(parent)%newest == element) elements(parent)%newest = merge(last, before, first > 0)
+  end subroutine replace_link
+
+  !> Add paths of files to a list.
+  subroutine join_files(files, more)
+    type(string_type), allocatable, intent(inout) :: files(:)  !< the list
+    type(string_type), intent(in) :: more(:)                   !< the paths
+    type(string_type), allocatable :: longer(:)
+    integer :: n
+
+    n = size(files)
+    allocate (longer(n + size(more)))
+    longer(:n) = files
+    longer(n + 1:) = more
+    call move_alloc(longer, files)
+  end subroutine join_files
+
+  !> The number of elements from the root to an element, with both.
+  pure integer function depth(self, element)
     class(xml_tree_type), intent(in) :: self  !< the tree
     integer, intent(in) :: element            !< number of the element
 
-    line = self%elements(element)%line
-  end function line
+    depth = self%elements(element)%depth
+  end function depth
+
+  !> The number of the file in which an element stands.
+  pure integer function file(self, element)
+    class(xml_tree_type), intent(in) :: self  !< the tree
+    integer, intent(in) :: element            !< number of the element
+
+    file = self%elements(element)%file
+  end function file
+
+  !> The place of an element for notes: file and line.
+  pure function line_place(self, element) result(text)
+    class(xml_tree_type), intent(in) :: self  !< the tree
+    integer, intent(in) :: element            !< number of the element
+    character(len=:), allocatable :: text
+
+    text = self%files(self%elements(element)%file)%text//':'//to_text(self%elements(element)%line)
+  end function line_place
 
   !> The place of an element for messages: file, line and column.
   pure function place(self, element) result(text)
@@ -282,7 +408,7 @@ contains
     integer, intent(in) :: element            !< number of the element
     character(len=:), allocatable :: text
 
-    text = self%path//':'//to_text(self%elements(element)%line)//':'//to_text(self%elements(element)%column)
+    text = self%line_place(element)//':'//to_text(self%elements(element)%column)
   end function place
 
   !> Fail because of an element; an earlier failure stays.

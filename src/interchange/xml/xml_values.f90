@@ -9,7 +9,8 @@ module mech9_xml_values
   use mech9_xml_tree, only: xml_tree_type
   implicit none
   private
-  public :: get_numbers, get_number, get_list, needed_attribute, numbers_in, is_true, place_in
+  public :: get_numbers, get_number, get_list, needed_attribute, numbers_in, get_content, get_content_number
+  public :: is_true, place_in, one_of
 
   !> Numbers that data files can hold.
   real(wp), parameter :: largest = 1.0e100_wp, smallest = 1.0e-100_wp
@@ -115,6 +116,33 @@ contains
     end do
   end subroutine split
 
+  !> The numbers in the text of an element of this name in an element. They stay as they are where there is none.
+  subroutine get_content(tree, element, name, numbers, err)
+    type(xml_tree_type), intent(in) :: tree              !< the document
+    integer, intent(in) :: element                       !< number of the element around it; 0: none
+    character(len=*), intent(in) :: name                 !< its name
+    real(wp), intent(inout) :: numbers(:)                !< defaults before, values afterwards
+    type(error_type), allocatable, intent(inout) :: err  !< the failure
+    integer :: e
+
+    e = tree%child(element, name)
+    if (e > 0) call numbers_in(tree, e, tree%content(e), '<'//name//'>', numbers, err)
+  end subroutine get_content
+
+  !> The number in the text of an element of this name in an element. It stays as it is where there is none.
+  subroutine get_content_number(tree, element, name, number, err)
+    type(xml_tree_type), intent(in) :: tree              !< the document
+    integer, intent(in) :: element                       !< number of the element around it; 0: none
+    character(len=*), intent(in) :: name                 !< its name
+    real(wp), intent(inout) :: number                    !< default before, value afterwards
+    type(error_type), allocatable, intent(inout) :: err  !< the failure
+    real(wp) :: numbers(1)
+
+    numbers = number
+    call get_content(tree, element, name, numbers, err)
+    number = numbers(1)
+  end subroutine get_content_number
+
   !> The value of an attribute that an element must have.
   function needed_attribute(tree, element, name, err) result(value)
     type(xml_tree_type), intent(in) :: tree              !< the document
@@ -136,6 +164,19 @@ contains
       if (list(place) == word) return
     end do
   end function place_in
+
+  !> The words of a list, as the remedy of a message about another word.
+  pure function one_of(list) result(text)
+    character(len=*), intent(in) :: list(:)  !< words, at least two
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = 'the types are '//trim(list(1))
+    do i = 2, size(list) - 1
+      text = text//', '//trim(list(i))
+    end do
+    text = text//' and '//trim(list(size(list)))
+  end function one_of
 
   !> Whether a text says yes.
   pure logical function is_true(text)
