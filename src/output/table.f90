@@ -14,7 +14,7 @@
 module mech9_table
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_internal
-  use mech9_text, only: string_type, lower
+  use mech9_text, only: string_type, lower, join
   use mech9_clock, only: pacer_type
   use mech9_result_sink, only: result_sink_type
   use mech9_number_format, only: number_format_type, number_width
@@ -204,13 +204,13 @@ contains
     type(string_type), intent(in) :: units(:)  !< units of the columns
     character(len=:), allocatable :: line
     character(len=*), parameter :: beginning = '# units:'
+    type(string_type) :: words(size(units))
     integer :: i
 
-    line = beginning//right_aligned(unit_name(units(1)%text), number_width - len(beginning))
-    do i = 2, size(units)
-      line = line//right_aligned(unit_name(units(i)%text), number_width)
+    do i = 1, size(units)
+      words(i)%text = unit_name(units(i)%text)
     end do
-    line = line//line_end
+    line = line_of(beginning, words)
   end function unit_line
 
   !> The unit as a heading: 1 for a plain number.
@@ -229,46 +229,61 @@ contains
   pure function name_line(names) result(line)
     type(string_type), intent(in) :: names(:)  !< headings of the columns
     character(len=:), allocatable :: line
+    type(string_type) :: words(size(names))
     integer :: i
 
-    line = ''
     do i = 1, size(names)
-      line = line//right_aligned(column_name(names(i)%text), number_width)
+      words(i)%text = column_name(names(i)%text)
     end do
-    line = line//line_end
+    line = line_of('', words)
   end function name_line
+
+  !> A line with one word in each column, at its right end; a word that fills its column keeps a blank before it.
+  pure function line_of(beginning, words) result(line)
+    character(len=*), intent(in) :: beginning  !< first letters of the line, in the first column
+    type(string_type), intent(in) :: words(:)  !< a word for each column
+    character(len=:), allocatable :: line
+    integer :: widths(size(words)), i, at
+
+    do i = 1, size(words)
+      widths(i) = max(number_width, len(words(i)%text) + 1)
+    end do
+    widths(1) = max(number_width, len(beginning) + len(words(1)%text) + 1)
+    allocate (character(len=sum(widths) + 1) :: line)
+    at = 0
+    do i = 1, size(words)
+      line(at + 1:at + widths(i)) = repeat(' ', widths(i) - len(words(i)%text))//words(i)%text
+      at = at + widths(i)
+    end do
+    line(:len(beginning)) = beginning
+    line(at + 1:) = line_end
+  end function line_of
 
   !> The names with commas between, in quotes where they hold a comma or a quote.
   pure function comma_line(names) result(line)
     type(string_type), intent(in) :: names(:)  !< headings of the columns
     character(len=:), allocatable :: line
-    character(len=:), allocatable :: name
-    integer :: i, k
+    type(string_type) :: words(size(names))
+    integer :: i
 
-    line = ''
-    name = ''
     do i = 1, size(names)
-      name = trim(printable(names(i)%text))
-      if (i > 1) line = line//','
-      if (scan(name, ',"') == 0) then
-        line = line//name
-        cycle
-      end if
-      line = line//'"'
-      do k = 1, len(name)
-        line = line//repeat(name(k:k), merge(2, 1, name(k:k) == '"'))
-      end do
-      line = line//'"'
+      words(i)%text = quoted(trim(printable(names(i)%text)))
     end do
-    line = line//line_end
+    line = join(words, ',')//line_end
   end function comma_line
 
-  !> A word at the right end of a field; a word that fills the field keeps a blank before it.
-  pure function right_aligned(word, width) result(field)
-    character(len=*), intent(in) :: word  !< the text to set
-    integer, intent(in) :: width          !< width of the field
-    character(len=max(width, len(word) + 1)) :: field
+  !> A name in quotes, its own quotes doubled, where it holds a comma or a quote; any other name as it is.
+  pure function quoted(name) result(word)
+    character(len=*), intent(in) :: name  !< a name of printable letters
+    character(len=:), allocatable :: word
+    integer :: i
 
-    field = repeat(' ', len(field) - len(word))//word
-  end function right_aligned
+    word = name
+    if (scan(name, ',"') == 0) return
+    word = '"'
+    do i = 1, len(name)
+      word = word//repeat(name(i:i), merge(2, 1, name(i:i) == '"'))
+    end do
+    word = word//'"'
+  end function quoted
 end module mech9_table

@@ -3,7 +3,7 @@ program test_table
   use mech9_kinds, only: wp
   use mech9_clock, only: seconds
   use mech9_error, only: error_type, exit_file, exit_internal
-  use mech9_text, only: string_type
+  use mech9_text, only: string_type, to_text
   use mech9_table, only: table_type
   use mech9_testing, only: tester_type
   implicit none
@@ -16,6 +16,7 @@ contains
     call test_contents(tester)
     call test_odd_words(tester)
     call test_commas(tester)
+    call test_many_columns(tester)
     call test_many_rows(tester)
     call test_regular_flush(tester)
     call test_failures(tester)
@@ -114,6 +115,51 @@ contains
     call tester%is_true(all(abs(row - [0.0_wp, 1.0_wp, -huge(1.0_wp)]) <= 0.0_wp), &
                         'the second row with commas comes back bit for bit')
   end subroutine test_commas
+
+  !> The lines above the rows grow with the columns, and their making does, too: eight times as many columns take eight times as
+  !> long, where making them word by word would take 64 times as long.
+  subroutine test_many_columns(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    real(wp) :: some, many
+
+    call open_wide(tester, 5000, some)
+    call open_wide(tester, 40000, many)
+    call tester%is_true(many <= 30.0_wp*some + 0.5_wp, 'a table with many columns is opened in a time that follows their number')
+  end subroutine test_many_columns
+
+  !> Open a table with many columns, and read the line of names.
+  subroutine open_wide(tester, columns, time)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    integer, intent(in) :: columns               !< how many columns
+    real(wp), intent(out) :: time                !< to open and close the table [s]
+    type(table_type) :: table
+    type(error_type), allocatable :: err
+    type(string_type), allocatable :: names(:), units(:)
+    character(len=:), allocatable :: line
+    real(wp) :: begin
+    integer :: unit, i
+
+    allocate (names(columns), units(columns))
+    do i = 1, columns
+      names(i)%text = 'q'//to_text(i)
+      units(i)%text = 'rad'
+    end do
+    call cpu_time(begin)
+    call table%open('wide.dat', '', 'p', names, units, err)
+    call tester%no_error(err, 'a table with many columns is opened')
+    call table%close(err)
+    call cpu_time(time)
+    time = time - begin
+    allocate (character(len=25*columns) :: line)
+    open (newunit=unit, file='wide.dat', action='read', status='old')
+    read (unit, '(a)')
+    read (unit, '(a)') line
+    call tester%is_true(line(25*columns - 2:) == 'rad', 'the last unit ends the line of units')
+    read (unit, '(a)') line
+    call tester%is_true(all([(line(25*i - len(names(i)%text):25*i) == ' '//names(i)%text, i=1, columns)]), &
+                        'each name stands at the end of its column')
+    close (unit)
+  end subroutine open_wide
 
   !> Several buffers full of rows: nothing is lost or torn where one ends.
   subroutine test_many_rows(tester)
