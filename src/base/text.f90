@@ -143,13 +143,14 @@ contains
     else if (abs(number) > huge(number)) then
       text = merge('Infinity ', '-Infinity', number > 0.0_wp)
       return
+    else if (abs(number) <= 0.0_wp) then
+      text = '0'
+      return
     end if
     write (form, '(a,i0,a)') '(es48.', digits - 1, 'e3)'
     write (buffer, form) number
     read (buffer(index(buffer, 'E') + 1:), *) exponent
-    if (abs(number) <= 0.0_wp) then
-      text = '0'
-    else if (exponent >= -4 .and. exponent < max(digits, 6)) then
+    if (exponent >= -4 .and. exponent < max(digits, 6)) then
       write (form, '(a,i0,a)') '(f48.', max(digits - 1 - exponent, 0), ')'
       write (buffer, form) number
       text = adjustl(buffer)
