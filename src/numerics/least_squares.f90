@@ -77,7 +77,7 @@ contains
                                        self%lengths, self%work)
     allocate (self%a(m, n), self%tau(n), self%reciprocal(n), self%norms(n), self%lengths(min(m, n)), source=0.0_wp)
     allocate (self%pivot(n), self%order(n), source=0)
-    allocate (self%work(max(m, 2*n + (n + 1)*32, 32*32)), source=0.0_wp)
+    allocate (self%work(merge(max(m, 2*n + (n + 1)*32, 32*32), n, n >= lapack_from)), source=0.0_wp)
   end subroutine create
 
   !> Factorize a matrix, or the one that stands in `a`.
