@@ -18,7 +18,7 @@ module mech9_planar_dynamics
     pass_inward, pass_outward
   use mech9_cluster_bodies, only: find_rest, find_accelerations
   use mech9_planar_cluster, only: eliminate_cluster, move_cluster
-  use mech9_tree_coefficients, only: accelerate_in_plane, collect_in_plane
+  use mech9_tree_coefficients, only: find_reach, accelerate_in_plane, collect_in_plane
   use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type, lagrange_work_type, dynamics_arithmetic_type
   implicit none
   private
@@ -329,6 +329,7 @@ contains
     type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
     type(lagrange_work_type), intent(inout) :: work    !< with the columns of closed clusters; gets the results
     real(wp) :: whole(size(work%forces))
+    integer :: reach(2, size(work%forces))
     integer :: i, m, n, n_entries
 
     m = plan%n_coordinates
@@ -342,18 +343,21 @@ contains
     associate (motion => state%planar, own => work%planar, columns => work%jacobian%flat)
       call set_applied(plan, dynamics, state, work)
       call set_bodies(m, self%bodies, self%gravity, motion%pose, motion%velocity, motion%acceleration, own)
-      call collect_in_plane(m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, own%wrench, &
-                            n, whole)
+      call collect_in_plane([1, m], m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, &
+                            own%wrench, n, whole)
       own%applied = 0.0_wp
       call set_bodies(m, self%bodies, 0.0_wp*self%gravity, motion%pose, motion%velocity, motion%acceleration, own)
-      call collect_in_plane(m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, own%wrench, &
-                            n, work%velocity_terms)
+      call collect_in_plane([1, m], m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, &
+                            own%wrench, n, work%velocity_terms)
       work%forces = work%velocity_terms - whole
+      call find_reach(m, n_entries, dynamics%first, dynamics%column, dynamics%support, n, reach)
+      own%motion = 0.0_wp
       do i = 1, n
-        call accelerate_in_plane(i, m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, &
-                                 own%inertia, own%motion, own%wrench)
-        call collect_in_plane(m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, &
+        call accelerate_in_plane(i, reach(:, i), m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, &
+                                 motion%pose, own%inertia, own%motion, own%wrench)
+        call collect_in_plane(reach(:, i), m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, &
                               own%wrench, n, whole)
+        own%motion(:, reach(1, i):reach(2, i)) = 0.0_wp
         work%coefficients(i:, i) = whole(i:)
       end do
     end associate

@@ -11,7 +11,7 @@ module mech9_spatial_dynamics
   use mech9_planar_view, only: plane_in_space
   use mech9_moving_plane, only: seen_motion, gather_bodies
   use mech9_tree_stages, only: stage_type
-  use mech9_tree_coefficients, only: accelerate_in_space, collect_in_space
+  use mech9_tree_coefficients, only: find_reach, accelerate_in_space, collect_in_space
   use mech9_spatial_lagrange, only: spread_columns, add_body
   use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type, lagrange_work_type, dynamics_arithmetic_type
   implicit none
@@ -285,6 +285,7 @@ contains
     type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
     type(lagrange_work_type), intent(inout) :: work    !< with the columns of closed clusters; gets the results
     real(wp) :: whole(size(work%forces))
+    integer :: reach(2, size(work%forces))
     logical :: all_frames(0:plan%n_coordinates)
     integer :: i, m, n, n_entries
 
@@ -301,19 +302,22 @@ contains
       call set_applied(plan, dynamics, state, work)
       call set_bodies(m, all_frames, chains%mass, chains%moment, chains%inertia, dynamics%gravity, state%r, state%omega, &
                       state%alpha, state%a, own%applied, own%inertia, own%wrench, own%amount)
-      call collect_in_space(m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, state%p, &
-                            own%wrench, n, whole)
+      call collect_in_space([1, m], m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, &
+                            state%p, own%wrench, n, whole)
       own%applied = 0.0_wp
       call set_bodies(m, all_frames, chains%mass, chains%moment, chains%inertia, 0.0_wp*dynamics%gravity, state%r, state%omega, &
                       state%alpha, state%a, own%applied, own%inertia, own%wrench, own%amount)
-      call collect_in_space(m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, state%p, &
-                            own%wrench, n, work%velocity_terms)
+      call collect_in_space([1, m], m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, &
+                            state%p, own%wrench, n, work%velocity_terms)
       work%forces = work%velocity_terms - whole
+      call find_reach(m, n_entries, dynamics%first, dynamics%column, dynamics%support, n, reach)
+      own%motion = 0.0_wp
       do i = 1, n
-        call accelerate_in_space(i, m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, &
-                                 state%p, own%inertia, own%motion, own%wrench)
-        call collect_in_space(m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, &
-                              state%p, own%wrench, n, whole)
+        call accelerate_in_space(i, reach(:, i), m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, &
+                                 jacobian%v, state%p, own%inertia, own%motion, own%wrench)
+        call collect_in_space(reach(:, i), m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, &
+                              jacobian%v, state%p, own%wrench, n, whole)
+        own%motion(:, reach(1, i):reach(2, i)) = 0.0_wp
         work%coefficients(i:, i) = whole(i:)
       end do
     end associate
