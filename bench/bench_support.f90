@@ -62,7 +62,9 @@ contains
     integer :: pass, i, evaluations
 
     allocate (system)
-    call set_motion_system(model, model%problem%partition, plan, start, system, err)
+    system%plan = plan
+    system%state = start
+    call set_motion_system(model, model%problem%partition, system, err)
     call stop_at(err, 'the motion')
     y = system%vector()
     allocate (rates(size(y)), source=0.0_wp)

@@ -22,7 +22,7 @@ module mech9_planar_dynamics
   use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type, lagrange_work_type, dynamics_arithmetic_type
   implicit none
   private
-  public :: planar_dynamics_type, new_planar_dynamics
+  public :: planar_dynamics_type, begin_planar_dynamics, take_blocks
 
   !> The arithmetic of a plane.
   type, extends(dynamics_arithmetic_type) :: planar_dynamics_type
@@ -43,29 +43,54 @@ module mech9_planar_dynamics
 
 contains
 
-  !> The planar arithmetic for a plan of dynamics, whose bodies and columns are known.
-  pure function new_planar_dynamics(mechanism, plan, dynamics) result(self)
-    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
-    type(plan_type), intent(in) :: plan                !< the plan of the mechanism, planar
-    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
-    type(planar_dynamics_type) :: self
+  !> Begin the planar arithmetic of a plan of dynamics, whose bodies and columns are known.
+  subroutine begin_planar_dynamics(mechanism, plan, dynamics, unchanged, self, known)
+    type(mechanism_type), intent(in) :: mechanism             !< the mechanism
+    type(plan_type), intent(in) :: plan                       !< the plan of the mechanism, planar
+    type(dynamics_plan_type), intent(in) :: dynamics          !< the plan of dynamics
+    logical, intent(in) :: unchanged(:)                       !< (blocks) the block is as in the plan of dynamics `known`
+    type(planar_dynamics_type), intent(out) :: self           !< the planar arithmetic
+    type(dynamics_plan_type), intent(in), optional :: known   !< the plan of dynamics in other coordinates
     real(wp) :: gravity(3)
-    integer :: b, i, n
+    integer :: i, n
 
-    gravity = to_plane(plan%planar, dynamics%gravity)
-    self%gravity = gravity(1:2)
-    allocate (self%bodies(size(dynamics%bodies)), self%blocks(size(plan%blocks)))
-    ! bodies have the order of those in the plan of dynamics
-    n = 0
-    do i = 1, size(mechanism%bodies)
-      if (mechanism%bodies(i)%link == 1 .or. .not. mechanism%bodies(i)%has_inertia()) cycle
-      n = n + 1
-      self%bodies(n) = planar_body(plan, mechanism%bodies(i))
+    if (present(known)) then
+      call take_blocks(known%arithmetics(1)%kind, unchanged, self)
+      self%bodies%frame = plan%frame_of(dynamics%bodies%link)
+    else
+      gravity = to_plane(plan%planar, dynamics%gravity)
+      self%gravity = gravity(1:2)
+      allocate (self%bodies(size(dynamics%bodies)), self%blocks(size(plan%blocks)))
+      ! bodies have the order of those in the plan of dynamics
+      n = 0
+      do i = 1, size(mechanism%bodies)
+        if (mechanism%bodies(i)%link == 1 .or. .not. mechanism%bodies(i)%has_inertia()) cycle
+        n = n + 1
+        self%bodies(n) = planar_body(plan, mechanism%bodies(i))
+      end do
+    end if
+    do i = 1, size(plan%blocks)
+      if (.not. unchanged(i)) call list_loops(plan, i, dynamics%first, dynamics%column, dynamics%place_of, self%blocks(i))
     end do
-    do b = 1, size(plan%blocks)
-      call list_loops(plan, b, dynamics%first, dynamics%column, dynamics%place_of, self%blocks(b))
-    end do
-  end function new_planar_dynamics
+  end subroutine begin_planar_dynamics
+
+  !> Take gravity, bodies and the lists of unchanged blocks from the arithmetic in other coordinates.
+  subroutine take_blocks(known, unchanged, self)
+    class(dynamics_arithmetic_type), intent(in) :: known   !< the planar arithmetic in other coordinates
+    logical, intent(in) :: unchanged(:)                    !< (blocks) the block is the same there
+    class(planar_dynamics_type), intent(inout) :: self     !< gets them
+    integer :: b
+
+    allocate (self%blocks(size(unchanged)))
+    select type (known)
+    class is (planar_dynamics_type)
+      self%gravity = known%gravity
+      self%bodies = known%bodies
+      do b = 1, size(unchanged)
+        if (unchanged(b)) self%blocks(b) = known%blocks(b)
+      end do
+    end select
+  end subroutine take_blocks
 
   !> Room for the columns of frames and for the passes of articulated bodies.
   pure subroutine make_work(self, plan, dynamics, work)

@@ -6,11 +6,11 @@ module mech9_plane_block_dynamics
   use mech9_state, only: state_type
   use mech9_planar_view, only: plane_in_space, show_velocities, show_accelerations
   use mech9_planar_block, only: list_loops
-  use mech9_planar_dynamics, only: planar_dynamics_type
+  use mech9_planar_dynamics, only: planar_dynamics_type, take_blocks
   use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type, lagrange_work_type
   implicit none
   private
-  public :: plane_block_dynamics_type, new_plane_block_dynamics
+  public :: plane_block_dynamics_type, begin_plane_block_dynamics
 
   !> The arithmetic of blocks in planes that move. Sweeps over stages belong to the arithmetic of space.
   type, extends(planar_dynamics_type) :: plane_block_dynamics_type
@@ -22,19 +22,32 @@ module mech9_plane_block_dynamics
 
 contains
 
-  !> The arithmetic for the blocks of a plan of dynamics that have number 2 in `arithmetic_of`.
-  pure function new_plane_block_dynamics(plan, dynamics) result(self)
-    type(plan_type), intent(in) :: plan                !< the plan of the mechanism, with planes
-    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
-    type(plane_block_dynamics_type) :: self
+  !> Begin the arithmetic for the blocks of a plan of dynamics that have number 2 in `arithmetic_of`.
+  subroutine begin_plane_block_dynamics(plan, dynamics, unchanged, self, known)
+    type(plan_type), intent(in) :: plan                       !< the plan of the mechanism, with planes
+    type(dynamics_plan_type), intent(in) :: dynamics          !< the plan of dynamics
+    logical, intent(in) :: unchanged(:)                       !< (blocks) the block is as in the plan of dynamics `known`
+    type(plane_block_dynamics_type), intent(out) :: self      !< the arithmetic
+    type(dynamics_plan_type), intent(in), optional :: known   !< the plan of dynamics in other coordinates
+    logical :: kept(size(plan%blocks))
     integer :: b
 
-    allocate (self%bodies(0), self%blocks(size(plan%blocks)))
+    kept = .false.
+    if (present(known)) then
+      if (size(known%arithmetics) > 1) then
+        kept = unchanged .and. known%arithmetic_of(:size(unchanged)) == 2
+      end if
+    end if
+    if (any(kept)) then
+      call take_blocks(known%arithmetics(2)%kind, kept, self)
+    else
+      allocate (self%bodies(0), self%blocks(size(plan%blocks)))
+    end if
     do b = 1, size(plan%blocks)
-      if (dynamics%arithmetic_of(b) == 2) &
+      if (dynamics%arithmetic_of(b) == 2 .and. .not. kept(b)) &
         call list_loops(plan, b, dynamics%first, dynamics%column, dynamics%place_of, self%blocks(b))
     end do
-  end function new_plane_block_dynamics
+  end subroutine begin_plane_block_dynamics
 
   !> Room for the columns of frames.
   pure subroutine make_work(self, plan, dynamics, work)

@@ -38,7 +38,7 @@ contains
     logical, intent(in), optional :: without_drives   !< driven coordinates are chosen like free ones; not unless given
     logical :: driven(plan%n_coordinates)
     type(clusters_type) :: clusters
-    integer :: place(plan%n_coordinates), i, s
+    integer :: place(plan%n_coordinates), last(plan%n_coordinates), i, s
     integer, allocatable :: steps(:)
 
     independent = .false.
@@ -46,10 +46,13 @@ contains
     driven = plan%driven
     if (present(without_drives)) driven = driven .and. .not. without_drives
     clusters = find_clusters(plan)
+    do s = 1, plan%n_coordinates
+      if (clusters%of_step(s) > 0) last(clusters%of_step(s)) = s
+    end do
     place = 0
     do s = 1, plan%n_coordinates
       if (clusters%of_step(s) /= s .or. .not. clusters%closed(s)) cycle
-      steps = pack([(i, i=s, plan%n_coordinates)], clusters%of_step(s:) == s)
+      steps = pack([(i, i=s, last(s))], clusters%of_step(s:last(s)) == s)
       place(steps) = [(i, i=1, size(steps))]
       call choose_in_cluster(plan, state, clusters, steps, place, driven, independent)
     end do
@@ -77,7 +80,7 @@ contains
     do i = 1, size(free)
       rates(place(free(i)), i) = 1.0_wp
     end do
-    do b = 1, size(plan%blocks)
+    do b = block_of(plan, steps(1)), block_of(plan, steps(size(steps)))
       if (size(plan%blocks(b)%unknowns) == 0) cycle
       if (clusters%of_step(plan%blocks(b)%unknowns(1)) /= steps(1)) cycle
       call exchange(plan, state, plan%blocks(b), place, free, rates)
@@ -85,6 +88,24 @@ contains
     independent(plan%steps(steps)%coordinate) = held
     independent(plan%steps(free)%coordinate) = .true.
   end subroutine choose_in_cluster
+
+  !> The block of a step, by bisection: blocks have the steps in ascending order, and some steps may be in none.
+  pure integer function block_of(plan, step) result(b)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    integer, intent(in) :: step           !< number of a step that is in a block
+    integer :: after, middle
+
+    b = 1
+    after = size(plan%blocks) + 1
+    do while (after - b > 1)
+      middle = (b + after)/2
+      if (plan%blocks(middle)%first_step <= step) then
+        b = middle
+      else
+        after = middle
+      end if
+    end do
+  end function block_of
 
   !> Choose between the free coordinates on which a block depends and its unknowns, by QR with column pivoting of its equations. As
   !> many coordinates as before remain free, and the rates of all coordinates of earlier blocks follow from these.
@@ -216,7 +237,7 @@ contains
   !> The plan and the state in other independent coordinates. Blocks that do not change are taken over; where that cannot be, the
   !> plan is made from the beginning. Fails with exit_singular where these coordinates cannot serve or the state cannot be
   !> carried over, and with the code of the failure where a pair or the program itself fails.
-  subroutine carry_over(mechanism, partition, plan, state, requested, new_plan, new_state, err, wanted, in_vain)
+  subroutine carry_over(mechanism, partition, plan, state, requested, new_plan, new_state, err, wanted, in_vain, same_frames)
     type(mechanism_type), intent(in) :: mechanism        !< the mechanism
     type(partition_type), intent(in) :: partition        !< with the other independent coordinates
     type(plan_type), intent(in) :: plan                  !< the present plan
@@ -227,12 +248,14 @@ contains
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(wanted_type), intent(in), optional :: wanted    !< conditioning for which the change is worthwhile; any unless given
     logical, intent(out), optional :: in_vain            !< it is not worthwhile, and no plan was made
+    logical, intent(out), optional :: same_frames        !< the plan has the frames of the present one, perhaps in another order
     type(replanning_type) :: replanning
     type(wanted_type) :: enough
 
     if (present(wanted)) enough = wanted
     call replan(plan, state, partition%independent(), partition%driven(), requested, enough, new_plan, new_state, replanning, err)
     if (present(in_vain)) in_vain = replanning%in_vain
+    if (present(same_frames)) same_frames = replanning%serves
     if (allocated(err) .or. replanning%in_vain) return
     if (.not. replanning%serves) &
       call plan_from_beginning(mechanism, partition, plan, state, requested, new_plan, new_state, err)

@@ -105,7 +105,9 @@ contains
     call simulation%motion%angles%begin(model, model%problem%partition, used, start, err)
     if (allocated(err)) return
     allocate (simulation%motion%system)
-    call set_motion_system(model, model%problem%partition, used, start, simulation%motion%system, err)
+    simulation%motion%system%plan = used
+    simulation%motion%system%state = start
+    call set_motion_system(model, model%problem%partition, simulation%motion%system, err)
     if (allocated(err)) then
       call name_cause_at_start(model, plan, assembled, err)
       return

@@ -5,8 +5,6 @@ module mech9_integrated_motion
   use mech9_tolerances, only: doubtful_conditioning, worthwhile_improvement, third_derivative_step
   use mech9_error, only: error_type
   use mech9_partition, only: partition_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
   use mech9_block_solver, only: work_count_type, work_of
   use mech9_requested, only: requested_type
   use mech9_replanning, only: wanted_type
@@ -75,13 +73,9 @@ contains
     type(requested_type), intent(in) :: requested          !< the part of the motion that is worked out
     logical, intent(out) :: changed                        !< the independent coordinates are others now
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    type(motion_system_type), allocatable :: other
+    type(motion_system_type), pointer :: other
     type(ball_angles_type) :: angles
     type(error_type), allocatable :: failure
-    type(partition_type) :: partition
-    type(wanted_type) :: wanted
-    type(plan_type) :: plan
-    type(state_type) :: state
     logical :: independent(self%system%plan%n_coordinates), in_vain
 
     changed = .false.
@@ -95,48 +89,68 @@ contains
       self%look_below = self%system%conditioning()/worthwhile_improvement
       return
     end if
+    allocate (other)
+    call take_coordinates(self, independent, requested, other, angles, in_vain, failure, err)
+    if (.not. (in_vain .or. allocated(failure) .or. allocated(err))) &
+      changed = other%conditioning() >= worthwhile_improvement*self%system%conditioning()
+    if (changed) then
+      self%angles = angles
+      call replace_system(self, other)
+      call self%begin(err)
+    else
+      deallocate (other)
+      if (.not. (allocated(failure) .or. allocated(err))) &
+        self%look_below = self%system%conditioning()/worthwhile_improvement
+    end if
+  end subroutine change_coordinates
+
+  !> Make the system in other independent coordinates, at the present state. What belongs to frames and blocks that do not change
+  !> is taken over. `failure` tells that these coordinates cannot serve, `err` that the motion ends.
+  subroutine take_coordinates(self, independent, requested, other, angles, in_vain, failure, err)
+    class(integrated_motion_type), intent(inout) :: self       !< the motion
+    logical, intent(in) :: independent(:)                      !< (M) the coordinate is independent
+    type(requested_type), intent(in) :: requested              !< the part of the motion that is worked out
+    type(motion_system_type), intent(inout) :: other           !< the system in these coordinates
+    type(ball_angles_type), intent(inout) :: angles            !< of ball joints, for this system
+    logical, intent(out) :: in_vain                            !< the change is not worthwhile, and the system was not made
+    type(error_type), allocatable, intent(out) :: failure      !< allocated if these coordinates cannot serve
+    type(error_type), allocatable, intent(out) :: err          !< allocated if the motion ends
+    type(partition_type) :: partition
+    type(wanted_type) :: wanted
+    logical :: same_frames
+
+    in_vain = .false.
     partition = self%system%partition%in_same_order(independent)
     wanted = worth_taking(self%system%conditioning(), self%system%work%blocks)
     if (self%angles%in_use()) then
       call self%show_angles(err)
       if (allocated(err)) return
-      call carry_over(self%system%model%mechanism, partition, self%angles%plan, self%angles%state, requested, plan, state, &
-                      failure, wanted, in_vain)
+      call carry_over(self%system%model%mechanism, partition, self%angles%plan, self%angles%state, requested, other%plan, &
+                      other%state, failure, wanted, in_vain)
+      same_frames = .false.
     else
-      call carry_over(self%system%model%mechanism, partition, self%system%plan, self%system%state, requested, plan, state, &
-                      failure, wanted, in_vain)
+      call carry_over(self%system%model%mechanism, partition, self%system%plan, self%system%state, requested, other%plan, &
+                      other%state, failure, wanted, in_vain, same_frames)
     end if
+    if (gives_up(failure, err) .or. in_vain) return
+    call angles%begin(self%system%model, partition, other%plan, other%state, failure)
     if (gives_up(failure, err)) return
-    if (in_vain) then
-      self%look_below = self%system%conditioning()/worthwhile_improvement
-      return
-    end if
-    call angles%begin(self%system%model, partition, plan, state, failure)
-    if (gives_up(failure, err)) return
-    allocate (other)
-    call set_motion_system(self%system%model, partition, plan, state, other, failure)
     ! they may have no inertia in this position; what fails in any coordinates will do so in the present ones, too
-    if (allocated(failure)) return
-    if (other%conditioning() < worthwhile_improvement*self%system%conditioning()) then
-      self%look_below = self%system%conditioning()/worthwhile_improvement
-      return
+    if (same_frames .and. .not. angles%in_use()) then
+      call set_motion_system(self%system%model, partition, other, failure, self%system)
+    else
+      call set_motion_system(self%system%model, partition, other, failure)
     end if
-    self%angles = angles
-    call replace_system(self, other)
-    changed = .true.
-    call self%begin(err)
-  end subroutine change_coordinates
+  end subroutine take_coordinates
 
   !> Go on with other angles in the ball joints whose present ones are near gimbal lock.
   subroutine change_angles(self, changed, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion, to whose end the angles are continued
     logical, intent(out) :: changed                        !< the angles are others now
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    type(motion_system_type), allocatable :: other
+    type(motion_system_type), pointer :: other
     type(ball_angles_type) :: angles
     type(error_type), allocatable :: failure
-    type(plan_type) :: plan
-    type(state_type) :: state
 
     changed = .false.
     if (.not. any(self%angles%in_doubt(self%y))) return
@@ -145,11 +159,13 @@ contains
     if (.not. allocated(failure)) call self%show_angles(failure)
     if (gives_up(failure, err)) return
     angles = self%angles
-    call angles%change(self%system%state, plan, state, failure)
-    if (gives_up(failure, err)) return
     allocate (other)
-    call set_motion_system(self%system%model, self%system%partition, plan, state, other, failure)
-    if (gives_up(failure, err)) return
+    call angles%change(self%system%state, other%plan, other%state, failure)
+    if (.not. allocated(failure)) call set_motion_system(self%system%model, self%system%partition, other, failure)
+    if (gives_up(failure, err)) then
+      deallocate (other)
+      return
+    end if
     self%angles = angles
     call replace_system(self, other)
     changed = .true.
@@ -205,14 +221,14 @@ contains
 
   !> Put another system into the place of the present one, and keep the counts of both.
   subroutine replace_system(self, other)
-    class(integrated_motion_type), intent(inout) :: self   !< the motion
-    type(motion_system_type), intent(inout) :: other       !< in other coordinates, with its motion worked out
+    class(integrated_motion_type), intent(inout) :: self     !< the motion
+    type(motion_system_type), pointer, intent(in) :: other   !< in other coordinates, with its motion worked out; owned from now on
 
     call stop_integrators(self)
     other%iterations = self%system%iterations
     self%work_before = self%work_done()
     deallocate (self%system)
-    allocate (self%system, source=other)
+    self%system => other
     self%look_below = min(doubtful_conditioning, self%system%conditioning()/worthwhile_improvement)
   end subroutine replace_system
 

@@ -55,7 +55,7 @@ module mech9_motion_system
     procedure :: close_near
     procedure :: move_to
     procedure :: resume
-    procedure :: present
+    procedure :: present => show_present
     procedure :: conditioning
     procedure :: signs
     procedure :: pass_joint
@@ -64,32 +64,32 @@ module mech9_motion_system
 
 contains
 
-  !> Make the system from an assembled start with the independent rates in `start`. The motion there is found, and
-  !> work%coefficients are those of the start.
-  subroutine set_motion_system(model, partition, plan, start, system, err)
+  !> Make the system from its plan and an assembled start with the independent rates, which stand in it. The motion there is found,
+  !> and work%coefficients are those of the start. What an earlier system knows of frames and blocks that stay is taken over.
+  subroutine set_motion_system(model, partition, system, err, known)
     type(model_type), intent(in), target :: model        !< the model; it must outlive the system
     type(partition_type), intent(in) :: partition        !< of the coordinates
-    type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
-    type(state_type), intent(in) :: start                !< assembled position, with the independent rates
-    class(motion_system_type), intent(inout) :: system   !< the system, at the start
+    class(motion_system_type), intent(inout) :: system   !< the system, with plan and state; then with its motion
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    class(motion_system_type), intent(in), optional :: known   !< the system in other coordinates, whose plan has the same frames
 
     system%settles = .true.
     system%model => model
     system%partition = partition
-    system%plan = plan
-    call make_dynamics_plan(model%mechanism, plan, system%dynamics)
-    system%work = new_lagrange_work(plan, system%dynamics)
-    system%state = start
+    if (present(known)) then
+      call make_dynamics_plan(model%mechanism, system%plan, system%dynamics, known%plan, known%dynamics)
+    else
+      call make_dynamics_plan(model%mechanism, system%plan, system%dynamics)
+    end if
+    system%work = new_lagrange_work(system%plan, system%dynamics)
     call place_motors(system, err)
     if (allocated(err)) return
-    call system%interval%begin(model, start%t)
+    call system%interval%begin(model, system%state%t)
     ! reports show the coefficients of the start; articulated bodies do without
     if (system%dynamics%articulated) &
-      call find_equations(model%mechanism, plan, system%dynamics, system%state, system%work, err)
-    if (allocated(err)) return
-    call system%present(err)
-    if (.not. allocated(err)) call check_inertia(plan, system%dynamics, system%work, err)
+      call find_equations(model%mechanism, system%plan, system%dynamics, system%state, system%work, err)
+    if (.not. allocated(err)) call system%present(err)
+    if (.not. allocated(err)) call check_inertia(system%plan, system%dynamics, system%work, err)
     system%has_inertia = .not. allocated(err)
   end subroutine set_motion_system
 
@@ -258,10 +258,8 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call take_vector(self, t, y, err)
-    if (allocated(err)) return
-    call place_all(self%plan, self%state, err)
-    if (allocated(err)) return
-    call accelerate(self, err)
+    if (.not. allocated(err)) call place_all(self%plan, self%state, err)
+    if (.not. allocated(err)) call accelerate(self, err)
     if (allocated(err)) return
     if (self%conditioning() < self%refuse_below) then
       call raise(err, exit_singular, failure_singular_step)
@@ -292,10 +290,8 @@ contains
     integer :: failed
 
     call take_vector(self, t, y, err)
-    if (allocated(err)) return
-    call check_drives(self, y, err)
-    if (allocated(err)) return
-    call close_chains(self, trusted_closing, failed, err)
+    if (.not. allocated(err)) call check_drives(self, y, err)
+    if (.not. allocated(err)) call close_chains(self, trusted_closing, failed, err)
     if (allocated(err)) return
     if (failed > 0) then
       call raise(err, exit_singular, failure_unclosed_step)
@@ -371,7 +367,7 @@ contains
 
   !> Find all velocities and accelerations of a state whose frames are in place, and show the state in work%view as loads see
   !> it, for results.
-  subroutine present(self, err)
+  subroutine show_present(self, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
@@ -379,9 +375,8 @@ contains
     if (allocated(err)) return
     call complete_accelerations(self%plan, self%dynamics, self%work, self%state)
     call find_motor_rates(self%model%mechanism, self%state, err)
-    if (allocated(err)) return
-    call show_state(self%plan, self%dynamics, self%state, self%work%view)
-  end subroutine present
+    if (.not. allocated(err)) call show_state(self%plan, self%dynamics, self%state, self%work%view)
+  end subroutine show_present
 
   !> The worst block's pivot ratio at the last evaluation: 1 is best, 0 a singular position.
   pure real(wp) function conditioning(self)

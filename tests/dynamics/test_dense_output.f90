@@ -72,7 +72,9 @@ contains
     if (allocated(err)) return
     state%t = 0.0_wp
     state%dq(plan%independent) = rate
-    call set_motion_system(model, model%problem%partition, plan, state, system, err)
+    system%plan = plan
+    system%state = state
+    call set_motion_system(model, model%problem%partition, system, err)
     call test%no_error(err, 'the mechanism has equations of motion')
   end subroutine begin
 

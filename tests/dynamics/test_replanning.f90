@@ -1,5 +1,5 @@
 !> Plans in other independent coordinates that are made from the plan before: they give the accelerations of plans that are made from
-!> the beginning, and blocks that do not change are not planned anew.
+!> the beginning, and blocks that do not change are not planned anew. So do plans of dynamics.
 !>
 !> Compares the program with itself: plans made from the plan before and plans made from the beginning.
 program test_replanning
@@ -15,6 +15,7 @@ program test_replanning
   use mech9_replanning, only: replanning_type, wanted_type, replan
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_dynamics_plan, only: make_dynamics_plan
+  use mech9_unchanged_blocks, only: unchanged_blocks
   use mech9_lagrange_work, only: new_lagrange_work
   use mech9_lagrange, only: find_motion, complete_accelerations
   use mech9_mixed_structures, only: structure_type, random_structure, add_ladder, exchange_some, finished
@@ -39,9 +40,10 @@ contains
     type(plan_type) :: plan, other
     type(state_type) :: state, other_state
     type(error_type), allocatable :: err
-    integer :: trial, served, unserved, same
+    integer :: trial, served, unserved, same, kept
     logical :: independent(200), found
 
+    kept = 0
     served = 0
     unserved = 0
     same = 0
@@ -52,22 +54,23 @@ contains
       if (allocated(err)) cycle
       associate (chosen => independent(:plan%n_coordinates))
         call exchange_some(random, plan, chosen)
-        call compare_change(model, plan, state, chosen, other, other_state, found, same)
+        call compare_change(model, plan, state, chosen, other, other_state, found, same, kept)
         served = served + merge(1, 0, found)
         unserved = unserved + merge(0, 1, found)
         if (.not. found) cycle
         chosen = .false.
         chosen(plan%independent) = .true.
-        call compare_change(model, other, other_state, chosen, plan, state, found, same)
+        call compare_change(model, other, other_state, chosen, plan, state, found, same, kept)
         call test%is_true(found, 'a change of coordinates can be taken back')
       end associate
     end do
     call test%is_true(served > 40 .and. unserved < 20, 'most of the random changes of coordinates serve')
     call test%is_true(same > 40, 'many blocks stay as they are')
+    call test%is_true(kept > 40, 'the plan of dynamics keeps the lists of many blocks')
   end subroutine random_changes
 
   !> Compare a plan that is made from the plan before with one that is made from the beginning.
-  subroutine compare_change(model, plan, state, independent, other, other_state, found, same)
+  subroutine compare_change(model, plan, state, independent, other, other_state, found, same, kept)
     type(model_type), intent(in) :: model             !< the mechanism
     type(plan_type), intent(in) :: plan               !< its plan
     type(state_type), intent(in) :: state             !< its closed position
@@ -76,6 +79,7 @@ contains
     type(state_type), intent(out) :: other_state      !< the same position
     logical, intent(out) :: found                     !< the other coordinates serve
     integer, intent(inout) :: same                    !< number of blocks that stay as they are
+    integer, intent(inout) :: kept                    !< number of blocks of which the plan of dynamics keeps the lists
     type(plan_type) :: whole
     type(state_type) :: whole_state
     type(partition_type) :: partition
@@ -83,6 +87,7 @@ contains
     type(replanning_type) :: replanning
     type(wanted_type) :: wanted
     type(error_type), allocatable :: err
+    type(dynamics_plan_type) :: before, dynamics, continued
     real(wp), dimension(size(independent)) :: rates, a, b
     real(wp) :: worst
     integer :: k
@@ -102,29 +107,35 @@ contains
     call test%no_error(err, 'coordinates that serve a plan made from the plan before serve one made from the beginning')
     if (allocated(err)) return
     rates = [(sin(3.0_wp*k), k=1, size(rates))]
-    call find_accelerations(model, other, other_state, rates, a, worst)
+    call make_dynamics_plan(model%mechanism, plan, before)
+    call make_dynamics_plan(model%mechanism, other, dynamics)
+    call make_dynamics_plan(model%mechanism, other, continued, plan, before)
+    kept = kept + count(unchanged_blocks(plan, before, other, dynamics))
+    call find_accelerations(model, other, dynamics, other_state, rates, a, worst)
     if (worst < regular) return
-    call find_accelerations(model, whole, whole_state, rates, b, worst)
+    call find_accelerations(model, other, continued, other_state, rates, b, worst)
+    call test%is_true(maxval(abs(a - b)) <= 0.0_wp, 'a plan of dynamics made from that before is the same')
+    call make_dynamics_plan(model%mechanism, whole, dynamics)
+    call find_accelerations(model, whole, dynamics, whole_state, rates, b, worst)
     ! round-off of some hundred operations, over the conditioning of chains on chains
     call test%near(maxval(abs(a - b))/maxval(abs(b)), 0.0_wp, 1.0e-9_wp, 'both plans give the same accelerations')
   end subroutine compare_change
 
   !> The accelerations of all coordinates at a position, for given rates of the independent ones.
-  subroutine find_accelerations(model, plan, position, rates, accelerations, conditioning)
+  subroutine find_accelerations(model, plan, dynamics, position, rates, accelerations, conditioning)
     type(model_type), intent(in) :: model          !< the mechanism
     type(plan_type), intent(in) :: plan            !< its plan
+    type(dynamics_plan_type), intent(in) :: dynamics   !< its plan of dynamics
     type(state_type), intent(in) :: position       !< closed, with frames in place
     real(wp), intent(in) :: rates(:)               !< (M) those of the independent coordinates count [rad/s, m/s]
     real(wp), intent(out) :: accelerations(:)      !< (M) [rad/s^2, m/s^2]
     real(wp), intent(out) :: conditioning          !< of the worst block
-    type(dynamics_plan_type) :: dynamics
     type(lagrange_work_type) :: work
     type(state_type) :: state
     type(error_type), allocatable :: err
 
     state = position
     state%dq(plan%independent) = rates(plan%independent)
-    call make_dynamics_plan(model%mechanism, plan, dynamics)
     work = new_lagrange_work(plan, dynamics)
     call find_motion(model%mechanism, plan, dynamics, state, work, err)
     conditioning = 0.0_wp

@@ -12,7 +12,7 @@ from mech9_cases import TREE, Checks, text_of
 
 FLOORS = ['base', 'system', 'numerics', 'spatial', 'structure', 'model/couplings', 'model/laws', 'model/request', 'model', 'user',
           'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
-          'ode', 'dynamics', 'dynamics/variations', 'simulation', 'analyses/reactions', 'analyses/equilibrium',
+          'ode', 'dynamics', 'dynamics/planning', 'dynamics/variations', 'simulation', 'analyses/reactions', 'analyses/equilibrium',
           'analyses', 'wording', 'input/document', 'input', 'output', 'pictures/plots', 'pictures/scene', 'pictures/films',
           'terminal', 'session/command', 'session/words', 'facade', 'session/results', 'session', 'dialogue/drafts',
           'interchange/xml', 'interchange', 'dialogue',

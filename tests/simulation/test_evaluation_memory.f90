@@ -48,7 +48,9 @@ contains
     if (allocated(err)) return
     call test%is_true(count(plan%blocks%last_closure >= plan%blocks%first_closure) == blocks, why//': the chains are blocks')
     state%dq(plan%independent) = [(0.5_wp*cos(2.0_wp*i), i=1, size(plan%independent))]
-    call set_motion_system(model, model%problem%partition, plan, state, system, err)
+    system%plan = plan
+    system%state = state
+    call set_motion_system(model, model%problem%partition, system, err)
     call test%no_error(err, why//': there is a system')
     if (allocated(err)) return
     y = system%vector()
