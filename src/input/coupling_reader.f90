@@ -108,6 +108,7 @@ contains
       call check_kinds(group, k, pairs, diagnostics)
       linear%coefficients = [-slope_of(group, diagnostics), 1.0_wp]
       linear%constant = positions(k(2)) + linear%coefficients(1)*positions(k(1))
+      if (linear%name == 'belt') linear%radii = get_reals(group, 'radii')
       if (has_name(group, 'phase')) linear%constant = units(2)*get_real(group, 'phase')
     end if
     if (diagnostics%known() == known) allocate (slot%coupling, source=linear)

@@ -1,5 +1,5 @@
-"""Symbols of joints with several freedoms and of pairs along curves: each joint is drawn once, with the names of all its
-coordinates, and the links that the program makes itself are not named.
+"""Symbols of joints with several freedoms, of pairs along curves, and of couplings: each joint is drawn once, with the names of
+all its coordinates, and the links that the program makes itself are not named; wheels that mesh touch each other.
 
 usage: joint_symbols.py PROGRAMS_FOLDER
 """
@@ -72,6 +72,20 @@ SLIDE = """&mechanism title='tube and rod' /
 &time end=1, intervals=20 /
 """
 
+# two belts from one shaft, one of them crossed, and a pair of gears that turn about opposite axes
+BELTS = """&mechanism title='belts' /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=1,3, kind='revolute', axis=0,0,1, point=0.4,0.1,0 /
+&pair coordinate=3, links=4,1, kind='revolute', axis=0,0,1, moving_point=-0.4,0.1,0, point=0,0,0 /
+&pair coordinate=4, links=1,5, kind='revolute', axis=0,0,-1, point=0,0.3,0 /
+&coupling kind='belt', coordinates=1,2, radii=0.05,0.1 /
+&coupling kind='belt', coordinates=1,3, radii=0.06,0.12 /
+&coupling kind='gear', coordinates=1,4, ratio=0.5 /
+&drive coordinate=1, kind='polynomial', coefficients=0,3 /
+&time end=2, intervals=50 /
+"""
+
 
 def drawn(checks, program, text, folder):
     """The picture of a data file, its joints by the names of their coordinates, and the number of its items of each class."""
@@ -136,6 +150,63 @@ def check_balls_and_slides(checks, program, folder):
     checks.equal(len(stands), 6, 'each of six legs has a stand')
 
 
+def lines_of(svg):
+    """The corners of each line that shows a link [px]."""
+    groups = [group for group in svg.iter(SVG + 'g') if (group.get('class') or '').split()[:1] == ['plate']]
+    return [corners_of(group.find(SVG + 'path').get('d')) for group in groups]
+
+
+def circles_of(svg):
+    """Middle and radius of each circle of a wheel that is seen along its axis [px]: 72 corners after a spoke, and the first one again."""
+    rims = [line[1:-1] for line in lines_of(svg) if len(line) == 74]
+    return [(rim.mean(axis=0), np.hypot(*(rim - rim.mean(axis=0)).T).mean()) for rim in rims]
+
+
+def check_couplings(checks, programs, folder):
+    path = os.path.join(folder, 'wheels.svg')
+
+    def picture(program, data, *options):
+        done = run(os.path.join(programs, program), data, '--no-write', '--quiet', '--sketch', path, *options)
+        checks.equal(done.returncode, 0, f'{data}: drawn')
+        return ElementTree.parse(path).getroot()
+
+    # pictures give hundredths of a px
+    planet, sun, ring = sorted(circles_of(picture('mech9k', example('planetary_gear'))), key=lambda circle: circle[1])
+    checks.near([sun[1] / planet[1], ring[1] / planet[1]], [20 / 16, 52 / 16], 1e-3, 'pitch circles have the ratio of the teeth')
+    checks.near(np.hypot(*(sun[0] - planet[0])), sun[1] + planet[1], 0.05, 'sun and planet touch from outside')
+    checks.near(np.hypot(*(ring[0] - planet[0])), ring[1] - planet[1], 0.05, 'ring and planet from inside')
+    checks.near(ring[0], sun[0], 0.05, 'sun and ring have one axis')
+    svg = picture('mech9d', example('rack_and_pinion'))
+    (pinion,) = circles_of(svg)
+    upright = [bar for bar in lines_of(svg) if len(bar) == 2 and np.ptp(bar[:, 0]) < 0.05]
+    checks.true(any(abs(abs(bar[0, 0] - pinion[0][0]) - pinion[1]) < 0.05 and bar[:, 1].min() < pinion[0][1] < bar[:, 1].max()
+                    for bar in upright), 'the rack touches its pinion', (pinion, upright))
+    # seen from above at the start, the side gears are upright lines of 0.12 m and the pinion a level one of 0.06 m
+    sizes = sorted(tuple(np.ptp(line[1:], axis=0)) for line in lines_of(picture('mech9d', example('differential'), '--view', 'xy'))
+                   if len(line) == 74)
+    checks.equal(len(sizes), 3, 'three bevel gears')
+    checks.near(np.array(sizes)[:, 1] / sizes[2][0], [2.0, 2.0, 0.0], 0.01, 'side gears of twice the diameter of the pinion')
+    check_belts(checks, os.path.join(programs, 'mech9k'), folder)
+
+
+def check_belts(checks, program, folder):
+    svg, _, _ = drawn(checks, program, BELTS, folder)
+    circles = circles_of(svg)
+    checks.equal(len(circles), 6, 'two pulleys for each belt and two gears')
+    strands = [corners_of(group.find(SVG + 'path').get('d')) for group in svg.iter(SVG + 'g')
+               if (group.get('class') or '').split()[:1] == ['curve']]
+    checks.equal(len(strands), 4, 'two straight parts of each belt')
+    for strand in strands:
+        along = (strand[1] - strand[0]) / np.hypot(*(strand[1] - strand[0]))
+        for end in strand:
+            apart = [abs((middle - end) @ along) + abs(np.hypot(*(middle - end)) - radius) for middle, radius in circles]
+            checks.true(min(apart) < 0.1, 'a belt is tangent to a pulley at its end', apart)
+    # the gears turn about opposite axes by a positive ratio: they mesh from outside, with radii 1/3 and 2/3 of 0.3 m
+    upper = min(circles, key=lambda circle: circle[0][1])
+    checks.true(any(abs(np.hypot(*(upper[0] - middle)) - upper[1] - radius) < 0.05 and abs(upper[1] / radius - 2) < 1e-2
+                    for middle, radius in circles), 'gears touch')
+
+
 def main():
     checks = Checks()
     program = os.path.join(os.path.abspath(sys.argv[1]), 'mech9k')
@@ -144,6 +215,7 @@ def main():
         check_free(checks, program, folder)
         check_paths(checks, program, folder)
         check_balls_and_slides(checks, program, folder)
+        check_couplings(checks, os.path.abspath(sys.argv[1]), folder)
     checks.finish()
 
 

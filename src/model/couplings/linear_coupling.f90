@@ -11,6 +11,7 @@ module mech9_linear_coupling
     character(len=coupling_name_length) :: name = 'linear'   !< of the kind in the data file
     real(wp), allocatable :: coefficients(:)   !< (n) of the coordinates [1/rad, 1/m, or others that give the unit of the constant]
     real(wp) :: constant = 0.0_wp              !< the sum
+    real(wp), allocatable :: radii(:)          !< (2) radii of the pulleys of a belt, for pictures [m]; else not allocated
   contains
     procedure :: term
     procedure :: weight

@@ -99,6 +99,11 @@ contains
                                            place%points(:, side) + place%most*place%axes(:, side)), box)
         end associate
       end do
+      do i = 1, size(skeleton%figures)
+        do k = 1, size(skeleton%figures(i)%points, 2)
+          call enclose(view, film%position(frame, skeleton%figures(i)%link, skeleton%figures(i)%points(:, k)), box)
+        end do
+      end do
       do i = 1, size(mechanism%points)
         call enclose(view, film%position(frame, mechanism%points(i)%link, mechanism%points(i)%position), box)
       end do

@@ -8,7 +8,7 @@ module mech9_scene_making
   use mech9_skeleton, only: skeleton_type
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, open_path, closed_path, segments, mark, in_plate, in_tube, &
-                         in_cam, as_dot, as_centre
+                         in_curve, in_cam, as_dot, as_centre
   use mech9_scene_paths, only: add_paths, add_curves
   use mech9_link_shapes, only: distinct_points, find_shape
   use mech9_pair_symbols, only: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols
@@ -61,6 +61,7 @@ contains
       if (shapes(link) == 0) call add_shape(skeleton, symbols, link, .false., scene, outlines(link), shapes(link))
       call add_reach(skeleton, symbols, cams, link, scene, outlines(link), shapes(link))
     end do
+    call add_figures(skeleton, scene, shapes)
     call add_springs(mechanism, film, skeleton, projection, shapes, scene, symbols)
     call add_symbols(film, skeleton, projection, shapes, scene, symbols)
     scene%last_sorted = scene%n_items
@@ -247,6 +248,27 @@ contains
       end do
     end associate
   end subroutine add_reach
+
+  !> The wheels, racks and belts of couplings are added.
+  subroutine add_figures(skeleton, scene, shapes)
+    type(skeleton_type), intent(in) :: skeleton   !< places at which the pairs are drawn, and figures of couplings
+    type(scene_type), intent(inout) :: scene      !< nodes and items of the picture
+    integer, intent(inout) :: shapes(:)           !< (links) number of the item of each link, set where the link gets one; 0: none
+    integer, allocatable :: nodes(:)
+    integer :: i, j
+
+    do i = 1, size(skeleton%figures)
+      associate (figure => skeleton%figures(i))
+        if (allocated(nodes)) deallocate (nodes)
+        allocate (nodes(size(figure%points, 2)))
+        do j = 1, size(nodes)
+          call scene%add_node(figure%link, figure%points(:, j), nodes(j))
+        end do
+        call scene%add_item(open_path, merge(in_curve, in_plate, figure%is_belt), nodes, figure%link)
+        if (shapes(figure%link) == 0 .and. .not. figure%is_belt) shapes(figure%link) = scene%n_items
+      end associate
+    end do
+  end subroutine add_figures
 
   !> The marks of points and mass centres are added.
   subroutine add_points(mechanism, with_masses, nodes, scene)

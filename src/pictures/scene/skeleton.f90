@@ -11,7 +11,7 @@ module mech9_skeleton
   use mech9_pair_axes, only: pair_axes_type, pair_axes, turning, free
   implicit none
   private
-  public :: skeleton_type, place_type, make_skeleton
+  public :: skeleton_type, place_type, figure_type, make_skeleton
 
   !> The place where a pair is drawn. Side 1 is the reference link, side 2 the moving link.
   type, extends(pair_axes_type) :: place_type
@@ -29,10 +29,18 @@ module mech9_skeleton
     integer :: plane_from = 0          !< of a planar joint that is drawn as a whole, its first pair; 0: of a free one
   end type place_type
 
-  !> The places of all pairs, and the graph of links and pairs.
+  !> A line that shows a wheel, a rack or a belt.
+  type :: figure_type
+    integer :: link = 0                       !< number of its link
+    real(wp), allocatable :: points(:, :)     !< (3,n) points that it joins, in the system of the link [m]
+    logical :: is_belt = .false.              !< it is a straight part of a belt, which does not move as the link does
+  end type figure_type
+
+  !> The places of all pairs, the graph of links and pairs, and the figures of couplings.
   type :: skeleton_type
     type(place_type), allocatable :: places(:)
     type(link_graph_type) :: graph
+    type(figure_type), allocatable :: figures(:)
     real(wp) :: size = 1.0_wp          !< size of the mechanism at the start: diagonal of its box [m]
   end type skeleton_type
 

@@ -11,6 +11,7 @@ module mech9_picture_requests
   use mech9_view, only: view_type, read_view
   use mech9_skeleton, only: skeleton_type, make_skeleton
   use mech9_slide_places, only: place_slides
+  use mech9_wheel_figures, only: find_figures
   use mech9_view_choice, only: choose_view
   use mech9_projection, only: projection_type, fit_projection
   use mech9_scene, only: scene_type
@@ -112,6 +113,7 @@ contains
     if (film%n_frames == 0) return
     call make_skeleton(model%mechanism, film, skeleton)
     call place_slides(model%mechanism, film, skeleton)
+    call find_figures(model%mechanism, film, skeleton)
     call choose_view(model%mechanism, film, skeleton, view, planar)
     if (allocated(self%view)) then
       ! whether the view is along the normal of the plane

@@ -1,0 +1,279 @@
+!> The figures of couplings in a picture: the pitch circles of gears and of pinions, racks, pulleys and belts.
+!>
+!> The data file gives no shape of a wheel. Its pitch circle follows from the ratio and from the places of both axes: it goes
+!> through the line on which both wheels have the same velocity.
+module mech9_wheel_figures
+  use mech9_kinds, only: wp, pi
+  use mech9_rotation, only: cross, unit
+  use mech9_pose, only: default_zero
+  use mech9_mechanism, only: mechanism_type
+  use mech9_linear_coupling, only: linear_coupling_type
+  use mech9_film, only: film_type
+  use mech9_pair_axes, only: turning, sliding
+  use mech9_skeleton, only: skeleton_type, figure_type
+  implicit none
+  private
+  public :: find_figures
+
+  !> A pair of a coupling, as it is seen from the link that both pairs of the coupling share.
+  type :: partner_type
+    integer :: link = 0                 !< the other link, a wheel or a rack
+    integer :: side = 1                 !< 1: the common link is the reference link of the pair, 2: its moving link
+    real(wp) :: point(3) = 0.0_wp       !< of the axis, in the common link [m]
+    real(wp) :: axis(3) = 0.0_wp        !< its direction, in the common link, of unit length
+    real(wp) :: own_point(3) = 0.0_wp   !< the point, in the other link [m]
+    real(wp) :: own_axis(3) = 0.0_wp    !< the direction, in the other link
+  end type partner_type
+
+  integer, parameter :: corners = 72                !< of a circle
+  !> Lengths below this part of the mechanism's size are zero, and sines below the second number.
+  real(wp), parameter :: same = 0.001_wp, parallel = 1.0e-6_wp
+  !> No wheel is drawn larger than this multiple of the mechanism's size.
+  real(wp), parameter :: largest = 2.0_wp
+
+contains
+
+  !> The figures of all couplings between two pairs of one link are added to a skeleton whose places are known.
+  subroutine find_figures(mechanism, film, skeleton)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
+    type(skeleton_type), intent(inout) :: skeleton  !< places at which the pairs are drawn
+    type(partner_type) :: pair(2)
+    integer :: i, common
+
+    if (allocated(skeleton%figures)) deallocate (skeleton%figures)
+    allocate (skeleton%figures(0))
+    if (.not. allocated(mechanism%couplings)) return
+    do i = 1, size(mechanism%couplings)
+      select type (coupling => mechanism%couplings(i)%coupling)
+      type is (linear_coupling_type)
+        if (size(coupling%coordinates) /= 2) cycle
+        call find_partners(skeleton, coupling%coordinates, pair, common)
+        if (common == 0) cycle
+        associate (ratio => -coupling%coefficients(1)*(3 - 2*pair(1)%side)*(3 - 2*pair(2)%side), &
+                   kinds => skeleton%places(coupling%coordinates)%kind)
+          if (coupling%name == 'gear' .and. all(kinds == turning)) then
+            call add_gears(pair, ratio, skeleton)
+          else if (coupling%name == 'rack' .and. kinds(1) == turning .and. kinds(2) == sliding) then
+            call add_rack(film, pair, common, ratio, skeleton)
+          else if (coupling%name == 'belt' .and. all(kinds == turning) .and. allocated(coupling%radii)) then
+            call add_belt(pair, common, coupling%radii, ratio*dot_product(pair(1)%axis, pair(2)%axis) < 0.0_wp, skeleton)
+          end if
+        end associate
+      end select
+    end do
+  end subroutine find_figures
+
+  !> Both pairs of a coupling, as seen from the link that they share; no link: 0.
+  subroutine find_partners(skeleton, coordinates, pair, common)
+    type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
+    integer, intent(in) :: coordinates(2)            !< numbers of the pairs
+    type(partner_type), intent(out) :: pair(2)       !< both pairs
+    integer, intent(out) :: common                   !< number of the link that they share; 0: none, or both links
+    integer :: i, j, shared
+
+    common = 0
+    shared = 0
+    do i = 1, 2
+      do j = 1, 2
+        if (skeleton%places(coordinates(1))%links(i) /= skeleton%places(coordinates(2))%links(j)) cycle
+        common = skeleton%places(coordinates(1))%links(i)
+        shared = shared + 1
+        pair(1)%side = i
+        pair(2)%side = j
+      end do
+    end do
+    if (shared /= 1) common = 0
+    if (common == 0) return
+    do i = 1, 2
+      associate (place => skeleton%places(coordinates(i)), side => pair(i)%side)
+        pair(i)%link = place%links(3 - side)
+        pair(i)%point = place%points(:, side)
+        pair(i)%axis = place%axes(:, side)
+        pair(i)%own_point = place%points(:, 3 - side)
+        pair(i)%own_axis = place%axes(:, 3 - side)
+      end associate
+    end do
+  end subroutine find_partners
+
+  !> The pitch circles of two gears, of parallel shafts or of shafts whose axes meet.
+  subroutine add_gears(pair, ratio, skeleton)
+    type(partner_type), intent(in) :: pair(2)       !< both gears
+    real(wp), intent(in) :: ratio                   !< turn of the second one about its axis per turn of the first one
+    type(skeleton_type), intent(inout) :: skeleton  !< gets the circles
+    real(wp) :: apart(3), apex(3), line(3), part, reach(2), along
+
+    apart = pair(2)%point - pair(1)%point
+    if (norm2(cross(pair(1)%axis, pair(2)%axis)) <= parallel) then
+      apart = apart - dot_product(apart, pair(1)%axis)*pair(1)%axis
+      associate (same_way => ratio*sign(1.0_wp, dot_product(pair(1)%axis, pair(2)%axis)), distance => norm2(apart))
+        if (abs(same_way - 1.0_wp)*largest*skeleton%size <= max(1.0_wp, abs(same_way))*distance) return
+        if (distance <= same*skeleton%size) return
+        ! this part of the way from the first axis to the second one is the place of equal velocities
+        part = same_way/(same_way - 1.0_wp)
+        call add_circle(pair(1), 0.0_wp, abs(part)*distance, part > 1.0_wp, skeleton)
+        along = dot_product(pair(1)%point - pair(2)%point, pair(2)%axis)
+        call add_circle(pair(2), along, abs(part - 1.0_wp)*distance, part < 0.0_wp, skeleton)
+      end associate
+      return
+    end if
+    call find_apex(pair, apex, reach)
+    if (norm2(pair(2)%point + reach(2)*pair(2)%axis - apex) > same*skeleton%size) return
+    ! both cones touch along this line through the apex
+    line = unit(pair(1)%axis - ratio*pair(2)%axis)
+    part = nearer_bearing(pair, line, reach, same*skeleton%size)
+    if (abs(part) <= 0.0_wp) return
+    call add_cone(pair(1), reach(1), part*line, skeleton)
+    call add_cone(pair(2), reach(2), part*line, skeleton)
+  end subroutine add_gears
+
+  !> The point of the first axis that is nearest to the second axis, and the ways along both axes from the points of the pairs
+  !> to the nearest points.
+  pure subroutine find_apex(pair, apex, reach)
+    type(partner_type), intent(in) :: pair(2)   !< two pairs whose axes are not parallel
+    real(wp), intent(out) :: apex(3)            !< in the common link [m]
+    real(wp), intent(out) :: reach(2)           !< along both axes [m]
+    real(wp) :: apart(3), cosine
+
+    apart = pair(2)%point - pair(1)%point
+    cosine = dot_product(pair(1)%axis, pair(2)%axis)
+    reach(1) = (dot_product(apart, pair(1)%axis) - cosine*dot_product(apart, pair(2)%axis))/(1.0_wp - cosine**2)
+    reach(2) = cosine*reach(1) - dot_product(apart, pair(2)%axis)
+    apex = pair(1)%point + reach(1)*pair(1)%axis
+  end subroutine find_apex
+
+  !> The length along the line of contact, with its sign, at which the wheel of the pair nearer to the apex stands at the point
+  !> of the pair; 0 where both points are at the apex.
+  pure real(wp) function nearer_bearing(pair, line, reach, least) result(length)
+    type(partner_type), intent(in) :: pair(2)   !< both bevel gears
+    real(wp), intent(in) :: line(3)             !< direction of the line on which they touch, of unit length
+    real(wp), intent(in) :: reach(2)            !< ways along both axes from the points of the pairs to the apex [m]
+    real(wp), intent(in) :: least               !< shorter ways are none [m]
+    real(wp) :: along, candidate
+    integer :: i
+
+    length = 0.0_wp
+    do i = 1, 2
+      along = dot_product(line, pair(i)%axis)
+      if (abs(reach(i)) <= least .or. abs(along) <= parallel) cycle
+      candidate = -reach(i)/along
+      if (abs(length) <= 0.0_wp .or. abs(candidate) < abs(length)) length = candidate
+    end do
+  end function nearer_bearing
+
+  !> The circle of a bevel gear through the end of the line of contact.
+  subroutine add_cone(gear, reach, line, skeleton)
+    type(partner_type), intent(in) :: gear          !< the gear
+    real(wp), intent(in) :: reach                   !< way along its axis from its point to the apex [m]
+    real(wp), intent(in) :: line(3)                 !< from the apex to the end of the line of contact, in the common link [m]
+    type(skeleton_type), intent(inout) :: skeleton  !< gets the circle
+    real(wp) :: along
+
+    along = dot_product(line, gear%axis)
+    call add_circle(gear, reach + along, norm2(line - along*gear%axis), .false., skeleton)
+  end subroutine add_cone
+
+  !> A pinion, and the rack over the part that comes into mesh.
+  subroutine add_rack(film, pair, common, travel, skeleton)
+    type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
+    type(partner_type), intent(in) :: pair(2)       !< the pinion and the rack
+    integer, intent(in) :: common                   !< number of the link that carries both
+    real(wp), intent(in) :: travel                  !< of the rack along its axis per turn of the pinion [m/rad]
+    type(skeleton_type), intent(inout) :: skeleton  !< gets the circle and the line
+    real(wp) :: contact(3), at(3), first(3), low, high
+    integer :: frame
+
+    if (abs(dot_product(pair(1)%axis, pair(2)%axis)) > parallel) return
+    if (abs(travel) <= same*skeleton%size .or. abs(travel) > largest*skeleton%size) return
+    call add_circle(pair(1), 0.0_wp, abs(travel), .false., skeleton)
+    contact = pair(1)%point + travel*cross(pair(2)%axis, pair(1)%axis)
+    low = 0.0_wp
+    high = 0.0_wp
+    first = 0.0_wp
+    do frame = 1, film%n_frames
+      at = film%local(frame, pair(2)%link, film%position(frame, common, contact))
+      if (frame == 1) first = at
+      low = min(low, dot_product(at - first, pair(2)%own_axis))
+      high = max(high, dot_product(at - first, pair(2)%own_axis))
+    end do
+    call add_figure(pair(2)%link, reshape([first + (low - abs(travel))*pair(2)%own_axis, &
+                                           first + (high + abs(travel))*pair(2)%own_axis], [3, 2]), .false., skeleton)
+  end subroutine add_rack
+
+  !> Two pulleys, and the straight parts of the belt, which stand still relative to the link that carries the pulleys.
+  subroutine add_belt(pair, common, radii, crossed, skeleton)
+    type(partner_type), intent(in) :: pair(2)       !< both pulleys
+    integer, intent(in) :: common                   !< number of the link that carries both
+    real(wp), intent(in) :: radii(2)                !< of the pulleys [m]
+    logical, intent(in) :: crossed                  !< the belt is crossed
+    type(skeleton_type), intent(inout) :: skeleton  !< gets the circles and the lines
+    real(wp) :: apart(3), along(3), across(3), normal(3), sine, other
+    integer :: side
+
+    if (norm2(cross(pair(1)%axis, pair(2)%axis)) > parallel) return
+    apart = pair(2)%point - pair(1)%point
+    apart = apart - dot_product(apart, pair(1)%axis)*pair(1)%axis
+    other = merge(-radii(2), radii(2), crossed)
+    if (norm2(apart) <= abs(radii(1) - other) .or. maxval(radii) > largest*skeleton%size) return
+    call add_circle(pair(1), 0.0_wp, radii(1), .false., skeleton)
+    call add_circle(pair(2), dot_product(pair(1)%point - pair(2)%point, pair(2)%axis), radii(2), .false., skeleton)
+    along = unit(apart)
+    across = cross(pair(1)%axis, along)
+    sine = (radii(1) - other)/norm2(apart)
+    do side = -1, 1, 2
+      normal = sine*along + side*sqrt(1.0_wp - sine**2)*across
+      call add_figure(common, reshape([pair(1)%point + radii(1)*normal, pair(1)%point + apart + other*normal], [3, 2]), &
+                      .true., skeleton)
+    end do
+  end subroutine add_belt
+
+  !> A circle of a wheel about its axis is added, with a spoke that shows how it turns; a wheel with inner teeth has a short mark
+  !> outside. A wheel that meshes with several others is added once.
+  subroutine add_circle(wheel, along, radius, inner, skeleton)
+    type(partner_type), intent(in) :: wheel         !< pair and link of the wheel
+    real(wp), intent(in) :: along                   !< place of its middle on its axis, from the point of the pair [m]
+    real(wp), intent(in) :: radius                  !< of the pitch circle [m]
+    logical, intent(in) :: inner                    !< its teeth are inside
+    type(skeleton_type), intent(inout) :: skeleton  !< gets the circle
+    real(wp) :: points(3, corners + 2), middle(3), first(3), second(3), angle
+    integer :: i
+
+    if (radius <= same*skeleton%size .or. radius > largest*skeleton%size) return
+    middle = wheel%own_point + along*wheel%own_axis
+    first = default_zero(wheel%own_axis)
+    first = unit(first - dot_product(first, wheel%own_axis)*wheel%own_axis)
+    second = cross(wheel%own_axis, first)
+    points(:, 1) = middle + merge(1.12_wp, 0.0_wp, inner)*radius*first
+    do i = 0, corners
+      angle = 2.0_wp*pi*i/corners
+      points(:, i + 2) = middle + radius*(cos(angle)*first + sin(angle)*second)
+    end do
+    do i = 1, size(skeleton%figures)
+      associate (figure => skeleton%figures(i))
+        if (figure%link /= wheel%link .or. size(figure%points, 2) /= size(points, 2)) cycle
+        if (maxval(abs(figure%points(:, 2:) - points(:, 2:))) <= same*skeleton%size) return
+      end associate
+    end do
+    call add_figure(wheel%link, points, .false., skeleton)
+  end subroutine add_circle
+
+  !> A line of a link is added to the figures.
+  subroutine add_figure(link, points, is_belt, skeleton)
+    integer, intent(in) :: link                     !< number of the link
+    real(wp), intent(in) :: points(:, :)            !< (3,n) points that the line joins, in the system of the link [m]
+    logical, intent(in) :: is_belt                  !< the line is a part of a belt
+    type(skeleton_type), intent(inout) :: skeleton  !< gets the line
+    type(figure_type), allocatable :: grown(:)
+    integer :: i, n
+
+    n = size(skeleton%figures)
+    allocate (grown(n + 1))
+    do i = 1, n
+      grown(i) = skeleton%figures(i)
+    end do
+    grown(n + 1)%link = link
+    grown(n + 1)%points = points
+    grown(n + 1)%is_belt = is_belt
+    call move_alloc(grown, skeleton%figures)
+  end subroutine add_figure
+end module mech9_wheel_figures
