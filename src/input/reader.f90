@@ -22,6 +22,7 @@ module mech9_reader
   use mech9_motor_reader, only: read_motors
   use mech9_rod_holding, only: hold_idle_rods
   use mech9_output_reader, only: read_output
+  use mech9_quantity_reader, only: read_quantities
   use mech9_cam_reader, only: read_cams
   use mech9_diagnostics, only: diagnostics_type
   implicit none
@@ -113,6 +114,7 @@ contains
       m%gravity = read_gravity(document)
       call read_loads(document, n_links, m%pairs, m%angle_unit, m%parameters, m%loads, diagnostics)
       call read_output(document, m%structure, request%output, diagnostics)
+      call read_quantities(document, request%time, request%quantities, diagnostics)
       call read_cams(document, m%structure, m%pairs, request%cams, diagnostics)
       call check_pairs_given(document, m, diagnostics)
     end associate

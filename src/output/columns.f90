@@ -43,6 +43,7 @@ module mech9_columns
     procedure :: append_motors
     procedure :: fill_motors
     procedure :: width
+    procedure :: family_of
     procedure :: fill
     procedure :: fill_poses
   end type columns_type
@@ -231,6 +232,28 @@ contains
 
     width = self%count + self%poses%width()
   end function width
+
+  !> The columns of the position, the rate and the acceleration to which a column belongs, where all three are recorded.
+  pure subroutine family_of(self, column, family, order)
+    class(columns_type), intent(in) :: self  !< the columns
+    integer, intent(in) :: column            !< number of a column
+    integer, intent(out) :: family(0:2)      !< columns of the position and its first two derivatives; 0 where they are not recorded
+    integer, intent(out) :: order            !< order of the derivative that the column is, 0 to 2
+    integer :: n, at
+
+    family = 0
+    order = 0
+    if (self%derivatives < 2 .or. column < 2 .or. column > self%motion) return
+    n = size(self%coordinates)
+    if (column <= 3*n + 1) then
+      order = (column - 2)/n
+      family = column - order*n + [0, n, 2*n]
+    else
+      at = column - 3*n - 2     ! points follow each other: nine columns each
+      order = mod(at, 9)/3
+      family = column - 3*order + [0, 3, 6]
+    end if
+  end subroutine family_of
 
   !> Fill the columns of the poses in a row, if there are any.
   pure subroutine fill_poses(self, plan, state, row)

@@ -18,6 +18,7 @@ module mech9_dynamic_report
   use mech9_simulation, only: coordinate_change_type
   use mech9_free_simulation, only: free_simulation_type
   use mech9_force_record, only: reacting_pairs
+  use mech9_quantity_record, only: quantity_record_type
   use mech9_run_words, only: duration, each, begin_report, add_structure, add_uniqueness
   implicit none
   private
@@ -176,7 +177,7 @@ contains
 
   !> Write the report as JSON, with structure, coefficients of motion and events.
   subroutine save_dynamic_report(path, model, plan, table_path, diagnostics, outcome, simulation, err, &
-                                   unique)
+                                   unique, quantities)
     character(len=*), intent(in) :: path                      !< of the report
     type(model_type), intent(in) :: model                     !< the model
     type(plan_type), intent(in) :: plan                       !< at the start
@@ -185,6 +186,7 @@ contains
     type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
     type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
     logical, allocatable, intent(in) :: unique(:, :)   !< (6,M) unique components of wrenches; not allocated: none are recorded
+    type(quantity_record_type), intent(in) :: quantities   !< of the run
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(json_type) :: json
     type(facts_type) :: facts
@@ -194,6 +196,7 @@ contains
     call facts%to_json(json)
     call add_coefficients(json, plan, simulation%coefficients)
     call add_events(json, simulation)
+    call quantities%to_json(json)
     if (allocated(unique)) call add_uniqueness(json, reacting_pairs(model), unique)
     call add_structure(json, model, plan)
     call json%end_object()

@@ -120,6 +120,8 @@ contains
     real(wp), allocatable :: row(:)
 
     call new_row_source('mech9d', simulation, source)
+    call source%begin_quantities(err)
+    if (allocated(err)) return
     allocate (row(source%columns%width()))
     call source%row_at(model%request%time%start, row, err)
   end subroutine check_motion
@@ -163,7 +165,7 @@ contains
     call end_run(options, pictures, model, source, results, diagnostics)
     if (.not. reported) return
     call save_dynamic_report(options%argument('report'), model, plan, results%table_path, diagnostics, &
-                             outcome, simulation, err, source%forces%unique)
+                             outcome, simulation, err, source%forces%unique, source%quantities)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out
 end module mech9_dynamic_task

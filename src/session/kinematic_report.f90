@@ -15,6 +15,7 @@ module mech9_kinematic_report
   use mech9_law_notes, only: print_jumps
   use mech9_recording, only: recording_outcome_type
   use mech9_force_record, only: reacting_pairs
+  use mech9_quantity_record, only: quantity_record_type
   use mech9_run_words, only: duration, each, begin_report, add_structure, add_uniqueness
   implicit none
   private
@@ -91,7 +92,7 @@ contains
 
   !> Write the report as JSON, with the structure.
   subroutine save_kinematic_report(path, program_name, model, plan, table_path, diagnostics, outcome, driven, err, &
-                                   unique)
+                                   unique, quantities)
     character(len=*), intent(in) :: path                  !< of the report
     character(len=*), intent(in) :: program_name          !< mech9k or mech9d
     type(model_type), intent(in) :: model             !< the model
@@ -101,6 +102,7 @@ contains
     type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
     type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
     logical, allocatable, intent(in) :: unique(:, :)   !< (6,M) unique components of wrenches; not allocated: none are recorded
+    type(quantity_record_type), intent(in) :: quantities   !< of the run
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(json_type) :: json
     type(facts_type) :: facts
@@ -108,6 +110,7 @@ contains
     call begin_report(json, program_name, model, diagnostics, table_path)
     call kinematic_facts(plan, outcome, driven, facts)
     call facts%to_json(json)
+    call quantities%to_json(json)
     if (allocated(unique)) call add_uniqueness(json, reacting_pairs(model), unique)
     call add_structure(json, model, plan)
     call json%end_object()

@@ -120,6 +120,8 @@ contains
 
     call new_driven_simulation(model, plan, start, simulation)
     call new_row_source('mech9k', simulation, source)
+    call source%begin_quantities(err)
+    if (allocated(err)) return
     allocate (row(source%columns%width()))
     call source%row_at(model%request%time%start, row, err)
     if (.not. allocated(err)) call set_inputs(model%problem%drives, model%request%time%end, q, dq, ddq, err)
@@ -159,7 +161,7 @@ contains
     call end_run(options, pictures, model, source, results, diagnostics)
     if (.not. reported) return
     call save_kinematic_report(options%argument('report'), program_name, model, simulation%plan, results%table_path, diagnostics, &
-                               outcome, simulation%driven, err, source%forces%unique)
+                               outcome, simulation%driven, err, source%forces%unique, source%quantities)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out
 end module mech9_kinematic_task

@@ -28,6 +28,8 @@ module mech9_task
   use mech9_force_record, only: force_record_type, reacting_pairs
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_hdf5_record, only: write_uniqueness
+  use mech9_quantity_record, only: quantity_record_type
+  use mech9_facts, only: facts_type
   use mech9_system, only: asked_to_end
   implicit none
   private
@@ -177,6 +179,12 @@ contains
     type(error_type), allocatable :: err
     type(hdf5_sink_type), pointer :: hdf5
 
+    ready = .false.
+    call source%begin_quantities(err)
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+      return
+    end if
     call announce(options, model, plan, requested)
     if (model%request%output%with_forces() .and. .not. options%has('quiet')) call print_forceless(error_unit, model%mechanism)
     if (pictures%any_wanted() .and. model%request%output%force_arrows) then
@@ -191,7 +199,9 @@ contains
     ready = .not. allocated(err)
     if (.not. ready) call diagnostics%add_error(err)
     hdf5 => results%hdf5()
-    if (ready .and. associated(hdf5)) call write_uniqueness(hdf5%file, source%columns, source%forces)
+    if (.not. (ready .and. associated(hdf5))) return
+    call write_uniqueness(hdf5%file, source%columns, source%forces)
+    call write_quantities(hdf5, source%quantities, again=.false.)
   end subroutine begin_run
 
   !> Close the results of a run, draw the mechanism, and print which files were written.
@@ -200,12 +210,16 @@ contains
     type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
     type(model_type), intent(in) :: model              !< the model
     type(row_source_type), intent(in) :: source            !< of the rows that were written
-    type(results_type), intent(inout) :: results           !< closed on return
+    type(results_type), intent(inout), target :: results   !< closed on return
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
     type(error_type), allocatable :: err
+    type(hdf5_sink_type), pointer :: hdf5
 
+    hdf5 => results%hdf5()
+    if (associated(hdf5)) call write_quantities(hdf5, source%quantities, again=.true.)
     call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
+    if (.not. options%has('quiet')) call source%quantities%print(error_unit)
     call results%print_words(error_unit, options%has('quiet'))
     if (allocated(source%forces%unique) .and. .not. options%has('quiet')) &
       call print_undetermined(error_unit, reacting_pairs(model), source%forces%unique)
@@ -213,6 +227,17 @@ contains
     if (asked_to_end()) return
     if (allocated(source%film)) call draw(options, pictures, model, source%film, diagnostics)
   end subroutine end_run
+
+  !> Write the quantities to the HDF5 file: before the run, when they are NaN, and again after it.
+  subroutine write_quantities(hdf5, quantities, again)
+    type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file
+    type(quantity_record_type), intent(in) :: quantities   !< of the run
+    logical, intent(in) :: again                           !< they stand there already
+    type(facts_type) :: facts
+
+    call quantities%find_facts(facts)
+    call facts%to_hdf5(hdf5%file, 'quantities', again)
+  end subroutine write_quantities
 
   !> Print the title, and with --verbose the structure and the plan.
   subroutine announce(options, model, plan, requested)

@@ -71,6 +71,7 @@ module mech9_simulation
   contains
     procedure :: start
     procedure :: advance
+    procedure :: visit
     procedure :: stop_if_interrupted
     procedure :: statistics
     procedure :: close => close_nothing
@@ -172,6 +173,27 @@ contains
     if (.not. allocated(err)) call self%go_to(t, err)
     if (.not. allocated(err)) call arrive(self, t, err)
   end subroutine advance
+
+  !> Go on to a time between two of the results. The position is neither counted nor judged, but for its closure. Fails as
+  !> advance does.
+  subroutine visit(self, t, err)
+    class(simulation_type), intent(inout), target :: self   !< the simulation, started
+    real(wp), intent(in) :: t                               !< time to go to, not before the present one [s]
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    call self%stop_if_interrupted(t, err)
+    if (.not. allocated(err)) call self%go_to(t, err)
+    if (allocated(err)) return
+    self%t = t
+    self%closure = self%present_closure()
+    call self%present(plan, state)
+    call check_closure(plan, t, self%closure, err)
+    if (allocated(err)) return
+    if (self%with_conditioning) call self%watch_conditioning(.true.)
+    if (self%with_energies) call self%energies(self%kinetic_energy, self%potential_energy)
+  end subroutine visit
 
   !> Judge and count the position that was reached.
   subroutine arrive(self, t, err)

@@ -241,7 +241,7 @@ def edited_files(talks):
                  ('inertia', ''), ('all is right', 'remove body 2'), ('Removed', 'remove point 1'),
                  ('Removed', 'remove time start'), ('Removed', '?'),
                  ('Give the number', '999'), ('no answer that can be changed', 'zero zero zero zero'),
-                 ('no answer that can be changed', 'add nothing'), ('What can be added: drive, body, load, motor, point, parameter', ''),
+                 ('no answer that can be changed', 'add nothing'), ('What can be added: drive, body, load, motor, point, parameter, quantity', ''),
                  ('[both]', 'save'), ('data file [p.nml]', '/'),
                  ('exists; overwrite it [no]', 'yes'), ('cannot open', '')]
         talks.pipe(talks.mech9d, steps, 'changes', arguments=('--edit', 'p.nml'), folder=folder)
@@ -451,7 +451,7 @@ def forces_of_drives(talks):
             table = read_table(text_of(os.path.join(folder, 'bar.dat')))
             talks.checks.near(table['F1'], 2 * 9.81 * 0.5 - 3, 1e-14, f'forces {why}: the torque of the drive')
     with tempfile.TemporaryDirectory() as folder:
-        done = talks.pipe(talks.mech9k, BAR + plain + [('all is right', 'add body'), ('What can be added: point, parameter;', 'quit')],
+        done = talks.pipe(talks.mech9k, BAR + plain + [('all is right', 'add body'), ('What can be added: point, parameter, quantity;', 'quit')],
                           'without forces', folder=folder)
         talks.checks.true(not any(word in done.stderr for word in ('Bodies', 'Gravity', 'Loads')), 'no masses without forces',
                           done.stderr)

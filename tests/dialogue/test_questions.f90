@@ -124,6 +124,7 @@ contains
     call draft%give('point', 1, 'name', '''P''')
     call draft%give('body', 1, 'link', '2')
     call draft%give('parameter', 1, 'name', '''crank''')
+    call draft%give('quantity', 1, 'name', '''stroke''')
     call interview%start(program_name, draft)
     interview%outline%asked = .true.
     interview%outline%guesses = .true.

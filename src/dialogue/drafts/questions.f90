@@ -116,9 +116,10 @@ contains
       if (outline%program_name == 'mech9k' .or. .not. all(outline%independent)) &
         call append(questions, count, question_type(kind=ask_guesses, topic=topic, group_row=group_row))
     else if (any(item_table(rows)%seldom) .and. group /= 'mechanism' .and. &
-             (all(group /= ['load     ', 'motor    ', 'cam      ', 'coupling ', 'parameter']) .or. draft%count_of(group) > 0)) then
+             (all(group /= ['load     ', 'motor    ', 'cam      ', 'coupling ', 'parameter', 'quantity ']) .or. &
+              draft%count_of(group) > 0)) then
       ! a conversation does not begin with rarely used names; those of the mechanism can be changed by their names, and
-      ! those of loads, motors, cams, couplings and parameters are for the ones that are there
+      ! those of loads, motors, cams, couplings, parameters and quantities are for the ones that are there
       call append(questions, count, question_type(kind=ask_seldom, topic=topic, group_row=group_row))
     end if
     do place = 1, merge(draft%count_of(group), 1, group_table(group_row)%repeats)

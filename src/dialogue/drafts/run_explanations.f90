@@ -54,7 +54,18 @@ module mech9_run_explanations
                   'A study of tolerances draws values about the given one that scatter by so much: the standard deviation, or '// &
                   'half the width where all values are equally likely.', '0.001'), &
     explanation_type('parameter', 'distribution', '', &
-                  'Errors of many small causes are normal; uniform means equally likely within the spread.', 'uniform')]
+                  'Errors of many small causes are normal; uniform means equally likely within the spread.', 'uniform'), &
+    explanation_type('quantity', 'name', '', &
+                  'A quantity is one number from the whole run, which stands in the report and is compared in studies. '// &
+                  'Enter goes on without a further quantity.', 'stroke'), &
+    explanation_type('quantity', 'of', '', &
+                  'Name a column by its heading in the table of results: q4 and dq4 belong to coordinate 4, P.x and P.vx to '// &
+                  'the point P, R4.fx and F1 to forces, if these are recorded.', 'P.x'), &
+    explanation_type('quantity', 'take', '', &
+                  'It is the value at start, end or a time (at), the least or largest one, the largest magnitude (peak), max '// &
+                  '- min (range), or the mean, the root mean square (rms) or the integral over time.', 'range'), &
+    explanation_type('quantity', 'at', '', &
+                  'The value at this time is taken; it need not be a time of the results.', '0.5')]
 
   type(explanation_type), parameter :: run_texts(*) = [ &
     explanation_type('time', 'start', '', &

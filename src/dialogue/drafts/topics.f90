@@ -40,6 +40,8 @@ module mech9_topics
     topic_type('User procedures', 'user', ''), &
     topic_type('Parameters', 'parameter', 'A parameter is a name for numbers of this file that change together, as a length '// &
                'does that stands at several places. A parameter begun by mistake is left out by remove.'), &
+    topic_type('Quantities', 'quantity', 'A quantity is one number from the whole run, such as the stroke of a slider. '// &
+               'A quantity begun by mistake is left out by remove.'), &
     topic_type('Further data', '', '')]
 
 contains
@@ -81,7 +83,7 @@ contains
   pure logical function is_on_request(group_row)
     integer, intent(in) :: group_row  !< row of the group in group_table
 
-    is_on_request = group_table(group_row)%name == 'parameter'
+    is_on_request = any(group_table(group_row)%name == ['parameter', 'quantity '])
   end function is_on_request
 
   !> Whether there can be any number of groups of a name, which the user begins one by one. In mech9d, drives are among them:

@@ -69,6 +69,8 @@ module mech9_grammar
                    'a cam whose profile mech9k computes from the motion of its follower (option --cam)'), &
     group_row_type('parameter', .true., 'name', 'both', &
                    'a number by name that sets numbers of this file, for studies, sensitivities and optimisation'), &
+    group_row_type('quantity', .true., 'name', 'both', &
+                   'a number from a whole run: an extreme, a mean or an integral of a column of the results'), &
     group_row_type('time', .false., '', 'both', &
                    'the times of the results: start + (end - start) i/intervals, i = 0 .. intervals'), &
     group_row_type('solver', .false., '', 'mech9d', 'method and tolerances of the integration'), &
@@ -409,7 +411,16 @@ module mech9_grammar
                   'how far it scatters about its value: standard deviation, or half the width of a uniform distribution', '0.001', &
                   seldom=.true.), &
     item_row_type('parameter', 'distribution', 'text', 1, 1, '', optional, '''normal''', '', 'normal uniform', '', &
-                  'the distribution of which spread is the measure', '''uniform''', seldom=.true.)]
+                  'the distribution of which spread is the measure', '''uniform''', seldom=.true.), &
+    item_row_type('quantity', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
+                  'its name in results; letters, digits and _', '''stroke'''), &
+    item_row_type('quantity', 'of', 'text', 1, 1, '', needed, '', '', '', '', &
+                  'the column of the results from which it is taken', '''P.x'''), &
+    item_row_type('quantity', 'take', 'text', 1, 1, '', needed, '', '', 'start end min max peak range mean rms integral at', '', &
+                  'which number: peak is the largest magnitude, range max - min; mean, rms and integral are over time', &
+                  '''range'''), &
+    item_row_type('quantity', 'at', 'real', 1, 1, 's', optional, '(none)', '', '', '', &
+                  'the time of the value, for take=''at''', '0.5', seldom=.true.)]
 
   type(item_row_type), parameter :: run_items(*) = [ &
     item_row_type('time', 'start', 'real', 1, 1, 's', optional, '0', '', '', '', 'time of the first result', '0'), &

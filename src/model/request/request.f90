@@ -1,7 +1,9 @@
-!> The request: the times of the results, their accuracy, where they go, and the cams whose profiles are computed.
+!> The request: the times of the results, their accuracy, where they go, the quantities that are taken of them, and the cams whose
+!> profiles are computed.
 module mech9_request
   use mech9_kinds, only: wp
   use mech9_error, only: place_type
+  use mech9_quantity, only: quantity_type
   implicit none
   private
   public :: request_type, time_grid_type, solver_settings_type, output_settings_type, cam_request_type
@@ -68,6 +70,7 @@ module mech9_request
     type(time_grid_type) :: time
     type(solver_settings_type) :: solver
     type(output_settings_type) :: output
+    type(quantity_type), allocatable :: quantities(:)   !< in the order of the data file
     type(cam_request_type), allocatable :: cams(:)   !< in the order of the data file
   end type request_type
 

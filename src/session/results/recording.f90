@@ -62,6 +62,7 @@ contains
       if (allocated(err)) exit
     end do
     call progress%finish()
+    if (.not. (allocated(stopped) .or. allocated(err) .or. source%quantities%is_empty())) call source%quantities%finish()
     call results%flush(at_flush)
     call lap(clock, outcome%seconds_writing)
     if (.not. allocated(err)) call move_alloc(at_flush, err)

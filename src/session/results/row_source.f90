@@ -9,6 +9,7 @@ module mech9_row_source
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_film, only: film_type
   use mech9_force_record, only: force_record_type
+  use mech9_quantity_record, only: quantity_record_type
   implicit none
   private
   public :: row_source_type, signal_interruption_type, new_row_source
@@ -19,7 +20,10 @@ module mech9_row_source
     type(columns_type) :: columns
     type(force_record_type) :: forces      !< computes the forces that are recorded
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
+    type(quantity_record_type) :: quantities   !< of the whole run
+    real(wp), allocatable, private :: between(:)   !< a row between two outputs
   contains
+    procedure :: begin_quantities
     procedure :: row_at
   end type row_source_type
 
@@ -53,22 +57,62 @@ contains
     if (simulation%with_error) call source%columns%append('error', 'rad,m', 'estimated error of the coordinates and points')
   end subroutine new_row_source
 
-  !> Go on to output time t and give its row. Output times come in order, the first one is the start.
+  !> Find the columns of the quantities that the model requests. Fails with exit_data where one is not recorded.
+  subroutine begin_quantities(self, err)
+    class(row_source_type), intent(inout) :: self       !< the row source
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    if (.not. allocated(self%simulation%model%request%quantities)) return
+    call self%quantities%begin(self%simulation%model%request%quantities, self%columns, err)
+    allocate (self%between(self%columns%width()), source=0.0_wp)
+  end subroutine begin_quantities
+
+  !> Go on to output time t and give its row. Output times come in order, the first one is the start. Quantities take what they
+  !> need on the way.
   subroutine row_at(self, t, row, err)
     class(row_source_type), intent(inout) :: self       !< the row source
     real(wp), intent(in) :: t                           !< output time [s]
+    real(wp), intent(inout) :: row(:)                   !< (columns%width()) in the units of the results
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    if (self%simulation%started) then
+      if (.not. self%quantities%is_empty()) call visit_between(self, t, err)
+      if (.not. allocated(err)) call self%simulation%advance(t, err)
+    else
+      call self%simulation%start(err, signal_interruption_type())
+    end if
+    if (.not. allocated(err)) call fill_row(self, row, err)
+    if (allocated(err)) return
+    if (.not. self%quantities%is_empty()) call self%quantities%take_output(row)
+    if (allocated(self%film)) call film_row(self, row)
+  end subroutine row_at
+
+  !> Visit the times before an output at which quantities need rows.
+  subroutine visit_between(self, t, err)
+    type(row_source_type), intent(inout) :: self        !< the row source
+    real(wp), intent(in) :: t                           !< time of the next output [s]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp), allocatable :: times(:)
+    integer :: i
+
+    call self%quantities%times_before(t, times)
+    do i = 1, size(times)
+      call self%simulation%visit(times(i), err)
+      if (.not. allocated(err)) call fill_row(self, self%between, err)
+      if (allocated(err)) return
+      call self%quantities%take_between(self%between)
+    end do
+  end subroutine visit_between
+
+  !> Fill a row with the numbers of the present position.
+  subroutine fill_row(self, row, err)
+    class(row_source_type), intent(inout) :: self       !< the row source
     real(wp), intent(inout) :: row(:)                   !< (columns%width()) in the units of the results
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plan_type), pointer :: plan, force_plan
     type(state_type), pointer :: state, force_state
     integer :: next
 
-    if (self%simulation%started) then
-      call self%simulation%advance(t, err)
-    else
-      call self%simulation%start(err, signal_interruption_type())
-    end if
-    if (allocated(err)) return
     call self%simulation%present(plan, state)
     call self%columns%fill(self%simulation%model%mechanism, plan, state, row)
     call self%columns%fill_poses(plan, state, row)
@@ -98,13 +142,22 @@ contains
       end if
       if (simulation%with_error) row(next + 1) = simulation%error
     end associate
-    if (.not. allocated(self%film)) return
+  end subroutine fill_row
+
+  !> Show the film the present position and its row.
+  subroutine film_row(self, row)
+    class(row_source_type), intent(inout) :: self       !< the row source, with a film
+    real(wp), intent(in) :: row(:)                      !< numbers of the row
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    call self%simulation%present(plan, state)
     if (self%forces%wanted) then
       call self%film%take(self%simulation%model%mechanism, plan, state, row, self%forces%reactions%force)
     else
       call self%film%take(self%simulation%model%mechanism, plan, state, row)
     end if
-  end subroutine row_at
+  end subroutine film_row
 
   !> Whether the user has interrupted the program.
   logical function is_wanted(self)

@@ -1,0 +1,171 @@
+"""Quantities: strokes, extremes between outputs, means and integrals against closed forms; values at times; wrong columns.
+
+usage: quantities.py MECH9K MECH9D
+"""
+import json
+import math
+import os
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import Checks, run, table_of
+
+DONE, DATA = 0, 3
+CRANK, ROD = 0.3, 1.1
+SLIDER_CRANK = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1.1,0,0, moving_point=0,0,0 /
+&pair coordinate=4, links=1,4, kind='prismatic', axis=1,0,0, zero=0,1,0, moving_point=0,0,0 /
+&initial coordinate=4, position=1.2 /
+&drive coordinate=1, kind='polynomial', coefficients=0.4, 10 /
+&point name='B', link=4 /
+&body link=4, mass=2 /
+&time end=0.7, intervals=20 /
+"""
+# a slide that is driven by a sine, and the force of its drive
+SINE = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&drive coordinate=1, kind='harmonic', mean=0.2, amplitude=0.7, angular_frequency=3, phase=0.4 /
+&body link=2, mass=2.5 /
+&output drive_forces=.true. /
+&time end={end!r}, intervals=20 /
+"""
+# a mass on a spring
+OSCILLATOR = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&initial coordinate=1, position=0.5 /
+&body link=2, mass=2 /
+&load kind='coordinate', coordinate=1, stiffness=18 /
+&solver relative_tolerance=1e-12, absolute_tolerance=1e-13 /
+&time end=2.2, intervals=23 /
+"""
+
+
+def quantity(number, of, take, more=''):
+    return f"&quantity name='n{number}', of='{of}', take='{take}'{more} /\n"
+
+
+def numbers_of(checks, program, text, wanted, why, code=DONE):
+    """Values of quantities in the report and the HDF5 file, in their order; `wanted` holds (of, take, more)."""
+    with tempfile.TemporaryDirectory() as folder:
+        data, report, hdf5 = (os.path.join(folder, name) for name in ('case.nml', 'report.json', 'case.h5'))
+        with open(data, 'w', encoding='utf-8') as file:
+            file.write(text + ''.join(quantity(i, *one) for i, one in enumerate(wanted)))
+        done = run(program, data, '--report', report, '--hdf5', hdf5)
+        checks.true(done.returncode == code, f'{why}: ends with {code}', done.stderr)
+        with open(report, encoding='utf-8') as file:
+            told = json.load(file)['quantities']
+        checks.true([one['name'] for one in told] == [f'n{i}' for i in range(len(wanted))], f'{why}: names', told)
+        if code == DONE:
+            checks.true(all(f"n{i} = " in done.stderr for i in range(len(wanted))), f'{why}: on the terminal', done.stderr)
+            with h5py.File(hdf5) as file:
+                kept = [file['quantities'][f'n{i}'][()] for i in range(len(wanted))]
+            checks.true(kept == [one['value'] for one in told], f'{why}: the HDF5 file has the numbers of the report', kept)
+        return [one['value'] for one in told], [one['unit'] for one in told]
+
+
+def near(checks, found, expected, tolerance, why):
+    checks.true(abs(found - expected) <= tolerance, why, f'{found!r} instead of {expected!r}')
+
+
+def slider_cranks(checks, program):
+    """The stroke is twice the crank; the dead centres lie between outputs. Twenty outputs for 1.1 turns: the polynomials through
+    four of them are exact to some 1e-10."""
+    wanted = [('B.x', 'range'), ('B.x', 'min'), ('B.x', 'max'), ('q1', 'start'), ('q1', 'end'), ('B.vx', 'integral'),
+              ('B.ax', 'integral'), ('B.x', 'at', ', at=0.123'), ('B.vx', 'peak')]
+    values, units = numbers_of(checks, program, SLIDER_CRANK, wanted, f'{os.path.basename(program)}: slider-crank')
+
+    def place(t):
+        angle = 0.4 + 10 * t
+        return CRANK * math.cos(angle) + math.sqrt(ROD**2 - (CRANK * math.sin(angle))**2)
+
+    def rate(t):
+        angle = 0.4 + 10 * t
+        root = math.sqrt(ROD**2 - (CRANK * math.sin(angle))**2)
+        return -10 * CRANK * math.sin(angle) * (1 + CRANK * math.cos(angle) / root)
+
+    expected = [2 * CRANK, ROD - CRANK, ROD + CRANK, 0.4, 7.4, place(0.7) - place(0), rate(0.7) - rate(0), place(0.123),
+                max(abs(rate(t)) for t in np.linspace(0, 0.7, 200001))]
+    for i, (found, right) in enumerate(zip(values, expected)):
+        near(checks, found, right, 1e-9 * max(1, abs(right)), f'{program}: {wanted[i]}')
+    checks.true(units == ['m', 'm', 'm', 'rad', 'rad', 'm/s s', 'm/s^2 s', 'm', 'm/s'], f'{program}: units', units)
+
+
+def sines(checks, program):
+    """Means and root mean squares of harmonics over whole and broken periods; of a force, which has no rate, too."""
+    period = 2 * math.pi / 3
+    for end, why in ((period, 'a period'), (1.7, 'a part of a period')):
+        phase = lambda t: 3 * t + 0.4
+        mean = 0.2 + 0.7 * (math.cos(phase(0)) - math.cos(phase(end))) / 3 / end
+        square = 0.49 * (end / 2 - (math.sin(2 * phase(end)) - math.sin(2 * phase(0))) / 12)      # of the sine, over time
+        rms = math.sqrt(square / end + 2 * 0.2 * (mean - 0.2) + 0.04)
+        values, _ = numbers_of(checks, program, SINE.format(end=end),
+                               [('q1', 'mean'), ('q1', 'rms'), ('q1', 'integral'), ('F1', 'rms'), ('F1', 'max'), ('q1', 'peak')], why)
+        expected = [mean, rms, mean * end, 2.5 * 9 * math.sqrt(square / end), 2.5 * 9 * 0.7, 0.9]
+        for found, right, name in zip(values, expected, ('mean', 'rms', 'integral', 'rms of the force', 'largest force', 'peak')):
+            near(checks, found, right, 1e-10 * max(1, abs(right)), f'{program}: {why}: {name}')
+
+
+def oscillations(checks, program):
+    """A free motion: amplitude and energy of a mass on a spring; the motion's error is some 1e-10."""
+    text = OSCILLATOR
+    values, _ = numbers_of(checks, program, text, [('q1', 'min'), ('dq1', 'peak'), ('E.kinetic', 'max'), ('E.total', 'range'),
+                                                   ('E.kinetic', 'mean'), ('q1', 'at', ', at=1.0')], 'oscillator')
+    mean = 2.25 * (0.5 - math.sin(6 * 2.2) / 12 / 2.2)
+    for found, right, name in zip(values, (-0.5, 1.5, 2.25, 0, mean, 0.5 * math.cos(3)),
+                                  ('least position', 'largest speed', 'largest energy', 'constant energy', 'mean energy', 'at')):
+        near(checks, found, right, 3e-10 * max(1, abs(right)), f'oscillator: {name}')
+
+
+def same_rows(checks, program, folder):
+    """Times between outputs change nothing in the table but the last digits."""
+    path = os.path.join(folder, 'rows.nml')
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(SINE.format(end=1.0))
+    plain = table_of(program, path)
+    with open(path, 'a', encoding='utf-8') as file:
+        file.write(quantity(1, 'F1', 'rms'))
+    visited = table_of(program, path)
+    checks.true(all(np.allclose(plain[name], visited[name], rtol=1e-13, atol=1e-13) for name in plain), 'the rows are the same')
+
+
+def mistakes(checks, program, folder):
+    path = os.path.join(folder, 'wrong.nml')
+    for group, message in ((quantity(1, 'B.z1', 'max'), "11:25: quantity 'n1' is of column 'B.z1', which is not recorded; did you mean 'B.z'?"),
+                           (quantity(1, 'R4.fx', 'max'), "quantity 'n1' is of column 'R4.fx', which is not recorded"),
+                           (quantity(1, 'B.x', 'maximum'), "unknown take 'maximum'"),
+                           (quantity(1, 'B.x', 'at'), "'at' gives the time for take='at'"),
+                           (quantity(1, 'B.x', 'max', ', at=0.1'), "'at' gives the time for take='at'"),
+                           (quantity(1, 'B.x', 'at', ', at=0.8'), 'this time is not among those of the results, 0 to 0.7 s'),
+                           (quantity(1, 'B.x', 'max') + quantity(1, 'B.x', 'min'), "a second &quantity for name 'n1'")):
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(SLIDER_CRANK + group)
+        table = os.path.join(folder, 'kept.dat')
+        with open(table, 'w', encoding='utf-8') as file:
+            file.write('kept')
+        for more in (('--table', table), ('--check',)):
+            done = run(program, path, *more)
+            checks.true(done.returncode == DATA and message in done.stderr, f'{group.strip()} {more[0]}: {message}', done.stderr)
+        with open(table, encoding='utf-8') as file:
+            checks.true(file.read() == 'kept', f'{group.strip()}: nothing is written over')
+
+
+def main():
+    checks = Checks()
+    mech9k, mech9d = sys.argv[1:3]
+    with tempfile.TemporaryDirectory() as folder:
+        for program in (mech9k, mech9d):
+            slider_cranks(checks, program)
+            sines(checks, program)
+        oscillations(checks, mech9d)
+        same_rows(checks, mech9k, folder)
+        mistakes(checks, mech9k, folder)
+    checks.finish()
+
+
+main()
