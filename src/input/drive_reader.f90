@@ -233,7 +233,8 @@ contains
     n = 0
     do i = 1, size(paths)
       associate (group => document%groups(i))
-        if (all(group%name /= ['drive   ', 'load    ', 'motor   ', 'pair    ', 'coupling']) .or. .not. allocated(group%items)) cycle
+        if (all(group%name /= [character(len=8) :: 'drive', 'load', 'motor', 'pair', 'coupling', 'study']) .or. &
+            .not. allocated(group%items)) cycle
         call take_file(document%source%name, group%items, paths, n)
       end associate
     end do

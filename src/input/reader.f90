@@ -22,6 +22,7 @@ module mech9_reader
   use mech9_motor_reader, only: read_motors
   use mech9_rod_holding, only: hold_idle_rods
   use mech9_output_reader, only: read_output
+  use mech9_study_reader, only: read_study
   use mech9_quantity_reader, only: read_quantities
   use mech9_cam_reader, only: read_cams
   use mech9_diagnostics, only: diagnostics_type
@@ -64,6 +65,7 @@ contains
     call check_document(checked, diagnostics)
     call read_parameters(checked, model%parameters, diagnostics)
     call read_checked(checked, needs_drives, model, diagnostics)
+    call read_study(checked, model%parameters, model%request%study, diagnostics)
   end subroutine read_model
 
   !> The model of a document that is checked and in which the parameters have set their numbers; see read_model. Motors are left

@@ -13,6 +13,7 @@ module mech9_session
   use mech9_setting, only: apply_setting
   use mech9_drive_reader, only: files_of_groups
   use mech9_reader, only: read_structure_only, read_model
+  use mech9_varied_document, only: varied_document_type, new_varied_document
   use mech9_data_help, only: write_data_help
   use mech9_structure, only: structure_type
   use mech9_partition, only: partition_type
@@ -21,6 +22,7 @@ module mech9_session
   use mech9_structure_text, only: print_structure, print_names_of_vectors
   use mech9_task, only: task_type, answers_only
   use mech9_run_words, only: save_short_report
+  use mech9_study_task, only: work_on_study
   use mech9_choice_check, only: judge_choice_of
   use mech9_unused_options, only: print_unused_options
   use mech9_overwriting, only: refuse_overwriting
@@ -86,6 +88,7 @@ contains
     type(structure_type) :: structure
     type(partition_type) :: partition
     type(model_type), target :: model
+    type(varied_document_type) :: varied
     type(string_type), allocatable :: settings(:), inputs(:)
     type(error_type), allocatable :: err
     logical :: legible, reported
@@ -124,7 +127,12 @@ contains
         call refuse_overwriting(options, inputs, err, model%request%output)
         reported = allocated(err)
         if (allocated(err)) call diagnostics%add_error(err)
-        if (.not. allocated(err)) call task%work(options, model, diagnostics, reported, kept)
+        if (.not. allocated(err) .and. options%has('study')) then
+          call new_varied_document(document, diagnostics%sources, task%needs_drives, varied)
+          call work_on_study(task%program_name, options, varied, model, diagnostics)
+        else if (.not. allocated(err)) then
+          call task%work(options, model, diagnostics, reported, kept)
+        end if
       else if (legible .and. task%needs_drives) then
         call judge_choice_of(document, diagnostics, choice)
       end if

@@ -125,6 +125,7 @@ contains
     call draft%give('body', 1, 'link', '2')
     call draft%give('parameter', 1, 'name', '''crank''')
     call draft%give('quantity', 1, 'name', '''stroke''')
+    call draft%give('study', 1, 'kind', trim(merge('''list''  ', '''random''', drive == 'table')))
     call interview%start(program_name, draft)
     interview%outline%asked = .true.
     interview%outline%guesses = .true.

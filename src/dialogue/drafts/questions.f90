@@ -109,6 +109,7 @@ contains
       call ask_about_structure(draft, outline, topic, group_row, questions, count)
       return
     end if
+    if (group == 'study' .and. draft%count_of('study') == 0) return
     if (group == 'user' .and. .not. has_procedures(draft)) return
     if (group == 'cam' .and. .not. may_have_cams(draft)) return
     if (group == 'coupling' .and. draft%number('mechanism', 1, 'coordinates') == 1) return

@@ -65,7 +65,16 @@ module mech9_run_explanations
                   'It is the value at start, end or a time (at), the least or largest one, the largest magnitude (peak), max '// &
                   '- min (range), or the mean, the root mean square (rms) or the integral over time.', 'range'), &
     explanation_type('quantity', 'at', '', &
-                  'The value at this time is taken; it need not be a time of the results.', '0.5')]
+                  'The value at this time is taken; it need not be a time of the results.', '0.5'), &
+    explanation_type('study', 'kind', '', &
+                  'With the option --study the program makes a run for each of many sets of parameter values: all combinations '// &
+                  'of a grid, those of a list, or sets that are drawn.', 'grid'), &
+    explanation_type('study', 'runs', 'random latin sobol', &
+                  'So many sets of values are drawn. Means become exact with the root of this number.', '1000'), &
+    explanation_type('study', 'seed', 'random latin sobol', &
+                  'The same seed draws the same values, on any machine and in any order. Another one draws others.', '2'), &
+    explanation_type('study', 'file', 'list', &
+                  'Each line of this file has the values of all parameters, in the order of the parameters.', 'designs.dat')]
 
   type(explanation_type), parameter :: run_texts(*) = [ &
     explanation_type('time', 'start', '', &

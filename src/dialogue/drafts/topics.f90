@@ -42,6 +42,7 @@ module mech9_topics
                'does that stands at several places. A parameter begun by mistake is left out by remove.'), &
     topic_type('Quantities', 'quantity', 'A quantity is one number from the whole run, such as the stroke of a slider. '// &
                'A quantity begun by mistake is left out by remove.'), &
+    topic_type('Study', 'study', ''), &
     topic_type('Further data', '', '')]
 
 contains

@@ -166,12 +166,21 @@ contains
         else if (index(item_table(rows(1))%kinds, 'law:') == 1 .and. index(kind, 'law:') == 0) then
           call diagnostics%add(item%span, ''''//item%name//''' needs law='''//trim(item_table(rows(1))%kinds(5:))//'''')
         else if (kind /= '') then
-          call diagnostics%add(item%span, ''''//item%name//''' does not belong to '//trim(group%name)// &
-                               's of kind '''//trim(in_words(kind))//'''')
+          call diagnostics%add(item%span, ''''//item%name//''' does not belong to '//trim(plural_of(group%name))// &
+                               ' of kind '''//trim(in_words(kind))//'''')
         end if
       end associate
     end do
   end subroutine check_items
+
+  !> The plural of the name of a group.
+  pure function plural_of(name) result(plural)
+    character(len=*), intent(in) :: name     !< of the group
+    character(len=len(name) + 3) :: plural
+
+    plural = trim(name)//'s'
+    if (name(len_trim(name):) == 'y') plural = name(:len_trim(name) - 1)//'ies'
+  end function plural_of
 
   !> A kind with its law, for a message: coordinate' with law='harmonic.
   pure function in_words(kind) result(words)

@@ -71,6 +71,8 @@ module mech9_grammar
                    'a number by name that sets numbers of this file, for studies, sensitivities and optimisation'), &
     group_row_type('quantity', .true., 'name', 'both', &
                    'a number from a whole run: an extreme, a mean or an integral of a column of the results'), &
+    group_row_type('study', .false., '', 'both', &
+                   'the sets of parameter values for which --study makes runs'), &
     group_row_type('time', .false., '', 'both', &
                    'the times of the results: start + (end - start) i/intervals, i = 0 .. intervals'), &
     group_row_type('solver', .false., '', 'mech9d', 'method and tolerances of the integration'), &
@@ -420,7 +422,17 @@ module mech9_grammar
                   'which number: peak is the largest magnitude, range max - min; mean, rms and integral are over time', &
                   '''range'''), &
     item_row_type('quantity', 'at', 'real', 1, 1, 's', optional, '(none)', '', '', '', &
-                  'the time of the value, for take=''at''', '0.5', seldom=.true.)]
+                  'the time of the value, for take=''at''', '0.5', seldom=.true.), &
+    item_row_type('study', 'kind', 'text', 1, 1, '', needed, '', '', 'grid list random latin sobol', '', &
+                  'all combinations on a grid, a list in a file, or values that are drawn: at random, latin hypercube or Sobol', &
+                  '''grid'''), &
+    item_row_type('study', 'runs', 'integer', 1, 1, '', needed, '', '>=1', '', 'random latin sobol', &
+                  'how many sets of values are drawn', '1000'), &
+    item_row_type('study', 'seed', 'integer', 1, 1, '', optional, '1', '>=0', '', 'random latin sobol', &
+                  'another seed draws other values', '2', seldom=.true.), &
+    item_row_type('study', 'file', 'text', 1, 1, '', needed, '', '', '', 'list', &
+                  'a text file with the values of all parameters in each line, in their order, beside the data file', &
+                  '''designs.dat''')]
 
   type(item_row_type), parameter :: run_items(*) = [ &
     item_row_type('time', 'start', 'real', 1, 1, 's', optional, '0', '', '', '', 'time of the first result', '0'), &

@@ -4,6 +4,7 @@ module mech9_request
   use mech9_kinds, only: wp
   use mech9_error, only: place_type
   use mech9_quantity, only: quantity_type
+  use mech9_study, only: study_type
   implicit none
   private
   public :: request_type, time_grid_type, solver_settings_type, output_settings_type, cam_request_type
@@ -71,6 +72,7 @@ module mech9_request
     type(solver_settings_type) :: solver
     type(output_settings_type) :: output
     type(quantity_type), allocatable :: quantities(:)   !< in the order of the data file
+    type(study_type) :: study
     type(cam_request_type), allocatable :: cams(:)   !< in the order of the data file
   end type request_type
 

@@ -12,7 +12,7 @@ module mech9_option_conflicts
   character(len=*), parameter :: of_rest(*) = [character(len=11) :: 'equilibrium', 'modes', 'linear']
   !> Options that a conversation does not take.
   character(len=*), parameter :: of_files(*) = [character(len=11) :: 'check', 'structure', 'plan', 'branches', 'range', 'cam', &
-                                                'equilibrium', 'modes', 'linear', 'set']
+                                                'equilibrium', 'modes', 'linear', 'study', 'set']
 
 contains
 
@@ -68,6 +68,8 @@ contains
                  'equilibrium, too')
     else if (converses) then
       call judge_conversation(program_name, given, has_file, err)
+    else if (has('study')) then
+      call judge_study(given, err)
     else if (rest_of(given) /= '') then
       call judge_rest(given, err)
     else if (has('animate') .and. answer_of(given) /= '') then
@@ -101,6 +103,17 @@ contains
         call raise(err, exit_usage, '--import makes a data file and no run; leave --'//trim(given(i))//' out')
     end do
   end subroutine judge_import
+
+  !> Fail because of options that have no meaning beside --study.
+  pure subroutine judge_study(given, err)
+    character(len=*), intent(in) :: given(:)           !< names of the options that are given, without the dashes
+    type(error_type), allocatable, intent(out) :: err  !< allocated if there is one
+    character(len=:), allocatable :: other
+
+    other = first_of([answers, [character(len=11) :: 'plot', 'sketch', 'animate', 'view', 'hdf5', 'verbose']], given)
+    if (other /= '') call raise(err, exit_usage, '--study makes many runs and writes a table with a row for each; leave --'// &
+                                other//' out')
+  end subroutine judge_study
 
   !> Fail because of --modes with --animate and without --mode, or the other way round.
   pure subroutine judge_mode(has_mode, err)

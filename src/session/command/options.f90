@@ -64,6 +64,8 @@ module mech9_options
                 'compute all results, but write none'), &
     option_type('report', needed_argument, 'FILE', any_text, .false., both, &
                 'write exit code, errors, counts and times of the run as JSON'), &
+    option_type('study', no_argument, '', any_text, .false., both, &
+                'make the runs of the group &study; the table has a row for each'), &
     option_type('set', needed_argument, 'GROUP.NAME=VALUE', assignment, .true., both, &
                 'replace a value of the data file; may be repeated'), &
     option_type('dialogue', no_argument, '', any_text, .false., both, &

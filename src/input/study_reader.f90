@@ -1,0 +1,166 @@
+!> The study that the group &study of a checked document describes.
+module mech9_study_reader
+  use mech9_kinds, only: wp, long
+  use mech9_text, only: to_text
+  use mech9_error, only: error_type
+  use mech9_source, only: source_type, span_type, read_source
+  use mech9_numeral, only: numeral_type, read_numeral
+  use mech9_document, only: document_type, group_type
+  use mech9_lookup, only: groups_named, has_name, get_integer, get_text, span_of
+  use mech9_diagnostics, only: diagnostics_type, printable
+  use mech9_table_file, only: beside
+  use mech9_sobol, only: most_sobol_dimensions
+  use mech9_parameter, only: parameter_type
+  use mech9_study, only: study_type
+  implicit none
+  private
+  public :: read_study
+
+contains
+
+  !> Read the study, and hold the parameters against what it needs of them. Without a group &study its kind stays empty.
+  subroutine read_study(document, parameters, study, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(parameter_type), intent(in) :: parameters(:)     !< the parameters
+    type(study_type), intent(out) :: study                !< of use only where nothing is reported
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    integer, allocatable :: numbers(:)
+
+    numbers = groups_named(document, 'study')
+    if (size(numbers) == 0) return
+    associate (group => document%groups(numbers(1)))
+      study%kind = get_text(group, 'kind')
+      study%place = diagnostics%place(group%span)
+      if (size(parameters) == 0) then
+        call diagnostics%add(group%span, 'a study needs at least one &parameter')
+        return
+      end if
+      if (has_name(group, 'runs')) study%runs = get_integer(group, 'runs')
+      if (has_name(group, 'seed')) study%seed = get_integer(group, 'seed')
+      select case (study%kind)
+      case ('grid')
+        call count_grid(document, group, parameters, study%runs, diagnostics)
+      case ('list')
+        call read_list(document, group, size(parameters), study, diagnostics)
+      case default
+        call check_spreads(document, parameters, diagnostics)
+        if (study%kind == 'sobol' .and. size(parameters) > most_sobol_dimensions) &
+          call diagnostics%add(span_of(group, 'kind', 1), 'sobol is for at most '//to_text(most_sobol_dimensions)// &
+                               ' parameters, and there are '//to_text(size(parameters))//'; latin is for any number')
+      end select
+    end associate
+  end subroutine read_study
+
+  !> Count the runs of a grid; report parameters without low, high or count.
+  pure subroutine count_grid(document, group, parameters, runs, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(group_type), intent(in) :: group                 !< group of the study
+    type(parameter_type), intent(in) :: parameters(:)     !< the parameters
+    integer, intent(out) :: runs                          !< how many points the grid has
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    integer, allocatable :: numbers(:)
+    integer(long) :: product
+    integer :: i
+
+    numbers = groups_named(document, 'parameter')
+    product = 1
+    runs = 0
+    do i = 1, size(parameters)
+      if (.not. parameters(i)%has_range .or. parameters(i)%count == 0) &
+        call diagnostics%add(document%groups(numbers(i))%span, 'parameter '''//parameters(i)%name//''' needs ''low'', ''high'' '// &
+                             'and ''count'' for a study on a grid')
+      product = product*max(1, parameters(i)%count)
+      if (product > huge(1)) then
+        call diagnostics%add(group%span, 'this grid has more than '//to_text(huge(1))//' points')
+        return
+      end if
+    end do
+    runs = int(product)
+  end subroutine count_grid
+
+  !> Report parameters without a spread and without a range, from which no values can be drawn.
+  pure subroutine check_spreads(document, parameters, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(parameter_type), intent(in) :: parameters(:)     !< the parameters
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    integer, allocatable :: numbers(:)
+    integer :: i
+
+    numbers = groups_named(document, 'parameter')
+    do i = 1, size(parameters)
+      if (parameters(i)%spread > 0.0_wp .or. parameters(i)%has_range) cycle
+      call diagnostics%add(document%groups(numbers(i))%span, 'parameter '''//parameters(i)%name//''' needs ''spread'', or '// &
+                           '''low'' and ''high'', for a study that draws its values')
+    end do
+  end subroutine check_spreads
+
+  !> Read the values of a list: a line for each run, with the values of all parameters. A line that begins with # is a comment.
+  subroutine read_list(document, group, n_parameters, study, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(group_type), intent(in) :: group                 !< group of the study
+    integer, intent(in) :: n_parameters                   !< how many parameters there are
+    type(study_type), intent(inout) :: study              !< gets its values and the number of its runs
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(source_type) :: source
+    type(error_type), allocatable :: err
+    integer :: number, line, found
+
+    call read_source(beside(document%source%name, get_text(group, 'file')), source, err)
+    if (allocated(err)) then
+      call diagnostics%add(span_of(group, 'file', 1), 'the list '''//printable(get_text(group, 'file'))//''': '//err%message, &
+                           err%code)
+      return
+    end if
+    call diagnostics%add_source(source, number)
+    allocate (study%list(n_parameters, size(source%line_start)), source=0.0_wp)
+    found = diagnostics%count
+    study%runs = 0
+    do line = 1, size(source%line_start)
+      call read_line(source, number, line, study%list, study%runs, diagnostics)
+    end do
+    if (study%runs == 0 .and. diagnostics%count == found) &
+      call diagnostics%add(span_of(group, 'file', 1), 'this file has no values')
+  end subroutine read_list
+
+  !> Read the values of one run, if the line has any.
+  pure subroutine read_line(source, number, line, list, runs, diagnostics)
+    type(source_type), intent(in) :: source               !< the text of the list
+    integer, intent(in) :: number                         !< number of the list as a source, for spans
+    integer, intent(in) :: line                           !< number of the line, from 1
+    real(wp), intent(inout) :: list(:, :)                 !< (parameters,lines) the values so far
+    integer, intent(inout) :: runs                        !< how many lines had values so far
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    character(len=*), parameter :: separators = ' ,;'//achar(9)//achar(13)//achar(10)
+    type(numeral_type) :: numeral
+    integer :: first, last, at, length, n
+
+    call source%line_bounds(line, first, last)
+    at = index(source%text(first:last), '#')
+    if (at > 0) last = first + at - 2
+    n = 0
+    at = first
+    do
+      if (at > last) exit
+      length = verify(source%text(at:last), separators)
+      if (length == 0) exit
+      at = at + length - 1
+      length = scan(source%text(at:last)//' ', separators) - 1
+      n = n + 1
+      call read_numeral(source%text(at:at + length - 1), numeral)
+      if (allocated(numeral%problem)) then
+        call diagnostics%add(span_type(number, at, at + length - 1), ''''//printable(source%text(at:at + length - 1))//''' '// &
+                             numeral%problem)
+        return
+      end if
+      if (n <= size(list, 1)) list(n, runs + 1) = numeral%number
+      at = at + length
+    end do
+    if (n == 0) return
+    if (n /= size(list, 1)) then
+      call diagnostics%add(span_type(number, first, max(first, last)), 'there are '//to_text(size(list, 1))//' parameters, and '// &
+                           'this line has '//to_text(n)//' values')
+      return
+    end if
+    runs = runs + 1
+  end subroutine read_line
+end module mech9_study_reader

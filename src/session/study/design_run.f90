@@ -1,0 +1,81 @@
+!> One run of a study: the quantities of a motion, without any results beside them.
+module mech9_design_run
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_partition, only: free_coordinate
+  use mech9_model, only: model_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_simulation, only: simulation_type
+  use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
+  use mech9_free_simulation, only: free_simulation_type, new_free_simulation
+  use mech9_accuracy, only: find_accuracy
+  use mech9_explained_assembly, only: assemble_driven_start, assemble_free_start
+  use mech9_row_source, only: row_source_type, signal_interruption_type, new_row_source
+  implicit none
+  private
+  public :: run_design, begin_design
+
+contains
+
+  !> Make the motion of a model and take its quantities. Fails as a run would; the quantities are then NaN.
+  subroutine run_design(program_name, model, source, numbers, err)
+    character(len=*), intent(in) :: program_name          !< mech9k or mech9d
+    type(model_type), intent(inout), target :: model      !< gets the tolerances where an accuracy is requested
+    type(row_source_type), intent(inout) :: source        !< is made anew
+    real(wp), intent(out) :: numbers(:)                   !< (quantities)
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    type(driven_simulation_type), target :: driven
+    type(free_simulation_type), target :: free
+    type(plan_type) :: plan
+    type(state_type) :: start
+
+    if (program_name == 'mech9k' .or. .not. any(model%problem%partition%kind == free_coordinate)) then
+      call assemble_driven_start(model, plan, start, err)
+      if (allocated(err)) return
+      call new_driven_simulation(model, plan, start, driven, .false., program_name == 'mech9d')
+      call take_quantities(program_name, model, driven, source, numbers, err)
+    else
+      call assemble_free_start(model, plan, start, err)
+      if (.not. allocated(err)) call new_free_simulation(model, plan, start, free, err)
+      if (.not. allocated(err) .and. free%with_error) &
+        call find_accuracy(model, plan, start, free%errors, err, interruption=signal_interruption_type())
+      if (.not. allocated(err)) call take_quantities(program_name, model, free, source, numbers, err)
+      call free%close()
+    end if
+  end subroutine run_design
+
+  !> Begin the rows of a simulation, with their quantities.
+  subroutine begin_design(program_name, simulation, source, err)
+    character(len=*), intent(in) :: program_name                   !< mech9k or mech9d
+    class(simulation_type), intent(inout), target :: simulation    !< about to start
+    type(row_source_type), intent(inout) :: source                 !< is made anew
+    type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
+
+    call new_row_source(program_name, simulation, source)
+    call source%begin_quantities(err)
+  end subroutine begin_design
+
+  !> Go through all outputs of a simulation.
+  subroutine take_quantities(program_name, model, simulation, source, numbers, err)
+    character(len=*), intent(in) :: program_name                   !< mech9k or mech9d
+    type(model_type), intent(in) :: model                          !< the model
+    class(simulation_type), intent(inout), target :: simulation    !< about to start
+    type(row_source_type), intent(inout) :: source                 !< is made anew
+    real(wp), intent(out) :: numbers(:)                            !< (quantities)
+    type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
+    real(wp), allocatable :: row(:)
+    integer :: i
+
+    call begin_design(program_name, simulation, source, err)
+    if (allocated(err)) return
+    allocate (row(source%columns%width()))
+    do i = 0, model%request%time%intervals
+      call source%row_at(model%request%time%time(i), row, err)
+      if (allocated(err)) return
+    end do
+    if (size(numbers) == 0) return
+    call source%quantities%finish()
+    numbers = source%quantities%numbers
+  end subroutine take_quantities
+end module mech9_design_run

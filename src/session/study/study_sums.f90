@@ -1,0 +1,113 @@
+!> Sums over the runs of a study, one run after the other: means and deviations of quantities, and how many runs failed.
+module mech9_study_sums
+  use mech9_kinds, only: wp
+  implicit none
+  private
+  public :: study_sums_type
+
+  integer, parameter :: most_codes = 16   !< different exit codes that are counted apart
+
+  type :: study_sums_type
+    integer :: done = 0                              !< runs that went to their end
+    real(wp), allocatable :: mean(:)                 !< (quantities) of these
+    real(wp), allocatable :: low(:)                  !< (quantities) least one
+    real(wp), allocatable :: high(:)                 !< (quantities) largest one
+    real(wp), allocatable, private :: second(:)      !< (quantities) sum of the squares of the deviations from the mean
+    real(wp), allocatable, private :: third(:)       !< (quantities) sum of their third powers
+    real(wp), allocatable, private :: fourth(:)      !< (quantities) sum of their fourth powers
+    integer :: n_codes = 0                           !< exit codes of failed runs so far
+    integer :: codes(most_codes) = 0                 !< these codes
+    integer :: failed(most_codes) = 0                !< how many runs ended with each of them
+    integer :: first_failed(most_codes) = 0          !< number of the first of these runs
+  contains
+    procedure :: begin
+    procedure :: add
+    procedure :: add_failure
+    procedure :: deviation
+    procedure :: error_of_mean
+    procedure :: error_of_deviation
+  end type study_sums_type
+
+contains
+
+  !> Begin without runs.
+  pure subroutine begin(self, n_quantities)
+    class(study_sums_type), intent(inout) :: self   !< the sums
+    integer, intent(in) :: n_quantities             !< how many quantities there are
+
+    allocate (self%mean(n_quantities), self%low(n_quantities), self%high(n_quantities), source=0.0_wp)
+    allocate (self%second(n_quantities), self%third(n_quantities), self%fourth(n_quantities), source=0.0_wp)
+  end subroutine begin
+
+  !> Add a run that went to its end. The moments are brought up to date by Pébay's formulas, without loss of digits.
+  pure subroutine add(self, numbers)
+    class(study_sums_type), intent(inout) :: self   !< the sums
+    real(wp), intent(in) :: numbers(:)              !< (quantities) of the run
+    real(wp), dimension(size(numbers)) :: step, part, square
+    real(wp) :: n
+
+    self%done = self%done + 1
+    n = real(self%done, wp)
+    if (self%done == 1) then
+      self%low = numbers
+      self%high = numbers
+    end if
+    self%low = min(self%low, numbers)
+    self%high = max(self%high, numbers)
+    step = numbers - self%mean
+    part = step/n
+    square = step*part*(n - 1.0_wp)
+    self%mean = self%mean + part
+    self%fourth = self%fourth + square*part**2*(n**2 - 3.0_wp*n + 3.0_wp) + 6.0_wp*part**2*self%second - 4.0_wp*part*self%third
+    self%third = self%third + square*part*(n - 2.0_wp) - 3.0_wp*part*self%second
+    self%second = self%second + square
+  end subroutine add
+
+  !> Add a run that failed.
+  pure subroutine add_failure(self, run, code)
+    class(study_sums_type), intent(inout) :: self   !< the sums
+    integer, intent(in) :: run                      !< its number
+    integer, intent(in) :: code                     !< its exit code
+    integer :: i
+
+    i = findloc(self%codes(:self%n_codes), code, dim=1)
+    if (i == 0) then
+      self%n_codes = min(self%n_codes + 1, most_codes)
+      i = self%n_codes
+      self%codes(i) = code
+      self%first_failed(i) = run
+    end if
+    self%failed(i) = self%failed(i) + 1
+  end subroutine add_failure
+
+  !> The standard deviations of the quantities; 0 for fewer than two runs.
+  pure function deviation(self)
+    class(study_sums_type), intent(in) :: self   !< the sums
+    real(wp) :: deviation(size(self%mean))
+
+    deviation = sqrt(max(0.0_wp, self%second/max(1, self%done - 1)))
+  end function deviation
+
+  !> The standard errors of the means of runs that are drawn independently.
+  pure function error_of_mean(self) result(error)
+    class(study_sums_type), intent(in) :: self   !< the sums
+    real(wp) :: error(size(self%mean))
+
+    error = self%deviation()/sqrt(real(max(1, self%done), wp))
+  end function error_of_mean
+
+  !> The standard errors of the standard deviations of runs that are drawn independently, from their fourth moments.
+  pure function error_of_deviation(self) result(error)
+    class(study_sums_type), intent(in) :: self   !< the sums
+    real(wp) :: error(size(self%mean))
+    real(wp) :: n, variance
+    integer :: i
+
+    n = real(max(2, self%done), wp)
+    do i = 1, size(error)
+      variance = self%second(i)/n
+      error(i) = 0.0_wp
+      if (variance > 0.0_wp) error(i) = sqrt(max(0.0_wp, (self%fourth(i)/n - variance**2)/n)/variance)/2.0_wp
+    end do
+  end function error_of_deviation
+end module mech9_study_sums

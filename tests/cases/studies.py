@@ -1,0 +1,164 @@
+"""Studies: rows of grids, lists and drawn values, each the numbers of a single run with these values; failing runs are rows with
+their codes; the summary against the table; mistakes.
+
+usage: studies.py MECH9K MECH9D
+"""
+import json
+import os
+import re
+import sys
+import tempfile
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import Checks, read_table, run, text_of
+
+DONE, USAGE, DATA, FILE = 0, 2, 3, 8
+SLIDER_CRANK = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1.1,0,0, moving_point=0,0,0 /
+&pair coordinate=4, links=1,4, kind='prismatic', axis=1,0,0, zero=0,1,0, moving_point=0,0,0 /
+&initial coordinate=4, position=1.2 /
+&drive coordinate=1, kind='polynomial', coefficients=0.4, 10 /
+&point name='B', link=4 /
+&time end=0.7, intervals=40 /
+&quantity name='stroke', of='B.x', take='range' /
+&quantity name='late', of='B.x', take='end' /
+"""
+PENDULUM = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&initial coordinate=1, position=0.4 /
+&body link=2, mass=1, centre=0,-0.5,0, inertia=0,0,0.1,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&time end=1, intervals=20 /
+&parameter name='mass', sets='body.mass' , spread=0.1 /
+&parameter name='depth', sets='body.centre(2)', spread=0.02, distribution='uniform' /
+&quantity name='swing', of='q1', take='range' /
+&quantity name='speed', of='dq1', take='peak' /
+"""
+
+
+class Cases:
+    def __init__(self, checks, folder):
+        self.checks, self.folder = checks, folder
+
+    def write(self, text, name='case.nml'):
+        path = os.path.join(self.folder, name)
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        return path
+
+    def study(self, program, text, *more, why):
+        """The table of a study, and what is printed beside it."""
+        table = os.path.join(self.folder, 'study.dat')
+        done = run(program, self.write(text), '--study', '--table', table, *more)
+        self.checks.true(done.returncode == DONE, f'{why}: goes through', done.stderr)
+        return read_table(text_of(table)), done.stderr
+
+    def single(self, program, text, values):
+        """Quantities of a single run with the values of a row."""
+        report = os.path.join(self.folder, 'report.json')
+        settings = [word for i, value in enumerate(values) for word in ('--set', f'parameter({i + 1}).value={float(value)!r}')]
+        done = run(program, self.write(text), '--no-write', '--report', report, *settings)
+        with open(report, encoding='utf-8') as file:
+            return done.returncode, [one['value'] for one in json.load(file)['quantities']]
+
+
+def parameters(crank='', rod=''):
+    return (f"&parameter name='crank', sets='pair(2).point(1)'{crank} /\n"
+            f"&parameter name='rod', sets='pair(3).point(1)'{rod} /\n")
+
+
+def grids(cases, mech9k):
+    """A grid: the order of its rows, strokes of twice the crank, and the rows where the crank is longer than the rod: a dead point.
+    A crank as long as its rod passes the folded position, and its slider goes to the other side."""
+    text = SLIDER_CRANK + parameters(', low=0.2, high=0.8, count=4', ', low=0.5, high=1.1, count=3') + "&study kind='grid' /\n"
+    rows, printed = cases.study(mech9k, text, why='grid')
+    check = cases.checks
+    check.true(np.array_equal(rows['run'], np.arange(1, 13)), 'grid: runs are numbered', str(rows['run']))
+    check.true(np.allclose(rows['crank'], np.repeat([0.2, 0.4, 0.6, 0.8], 3), atol=1e-15), 'grid: the first parameter', str(rows['crank']))
+    check.true(np.allclose(rows['rod'], np.tile([0.5, 0.8, 1.1], 4), atol=1e-15), 'grid: the last parameter changes fastest', str(rows['rod']))
+    whole = rows['crank'] < rows['rod'] + 1e-9
+    shorter = rows['crank'] < rows['rod'] - 1e-9
+    check.true(np.all(rows['exit_code'][whole] == DONE) and np.all(rows['exit_code'][~whole] != DONE),
+               'grid: runs that cannot go on have a code', str(rows['exit_code']))
+    check.true(np.allclose(rows['stroke'][shorter], 2 * rows['crank'][shorter], atol=1e-8), 'grid: the stroke is twice the crank', str(rows['stroke']))
+    check.true(np.all(np.isnan(rows['stroke'][~whole])), 'grid: failed runs have no stroke')
+    codes, counts = np.unique(rows['exit_code'][~whole], return_counts=True)
+    for code, count in zip(codes, counts):
+        check.true(re.search(rf'{count} runs? failed with exit code {int(code)}', printed), f'grid: code {code} is counted', printed)
+    for i in (0, 6, 7, 11):
+        code, found = cases.single(mech9k, text, (rows['crank'][i], rows['rod'][i]))
+        check.true(code == rows['exit_code'][i], f'grid: run {i + 1} ends as alone', code)
+        if code == DONE:
+            check.true(found == [rows['stroke'][i], rows['late'][i]], f'grid: run {i + 1} has the bits of a single run', found)
+
+
+def lists(cases, mech9k):
+    cases.write('# crank rod\n0.25, 1.0\n\n0.3 1.1  # as written\n', 'designs.dat')
+    text = SLIDER_CRANK + parameters() + "&study kind='list', file='designs.dat' /\n"
+    rows, _ = cases.study(mech9k, text, why='list')
+    cases.checks.true(list(rows['crank']) == [0.25, 0.3] and list(rows['rod']) == [1.0, 1.1], 'list: its values', str(rows))
+    cases.checks.true(np.allclose(rows['stroke'], [0.5, 0.6], atol=1e-8), 'list: strokes', str(rows['stroke']))
+
+
+def draws(cases, mech9d):
+    """Drawn values: the summary is that of the table; another number of runs does not change the first ones, but for strata."""
+    for kind in ('random', 'latin', 'sobol'):
+        text = PENDULUM + f"&study kind='{kind}', runs=32, seed=4 /\n"
+        rows, printed = cases.study(mech9d, text, why=kind)
+        for name in ('swing', 'speed'):
+            line = re.search(rf'{name}: mean (\S+) \(standard error (\S+)\), deviation (\S+) ', printed)
+            told = [float(word) for word in line.groups()]
+            mean, deviation = np.mean(rows[name]), np.std(rows[name], ddof=1)
+            cases.checks.true(np.allclose(told, [mean, deviation / np.sqrt(32), deviation], rtol=5e-2, atol=1e-12)
+                              and abs(told[0] - mean) <= 1e-7 * abs(mean), f'{kind}: summary of {name}', (told, mean, deviation))
+        again, _ = cases.study(mech9d, text.replace('runs=32', 'runs=16'), why=kind)
+        if kind != 'latin':
+            cases.checks.true(all(np.array_equal(again[name][:16], rows[name][:16]) for name in ('mass', 'depth', 'swing')),
+                              f'{kind}: a run does not depend on the number of runs')
+        other, _ = cases.study(mech9d, text.replace('seed=4', 'seed=5'), why=kind)
+        cases.checks.true(not np.array_equal(other['mass'], rows['mass']), f'{kind}: another seed draws others')
+        code, found = cases.single(mech9d, text, (rows['mass'][5], rows['depth'][5]))
+        cases.checks.true(code == DONE and found == [rows['swing'][5], rows['speed'][5]], f'{kind}: a row is a single run', found)
+
+
+def mistakes(cases, mech9k):
+    check = cases.checks
+    table = cases.write('kept', 'kept.dat')
+    given = ', low=0.2, high=0.4, count=3'
+    cases.write('0.3\n', 'short.dat')
+    cases.write('0.3 long\n', 'word.dat')
+    for text, options, code, message in (
+            (parameters(given) + "&study kind='grid' /", (), DATA, "parameter 'rod' needs 'low', 'high' and 'count' for a study on a grid"),
+            (parameters(given, ", low=0.1, high=1") + "&study kind='grid' /", (), DATA, "parameter 'rod' needs 'low', 'high' and 'count'"),
+            (parameters(given) + "&study kind='sobol', runs=3 /", (), DATA, "parameter 'rod' needs 'spread', or 'low' and 'high'"),
+            (parameters(given, given) + "&study kind='random' /", (), DATA, "&study needs 'runs'"),
+            (parameters(given, given) + "&study kind='grid', runs=3 /", (), DATA, "'runs' does not belong to studies of kind 'grid'"),
+            (parameters() + "&study kind='list', file='none.dat' /", (), FILE, "the list 'none.dat'"),
+            (parameters() + "&study kind='list', file='short.dat' /", (), DATA, 'there are 2 parameters, and this line has 1 values'),
+            (parameters() + "&study kind='list', file='word.dat' /", (), DATA, "'long' is not a number"),
+            ("&study kind='grid' /", (), DATA, 'a study needs at least one &parameter'),
+            (parameters(), (), USAGE, '--study carries out the study of a group &study, and this file has none'),
+            (parameters(given, given) + "&study kind='grid' /", ('--plot', 'q1'), USAGE, 'leave --plot out'),
+            (parameters(given, given) + "&study kind='grid' /", ('--check',), USAGE, 'leave --check out')):
+        done = run(mech9k, cases.write(SLIDER_CRANK + text + '\n'), '--study', '--table', table, *options)
+        check.true(done.returncode == code and message in done.stderr, f'{text} {options}: {message}', f'{done.returncode}: {done.stderr}')
+        check.true(text_of(table) == 'kept', f'{text} {options}: nothing is written over')
+
+
+def main():
+    checks = Checks()
+    mech9k, mech9d = sys.argv[1:3]
+    with tempfile.TemporaryDirectory() as folder:
+        cases = Cases(checks, folder)
+        grids(cases, mech9k)
+        lists(cases, mech9k)
+        draws(cases, mech9d)
+        mistakes(cases, mech9k)
+    checks.finish()
+
+
+main()
