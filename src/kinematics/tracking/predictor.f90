@@ -183,12 +183,12 @@ contains
     real(wp), dimension(m), intent(inout) :: last_dq   !< (M) rates at the earlier position, then at the later one
     real(wp), dimension(m), intent(inout) :: last_ddq   !< (M) accelerations at the earlier position, then at the later one
     real(wp), intent(out) :: higher(m, 3)   !< (M,3) factors of h^3, h^4, h^5 about the later position
-    real(wp) :: d0, d1, d2, x, y, z, per_h, per_cube
-    logical :: is_round_off
+    real(wp) :: d0, d1, d2, x, y, z, x_without, y_without, part, per_h, per_cube
     integer :: k
 
     per_h = 1.0_wp/h
     per_cube = per_h**3
+    ! without a branch, so that the compiler can compute several at once
     do k = 1, m
       ! the terms at h
       d0 = last_q(k) - (q(k) - h*(dq(k) - 0.5_wp*h*ddq(k)))
@@ -197,14 +197,15 @@ contains
       x = -(10.0_wp*d0 + 4.0_wp*d1 + 0.5_wp*d2)
       z = x + d1 + 4.0_wp*d0
       y = d0 + x + z
-      ! the polynomial goes without the positions where its last term is only their round-off
-      is_round_off = abs(z) <= round_off_term*max(unit_of(k), abs(q(k)))
-      x = merge(d1 + (1.0_wp/3.0_wp)*d2, x, is_round_off)
-      y = merge(0.25_wp*d2 + 0.5_wp*d1, y, is_round_off)
-      z = merge(0.0_wp, z, is_round_off)
-      higher(k, 1) = x*per_cube
-      higher(k, 2) = y*per_cube*per_h
-      higher(k, 3) = z*per_cube*per_h**2
+      ! the polynomial goes without the positions where its last term is only their round-off: `part` is 0 there, and 1 elsewhere
+      part = 0.5_wp + sign(0.5_wp, abs(z) - round_off_term*max(unit_of(k), abs(q(k))))
+      x_without = d1 + (1.0_wp/3.0_wp)*d2
+      y_without = 0.25_wp*d2 + 0.5_wp*d1
+      higher(k, 1) = (x_without + part*(x - x_without))*per_cube
+      higher(k, 2) = (y_without + part*(y - y_without))*per_cube*per_h
+      higher(k, 3) = part*z*per_cube*per_h**2
+    end do
+    do k = 1, m
       last_q(k) = q(k)
       last_dq(k) = dq(k)
       last_ddq(k) = ddq(k)
