@@ -7,6 +7,8 @@ module mech9_cam_task
   use mech9_path, only: ending_of
   use mech9_command_line, only: command_line_type
   use mech9_cam_files, only: cam_file_type, read_cam_file
+  use mech9_json, only: json_type
+  use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
   use mech9_request, only: cam_request_type
   use mech9_result_units, only: unit_of, unit_name
@@ -17,6 +19,8 @@ module mech9_cam_task
   use mech9_version, only: version
   use mech9_cam_picture, only: save_cam_picture
   use mech9_cam_text, only: print_cam, judge_cam, name_of_cam
+  use mech9_cam_report, only: add_cam
+  use mech9_run_words, only: begin_report
   implicit none
   private
   public :: work_on_cams
@@ -26,19 +30,25 @@ module mech9_cam_task
 contains
 
   !> Compute the profiles of all cams that are asked for, and write their files.
-  subroutine work_on_cams(program_name, options, model, plan, start, err)
+  subroutine work_on_cams(program_name, options, model, plan, start, diagnostics, reported, err)
     character(len=*), intent(in) :: program_name        !< mech9k
     type(command_line_type), intent(in) :: options      !< the command line
     type(model_type), intent(in), target :: model       !< the model
     type(plan_type), intent(in) :: plan                 !< its plan
     type(state_type), intent(in) :: start               !< its closed position at the start
+    type(diagnostics_type), intent(in) :: diagnostics   !< messages so far, for the report
+    logical, intent(out) :: reported                    !< the report is written, or could not be written
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(cam_file_type), allocatable :: files(:)
     type(cam_profile_type) :: profile
+    type(json_type) :: json
     integer :: i, k
 
+    reported = .false.
     call read_files(options, size(model%request%cams), files, err)
     if (allocated(err)) return
+    call begin_report(json, program_name, model, diagnostics, '')
+    call json%begin_array('cams')
     do k = 1, size(model%request%cams)
       if (.not. any(files%number == k)) cycle
       associate (cam => model%request%cams(k))
@@ -47,6 +57,7 @@ contains
         call add_place(err, place=cam%place)
         if (allocated(err)) return
         if (.not. options%has('quiet')) call print_cam(error_unit, model, k, profile)
+        call add_cam(json, model, k, profile)
         do i = 1, size(files)
           if (files(i)%number /= k) cycle
           if (files(i)%is_picture) then
@@ -60,6 +71,11 @@ contains
         end do
       end associate
     end do
+    reported = options%has('report')
+    if (.not. reported) return
+    call json%end_array()
+    call json%end_object()
+    call json%save(options%argument('report'), err)
   end subroutine work_on_cams
 
   !> The files of --cam. Cams that do not exist, and files whose cam is not told, are errors (exit_usage).

@@ -98,7 +98,8 @@ contains
                        diagnostics)
       if (options%has('range')) call print_ranges(output_unit, model, plan, start)
       if (options%has('check')) call check_motion(model, plan, start, err)
-      if (options%has('cam') .and. .not. allocated(err)) call work_on_cams(program_name, options, model, plan, start, err)
+      if (options%has('cam') .and. .not. allocated(err)) &
+        call work_on_cams(program_name, options, model, plan, start, diagnostics, reported, err)
       if (allocated(err)) call diagnostics%add_error(err)
       return
     end if

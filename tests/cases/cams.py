@@ -6,6 +6,7 @@ runs around it; a profile that is read back by a path pair. All else is closed f
 
 usage: cams.py MECH9K
 """
+import json
 import math
 import os
 import re
@@ -310,6 +311,43 @@ def many_outputs(s):
     s.checks.equal(done.returncode, 0, f'a cam with many outputs: {done.stderr}')
 
 
+def reports(s):
+    """The report tells what the lines tell, by names; the lines have no blanks at their ends."""
+    path = os.path.join(s.folder, 'report.json')
+    text = LIFT.format(offset=0, height=0.03, beta=1.2, lift=0.02, cam='roller=0.025').replace(
+        '&time', "&cam link=2, follower=3, face=0,-1,0 /\n&time")
+    other = os.path.join(s.folder, 'face.dat')
+    table, said = s.profile(text, '--cam', '2:' + other, '--report', path, number='1:')
+    s.checks.true(not any(line != line.rstrip() for line in said.split('\n')), 'no blanks at the ends of lines', said)
+    with open(path, encoding='utf-8') as file:
+        report = json.load(file)
+    s.checks.equal((report['exit_code'], report['errors'], len(report['cams'])), (0, [], 2), 'a report with two cams')
+    roller, face = report['cams']
+    s.checks.equal((roller['cam'], roller['link'], roller['follower'], roller['roller'], roller['closed']), (1, 2, 3, 0.025, False), 'the cam')
+    s.checks.equal((roller['points'], face['points']), (len(table['t']), len(read_table(text_of(other))['t'])), 'numbers of points')
+    # with one radian of the cam in a second the pitch curve is 0.03 m + the lift away from the axis
+    s.near([roller['pitch_curve']['least_distance'], roller['pitch_curve']['largest_distance']], [0.03, 0.05], ROUND_OFF, 'pitch curve')
+    angle = roller['greatest_pressure_angle']
+    s.checks.true(angle['value'] >= np.max(table['pressure_angle']), 'the greatest pressure angle is not less than those at outputs')
+    s.near(angle['q'], angle['t'], ROUND_OFF, 'its place')
+    s.checks.true(f"{angle['value']:.6g}"[:6] in said, 'the line and the report agree', said)
+    ranges = roller['undercut']
+    rows = table['t'][table['undercut'] > 0]
+    s.checks.true(len(ranges) == 1 and ranges[0]['from']['t'] <= rows[0] and ranges[0]['to']['t'] >= rows[-1], 'range of undercut')
+    s.near(face['contact_on_face'], [0, 0.02 * 1.875 / 1.2], 1e-6, 'contact on the face: the largest rate of a 3-4-5 polynomial is 15/8')
+    s.checks.true('roller' not in face and 'pitch_curve' not in face, 'a face has no roller')
+    plate, said = s.profile("""&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=1,3, kind='prismatic', axis=0,1,0 /
+&drive coordinate=1, kind='polynomial', coefficients=0, 1 /
+&drive coordinate=2, kind='polynomial', coefficients=0.1, 0.2 /
+&cam link=2, follower=3, roller=0.01 /
+""", '--report', path)
+    s.checks.true('  no curved part: the profile is straight\n' in said, 'a straight profile', said)
+    with open(path, encoding='utf-8') as file:
+        s.checks.equal(json.load(file)['cams'][0]['least_convex_radius']['value'], None, 'its radius is not finite')
+
+
 def bad_input(s):
     good = LIFT.format(offset=0, height=0.04, beta=2, lift=0.02, cam='roller=0.01')
     cam = '&cam link=2, follower=3, roller=0.01 /'
@@ -329,7 +367,10 @@ def bad_input(s):
             ('&cam link=2, follower=3, axis=0,1,0 /', DATA, 'case.nml:6'),
             ('&cam link=2, follower=3, axis=1,0,1 /', DATA, 'is not plane: its follower moves by'),
             ('&cam link=2, follower=3, face=0,1,1 /', DATA, 'is not plane: the flat face'),
-            ('&cam link=1, follower=3, face=1,0,0, axis=0,0,1 /', DATA, 'has no profile: link 3 does not turn against the cam')):
+            ('&cam link=1, follower=3, face=1,0,0, axis=0,0,1 /', DATA,
+             "has no profile: the flat face of link 3 does not turn against the cam, which is link 1; check 'link', 'follower', 'point'"),
+            ('&cam link=2, follower=1, roller=0.01 /', DATA, 'the centre of the roller on link 1 does not move against the cam'),
+            ('&cam link=2, follower=1 /', DATA, 'the edge on link 1 does not move against the cam')):
         s.refused(good.replace(cam, changed), code, words)
     s.refused(good, USAGE, 'there is no cam 2; they are 1 to 1', '--cam', '2:-')
     s.refused(good, USAGE, 'ends in .svg', '--cam', 'cam.png')
@@ -344,7 +385,7 @@ def bad_input(s):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         s = Cases(sys.argv[1], folder)
-        for case in (circles, swinging_face, translating, undercut, published, same_cam, read_back, resting, pictures, many_outputs, bad_input):
+        for case in (circles, swinging_face, translating, undercut, published, same_cam, read_back, resting, pictures, reports, many_outputs, bad_input):
             case(s)
         return s.checks.finish()
 

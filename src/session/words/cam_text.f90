@@ -43,8 +43,7 @@ contains
     integer, intent(in) :: number                       !< of the cam
     type(cam_profile_type), intent(in) :: profile       !< its profile
     type(error_type), allocatable, intent(out) :: err   !< allocated if there is none
-    character(len=:), allocatable :: cam
-    character(len=4) :: motion
+    character(len=:), allocatable :: cam, motion
 
     cam = 'cam '//to_text(number)
     if (profile%off_plane > 0) then
@@ -58,10 +57,17 @@ contains
         end if
       end associate
     else if (.not. any(profile%contacts%known)) then
-      motion = 'move'
-      if (model%request%cams(number)%flat) motion = 'turn'
-      call raise(err, exit_data, cam//' has no profile: link '//to_text(model%request%cams(number)%follower)//' does not '// &
-                 motion//' against the cam; check ''link'' and ''follower'' and their drives')
+      associate (request => model%request%cams(number))
+        if (request%flat) then
+          motion = 'the flat face of link '//to_text(request%follower)//' does not turn'
+        else if (request%roller > 0.0_wp) then
+          motion = 'the centre of the roller on link '//to_text(request%follower)//' does not move'
+        else
+          motion = 'the edge on link '//to_text(request%follower)//' does not move'
+        end if
+        call raise(err, exit_data, cam//' has no profile: '//motion//' against the cam, which is link '//to_text(request%link)// &
+                   '; check ''link'', ''follower'', ''point'' and the drives of both links')
+      end associate
     end if
   end subroutine judge_cam
 
@@ -75,7 +81,7 @@ contains
 
     n = count(profile%at_output .and. profile%contacts%known)
     write (unit, '(a)') name_of_cam(model, number)
-    write (unit, '(a)') '  profile: '//counted(n, 'point')//merge(', closed', ', open  ', profile%closed)
+    write (unit, '(a)') '  profile: '//counted(n, 'point')//', '//trim(merge('closed', 'open  ', profile%closed))
     if (profile%resting > 0) &
       write (unit, '(a)') '  at '//counted(profile%resting, 'output')//' the follower rests against the cam; no points there'
     if (profile%has_pressure) then
@@ -102,7 +108,8 @@ contains
         write (unit, '(a)') '  least radius of curvature, '//kind//': '//to_text(abs(contact%radius), digits)//' m'// &
           place_of(contact)
       else
-        write (unit, '(a)') '  '//kind//' nowhere: straight lines'
+        write (unit, '(a)') '  no '//trim(merge('convex', 'curved', profile%concave > 0))//' part: the profile is straight'// &
+          trim(merge(' or concave', '           ', profile%concave > 0))
       end if
     end subroutine print_radius
 
