@@ -8,7 +8,7 @@ module mech9_correcting
   use mech9_question_words, only: is_lacking
   use mech9_summary, only: number_of_entry, entry_meant, title_of
   use mech9_conversation, only: conversation_type, going
-  use mech9_asking, only: take_answer
+  use mech9_taking, only: take_answer
   implicit none
   private
   public :: show_faults, offer_correction, change, correction_help

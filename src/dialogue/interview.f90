@@ -9,8 +9,9 @@ module mech9_interview
   use mech9_draft_check, only: fault_type, read_draft_structure
   use mech9_topics, only: can_be_left_out
   use mech9_outline, only: outline_type, ways, new_outline, make_pairs, make_groups, drop_foreign, wants_forces
+  use mech9_seldom, only: is_seldom
   use mech9_questions, only: question_type, make_questions, label_of, find_question, entry_name, &
-                             is_seldom, ask_item, check_structure, check_start, check_all
+                             ask_item, check_structure, check_start, check_all
   use mech9_question_words, only: is_lacking
   implicit none
   private

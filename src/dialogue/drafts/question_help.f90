@@ -1,12 +1,13 @@
 !> The texts about a question beyond its prompt: one line where a name comes up first, the answer to `?`, and the answer
 !> to an empty line where the question has no default.
 module mech9_question_help
-  use mech9_grammar, only: group_table, item_table, item_row_type, rows_of_group
+  use mech9_grammar, only: item_table, item_row_type
   use mech9_data_help, only: values_text, default_text
   use mech9_draft, only: draft_type, unquoted
   use mech9_topics, only: can_be_left_out
   use mech9_outline, only: outline_type
-  use mech9_questions, only: question_type, is_seldom, ask_item, ask_seldom, ask_way, ask_guesses, ask_joints
+  use mech9_seldom, only: seldom_rows
+  use mech9_questions, only: question_type, ask_item, ask_seldom, ask_way, ask_guesses, ask_joints
   use mech9_question_words, only: coordinate_kind, angle_unit, unit_here, is_needed, seldom_names
   use mech9_explanations, only: find_explanation, explanations
   implicit none
@@ -84,10 +85,9 @@ contains
     integer :: i
 
     text = ''
-    rows = rows_of_group(group_table(question%group_row)%name)
+    rows = seldom_rows(outline, question%group_row)
     do i = 1, size(rows)
-      if (is_seldom(outline, item_table(rows(i)))) &
-        text = text//trim(item_table(rows(i))%name)//': '//trim(item_table(rows(i))%help)//line_end
+      text = text//trim(item_table(rows(i))%name)//': '//trim(item_table(rows(i))%help)//line_end
     end do
   end function list_of_seldom
 

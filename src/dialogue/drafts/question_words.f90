@@ -2,14 +2,15 @@
 !> of names.
 module mech9_question_words
   use mech9_text, only: to_text, string_type
-  use mech9_grammar, only: group_table, item_table, rows_of_group, words_of
+  use mech9_grammar, only: group_table, item_table, words_of
   use mech9_data_help, only: default_text
   use mech9_draft, only: draft_type, unquoted
   use mech9_topics, only: groups_of_topic, can_be_left_out
   use mech9_compound_joint, only: compound_kinds
   use mech9_draft_joints, only: kind_in, number_in, coordinates_of_pair, kind_of_coordinate
   use mech9_outline, only: outline_type
-  use mech9_questions, only: question_type, entry_name, is_seldom, ask_item, ask_seldom, ask_way, &
+  use mech9_seldom, only: seldom_rows
+  use mech9_questions, only: question_type, entry_name, ask_item, ask_seldom, ask_way, &
                              ask_guesses, ask_joints
   implicit none
   private
@@ -313,9 +314,8 @@ contains
     integer :: i
 
     text = ''
-    rows = rows_of_group(group_table(question%group_row)%name)
+    rows = seldom_rows(outline, question%group_row)
     do i = 1, size(rows)
-      if (.not. is_seldom(outline, item_table(rows(i)))) cycle
       if (index(', '//text//',', ', '//trim(item_table(rows(i))%name)//',') > 0) cycle
       if (text /= '') text = text//', '
       text = text//trim(item_table(rows(i))%name)

@@ -4,14 +4,15 @@
 !> two lists if it has the same label.
 module mech9_questions
   use mech9_text, only: to_text
-  use mech9_grammar, only: group_table, item_table, for_forces, item_row_type, rows_of_group, takes_kind, find_item_rows
+  use mech9_grammar, only: group_table, item_table, for_forces, rows_of_group, takes_kind, find_item_rows, find_group_row
   use mech9_draft, only: draft_type
   use mech9_topics, only: topics, groups_of_topic, is_numbered, can_be_left_out, is_on_request
   use mech9_draft_joints, only: kind_in, has_joints
   use mech9_outline, only: outline_type, wants_forces
+  use mech9_seldom, only: is_seldom, is_used
   implicit none
   private
-  public :: question_type, make_questions, label_of, find_question, entry_name, is_open, is_seldom
+  public :: question_type, make_questions, label_of, find_question, entry_name, is_open
   public :: ask_item, ask_seldom, ask_way, ask_guesses, ask_joints, check_structure, check_start, check_all
 
   !> The kinds of questions: a name of a group, the rarely used names of a group, the way in which the structure is given,
@@ -200,24 +201,6 @@ contains
     end associate
   end function is_open
 
-  !> Whether a name is a rarely used one, about which there are questions only on request. The links of pairs are, if the
-  !> structure gives them.
-  pure logical function is_seldom(outline, row)
-    type(outline_type), intent(in) :: outline  !< facts known beside the draft
-    type(item_row_type), intent(in) :: row     !< row of the table of names
-
-    is_seldom = row%seldom .or. (row%group == 'pair' .and. row%name == 'links' .and. outline%way /= 'pairs')
-    is_seldom = is_seldom .and. is_used(outline, row)
-  end function is_seldom
-
-  !> Whether the program of the conversation uses a name.
-  pure logical function is_used(outline, row)
-    type(outline_type), intent(in) :: outline  !< facts known beside the draft
-    type(item_row_type), intent(in) :: row     !< row of the table of names
-
-    is_used = row%program == 'both' .or. row%program == outline%program_name
-  end function is_used
-
   !> Whether there is a question about a value at the start. There is for free coordinates in mech9d, and for guesses of
   !> dependent ones.
   pure logical function is_open_at_start(draft, outline, question) result(open)
@@ -290,7 +273,7 @@ contains
       call append(questions, count, question_type(kind=ask_joints, topic=topic, group_row=group_row))
     if (outline%way == 'pairs') then
       rows = find_item_rows('pair', 'links')
-      pair_row = findloc(group_table%name, 'pair     ', dim=1)
+      pair_row = find_group_row('pair')
       do i = 1, draft%count_of('pair')
         call append(questions, count, question_type(topic=topic, group_row=pair_row, place=i, row=rows(1)))
       end do

@@ -1,0 +1,264 @@
+!> The answer to a question is checked like a data file, and kept.
+module mech9_taking
+  use mech9_text, only: to_text, lower, nearest_name
+  use mech9_grammar, only: group_table, item_table, words_of
+  use mech9_diagnostics, only: printable
+  use mech9_answer, only: read_answer, yes_or_no
+  use mech9_short_answers, only: word_meant
+  use mech9_draft, only: draft_type, integer_of
+  use mech9_draft_check, only: problem_with, problem_with_joint
+  use mech9_draft_joints, only: give_joints
+  use mech9_outline, only: ways, drop_empty_guesses
+  use mech9_interview, only: most_parts
+  use mech9_seldom, only: seldom_rows
+  use mech9_questions, only: question_type, entry_name, label_of, ask_item, ask_seldom, ask_way, ask_joints
+  use mech9_conversation, only: conversation_type
+  implicit none
+  private
+  public :: take_answer, keep_answer, move_on
+
+contains
+
+  !> An answer to the question that is due is taken.
+  subroutine take_answer(conversation, line)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: line                     !< the answer, without blanks around it
+    type(question_type) :: question
+
+    question = conversation%interview%due()
+    select case (question%kind)
+    case (ask_item)
+      call take_item(conversation, question, line)
+    case (ask_seldom)
+      call take_seldom(conversation, question, line)
+    case (ask_way)
+      call take_way(conversation, line)
+    case (ask_joints)
+      call take_joints(conversation, line)
+    case default
+      call take_guesses(conversation, line)
+    end select
+  end subroutine take_answer
+
+  !> The answer to a question about a name is taken.
+  subroutine take_item(conversation, question, line)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    type(question_type), intent(in) :: question              !< the question
+    character(len=*), intent(in) :: line                     !< the answer, without blanks around it
+    character(len=:), allocatable :: text, problem
+
+    if (lower(line(:min(len(line), 8))) == 'default') then
+      call conversation%interview%unnote()
+      call conversation%keep()
+      return
+    end if
+    call read_answer(item_table(question%row), line, text, problem)
+    if (problem == '') call hold_against_rest(conversation, question, text, problem)
+    if (problem == '') call count_independent(conversation, text, problem)
+    if (problem == '') then
+      call keep_answer(conversation, text)
+    else
+      call conversation%say(problem)
+    end if
+  end subroutine take_item
+
+  !> The number of coordinates that an answer makes independent is checked. An answer that the structure hardly allows is
+  !> refused once, and taken if it is given again.
+  subroutine count_independent(conversation, text, problem)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: text                     !< the answer as a data file writes it
+    character(len=:), allocatable, intent(inout) :: problem  !< the reason against the answer; empty: none
+    logical :: certain
+
+    call conversation%interview%miscount(text, problem, certain)
+    if (problem == '' .or. certain) return
+    if (text == conversation%doubted) problem = ''
+    if (problem /= '') problem = problem//' If it is so here, give the same answer again.'
+    conversation%doubted = text
+  end subroutine count_independent
+
+  !> An answer is noted, and the next question becomes due.
+  subroutine keep_answer(conversation, text)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: text                     !< the answer as a data file writes it
+
+    call conversation%interview%note(text)
+    call tell_dropped(conversation)
+    call move_on(conversation)
+  end subroutine keep_answer
+
+  !> The names that the last answer made meaningless are told.
+  subroutine tell_dropped(conversation)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+
+    if (conversation%interview%dropped /= '') &
+      call conversation%say('(dropped, as it has no meaning any more: '//conversation%interview%dropped//')')
+  end subroutine tell_dropped
+
+  !> The next question becomes due, and the answers are kept in the draft's file.
+  subroutine move_on(conversation)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+
+    call conversation%interview%step()
+    call conversation%keep()
+  end subroutine move_on
+
+  !> An answer is checked against the other answers, as the reader of data files would. Structural data that belong
+  !> together are checked together when the structure is complete.
+  subroutine hold_against_rest(conversation, question, text, problem)
+    class(conversation_type), intent(in) :: conversation   !< the conversation as it stands
+    type(question_type), intent(in) :: question            !< the question
+    character(len=*), intent(in) :: text                   !< the answer as a data file writes it
+    character(len=:), allocatable, intent(out) :: problem  !< messages, a line each; empty: nothing is wrong
+    type(draft_type) :: trial
+    character(len=:), allocatable :: group, name
+
+    problem = ''
+    group = trim(group_table(question%group_row)%name)
+    name = entry_name(question)
+    associate (interview => conversation%interview)
+      if (group == 'mechanism') then
+        if (item_table(question%row)%type == 'integer' .and. integer_of(text) > most_parts) &
+          problem = 'more than '//to_text(most_parts)//' are too many to speak of one by one; write a data file'
+        return
+      end if
+      if (group == 'structure') then
+        if (interview%outline%way == 'vectors') return
+        if (question%line > 0 .and. interview%draft%has(group, question%place, name)) return
+      end if
+      trial = interview%draft
+      call trial%give(group, question%place, name, text)
+      if (group == 'pair' .and. (name == 'kind' .or. name == 'coordinates')) then
+        call problem_with_joint(trial, interview%outline, conversation%draft_path, question%place, problem)
+      else
+        call problem_with(trial, interview%outline, conversation%draft_path, group, question%place, name, problem)
+      end if
+    end associate
+  end subroutine hold_against_rest
+
+  !> The answer about the rarely used names of a group is taken.
+  subroutine take_seldom(conversation, question, line)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    type(question_type), intent(in) :: question              !< the question
+    character(len=*), intent(in) :: line                     !< the answer, without blanks around it
+    character(len=:), allocatable :: problem
+    integer, allocatable :: rows(:)
+
+    associate (interview => conversation%interview)
+      rows = seldom_rows(interview%outline, question%group_row)
+      problem = ''
+      if (yes_or_no(line) == 'yes') then
+        interview%outline%asked(rows) = .true.
+      else if (line /= '' .and. yes_or_no(line) /= 'no') then
+        call take_names(line, rows, interview%outline%asked, problem)
+      end if
+      if (problem /= '') then
+        call conversation%say(problem)
+        return
+      end if
+      call interview%refresh(label_of(question))
+    end associate
+    call move_on(conversation)
+  end subroutine take_seldom
+
+  !> Names separated by blanks or commas are read.
+  pure subroutine take_names(line, rows, asked, problem)
+    character(len=*), intent(in) :: line                   !< the answer, without blanks around it
+    integer, intent(in) :: rows(:)                         !< rows in item_table of the names that can be meant
+    logical, intent(inout) :: asked(:)                     !< (rows of item_table) which rarely used names the user wants to give
+    character(len=:), allocatable, intent(out) :: problem  !< the reason why a word is no name; empty: all are names
+    character(len=:), allocatable :: plain, hint
+    integer, parameter :: longest_list = 200
+    integer :: i, k
+
+    problem = 'answer yes, no, or some of the names'
+    if (len(line) > longest_list) return
+    plain = lower(line)
+    do i = 1, len(plain)
+      if (plain(i:i) == ',') plain(i:i) = ' '
+    end do
+    associate (words => words_of(plain))
+      do i = 1, size(words)
+        associate (meant => [(item_table(rows(k))%name == words(i), k=1, size(rows))])
+          asked(pack(rows, meant)) = .true.
+          if (any(meant)) cycle
+        end associate
+        hint = nearest_name(trim(words(i)), item_table(rows)%name)
+        if (hint /= '') hint = '; did you mean '//hint//'?'
+        problem = ''''//printable(trim(words(i)), 40)//''' is none of these names'//hint
+        return
+      end do
+    end associate
+    problem = ''
+  end subroutine take_names
+
+  !> The answer about the way of giving the structure is taken. Data that were given in another way are forgotten.
+  subroutine take_way(conversation, line)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: line                     !< the answer, without blanks around it
+    character(len=:), allocatable :: way
+
+    way = word_meant(line(:min(len(line), 20)), ways)
+    if (line == '') way = trim(conversation%interview%outline%way)
+    if (way == '') then
+      way = nearest_name(line(:min(len(line), 20)), ways)
+      if (way /= '') way = '; did you mean '//way//'?'
+      call conversation%say('Answer pairs, matrix or vectors'//way)
+      return
+    end if
+    associate (interview => conversation%interview)
+      if (way /= interview%outline%way) then
+        call interview%draft%remove('structure', 1)
+        interview%outline%way = way
+        interview%outline%structure_known = .false.
+        call interview%refresh('way of structure')
+      end if
+    end associate
+    call move_on(conversation)
+  end subroutine take_way
+
+  !> The answer about joints with several freedoms is taken.
+  subroutine take_joints(conversation, line)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: line                     !< the answer, without blanks around it
+    character(len=:), allocatable :: joints, problem
+
+    joints = lower(line)
+    if (joints == 'none' .or. joints == 'no') joints = ''
+    associate (interview => conversation%interview)
+      if (line /= '') then
+        call give_joints(interview%draft, joints, problem)
+        if (problem /= '') then
+          call conversation%say(problem)
+          return
+        end if
+        call interview%refresh('joints')
+      end if
+    end associate
+    if (line /= '') call tell_dropped(conversation)
+    call move_on(conversation)
+  end subroutine take_joints
+
+  !> The answer about guesses of the dependent coordinates at the start is taken.
+  subroutine take_guesses(conversation, line)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: line                     !< the answer, without blanks around it
+
+    associate (interview => conversation%interview)
+      select case (yes_or_no(line))
+      case ('yes')
+        interview%outline%guesses = .true.
+      case ('no')
+        interview%outline%guesses = .false.
+        call drop_empty_guesses(interview%draft)
+      case default
+        if (line /= '') then
+          call conversation%say('Answer yes or no.')
+          return
+        end if
+      end select
+      call interview%refresh('guesses')
+    end associate
+    call move_on(conversation)
+  end subroutine take_guesses
+end module mech9_taking
