@@ -33,6 +33,9 @@ contains
     associate (group => group_table(row))
       call tester%is_true(find_group_row(group%name) == row, trim(group%name)//': the group is found under its name')
       call tester%is_true(any(item_table%group == group%name), trim(group%name)//': the group has names')
+      call tester%is_true(all(len_trim([character(len=12) :: group%name, group%key, group%program]) < &
+                              [len(group%name), len(group%key), len(group%program)]), &
+                          trim(group%name)//': its words fit their fields')
       call tester%is_true(any(group%program == ['both  ', 'mech9k', 'mech9d', for_forces]), &
                           trim(group%name)//': the group is for a program that exists')
       call tester%is_true(group%help /= '' .and. len_trim(group%help) < len(group%help), &
@@ -75,6 +78,9 @@ contains
     call tester%is_true(row%help /= '' .and. len_trim(row%help) < len(row%help), label(row)//': the help fits its field')
     call tester%is_true(len_trim(row%default) < len(row%default) .and. len_trim(row%example) < len(row%example), &
                         label(row)//': default and example fit their fields')
+    call tester%is_true(all(len_trim([character(len=20) :: row%group, row%name, row%type, row%unit, row%range, row%program]) < &
+                            [len(row%group), len(row%name), len(row%type), len(row%unit), len(row%range), len(row%program)]), &
+                        label(row)//': group, name, type, unit, range and program fit their fields')
     call tester%is_true(len_trim(row%words) < len(row%words) .and. len_trim(row%kinds) < len(row%kinds), &
                         label(row)//': words and kinds fit their fields')
     call tester%is_true(.not. (row%needed .and. row%default /= ''), label(row)//': a name that is needed has no default')

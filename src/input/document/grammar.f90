@@ -1,5 +1,7 @@
 !> The language of the data file as one constant table: the groups, their names, and the values that each name takes.
 !> Reader, help, documentation and conversation are all made from it.
+!>
+!> Each field of a row is longer than its longest text, since longer ones would be cut without a warning; a test looks at all rows.
 module mech9_grammar
   use mech9_text, only: lower
   implicit none
@@ -10,33 +12,33 @@ module mech9_grammar
 
   !> One kind of group.
   type :: group_row_type
-    character(len=9) :: name
+    character(len=10) :: name
     logical :: repeats           !< may stand more than once
-    character(len=10) :: key     !< the name whose value tells its groups apart; empty: none does
+    character(len=11) :: key     !< the name whose value tells its groups apart; empty: none does
     !> Program that uses it: both, mech9k, mech9d, or for_forces: mech9d, and mech9k where forces are asked for.
-    character(len=6) :: program
+    character(len=7) :: program
     character(len=120) :: help
   end type group_row_type
 
   !> One name of a group. Several rows may share a name where its meaning depends on the kind.
   type :: item_row_type
-    character(len=9) :: group
-    character(len=18) :: name
-    character(len=7) :: type  !< integer, real, text or logical
+    character(len=10) :: group
+    character(len=19) :: name
+    character(len=8) :: type  !< integer, real, text or logical
     integer :: low            !< fewest values
     integer :: high           !< most values; more than one makes a list
     !> Empty for pure numbers. `angle` is rad or degrees, as angle_unit says; `q` is the unit of
     !> the coordinate: an angle, a length, or that of a user's pair.
-    character(len=12) :: unit
+    character(len=13) :: unit
     logical :: needed             !< must be given wherever its kind allows it
     character(len=22) :: default  !< the default as it would be written; in parentheses where it is a rule
-    character(len=9) :: range     !< the range of values: empty, >0, >=0, >=1, or >0 and <1
+    character(len=10) :: range    !< the range of values: empty, >0, >=0, >=1, or >0 and <1
     character(len=108) :: words   !< the texts allowed, with blanks between; empty: any
     character(len=72) :: kinds    !< the kinds of the group it belongs to, or the laws of time, as in law:harmonic; empty: all
     character(len=120) :: help
     character(len=44) :: example  !< a value as it would be written
     logical :: seldom = .false.   !< the conversation asks for it only on request
-    character(len=6) :: program = 'both'   !< program that uses it; the conversation of the other one does not ask for it
+    character(len=7) :: program = 'both'  !< program that uses it; the conversation of the other one does not ask for it
   end type item_row_type
 
   integer, parameter :: unlimited = huge(1)
@@ -85,7 +87,7 @@ module mech9_grammar
     item_row_type('mechanism', 'links', 'integer', 1, 1, '', optional, '(counted)', '>=1', '', '', &
                   'number of links, the frame included, which is link 1', '6'), &
     item_row_type('mechanism', 'coordinates', 'integer', 1, 1, '', optional, '(counted)', '>=1', '', '', &
-                  'number of coordinates: one for each pair', '7'), &
+                  'number of coordinates: a pair has as many as it has freedoms', '7'), &
     item_row_type('mechanism', 'angle_unit', 'text', 1, 1, '', optional, '''rad''', '', 'rad deg', '', &
                   'unit of all angles in this file and in its results', '''deg'''), &
     item_row_type('mechanism', 'data_tolerance', 'real', 1, 1, '', optional, '0', '>=0', '', '', &
@@ -215,7 +217,7 @@ module mech9_grammar
     item_row_type('initial', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
                   'number of the coordinate', '4'), &
     item_row_type('initial', 'position', 'real', 1, 1, 'q', optional, '0', '', '', '', &
-                  'its value, or a guess of it', '0.2'), &
+                  'its value, or a guess of it; a coordinate that is free in mech9d needs one', '0.2'), &
     item_row_type('initial', 'velocity', 'real', 1, 1, 'q/s', optional, '0', '', '', '', &
                   'its rate (independent coordinates in mech9d)', '1.5', program='mech9d'), &
     item_row_type('point', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
