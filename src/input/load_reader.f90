@@ -46,7 +46,7 @@ contains
           call check_coordinate(group, size(pairs), diagnostics)
           allocate (loads(i)%load, source=coordinate_load(group, pairs, angle_unit))
         case ('user')
-          allocate (loads(i)%load, source=procedure_load_type(parameters=parameters))
+          allocate (loads(i)%load, source=procedure_load_type(parameters=parameters, n_links=n_links))
         end select
         loads(i)%load%place = diagnostics%place(group%span)
         if (get_text(group, 'kind') == 'user' .or. .not. has_name(group, 'law')) cycle

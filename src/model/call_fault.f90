@@ -6,6 +6,7 @@ module mech9_call_fault
 
   !> The first fault of the calls that share it.
   type :: call_fault_type
+    integer :: links = huge(1)             !< links that users know; those of joints with several freedoms have higher numbers
     logical :: found = .false.
     character(len=21) :: procedure = ' '   !< name of the procedure called, such as loads%add_force
     character(len=10) :: counted = ' '     !< 'link' or 'coordinate'

@@ -109,7 +109,7 @@ contains
     character(len=*), intent(in) :: procedure      !< name of the procedure to which the number was given
     logical, intent(out) :: exists                 !< there is a link of this number
 
-    exists = link >= 1 .and. link <= size(self%force, 2)
-    if (.not. exists) call self%fault%note(procedure, 'link', link, size(self%force, 2))
+    exists = link >= 1 .and. link <= min(size(self%force, 2), self%fault%links)
+    if (.not. exists) call self%fault%note(procedure, 'link', link, min(size(self%force, 2), self%fault%links))
   end subroutine has_link
 end module mech9_force_sum

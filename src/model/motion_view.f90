@@ -125,7 +125,8 @@ contains
     character(len=*), intent(in) :: procedure     !< name of the procedure that was given the number
 
     has_link = link >= 1 .and. link <= size(self%links)
-    if (has_link .or. .not. associated(self%fault)) return
-    call self%fault%note(procedure, 'link', link, size(self%links))
+    if (.not. associated(self%fault)) return
+    has_link = has_link .and. link <= self%fault%links
+    if (.not. has_link) call self%fault%note(procedure, 'link', link, min(size(self%links), self%fault%links))
   end function has_link
 end module mech9_motion_view

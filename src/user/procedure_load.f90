@@ -16,6 +16,7 @@ module mech9_procedure_load
   !> A load by a user's procedure.
   type, extends(load_type) :: procedure_load_type
     real(wp), allocatable :: parameters(:)   !< numbers for the user's procedure
+    integer :: n_links = huge(1)             !< links that the user knows, which are those of the data file
   contains
     procedure :: mark_links
     procedure :: mark_coordinates
@@ -48,6 +49,8 @@ contains
     type(force_sum_type), intent(inout) :: sum          !< forces so far; the load is added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
+    sum%fault%links = self%n_links
+    if (associated(state%fault)) state%fault%links = self%n_links
     call user_force(state%t, state, self%parameters, sum)
     if (associated(state%fault)) call must_exist(self, state%fault, err)
     if (.not. allocated(err)) call must_exist(self, sum%fault, err)

@@ -23,6 +23,11 @@ CASE = """
 &user parameters = 1, 2 /
 &time start=0.0, end=0.1, intervals=1 /
 """
+# the same with a ball between cart and pendulum: the program makes links 4 and 5 for it, which nobody knows
+BALL = CASE.replace('coordinates=2', 'coordinates=4').replace('cq=1,2', 'cq=1,2,3,4').replace(
+    "&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /", "&pair coordinates=2,3,4, links=2,3, kind='spherical' /").replace(
+    '&body link=2', '\n'.join(f'&initial coordinate={k}, position=0 /' for k in (3, 4)) + '\n&body link=2').replace(
+    'centre=1.0,0.0,0.0 /', 'centre=1.0,0.0,0.0, inertia=1,1,1,0,0,0 /')
 PROCEDURES = (('loads%add_force', 'link', 3), ('loads%add_torque', 'link', 3), ('loads%add_generalized', 'coordinate', 2),
               ('state%position', 'link', 3), ('state%velocity', 'link', 3), ('state%turned', 'link', 3))
 
@@ -48,6 +53,14 @@ def main():
                 checks.true(f'{counted}s of this mechanism are 1 to {greatest};' in done.stderr,
                             f'{procedure}: those that there are are told', done.stderr)
                 checks.true('case.nml:10:' in done.stderr, f'{procedure}: the message points to the load', done.stderr)
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(BALL)
+        for kind, (procedure, counted, _) in enumerate(PROCEDURES, 1):
+            greatest = 4 if counted == 'coordinate' else 3
+            checks.equal(ended(kind, greatest).returncode, 0, f'{procedure}: {counted} {greatest} exists beside a ball')
+            done = ended(kind, greatest + 1)
+            checks.true(done.returncode == 3 and f'{counted}s of this mechanism are 1 to {greatest};' in done.stderr,
+                        f'{procedure}: {counted} {greatest + 1} is of no use beside a ball', f'{done.returncode}: {done.stderr}')
         checks.true('with link 7,' in ended(7, 7).stderr, 'the first fault of a call is told')
     checks.finish()
 
