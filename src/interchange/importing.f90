@@ -2,7 +2,7 @@
 module mech9_importing
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_done, exit_internal, exit_usage, exit_data
+  use mech9_error, only: error_type, raise, exit_done, exit_internal, exit_usage, exit_data, exit_structure
   use mech9_text, only: to_text, string_type
   use mech9_counted, only: counted
   use mech9_printable, only: printable
@@ -144,6 +144,7 @@ contains
       call read_xml(inputs(2)%text, loops, err)
       if (.not. allocated(err)) call read_loops(loops, robot, err)
     end if
+    if (.not. allocated(err)) call robot%judge_leaders(err)
     if (.not. allocated(err)) call robot%finish()
   end subroutine read_robot
 
@@ -186,6 +187,9 @@ contains
       preferred = robot%joints(series%pairs%joint)%is_preferred
       if (.not. any(preferred)) preferred = .not. (series%closes(series%pairs%joint) .or. follows)
       call find_start(model%mechanism, preferred, q, independent, moved, err)
+      if (.not. (allocated(err) .or. any(independent))) &
+        call raise(err, exit_structure, 'the robot cannot move: its closed chains and the joints that follow others hold all '// &
+                   'coordinates; look for joints that follow each other')
       if (allocated(err)) then
         err%message = printable(file)//': '//err%message
         return

@@ -4,8 +4,9 @@
 !> Joints with several freedoms stay whole here. Link 1 is the frame.
 module mech9_robot
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
+  use mech9_error, only: error_type, raise, exit_data
   use mech9_text, only: to_text
+  use mech9_printable, only: printable
   use mech9_rotation, only: cross
   use mech9_pose, only: pose_type
   use mech9_xml_tree, only: xml_tree_type
@@ -93,6 +94,7 @@ module mech9_robot
     procedure :: find_link
     procedure :: find_joint
     procedure :: leader_of
+    procedure :: judge_leaders
     procedure :: note
     procedure :: note_at
     procedure :: finish
@@ -213,6 +215,32 @@ contains
     if (leader == 0) return
     if (all(single /= self%joints(number)%kind) .or. all(single /= self%joints(leader)%kind)) leader = 0
   end function leader_of
+
+  !> Fail where a joint follows one that is not there, itself, or one that does not move it.
+  subroutine judge_leaders(self, err)
+    class(robot_type), intent(in) :: self              !< the robot with all its joints
+    type(error_type), allocatable, intent(out) :: err  !< allocated if there is such a joint
+    character(len=:), allocatable :: problem
+    integer :: k
+
+    do k = 1, self%n_joints
+      associate (joint => self%joints(k))
+        if (.not. allocated(joint%leader)) cycle
+        problem = ''
+        if (self%find_joint(joint%leader) == 0) then
+          problem = "there is no joint '"//joint%leader//"', which joint '"//joint%name//"' follows"
+        else if (joint%leader == joint%name) then
+          problem = "joint '"//joint%name//"' follows itself; let it follow another joint"
+        else if (.not. abs(joint%ratio) > 0.0_wp) then
+          problem = "joint '"//joint%name//"' follows joint '"//joint%leader//"' with the factor 0 and cannot move; make it "// &
+                    'a fixed joint, or give another factor'
+        end if
+        if (problem == '') cycle
+        call raise(err, exit_data, printable(joint%place//': '//problem))
+        return
+      end associate
+    end do
+  end subroutine judge_leaders
 
   !> Note that something about an element is not taken over.
   subroutine note(self, tree, element, text)

@@ -1,10 +1,9 @@
 !> Joints of SDF: their frames in both links, axes, limits, springs, and joints that follow others.
 module mech9_sdf_joints
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_data
+  use mech9_error, only: error_type
   use mech9_rotation, only: unit
   use mech9_pose, only: pose_type, compose, inverse
-  use mech9_printable, only: printable
   use mech9_xml_tree, only: xml_tree_type
   use mech9_xml_values, only: get_content, get_content_number, is_true, place_in, one_of
   use mech9_robot, only: robot_type, robot_joint_type, fixed_joint, revolute_joint, prismatic_joint, helical_joint, &
@@ -12,7 +11,7 @@ module mech9_sdf_joints
   use mech9_sdf_frames, only: sdf_frames_type
   implicit none
   private
-  public :: read_joints, judge_leaders
+  public :: read_joints
 
   !> Words for the kinds of joints. In SDF the two axes of `revolute2` need not be at a right angle, nor need those of universal
   !> pairs here.
@@ -204,22 +203,6 @@ contains
     call get_content_number(tree, mimic, 'reference', reference, err)
     joint%offset = joint%offset - joint%ratio*reference
   end subroutine read_leader
-
-  !> Fail where a joint follows one that is not there.
-  subroutine judge_leaders(robot, err)
-    type(robot_type), intent(in) :: robot                !< the robot with all its joints
-    type(error_type), allocatable, intent(inout) :: err  !< the failure
-    integer :: k
-
-    do k = 1, robot%n_joints
-      associate (joint => robot%joints(k))
-        if (.not. allocated(joint%leader) .or. allocated(err)) cycle
-        if (robot%find_joint(joint%leader) > 0) cycle
-        call raise(err, exit_data, printable(joint%place//": there is no joint '"//joint%leader//"', which joint '"//joint%name// &
-                                             "' follows"))
-      end associate
-    end do
-  end subroutine judge_leaders
 
   !> Note the parts of a joint that are not taken over.
   subroutine note_parts(tree, element, joint, robot)

@@ -8,7 +8,7 @@ module mech9_sdf_reader
   use mech9_xml_values, only: get_content, get_content_number, is_true
   use mech9_robot, only: robot_type, robot_joint_type, fixed_joint, free_joint
   use mech9_sdf_frames, only: sdf_frames_type, list_frames, own_pose
-  use mech9_sdf_joints, only: read_joints, judge_leaders
+  use mech9_sdf_joints, only: read_joints
   implicit none
   private
   public :: read_sdf
@@ -40,7 +40,6 @@ contains
     call robot%add_link(tree, model, 'world', err)
     call read_links(tree, model, '', robot, err)
     call read_joints(tree, model, '', frames, robot, err)
-    call judge_leaders(robot, err)
     if (.not. allocated(err)) call hold_model(tree, model, frames, robot, err)
   end subroutine read_sdf
 

@@ -96,25 +96,24 @@ contains
     e = tree%child(1, 'joint')
     do while (e > 0 .and. .not. allocated(err))
       link = tree%attribute(tree%child(e, 'child'), 'link')
-      if (link /= '' .and. named_element(tree, 'link', link) == 0) &
+      if (link /= '' .and. named_link(tree, link) == 0) &
         call tree%fail(tree%child(e, 'child'), "there is no link '"//link//"', which joint '"//tree%attribute(e, 'name')// &
                        "' names", err)
       e = tree%next_named(e, 'joint')
     end do
   end subroutine refuse_unknown_child
 
-  !> The first child of the root with a name of its own, as link or joint; 0: there is none.
-  integer function named_element(tree, kind, name) result(element)
+  !> The first <link> of a name; 0: there is none.
+  integer function named_link(tree, name) result(element)
     type(xml_tree_type), intent(in) :: tree  !< the document
-    character(len=*), intent(in) :: kind     !< name of the element: link or joint
     character(len=*), intent(in) :: name     !< value of its attribute `name`
 
-    element = tree%child(1, kind)
+    element = tree%child(1, 'link')
     do while (element > 0)
       if (tree%attribute(element, 'name') == name) return
-      element = tree%next_named(element, kind)
+      element = tree%next_named(element, 'link')
     end do
-  end function named_element
+  end function named_link
 
   !> Whether a link is the child of a joint, or the successor of a loop.
   logical function is_child(tree, joints, side, link)
@@ -240,12 +239,7 @@ contains
     call get_axis(tree, tree%child(element, 'axis2'), joint%second, err)
     if (words(place) /= 'continuous') call read_limit(tree, tree%child(element, 'limit'), joint, err)
     call get_number(tree, tree%child(element, 'dynamics'), 'damping', joint%damping, err)
-    if (tree%child(element, 'mimic') > 0) then
-      joint%leader = needed_attribute(tree, tree%child(element, 'mimic'), 'joint', err)
-      if (.not. allocated(err) .and. named_element(tree, 'joint', joint%leader) == 0) &
-        call tree%fail(tree%child(element, 'mimic'), "there is no joint '"//joint%leader//"', which joint '"//joint%name// &
-                       "' follows", err)
-    end if
+    if (tree%child(element, 'mimic') > 0) joint%leader = needed_attribute(tree, tree%child(element, 'mimic'), 'joint', err)
     call get_number(tree, tree%child(element, 'mimic'), 'multiplier', joint%ratio, err)
     call get_number(tree, tree%child(element, 'mimic'), 'offset', joint%offset, err)
     joint%is_preferred = is_true(tree%attribute(element, 'independent'))

@@ -292,6 +292,12 @@ def check_mimic(s):
     s.checks.true('cq=1, 2 ' in data, 'the joint that follows is dependent', data)
     found = s.table(s.mech9k, re.sub('(coordinate=1, .*)coefficients=[^ ]*', r'\1coefficients=0.1, 0.5', data))
     s.checks.near(found['q3'], 2 * found['q1'] + 0.3, ROUND_OFF, 'it follows')
+    s.refuses('a joint that follows itself', DATA, "joint 'wrist' follows itself", robot.replace('mimic joint="shoulder"', 'mimic joint="wrist"'))
+    s.refuses('a joint that follows with 0', DATA, "joint 'wrist' follows joint 'shoulder' with the factor 0 and cannot move",
+              robot.replace('multiplier="2"', 'multiplier="0"'))
+    circle = robot.replace('<joint name="shoulder" type="revolute">', '<joint name="shoulder" type="revolute"><mimic joint="wrist" multiplier="3"/>')
+    both = re.sub('<joint name="slide" type="prismatic">', '<joint name="slide" type="fixed">', circle)
+    s.refuses('joints that hold each other', STRUCTURE, 'the robot cannot move: its closed chains and the joints that follow others', both)
     s.imports(robot.replace('mimic joint="shoulder"', 'mimic joint="flange"'))
     s.checks.true("the coupling of joint 'wrist' with joint 'flange'" in s.said, 'a joint that does not move leads none', s.said)
 
@@ -322,6 +328,7 @@ def check_refusals(s):
         ('no leader', DATA, "'joint'", ARM.replace('<parent link="slider"/>', '<mimic multiplier="2"/><parent link="slider"/>')),
         ('an unknown link', DATA, "there is no link 'hnd', which joint 'wrist' names", ARM.replace('parent link="slider"', 'parent link="hnd"')),
         ('two roots', DATA, 'only one link, the frame', ARM.replace('</robot>', '<link name="other"/></robot>')),
+        ('a long word', DATA, "a joint; the types are fixed", ARM.replace('type="prismatic"', f'type="{1000000 * "q"}"')),
         ('an unknown type', DATA, "unknown type 'hinge' of a joint; the types are fixed, revolute, continuous,", ARM.replace('type="prismatic"', 'type="hinge"')),
         ('a wrong number', DATA, "robot.xml:6:7: 'xyz': '0.1m' is not a number", ARM.replace('"0.1 0.02 0.3"', '"0.1m 0.02 0.3"')),
         ('two numbers', DATA, "'xyz' must hold 3 numbers, not 2", ARM.replace('"0.1 0.02 0.3"', '"0.1 0.02"')),

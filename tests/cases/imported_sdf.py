@@ -214,6 +214,8 @@ def check_refusals(s):
              ARM.replace('"screw"', '"revolute2"').replace('<screw_', '<axis2><xyz>0 -0.6 -0.8</xyz></axis2><screw_')),
             ('an unknown leader', "robot.xml:33:7: there is no joint 'sholder', which joint 'wrist' follows", ARM.replace(
                 '0 0.6 0.8</xyz>', '0 0.6 0.8</xyz><mimic joint="sholder"><multiplier>1</multiplier></mimic>')),
+            ('a factor of 0', "robot.xml:33:7: joint 'wrist' follows joint 'shoulder' with the factor 0", ARM.replace(
+                '0 0.6 0.8</xyz>', '0 0.6 0.8</xyz><mimic joint="shoulder"><multiplier>0</multiplier></mimic>')),
             ('no multiplier', '<mimic> needs <multiplier>', ARM.replace('0 0.6 0.8</xyz>', '0 0.6 0.8</xyz><mimic joint="shoulder"/>')),
             ('a frame of the world', "the model stands in the frame 'mark' of the world",
              ARM.replace('<pose>0.5 -0.2', '<pose relative_to="mark">0.5 -0.2')),

@@ -11,6 +11,9 @@ module mech9_xml_tree
   !> No robot has elements that are nested more deeply; those who read trees may call themselves for elements in elements.
   integer, parameter :: deepest_element = 250
 
+  !> Longer messages are cut, and longer words in them are shortened.
+  integer, parameter :: longest_word = 120, longest_message = 3000
+
   !> One element. Its name and text are ranges of the tree's pool of bytes.
   type :: element_type
     integer :: parent = 0        !< number of the element around it; 0: none
@@ -56,7 +59,17 @@ module mech9_xml_tree
     procedure :: line_place
     procedure :: place
     procedure :: fail
+    procedure, private :: keep
   end type xml_tree_type
+
+  interface
+    !> Put the elements in the root of another document in the place of an element, which is part of the tree no more.
+    module subroutine insert(self, element, other)
+      class(xml_tree_type), intent(inout) :: self  !< the tree
+      integer, intent(in) :: element               !< number of the element, which is not the root
+      type(xml_tree_type), intent(in) :: other     !< the other document
+    end subroutine insert
+  end interface
 
 contains
 
@@ -94,7 +107,7 @@ contains
     e = self%count + 1
     self%count = e
     self%elements(e) = element_type(parent=parent, line=line, column=column, first=self%n_attributes + 1, last=self%n_attributes)
-    call keep(self, name, self%elements(e)%name)
+    call self%keep(name, self%elements(e)%name)
     if (parent == 0) return
     self%elements(e)%depth = self%elements(parent)%depth + 1
     if (self%elements(parent)%newest == 0) then
@@ -121,8 +134,8 @@ contains
     n = self%n_attributes + 1
     self%n_attributes = n
     self%elements(self%count)%last = n
-    call keep(self, name, self%attributes(:2, n))
-    call keep(self, value, self%attributes(3:, n))
+    call self%keep(name, self%attributes(:2, n))
+    call self%keep(value, self%attributes(3:, n))
   end subroutine add_attribute
 
   !> Add a piece of text to an element; text behind an element in it is not kept.
@@ -133,7 +146,7 @@ contains
     integer :: range(2)
 
     if (self%elements(element)%child /= 0) return
-    call keep(self, text, range)
+    call self%keep(text, range)
     if (self%elements(element)%text(2) == 0) self%elements(element)%text(1) = range(1)
     self%elements(element)%text(2) = range(2)
   end subroutine add_text
@@ -280,103 +293,6 @@ contains
     end associate
   end function is_named
 
-  !> Put the elements in the root of another document in the place of an element, which is part of the tree no more.
-  subroutine insert(self, element, other)
-    class(xml_tree_type), intent(inout) :: self  !< the tree
-    integer, intent(in) :: element               !< number of the element, which is not the root
-    type(xml_tree_type), intent(in) :: other     !< the other document
-    type(element_type), allocatable :: elements(:)
-    integer, allocatable :: attributes(:, :)
-    integer :: range(2), shift, n
-
-    shift = self%count - 1
-    allocate (elements(shift + other%count + 1), attributes(4, self%n_attributes + other%n_attributes + 1))
-    elements(:self%count) = self%elements(:self%count)
-    elements(self%count + 1:shift + other%count) = other%elements(2:other%count)
-    n = self%n_attributes
-    attributes(:, :n) = self%attributes(:, :n)
-    attributes(:, n + 1:n + other%n_attributes) = other%attributes(:, :other%n_attributes) + self%used
-    call shift_elements(elements(self%count + 1:shift + other%count), shift, n, self%used, size(self%files), &
-                        elements(element)%depth - 2)
-    where (elements(self%count + 1:shift + other%count)%parent == shift + 1) &
-      elements(self%count + 1:shift + other%count)%parent = elements(element)%parent
-    call keep(self, other%pool(:other%used), range)
-    call join_files(self%files, other%files)
-    call replace_link(elements, element, merge(other%elements(1)%child + shift, 0, other%elements(1)%child > 0), &
-                      other%elements(1)%newest + shift)
-    self%count = shift + other%count
-    self%n_attributes = n + other%n_attributes
-    call move_alloc(elements, self%elements)
-    call move_alloc(attributes, self%attributes)
-  end subroutine insert
-
-  !> Number elements, attributes, files and bytes of the pool as in the tree to which elements are added.
-  pure subroutine shift_elements(elements, shift, attributes, bytes, files, levels)
-    type(element_type), intent(inout) :: elements(:)  !< the elements
-    integer, intent(in) :: shift                      !< number of elements before them
-    integer, intent(in) :: attributes                 !< number of attributes before theirs
-    integer, intent(in) :: bytes                      !< number of bytes before theirs
-    integer, intent(in) :: files                      !< number of files before theirs
-    integer, intent(in) :: levels                     !< number of levels above theirs
-    integer :: i
-
-    do i = 1, size(elements)
-      associate (e => elements(i))
-        e%parent = e%parent + shift
-        if (e%child > 0) e%child = e%child + shift
-        if (e%newest > 0) e%newest = e%newest + shift
-        if (e%next > 0) e%next = e%next + shift
-        e%depth = e%depth + levels
-        e%file = e%file + files
-        e%name = e%name + bytes
-        if (e%text(2) > 0) e%text = e%text + bytes
-        e%first = e%first + attributes
-        e%last = e%last + attributes
-      end associate
-    end do
-  end subroutine shift_elements
-
-  !> Let the neighbours of an element follow and precede a series of others.
-  pure subroutine replace_link(elements, element, first, last)
-    type(element_type), intent(inout) :: elements(:)  !< all elements
-    integer, intent(in) :: element                    !< number of the element that goes
-    integer, intent(in) :: first                      !< number of the first of the others; 0: there are none
-    integer, intent(in) :: last                       !< number of the last of the others, if there are any
-    integer :: parent, before, after
-
-    parent = elements(element)%parent
-    after = elements(element)%next
-    if (first > 0) then
-      elements(last)%next = after
-      after = first
-    end if
-    before = 0
-    if (elements(parent)%child == element) then
-      elements(parent)%child = after
-    else
-      before = elements(parent)%child
-      do while (elements(before)%next /= element)
-        before = elements(before)%next
-      end do
-      elements(before)%next = after
-    end if
-    if (elements(parent)%newest == element) elements(parent)%newest = merge(last, before, first > 0)
-  end subroutine replace_link
-
-  !> Add paths of files to a list.
-  subroutine join_files(files, more)
-    type(string_type), allocatable, intent(inout) :: files(:)  !< the list
-    type(string_type), intent(in) :: more(:)                   !< the paths
-    type(string_type), allocatable :: longer(:)
-    integer :: n
-
-    n = size(files)
-    allocate (longer(n + size(more)))
-    longer(:n) = files
-    longer(n + 1:) = more
-    call move_alloc(longer, files)
-  end subroutine join_files
-
   !> The number of elements from the root to an element, with both.
   pure integer function depth(self, element)
     class(xml_tree_type), intent(in) :: self  !< the tree
@@ -418,6 +334,27 @@ contains
     character(len=*), intent(in) :: message              !< the error in words
     type(error_type), allocatable, intent(inout) :: err  !< the failure
 
-    if (.not. allocated(err)) call raise(err, exit_data, printable(self%place(element)//': '//message))
+    if (allocated(err)) return
+    call raise(err, exit_data, printable(self%place(element)//': '//shortened(message)))
   end subroutine fail
+
+  !> A message whose words are short: a word of a hostile file may have millions of characters.
+  pure function shortened(message) result(short)
+    character(len=*), intent(in) :: message  !< in words
+    character(len=:), allocatable :: short
+    integer :: first, last
+
+    short = ''
+    first = 1
+    do while (first <= len(message) .and. len(short) < longest_message)
+      last = index(message(first:), ' ')
+      last = merge(len(message), first + last - 1, last == 0)
+      if (last - first < longest_word) then
+        short = short//message(first:last)
+      else
+        short = short//message(first:first + longest_word/2)//'...'//message(last - longest_word/4:last)
+      end if
+      first = last + 1
+    end do
+  end function shortened
 end module mech9_xml_tree
