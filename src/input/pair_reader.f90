@@ -5,6 +5,7 @@ module mech9_pair_reader
   use mech9_failure, only: failure_sharp_curve
   use mech9_text, only: to_text
   use mech9_pose, only: pose_type, default_zero
+  use mech9_quintic_spline, only: fewest_points
   use mech9_space_curve, only: space_curve_type, build_curve
   use mech9_pair, only: pair_slot_type
   use mech9_screw_pair, only: screw_pair_type, revolute_pair, prismatic_pair, helical_pair, &
@@ -234,6 +235,9 @@ contains
       call diagnostics%add(spans(n), 'the last point misses the first one by '//to_text(distance, 4)//' m; for a closed curve '// &
                            'repeat the first point with all its digits, or give closed=.false. in the data file')
     end if
+    if (closed .and. n - 1 < fewest_points) &
+      call diagnostics%add(spans(n), 'a smooth curve needs at least '//to_text(fewest_points)//' different points, and this '// &
+                           'closed one has '//to_text(n - 1)//'; add points')
     if (diagnostics%count > found) return
     if (closed) points(:, n) = points(:, 1)
     call build_curve(points, closed, curve, err)
