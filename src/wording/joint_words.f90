@@ -25,14 +25,8 @@ contains
     type(structure_type), intent(in) :: structure   !< the structure
     integer, intent(in) :: coordinate               !< number of the coordinate
     character(len=longest_name + 40) :: name
-    integer :: j
 
-    j = structure%joint_of(coordinate)
-    if (j == 0) then
-      name = 'pair '//to_text(coordinate)
-    else
-      name = named_between(structure%joints(j))
-    end if
+    name = name_in(structure, structure%joint_of(coordinate), 'pair '//to_text(coordinate))
   end function pair_name
 
   !> "link 4", or the name of the joint to which the link belongs.
@@ -40,23 +34,23 @@ contains
     type(structure_type), intent(in) :: structure   !< the structure
     integer, intent(in) :: link                     !< number of the link
     character(len=longest_name + 40) :: name
-    integer :: j
 
-    j = structure%joint_of_link(link)
-    if (j == 0) then
-      name = 'link '//to_text(link)
-    else
-      name = named_between(structure%joints(j))
-    end if
+    name = name_in(structure, structure%joint_of_link(link), 'link '//to_text(link))
   end function link_name
 
-  !> "the spherical joint of coordinates 4, 5, 6 between links 2 and 3".
-  pure function named_between(joint) result(name)
-    type(compound_joint_type), intent(in) :: joint   !< the joint
+  !> The name of a part of a joint: "the spherical joint of coordinates 4, 5, 6 between links 2 and 3"; its own outside of joints.
+  pure function name_in(structure, number, own) result(name)
+    type(structure_type), intent(in) :: structure   !< the structure
+    integer, intent(in) :: number                   !< number of the joint; 0: none
+    character(len=*), intent(in) :: own             !< name of the part where it belongs to no joint
     character(len=longest_name + 40) :: name
 
-    name = 'the '//trim(joint_name(joint))//' between links '//to_text(joint%ends(1))//' and '//to_text(joint%ends(2))
-  end function named_between
+    name = own
+    if (number == 0) return
+    associate (joint => structure%joints(number))
+      name = 'the '//trim(joint_name(joint))//' between links '//to_text(joint%ends(1))//' and '//to_text(joint%ends(2))
+    end associate
+  end function name_in
 
   !> Those of some links that the user knows.
   pure function shown_of(structure, links) result(shown)
