@@ -16,7 +16,8 @@ module mech9_structure_sketch
 contains
 
   !> The chains are drawn in the order of computation, each as links joined by pairs, such as "1 =5= 2 -4- 3", where =5=
-  !> is an independent coordinate. The mobility by the count follows.
+  !> is an independent coordinate. A joint with several freedoms is one step with all its coordinates, as in "2 -5,6,7- 3"; where only
+  !> some of them are independent, these stand as in "2 -5,=6=,7- 3". The mobility by the count follows.
   subroutine print_sketch(unit, structure, partition)
     integer, intent(in) :: unit                           !< number of the output unit
     type(structure_type), intent(in) :: structure         !< links of the pairs
@@ -30,7 +31,7 @@ contains
     loops = count(chains%closed)
     write (unit, '(a)') '  The links are connected. Numbers between = = are independent coordinates:'
     do i = 1, min(size(chains), most_chains)
-      call print_chain(unit, vectors, chains(i))
+      call print_chain(unit, structure, partition%independent(), vectors, chains(i))
     end do
     if (size(chains) > most_chains) write (unit, '(a)') '  and '//counted(size(chains) - most_chains, 'more chain')
     if (loops == 0) then
@@ -55,8 +56,10 @@ contains
   end function count_text
 
   !> One chain is printed, on as many lines as it needs.
-  subroutine print_chain(unit, vectors, chain)
+  subroutine print_chain(unit, structure, independent, vectors, chain)
     integer, intent(in) :: unit                           !< number of the output unit
+    type(structure_type), intent(in) :: structure         !< links of the pairs
+    logical, intent(in) :: independent(:)                 !< (M) which coordinates are independent
     type(structural_vectors_type), intent(in) :: vectors  !< the structure as the second set
     type(chain_type), intent(in) :: chain                 !< the chain
     character(len=:), allocatable :: line, step
@@ -65,9 +68,7 @@ contains
     step = ''
     line = '    '//to_text(chain%start)
     do i = chain%first, chain%last
-      step = ' -'//to_text(vectors%nws(i))//'- '
-      if (vectors%rdw(i) == 1) step = ' ='//to_text(vectors%nws(i))//'= '
-      step = step//to_text(vectors%nrg(i))
+      step = ' '//pair_text(structure, independent, vectors%nws(i))//' '//to_text(vectors%nrg(i))
       if (len(line) + len(step) > line_width) then
         write (unit, '(a)') line
         line = '     '
@@ -77,4 +78,28 @@ contains
     if (.not. chain%closed) line = line//'  (open)'
     write (unit, '(a)') line
   end subroutine print_chain
+
+  !> The coordinates of a pair, or of the joint with several freedoms whose first coordinate is given.
+  pure function pair_text(structure, independent, first) result(text)
+    type(structure_type), intent(in) :: structure  !< links of the pairs
+    logical, intent(in) :: independent(:)          !< (M) which coordinates are independent
+    integer, intent(in) :: first                   !< number of the coordinate
+    character(len=:), allocatable :: text
+    integer, allocatable :: numbers(:)
+    integer :: i, joint
+
+    numbers = [first]
+    joint = structure%joint_of(first)
+    if (joint > 0) numbers = structure%joints(joint)%coordinates()
+    text = ''
+    do i = 1, size(numbers)
+      if (i > 1) text = text//','
+      if (independent(numbers(i)) .and. .not. all(independent(numbers))) then
+        text = text//'='//to_text(numbers(i))//'='
+      else
+        text = text//to_text(numbers(i))
+      end if
+    end do
+    text = merge('=', '-', all(independent(numbers)))//text//merge('=', '-', all(independent(numbers)))
+  end function pair_text
 end module mech9_structure_sketch

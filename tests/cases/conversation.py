@@ -4,6 +4,7 @@ corrections, interruptions and resumptions; the saved data files repeat the tabl
 usage: conversation.py MECH9K MECH9D
 """
 import os
+import re
 import shutil
 import signal
 import sys
@@ -408,7 +409,9 @@ def joints_with_several_freedoms(talks):
             # the last hinge goes from the rocker to the frame; matrix and second set have its links the other way round
             geometry = CHAIN_GEOMETRY if way == 'pairs' else CHAIN_GEOMETRY[:-2] + [('axis [', '-x'), CHAIN_GEOMETRY[-1]]
             # the report of the run lists six coordinates in a line
-            talks.pipe(talks.mech9k, CHAIN_COUNTS + structure + geometry + rest, why, folder=folder, width=90)
+            done = talks.pipe(talks.mech9k, CHAIN_COUNTS + structure + geometry + rest, why, folder=folder, width=90)
+            steps = {step for line in done.stderr.splitlines() for step in re.findall(r' ([-=][0-9,=]+[-=]) ', line)}
+            talks.checks.true({'=1=', '-2,3,4-', '-5,6-', '-7-'} <= steps, f'{why}: the sketch names all coordinates of a joint', steps)
             for path in ('by_hand.nml', 'chain.nml'):
                 done = run(talks.mech9k, path, '--table', 'again.dat', '--quiet', folder=folder)
                 talks.checks.true(done.returncode == DONE and done.stderr == '', f'{why}: {path} runs', done.stderr)
