@@ -125,6 +125,23 @@ def draws(cases, mech9d):
         cases.checks.true(code == DONE and found == [rows['swing'][5], rows['speed'][5]], f'{kind}: a row is a single run', found)
 
 
+def parts(cases, mech9k):
+    """The rows of three parts are those of the whole study."""
+    text = SLIDER_CRANK + parameters(', low=0.2, high=0.4, count=3', ', low=0.9, high=1.1, count=3') + "&study kind='grid' /\n"
+    whole, _ = cases.study(mech9k, text, why='whole')
+    rows = [cases.study(mech9k, text, '--part', f'{k}/3', why=f'part {k}')[0] for k in (1, 2, 3)]
+    together = np.concatenate([part['run'] for part in rows])
+    order = np.argsort(together)
+    for name in whole:
+        cases.checks.true(np.array_equal(np.concatenate([part[name] for part in rows])[order], whole[name]), f'parts: {name}')
+    done = run(mech9k, cases.write(text), '--part', '1/3')
+    cases.checks.true(done.returncode == USAGE and '--part K/N is a part of --study' in done.stderr, 'parts of a study only', done.stderr)
+    for wrong in ('8/7', '0/3', '3', 'a/b', '1/2/3'):
+        done = run(mech9k, cases.write(text), '--study', '--part', wrong)
+        cases.checks.true(done.returncode == USAGE and "--part needs the number of a part and how many parts there are" in done.stderr,
+                          f'part {wrong} is refused', done.stderr)
+
+
 def mistakes(cases, mech9k):
     check = cases.checks
     table = cases.write('kept', 'kept.dat')
@@ -157,6 +174,7 @@ def main():
         grids(cases, mech9k)
         lists(cases, mech9k)
         draws(cases, mech9d)
+        parts(cases, mech9k)
         mistakes(cases, mech9k)
     checks.finish()
 

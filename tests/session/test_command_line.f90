@@ -2,7 +2,7 @@
 program test_command_line
   use mech9_error, only: error_type, exit_usage
   use mech9_text, only: string_type
-  use mech9_options, only: options_table, option_names, find_option, needed_argument, whole_number
+  use mech9_options, only: options_table, option_names, find_option, needed_argument, whole_number, part_of_whole
   use mech9_command_line, only: command_line_type, parse_command_line
   use mech9_help_text, only: help_text
   use mech9_testing, only: tester_type
@@ -106,6 +106,8 @@ contains
       word = '--'//name
       if (options_table(i)%form == whole_number) then
         word = trim(word)//'=7'
+      else if (options_table(i)%form == part_of_whole) then
+        word = trim(word)//'=2/7'
       else if (options_table(i)%takes == needed_argument) then
         word = trim(word)//'='//argument
       end if
@@ -115,6 +117,8 @@ contains
         call parse(trim(word), options, err)       ! it makes the data file
       else if (name == 'out') then
         call parse('--import|a.urdf|'//trim(word), options, err)
+      else if (name == 'part') then
+        call parse('a.nml|--study|'//trim(word), options, err)
       else if (name == 'mode') then
         call parse('a.nml|--modes|--animate|a.svg|'//trim(word), options, err, program_name)
       else
@@ -140,6 +144,9 @@ contains
     call refuse(tester, '--dialogue|a.nml|--set|time.end=2', 'this is a conversation; --set is for a data file alone')
     call refuse(tester, '--edit|a.nml|--check', 'this is a conversation; --check is for a data file alone')
     call refuse(tester, '--check', 'no data file')
+    call refuse(tester, 'a.nml|--part|1/2', '--part K/N is a part of --study')
+    call refuse(tester, 'a.nml|--study|--part|3/2', '--part needs the number of a part')
+    call refuse(tester, 'a.nml|--study|--check', 'leave --check out')
     call refuse(tester, 'a.nml|--range', 'only mech9k has it', 'mech9d')
     call refuse(tester, 'a.nml|--modes', 'only mech9d has it')
     call refuse(tester, 'a.nml|--modes|--equilibrium', 'different tables', 'mech9d')

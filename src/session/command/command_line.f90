@@ -3,7 +3,8 @@ module mech9_command_line
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type, nearest_name, starts_with
   use mech9_options, only: option_type, options_table, option_names, find_option, &
-                           no_argument, optional_argument, whole_number, assignment
+                           no_argument, optional_argument, whole_number, assignment, part_of_whole
+  use mech9_argument_forms, only: is_whole_number, is_assignment, is_part
   use mech9_option_conflicts, only: judge_options, answer_of, rest_of
   implicit none
   private
@@ -25,6 +26,7 @@ module mech9_command_line
     procedure :: argument
     procedure :: arguments
     procedure :: number
+    procedure :: part
     procedure :: converses
     procedure :: answer
     procedure :: rest
@@ -262,32 +264,14 @@ contains
       call raise(err, exit_usage, name//' is given more than once')
     else if (option%form == whole_number .and. .not. is_whole_number(argument)) then
       call raise(err, exit_usage, name//" needs a whole number from 1 on, not '"//argument//"'")
+    else if (option%form == part_of_whole .and. .not. is_part(argument)) then
+      call raise(err, exit_usage, name//" needs the number of a part and how many parts there are, as in "//name// &
+                 " 3/8; not '"//argument//"'")
     else if (option%form == assignment .and. .not. is_assignment(argument)) then
       call raise(err, exit_usage, name//' needs '//trim(option%argument)//', as in '//name &
                  //" time.end=2; not '"//argument//"'")
     end if
   end subroutine judge_argument
-
-  !> Whether a text is a whole number from 1 on that an integer can hold.
-  pure logical function is_whole_number(text)
-    character(len=*), intent(in) :: text  !< the argument of an option
-    integer :: value, status
-
-    is_whole_number = .false.
-    if (verify(text, '0123456789') > 0) return
-    read (text, *, iostat=status) value
-    if (status == 0) is_whole_number = value > 0
-  end function is_whole_number
-
-  !> Whether a text has the form GROUP.NAME=VALUE. The reader of the data file checks the names.
-  pure logical function is_assignment(text)
-    character(len=*), intent(in) :: text  !< the argument of an option
-    integer :: equals, dot
-
-    equals = index(text, '=')
-    dot = index(text(:max(equals - 1, 0)), '.')
-    is_assignment = dot > 1 .and. dot < equals - 1
-  end function is_assignment
 
   !> Append an option. An array constructor would be shorter, but gfortran 12 leaks its content.
   pure subroutine append(given, name, argument)
@@ -354,6 +338,21 @@ contains
     place = place_of(self, name)
     if (place > 0) read (self%given(place)%argument, *) number   ! checked when it was read
   end function number
+
+  !> The number of a part and how many parts there are, as --part gives them; 1 of 1 where it is not given.
+  pure function part(self)
+    class(command_line_type), intent(in) :: self  !< the command line
+    integer :: part(2)
+    character(len=:), allocatable :: text
+    integer :: slash
+
+    part = 1
+    if (.not. self%has('part')) return
+    text = self%argument('part')
+    slash = index(text, '/')
+    read (text(:slash - 1), *) part(1)
+    read (text(slash + 1:), *) part(2)
+  end function part
 
   !> Position of an option among the given ones; 0 where it is not given.
   pure integer function place_of(self, name)

@@ -57,6 +57,8 @@ contains
     if (has('help') .or. has('version') .or. has('help-data')) return
     if (has('import') .or. has('out')) then
       call judge_import(given, has_file, err)
+    else if (has('part') .and. .not. has('study')) then
+      call raise(err, exit_usage, '--part K/N is a part of --study; give both')
     else if (has('quiet') .and. has('verbose')) then
       call raise(err, exit_usage, '--quiet and --verbose contradict each other')
     else if (has('no-write') .and. (has('table') .or. has('hdf5') .or. has('plot') .or. has('linear'))) then

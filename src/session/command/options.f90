@@ -3,11 +3,11 @@ module mech9_options
   implicit none
   private
   public :: option_type, options_table, option_names, find_option
-  public :: no_argument, optional_argument, needed_argument, any_text, whole_number, assignment
+  public :: no_argument, optional_argument, needed_argument, any_text, whole_number, assignment, part_of_whole
 
   integer, parameter :: no_argument = 0, optional_argument = 1, needed_argument = 2
-  !> Forms of an argument: any text, a whole number from 1 on, GROUP.NAME=VALUE.
-  integer, parameter :: any_text = 0, whole_number = 1, assignment = 2
+  !> Forms of an argument: any text, a whole number from 1 on, GROUP.NAME=VALUE, K/N.
+  integer, parameter :: any_text = 0, whole_number = 1, assignment = 2, part_of_whole = 3
 
   !> One option.
   type :: option_type
@@ -66,6 +66,8 @@ module mech9_options
                 'write exit code, errors, counts and times of the run as JSON'), &
     option_type('study', no_argument, '', any_text, .false., both, &
                 'make the runs of the group &study; the table has a row for each'), &
+    option_type('part', needed_argument, 'K/N', part_of_whole, .false., both, &
+                'make part K of N parts of a study, for N jobs'), &
     option_type('set', needed_argument, 'GROUP.NAME=VALUE', assignment, .true., both, &
                 'replace a value of the data file; may be repeated'), &
     option_type('dialogue', no_argument, '', any_text, .false., both, &

@@ -54,7 +54,8 @@ contains
     if (paths%table /= '') call table%open(paths%table, model%mechanism%title, program_name//' '//version, &
                                            columns%names(:columns%count), columns%units(:columns%count), err)
     clock = seconds()
-    if (.not. allocated(err)) call make_runs(program_name, options%has('quiet'), varied, model, table, paths%table /= '', sums, err)
+    if (.not. allocated(err)) call make_runs(program_name, options%has('quiet'), options%part(), varied, model, table, &
+                                            paths%table /= '', sums, err)
     if (paths%table /= '') call table%close(at_close)
     if (.not. allocated(err)) call move_alloc(at_close, err)
     if (allocated(err)) call diagnostics%add_error(err)
@@ -80,10 +81,11 @@ contains
     call columns%append('exit_code', '')
   end function columns_of_study
 
-  !> Make all runs and write their rows. A run that fails is a row with its code and without quantities (NaN).
-  subroutine make_runs(program_name, quiet, varied, model, table, has_table, sums, err)
+  !> Make the runs of a part and write their rows. A run that fails is a row with its code and without quantities (NaN).
+  subroutine make_runs(program_name, quiet, part, varied, model, table, has_table, sums, err)
     character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     logical, intent(in) :: quiet                            !< no progress is shown
+    integer, intent(in) :: part(2)                          !< number of the part that is made, and how many parts there are
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(table_type), intent(inout) :: table                !< open, if there is one
@@ -99,7 +101,8 @@ contains
     call sums%begin(size(model%request%quantities))
     allocate (row(n + size(model%request%quantities) + 2))
     call progress%start(program_name, quiet)
-    do run = 1, model%request%study%runs
+    ! runs go round the parts, so that each has its share of long ones
+    do run = part(1), model%request%study%runs, part(2)
       row(1) = run
       call values_of_run(model%request%study, model%parameters, run, row(2:n + 1))
       call make_run(program_name, varied, row(2:n + 1), row(n + 2:size(row) - 1), failure)
