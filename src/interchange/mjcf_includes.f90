@@ -1,9 +1,8 @@
 !> Elements <include> of MJCF: the elements in the root of another file take the place of the element that names this file.
 module mech9_mjcf_includes
-  use mech9_error, only: error_type, add_place, exit_file
+  use mech9_error, only: error_type, exit_file
   use mech9_text, only: to_text
   use mech9_path, only: folder_of
-  use mech9_printable, only: printable
   use mech9_same_file, only: file_place_type, find_place, same_place, is_regular
   use mech9_xml_tree, only: xml_tree_type, deepest_element
   use mech9_xml_reader, only: read_xml
@@ -41,10 +40,11 @@ contains
     integer, intent(inout) :: includer(:)                  !< (most_files) number of the file that names each file; 0: none
     type(error_type), allocatable, intent(inout) :: err    !< the failure
     type(xml_tree_type) :: other
-    character(len=:), allocatable :: path
+    character(len=:), allocatable :: path, problem
     integer :: n, e
 
     path = needed_attribute(tree, element, 'file', err)
+    if (path == '') call tree%fail(element, '<include> names no file', err)
     if (index(path, '/') /= 1) path = folder_of(tree%files(1)%text)//path
     n = size(tree%files) + 1
     if (n > most_files) call tree%fail(element, 'the model has more than '//to_text(most_files)//' files, which are too many', err)
@@ -54,7 +54,10 @@ contains
     if (allocated(err)) return
     call read_xml(path, other, err)
     if (allocated(err)) then
-      if (err%code == exit_file) call add_place(err, printable(tree%place(element)))
+      if (err%code /= exit_file) return
+      problem = err%message
+      deallocate (err)
+      call tree%fail(element, problem, err, exit_file)
       return
     end if
     if (tree%count + other%count > most_elements) &

@@ -259,6 +259,8 @@ def check_includes(s):
     s.write('parts/empty.xml', '<mujoco><include file="parts/more.xml"/></mujoco>')
     s.refuses('a file twice', DATA, "parts/empty.xml:1:9: 'parts/more.xml' is included a second time", outer)
     s.refuses('no name', DATA, "robot.xml:1:9: <include> needs 'file'", '<mujoco><include/></mujoco>')
+    s.refuses('an empty name', DATA, 'robot.xml:1:9: <include> names no file', '<mujoco><include file=""/></mujoco>')
+    s.refuses('a line end in a name', FILE, 'robot.xml:1:9:  : cannot be read', '<mujoco><include file="&#10;"/></mujoco>')
     s.refuses('a folder', DATA, "'parts' is not a file that can be included", '<mujoco><include file="parts"/></mujoco>')
     s.write('parts/empty.xml', '<mujoco>' + 200 * '<body>' + '<include file="parts/deep.xml"/>' + 200 * '</body>' + '</mujoco>')
     s.write('parts/deep.xml', '<mujoco>' + 200 * '<body>' + 200 * '</body>' + '</mujoco>')

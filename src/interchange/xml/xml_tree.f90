@@ -328,14 +328,18 @@ contains
   end function place
 
   !> Fail because of an element; an earlier failure stays.
-  subroutine fail(self, element, message, err)
+  subroutine fail(self, element, message, err, code)
     class(xml_tree_type), intent(in) :: self             !< the tree
     integer, intent(in) :: element                       !< number of the element
     character(len=*), intent(in) :: message              !< the error in words
     type(error_type), allocatable, intent(inout) :: err  !< the failure
+    integer, intent(in), optional :: code                !< its exit code; exit_data unless it is given
+    integer :: kind
 
     if (allocated(err)) return
-    call raise(err, exit_data, printable(self%place(element)//': '//shortened(message)))
+    kind = exit_data
+    if (present(code)) kind = code
+    call raise(err, kind, printable(self%place(element)//': '//shortened(message)))
   end subroutine fail
 
   !> A message whose words are short: a word of a hostile file may have millions of characters.
