@@ -122,6 +122,11 @@ contains
     integer :: j
 
     do j = self%done + 1, last
+      if (has_extremes_at_ends(self, j)) then
+        call self%sums%add_value(self%t(j), self%y(0, j))
+        call self%sums%add_value(self%t(j + 1), self%y(0, j + 1))
+        cycle
+      end if
       associate (a => self%t(j), b => self%t(j + 1))
         call polynomial(self%t(j:j + 1), self%y(:, j:j + 1), local)
         call values_between(local, a, b, rule, self%order, values)
@@ -135,6 +140,20 @@ contains
     end do
     self%done = last
   end subroutine add_intervals
+
+  !> Whether only the ends of an interval count: an extreme of a position is sought, and its rate keeps its sign in between. It
+  !> does so where the coefficients of the rate in Bernstein's form, which follow from rates and accelerations, have one sign.
+  pure logical function has_extremes_at_ends(self, j) result(at_ends)
+    type(tracked_quantity_type), intent(in) :: self   !< the quantity
+    integer, intent(in) :: j                          !< number of the interval
+    real(wp) :: coefficients(4), third
+
+    at_ends = .false.
+    if (self%order > 0 .or. all(self%take /= [character(len=8) :: 'min', 'max', 'peak', 'range'])) return
+    third = (self%t(j + 1) - self%t(j))/3.0_wp
+    coefficients = [self%y(1, j), self%y(1, j) + third*self%y(2, j), self%y(1, j + 1) - third*self%y(2, j + 1), self%y(1, j + 1)]
+    at_ends = all(coefficients > 0.0_wp) .or. all(coefficients < 0.0_wp)
+  end function has_extremes_at_ends
 
   !> The polynomial through outputs with two derivatives each.
   pure subroutine polynomial(t, y, hermite)
