@@ -16,8 +16,8 @@ module mech9_structure_sketch
 contains
 
   !> The chains are drawn in the order of computation, each as links joined by pairs, such as "1 =5= 2 -4- 3", where =5=
-  !> is an independent coordinate. A joint with several freedoms is one step with all its coordinates, as in "2 -5,6,7- 3"; where only
-  !> some of them are independent, these stand as in "2 -5,=6=,7- 3". The mobility by the count follows.
+  !> is an independent coordinate. A joint with several freedoms is one step with all its coordinates, as in "2 -5,6,7- 3"; where
+  !> only some of them are independent, these stand as in "2 -5,=6=,7- 3". The mobility by the count follows.
   subroutine print_sketch(unit, structure, partition)
     integer, intent(in) :: unit                           !< number of the output unit
     type(structure_type), intent(in) :: structure         !< links of the pairs

@@ -4,6 +4,7 @@ all its coordinates, and the links that the program makes itself are not named; 
 usage: joint_symbols.py PROGRAMS_FOLDER
 """
 import os
+import re
 import sys
 import tempfile
 import xml.etree.ElementTree as ElementTree
@@ -187,6 +188,21 @@ def check_couplings(checks, programs, folder):
     checks.equal(len(sizes), 3, 'three bevel gears')
     checks.near(np.array(sizes)[:, 1] / sizes[2][0], [2.0, 2.0, 0.0], 0.01, 'side gears of twice the diameter of the pinion')
     check_belts(checks, os.path.join(programs, 'mech9k'), folder)
+    check_cam(checks, picture('mech9k', example('dwell_cam')))
+
+
+def check_cam(checks, svg):
+    """The roller of 10 mm is a circle that touches the cam, whose least radius is 40.8 - 10 mm, at (8, 40) mm from its axis."""
+    roller, profile = sorted((corners_of(group.find(SVG + 'path').get('d')) for group in svg.iter(SVG + 'g')
+                              if (group.get('class') or '').split()[:1] == ['cam']), key=len)
+    axis, = [np.array([float(number) for number in re.findall(r'[-.0-9]+', group.get('transform'))[:2]])
+             for group in svg.iter(SVG + 'g') if group.get('data-joint') == 'q1']
+    centre, radius = roller.mean(axis=0), np.hypot(*(roller - roller.mean(axis=0)).T).mean()
+    scale = radius / 0.01
+    checks.near((centre - axis) / scale, [0.008, -0.04], 1e-5, 'the roller stands where the follower does', scale=1.0)
+    # 300 points of the curve: straight lines between them miss it by 1e-5 m
+    checks.near(np.hypot(*(profile - centre).T).min() / scale, 0.01, 2e-5, 'it touches the cam', scale=1.0)
+    checks.near(np.hypot(*(profile - axis).T).min() / scale, np.hypot(0.008, 0.04) - 0.01, 2e-5, 'the least radius of the cam', scale=1.0)
 
 
 def check_belts(checks, program, folder):

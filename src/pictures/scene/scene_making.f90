@@ -5,7 +5,7 @@ module mech9_scene_making
   use mech9_spring_load, only: spring_load_type
   use mech9_film, only: film_type
   use mech9_pair_axes, only: free, turning
-  use mech9_skeleton, only: skeleton_type
+  use mech9_skeleton, only: skeleton_type, belt_figure, cam_figure
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, open_path, closed_path, segments, mark, in_plate, in_tube, &
                          in_curve, in_cam, as_dot, as_centre
@@ -249,7 +249,7 @@ contains
     end associate
   end subroutine add_reach
 
-  !> The wheels, racks and belts of couplings are added.
+  !> The wheels, racks and belts of couplings and the cams are added.
   subroutine add_figures(skeleton, scene, shapes)
     type(skeleton_type), intent(in) :: skeleton   !< places at which the pairs are drawn, and figures of couplings
     type(scene_type), intent(inout) :: scene      !< nodes and items of the picture
@@ -264,8 +264,16 @@ contains
         do j = 1, size(nodes)
           call scene%add_node(figure%link, figure%points(:, j), nodes(j))
         end do
-        call scene%add_item(open_path, merge(in_curve, in_plate, figure%is_belt), nodes, figure%link)
-        if (shapes(figure%link) == 0 .and. .not. figure%is_belt) shapes(figure%link) = scene%n_items
+        select case (figure%kind)
+        case (belt_figure)
+          call scene%add_item(open_path, in_curve, nodes, figure%link)
+          cycle
+        case (cam_figure)
+          call scene%add_item(closed_path, in_cam, nodes, figure%link)
+        case default
+          call scene%add_item(open_path, in_plate, nodes, figure%link)
+        end select
+        if (shapes(figure%link) == 0) shapes(figure%link) = scene%n_items
       end associate
     end do
   end subroutine add_figures

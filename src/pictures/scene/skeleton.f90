@@ -11,7 +11,7 @@ module mech9_skeleton
   use mech9_pair_axes, only: pair_axes_type, pair_axes, turning, free
   implicit none
   private
-  public :: skeleton_type, place_type, figure_type, make_skeleton
+  public :: skeleton_type, place_type, make_skeleton, append_figure, wheel_figure, belt_figure, cam_figure
 
   !> The place where a pair is drawn. Side 1 is the reference link, side 2 the moving link.
   type, extends(pair_axes_type) :: place_type
@@ -29,14 +29,18 @@ module mech9_skeleton
     integer :: plane_from = 0          !< of a planar joint that is drawn as a whole, its first pair; 0: of a free one
   end type place_type
 
-  !> A line that shows a wheel, a rack or a belt.
+  !> The kinds of figures: a wheel or a rack is a thick line of its link, a straight part of a belt does not move as its link does,
+  !> and a cam or a roller is closed and filled.
+  integer, parameter :: wheel_figure = 1, belt_figure = 2, cam_figure = 3
+
+  !> A line that shows a wheel, a rack, a belt or a cam.
   type :: figure_type
+    integer :: kind = wheel_figure
     integer :: link = 0                       !< number of its link
     real(wp), allocatable :: points(:, :)     !< (3,n) points that it joins, in the system of the link [m]
-    logical :: is_belt = .false.              !< it is a straight part of a belt, which does not move as the link does
   end type figure_type
 
-  !> The places of all pairs, the graph of links and pairs, and the figures of couplings.
+  !> The places of all pairs, the graph of links and pairs, and the figures of couplings and cams.
   type :: skeleton_type
     type(place_type), allocatable :: places(:)
     type(link_graph_type) :: graph
@@ -62,7 +66,7 @@ contains
 
     axes = pair_axes(mechanism%pairs)
     skeleton%graph = graph_from_structure(mechanism%structure)
-    allocate (skeleton%places(size(axes)))
+    allocate (skeleton%places(size(axes)), skeleton%figures(0))
     do k = 1, size(axes)
       skeleton%places(k)%pair_axes_type = axes(k)
       if (axes(k)%kind == free) skeleton%places(k)%carrier = 2
@@ -71,6 +75,26 @@ contains
     call draw_near(film, skeleton)
     skeleton%size = size_of(mechanism, film, skeleton%places)
   end subroutine make_skeleton
+
+  !> A line of a link is added to the figures.
+  subroutine append_figure(link, points, kind, skeleton)
+    integer, intent(in) :: link                     !< number of the link
+    real(wp), intent(in) :: points(:, :)            !< (3,n) points that the line joins, in the system of the link [m]
+    integer, intent(in) :: kind                     !< wheel_figure, belt_figure or cam_figure
+    type(skeleton_type), intent(inout) :: skeleton  !< gets the line
+    type(figure_type), allocatable :: grown(:)
+    integer :: i, n
+
+    n = size(skeleton%figures)
+    allocate (grown(n + 1))
+    do i = 1, n
+      grown(i) = skeleton%figures(i)
+    end do
+    grown(n + 1)%link = link
+    grown(n + 1)%points = points
+    grown(n + 1)%kind = kind
+    call move_alloc(grown, skeleton%figures)
+  end subroutine append_figure
 
   !> The pairs of planar and free joints get the number of the pair that draws them, and those of balls are marked.
   pure subroutine mark_joints(mechanism, places)

@@ -10,7 +10,7 @@ module mech9_wheel_figures
   use mech9_linear_coupling, only: linear_coupling_type
   use mech9_film, only: film_type
   use mech9_pair_axes, only: turning, sliding
-  use mech9_skeleton, only: skeleton_type, figure_type
+  use mech9_skeleton, only: skeleton_type, append_figure, wheel_figure, belt_figure
   implicit none
   private
   public :: find_figures
@@ -41,8 +41,6 @@ contains
     type(partner_type) :: pair(2)
     integer :: i, common
 
-    if (allocated(skeleton%figures)) deallocate (skeleton%figures)
-    allocate (skeleton%figures(0))
     if (.not. allocated(mechanism%couplings)) return
     do i = 1, size(mechanism%couplings)
       select type (coupling => mechanism%couplings(i)%coupling)
@@ -196,8 +194,8 @@ contains
       low = min(low, dot_product(at - first, pair(2)%own_axis))
       high = max(high, dot_product(at - first, pair(2)%own_axis))
     end do
-    call add_figure(pair(2)%link, reshape([first + (low - abs(travel))*pair(2)%own_axis, &
-                                           first + (high + abs(travel))*pair(2)%own_axis], [3, 2]), .false., skeleton)
+    call append_figure(pair(2)%link, reshape([first + (low - abs(travel))*pair(2)%own_axis, &
+                                              first + (high + abs(travel))*pair(2)%own_axis], [3, 2]), wheel_figure, skeleton)
   end subroutine add_rack
 
   !> Two pulleys, and the straight parts of the belt, which stand still relative to the link that carries the pulleys.
@@ -222,8 +220,8 @@ contains
     sine = (radii(1) - other)/norm2(apart)
     do side = -1, 1, 2
       normal = sine*along + side*sqrt(1.0_wp - sine**2)*across
-      call add_figure(common, reshape([pair(1)%point + radii(1)*normal, pair(1)%point + apart + other*normal], [3, 2]), &
-                      .true., skeleton)
+      call append_figure(common, reshape([pair(1)%point + radii(1)*normal, pair(1)%point + apart + other*normal], [3, 2]), &
+                         belt_figure, skeleton)
     end do
   end subroutine add_belt
 
@@ -254,26 +252,6 @@ contains
         if (maxval(abs(figure%points(:, 2:) - points(:, 2:))) <= same*skeleton%size) return
       end associate
     end do
-    call add_figure(wheel%link, points, .false., skeleton)
+    call append_figure(wheel%link, points, wheel_figure, skeleton)
   end subroutine add_circle
-
-  !> A line of a link is added to the figures.
-  subroutine add_figure(link, points, is_belt, skeleton)
-    integer, intent(in) :: link                     !< number of the link
-    real(wp), intent(in) :: points(:, :)            !< (3,n) points that the line joins, in the system of the link [m]
-    logical, intent(in) :: is_belt                  !< the line is a part of a belt
-    type(skeleton_type), intent(inout) :: skeleton  !< gets the line
-    type(figure_type), allocatable :: grown(:)
-    integer :: i, n
-
-    n = size(skeleton%figures)
-    allocate (grown(n + 1))
-    do i = 1, n
-      grown(i) = skeleton%figures(i)
-    end do
-    grown(n + 1)%link = link
-    grown(n + 1)%points = points
-    grown(n + 1)%is_belt = is_belt
-    call move_alloc(grown, skeleton%figures)
-  end subroutine add_figure
 end module mech9_wheel_figures

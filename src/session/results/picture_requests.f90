@@ -12,6 +12,7 @@ module mech9_picture_requests
   use mech9_skeleton, only: skeleton_type, make_skeleton
   use mech9_slide_places, only: place_slides
   use mech9_wheel_figures, only: find_figures
+  use mech9_cam_figures, only: find_cam_figures
   use mech9_view_choice, only: choose_view
   use mech9_projection, only: projection_type, fit_projection
   use mech9_scene, only: scene_type
@@ -114,6 +115,7 @@ contains
     call make_skeleton(model%mechanism, film, skeleton)
     call place_slides(model%mechanism, film, skeleton)
     call find_figures(model%mechanism, film, skeleton)
+    if (allocated(model%request%cams)) call find_cam_figures(model%request%cams, film, skeleton)
     call choose_view(model%mechanism, film, skeleton, view, planar)
     if (allocated(self%view)) then
       ! whether the view is along the normal of the plane
