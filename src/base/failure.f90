@@ -20,12 +20,14 @@ module mech9_failure
   public :: failure_no_initial_position, failure_not_started, failure_backwards, failure_interrupted
   public :: failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
     failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve, &
-    failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, failure_open_coupling, failure_coupled, last_failure
+    failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, failure_open_coupling, failure_coupled, &
+    last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
   !> The independent coordinates do not fit the mobility: number, coordinates (the independent ones), others (a choice that
-  !> serves), idle (those that cannot move), replaces.
+  !> serves), idle (those that cannot move), replaces; chains and lines (couplings, and closed chains, that hold coordinates
+  !> between them).
   integer, parameter :: failure_wrong_choice = 1
   !> The independent coordinates do not determine the others: coordinates (which would have to be independent as well).
   integer, parameter :: failure_undetermined_coordinates = 2
@@ -160,7 +162,8 @@ module mech9_failure
 
   ! Couplings
 
-  !> The coordinates of a coupling do not agree with those that other chains and couplings allow: chains, coordinates, gap.
+  !> Couplings, or a coupling and closed chains, contradict each other in the values of their coordinates: chains, lines,
+  !> coordinates, gap.
   integer, parameter :: failure_open_coupling = 62
   !> A mechanism is executed in space because coordinates are coupled.
   integer, parameter :: failure_coupled = 63
@@ -169,7 +172,8 @@ module mech9_failure
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type
     integer :: kind = 0                         !< one of the constants above
-    integer, allocatable :: chains(:)           !< closed chains
+    integer, allocatable :: chains(:)           !< closed chains, and couplings with negative numbers
+    integer, allocatable :: lines(:)            !< of the data file, on which each of `chains` begins; 0: on none
     integer, allocatable :: coordinates(:)      !< coordinates that fail
     integer, allocatable :: others(:)           !< coordinates that would serve, or the independent ones
     integer, allocatable :: idle(:)             !< coordinates that cannot move

@@ -3,7 +3,7 @@ module mech9_block_names
   use mech9_text, only: to_text
   implicit none
   private
-  public :: chain_names, words_of_block
+  public :: chain_names, names_with_lines, words_of_block
 
 contains
 
@@ -53,6 +53,32 @@ contains
       names = several('closed chain', pack(chains, chains > 0))//' and '//several('coupling', -pack(chains, chains < 0))
     if (size(chains) > 1) names = trim(names)//' together'
   end function chain_names
+
+  !> "couplings 1 (line 4) and 2 (line 5)", "closed chain 1 and coupling 2 (line 7)".
+  pure subroutine names_with_lines(chains, lines, names)
+    integer, intent(in) :: chains(:)        !< numbers of closed chains, and of couplings, negative
+    integer, intent(in) :: lines(:)         !< of the data file, on which each begins; 0: on none
+    character(len=:), allocatable, intent(out) :: names   !< at least one
+    integer :: order(size(chains)), i, k, n, couplings
+
+    ! closed chains first, then couplings, by their numbers
+    n = size(order)
+    do i = 1, n
+      k = count(chains > 0 .and. chains <= chains(i))
+      if (chains(i) < 0) k = count(chains > 0) + count(chains < 0 .and. chains >= chains(i))
+      order(k) = i
+    end do
+    couplings = count(chains < 0)
+    names = ''
+    do i = 1, n
+      k = order(i)
+      if (i > 1) names = names//trim(merge(' and', ',   ', i == n))//' '
+      if (i == 1 .and. chains(k) > 0) names = names//'closed chain'//trim(merge('s', ' ', n - couplings > 1))//' '
+      if (i == n - couplings + 1) names = names//'coupling'//trim(merge('s', ' ', couplings > 1))//' '
+      names = names//to_text(abs(chains(k)))
+      if (lines(k) > 0) names = names//' (line '//to_text(lines(k))//')'
+    end do
+  end subroutine names_with_lines
 
   !> The numbers in ascending order.
   pure function sorted(numbers)

@@ -3,6 +3,7 @@ module mech9_choice_words
   use mech9_text, only: to_text, some_of
   use mech9_failure, only: failure_type
   use mech9_masks, only: numbers_of
+  use mech9_coupling_words, only: explain_holding
   implicit none
   private
   public :: explain_choice, longest_list
@@ -34,7 +35,7 @@ contains
     end select
     if (f == 0) then
       text = text//'; the mechanism cannot move, no coordinate can be independent'
-      call explain_couplings(failure, text)
+      call explain_holding(failure, text)
       return
     end if
     call explain_needed(failure, wanted, text)
@@ -47,20 +48,8 @@ contains
       end associate
     end do
     if (size(failure%idle) > 0) text = text//'; never: '//some_of(failure%idle, longest_list)//', which cannot move'
-    call explain_couplings(failure, text)
+    call explain_holding(failure, text)
   end subroutine explain_choice
-
-  !> Append the couplings that join coordinates which cannot move, or nothing.
-  pure subroutine explain_couplings(failure, text)
-    type(failure_type), intent(in) :: failure             !< of the kind failure_wrong_choice
-    character(len=:), allocatable, intent(inout) :: text  !< the message so far
-
-    if (.not. allocated(failure%chains)) return
-    if (size(failure%chains) == 0) return
-    text = text//'; coupling'//trim(merge('s', ' ', size(failure%chains) > 1))//' '//some_of(-failure%chains, longest_list)// &
-           ' hold'//trim(merge('s', ' ', size(failure%chains) == 1))//' coordinates that cannot move: leave one out that '// &
-           'contradicts the others or a closed chain'
-  end subroutine explain_couplings
 
   !> Append "; 1 more of the coordinates 2, 3 must be independent (cq)", or nothing.
   pure subroutine explain_needed(failure, wanted, text)

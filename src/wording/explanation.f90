@@ -17,8 +17,9 @@ module mech9_explanation
     failure_chain_off_plane, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
     failure_interrupted, failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
     failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve, &
-    failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, failure_open_coupling, failure_coupled
+    failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, failure_coupled
   use mech9_block_names, only: chain_names, words_of_block
+  use mech9_coupling_words, only: explain_coupling
   use mech9_choice_words, only: explain_choice, longest_list
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
   implicit none
@@ -56,6 +57,7 @@ contains
     call explain_points(failure, text)
     call explain_equilibrium(failure, text)
     call explain_no_plane(failure, text)
+    call explain_coupling(failure, text)
   end subroutine explain_failure
 
   !> Chains that do not close or do not move, and independent coordinates that do not determine the others.
@@ -71,10 +73,6 @@ contains
              ' more must be independent (cq); '//some_of(failure%coordinates, longest_list)//' would serve'
     case (failure_open_chain, failure_nearly_closed_chain)
       call explain_open_chain(failure, text)
-    case (failure_open_coupling)
-      text = 'the mechanism cannot be assembled: '//chain_names(failure%chains)//' of coordinates '// &
-             to_text(failure%coordinates)//' contradicts the chains or couplings that determine these coordinates too; '// &
-             'leave one of them out, or mend its numbers'
     case (failure_locked_chain, failure_nearly_moving_chain)
       call explain_locked_chain(failure, text)
     case (failure_large_block)

@@ -1,12 +1,14 @@
-"""Couplings of coordinates: gears, racks, belts and screws against closed forms, among them Willis' formula for planetary gears and the
-differential; a geared five-bar linkage against the same linkage without its gear, whose cranks are both driven; a screw against a
-helical pair; reactions and modes against equations of motion of their own; energy; refusals with place and remedy.
+"""Couplings of coordinates: gears, racks, belts and screws against closed forms, among them Willis' formula for planetary gears, of
+which there are random trains, and the differential; a geared five-bar linkage against the same linkage without its gear, whose cranks
+are both driven; a screw against a helical pair; reactions and modes against equations of motion of their own; energy; tables with and
+without ends; couplings that repeat or contradict each other, these against all parts of them; refusals with place and remedy.
 
 Compares the program with itself in part: other choices of independent coordinates give the same motion.
 
 usage: couplings.py MECH9K MECH9D
 """
 import os
+import re
 import sys
 import tempfile
 
@@ -263,8 +265,9 @@ def check_reports(checks, kinematics):
         run(kinematics, 'case.nml', '--graph', 'graph.dot', '--no-write', folder=folder)
         checks.true('2 -- 3 [style=dashed' in text_of(os.path.join(folder, 'graph.dot')), 'the graph has an edge for the gear')
     for more, code, words in (
-            ("&coupling kind='gear', coordinates=1,2, ratio=3 /\n", (4,), 'couplings 1, 2 hold coordinates that cannot move'),
-            ("&coupling kind='gear', coordinates=1,2, ratio=2, phase=0.1 /\n", (5,), 'contradicts'),
+            ("&coupling kind='gear', coordinates=1,2, ratio=3 /\n", (4,), 'couplings 1 (line 5) and 2 (line 10) contradict each other'),
+            ("&coupling kind='gear', coordinates=1,2, ratio=2, phase=0.1 /\n", (5,),
+             'couplings 1 (line 5) and 2 (line 10) contradict each other'),
             ("&coupling kind='gear', coordinates=1,3, ratio=2 /\n", (3,), 'there is no coordinate 3'),
             ("&coupling kind='gear', coordinates=1,1, ratio=2 /\n", (3,), 'named twice'),
             ("&coupling kind='gear', coordinates=1,2, ratio=0 /\n", (3,), 'would not move'),
@@ -273,6 +276,128 @@ def check_reports(checks, kinematics):
             ("&coupling kind='gear', coordinates=1,2 /\n", (3,), 'ratio')):
         done = output(kinematics, wheels + more)
         checks.true(done.returncode in code and words in done.stderr, f'refused: {more}', f'{done.returncode}: {done.stderr}')
+
+
+def chain_of_wheels(n):
+    """Wheels on the frame, each geared to the next one; the first one drives."""
+    text = '&structure cq=1 /\n'
+    for k in range(1, n + 1):
+        text += f"&pair coordinate={k}, links=1,{k + 1}, kind='revolute', point={k},0,0, axis=0,0,1 /\n"
+    return text + "&drive coordinate=1, kind='polynomial', coefficients=0,1 /\n" + ''.join(
+        f"&coupling kind='gear', coordinates={k},{k + 1}, ratio=-2 /\n" for k in range(1, n))
+
+
+def check_contradictions(checks, kinematics):
+    """Of couplings that contradict each other, just those are named whose equations do, wherever others hang on them."""
+    wheels = chain_of_wheels(6)
+    line = wheels.count('\n') + 1
+    first = line - 5                                  # of coupling 1
+    for more, code, words in (
+            # a second gear of wheels 2 and 3; wheels 4 to 6 hang on them
+            ("&coupling kind='gear', coordinates=2,3, ratio=3 /\n", 4, f'couplings 2 (line {first + 1}) and 6 (line {line})'),
+            ("&coupling kind='gear', coordinates=2,3, ratio=-2, phase=0.3 /\n", 5, f'couplings 2 (line {first + 1}) and 6 (line {line})'),
+            # a circle of three wheels, in which a third gear turns the last one the wrong way
+            ("&coupling kind='gear', coordinates=4,2, ratio=-0.25 /\n", 4,
+             f'couplings 2 (line {first + 1}), 3 (line {first + 2}) and 6 (line {line})'),
+            ("&coupling kind='gear', coordinates=2,4, ratio=4, phase=1 /\n", 5,
+             f'couplings 2 (line {first + 1}), 3 (line {first + 2}) and 6 (line {line})')):
+        done = output(kinematics, wheels + more)
+        checks.true(done.returncode == code and words + ' contradict each other' in done.stderr and f':{line}:1' in done.stderr,
+                    f'named exactly: {more}', f'{done.returncode}: {done.stderr}')
+    # a crank and a rocker cannot turn in a fixed ratio: the closed chain is named with the gear, and not the gear that hangs on it
+    bars = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', point=0.3,0,0, axis=0,0,1, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', point=1,0,0, axis=0,0,1, moving_point=0.8,0,0 /
+&pair coordinate=4, links=1,4, kind='revolute', point=0.9,0,0, axis=0,0,1, moving_point=0,0,0 /
+&pair coordinate=5, links=1,5, kind='revolute', point=2,0,0, axis=0,0,1 /
+&initial coordinate=1, position=1 /
+&initial coordinate=2, position=-0.4 /
+&initial coordinate=3, position=0.9 /
+&initial coordinate=4, position=1.3 /
+&drive coordinate=1, kind='polynomial', coefficients=1,1 /
+&coupling kind='gear', coordinates=4,5, ratio=-1 /
+&coupling kind='linear', coordinates=1,4, coefficients=0.7,-1, constant=-0.3 /
+"""
+    done = output(kinematics, bars)
+    checks.true(done.returncode == 4 and 'closed chain 1 and coupling 2 (line 13) contradict each other' in done.stderr,
+                'a gear that locks a four-bar linkage', f'{done.returncode}: {done.stderr}')
+
+
+def rates_left(rows):
+    """The greatest rate of each coordinate that linear equations between n of them leave."""
+    _, singular, basis = np.linalg.svd(rows)
+    return np.linalg.norm(basis[np.count_nonzero(singular > 1e-9):], axis=0)
+
+
+def check_random_contradictions(checks, kinematics):
+    """As many random equations as coordinates: those that are named hold a coordinate between them, and no part of them does."""
+    random = np.random.default_rng(5)
+    named = 0
+    for trial in range(25):
+        n = int(random.integers(3, 8))
+        rows = np.zeros((n, n))
+        text = chain_of_wheels(n).split('&coupling')[0]
+        first = text.count('\n') + 1
+        for row in rows:
+            which = random.choice(n, size=2 + int(random.random() < 0.3), replace=False)
+            row[which] = random.integers(1, 4, size=len(which)) * random.choice([-1, 1], size=len(which))
+            text += f"&coupling kind='linear', coordinates={','.join(str(k + 1) for k in which)}, " \
+                f"coefficients={','.join(str(int(c)) for c in row[which])} /\n"
+        done = output(kinematics, text)
+        held = rates_left(rows) < 1e-9
+        if done.returncode == 0:
+            checks.true(np.linalg.matrix_rank(rows) == n - 1 and not held[0], f'random equations {trial}: the first wheel moves', text)
+            continue
+        found = re.search(r'couplings ([^;:]*) contradict each other', done.stderr)
+        named += found is not None
+        numbers = [int(k) - 1 for k in re.findall(r'(\d+) \(line', found.group(1))] if found else []
+        lines = [int(k) for k in re.findall(r'line (\d+)', found.group(1))] if found else []
+        checks.true(done.returncode == 4 and lines == [first + k for k in numbers]
+                    and (rates_left(rows[numbers]) < 1e-9)[held].any()
+                    and not any((rates_left(rows[[k for k in numbers if k != out]]) < 1e-9)[held].any() for out in numbers),
+                    f'random equations {trial}: a least set is named', done.stderr + text)
+    checks.true(named > 10, 'most random equations contradict each other', str(named))
+
+
+def check_random_trains(checks, kinematics):
+    """Planetary gears in series, of any size and direction, whose coordinates and couplings stand in any order: the rates are those of
+    Willis' formula in each stage, and the power of the drive is the growth of the kinetic energy."""
+    random = np.random.default_rng(8)
+    for trial in range(12):
+        stages, size = int(random.integers(1, 7)), 10.0 ** int(random.integers(-3, 4))
+        axis = ','.join(repr(float(x)) for x in random.normal(size=3))
+        pairs, couplings, ratios, inertias = '', [], [], random.uniform(0.1, 1, size=4 * stages) * size ** 2
+        for s in range(stages):
+            sun, planet = (float(10 ** random.uniform(0, 1.5)) for _ in range(2))
+            ring = sun + 2 * planet
+            ratios.append(1 + ring / sun)
+            k, link = 4 * s + 1, 4 * s + 2
+            for i, frame in enumerate((1, link, link, link)):
+                pairs += f"&pair coordinate={k + i}, links={frame},{link + i}, kind='revolute', " \
+                    f"point={(0.1 * s + 0.05 * (i == 2)) * size},0,0, axis={axis} /\n"
+                moment = float(inertias[4 * s + i])
+                pairs += f'&body link={link + i}, mass=1e-25, inertia={moment!r},{moment!r},{moment!r},0,0,0 /\n'
+            couplings += [f"kind='gear', coordinates={k + 1},{k + 2}, ratio={-sun / planet!r}",
+                          f"kind='gear', coordinates={k + 2},{k + 3}, ratio={planet / ring!r}",
+                          f"kind='linear', coordinates={k},{k + 3}, coefficients=1,1"]
+            if s > 0:
+                couplings.append(f"kind='linear', coordinates={k - 4},{k},{k + 1}, coefficients=1,-1,-1")
+        random.shuffle(couplings)
+        driven = int(random.integers(1, 4 * stages + 1))
+        found = table(kinematics, f'&structure cq={driven} /\n' + pairs + ''.join(f'&coupling {c} /\n' for c in couplings)
+                      + f"&drive coordinate={driven}, kind='polynomial', coefficients=0.1,2,1.5 /\n&time end=1, intervals=2 /\n"
+                      '&output drive_forces=.true. /\n')
+        power = 0
+        for s in range(stages):
+            carrier, growth = found[f'dq{4 * s + 1}'], found[f'ddq{4 * s + 1}']
+            sun = carrier + found[f'dq{4 * s + 2}']
+            checks.near(carrier * ratios[s] / np.max(abs(sun)), sun / np.max(abs(sun)), 1e-12, f'train {trial}, stage {s}: Willis')
+            for i in range(4):
+                turning = (carrier, growth) if i == 0 else (carrier + found[f'dq{4 * s + 1 + i}'], growth + found[f'ddq{4 * s + 1 + i}'])
+                power = power + inertias[4 * s + i] * turning[0] * turning[1]
+        # the terms of the wheels cancel by about the ratios of the train, of which some are a hundred
+        checks.near(found[f'F{driven}'] * found[f'dq{driven}'] / np.max(power), power / np.max(power), 1e-9, f'train {trial}: power')
 
 
 def check_tables(checks, kinematics, dynamics):
@@ -366,6 +491,9 @@ def main(kinematics, dynamics):
     check_screw(checks, kinematics, dynamics)
     check_pendulum(checks, dynamics)
     check_reports(checks, kinematics)
+    check_contradictions(checks, kinematics)
+    check_random_contradictions(checks, kinematics)
+    check_random_trains(checks, kinematics)
     check_tables(checks, kinematics, dynamics)
     checks.finish()
 

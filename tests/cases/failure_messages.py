@@ -295,7 +295,7 @@ def driven_cases():
          ['spatial arithmetic: closed chain 1 does not close in a plane\n']),
         ('coupled', GEARS, ('--plan',), DONE, ['spatial arithmetic: coordinates are coupled\n']),
         ('open_coupling', GEARS + "&coupling kind='gear', coordinates=1,2, ratio=2, phase=1 /\n", (), ASSEMBLY,
-         ['cannot be assembled: coupling 2 of coordinates 1, 2 contradicts', ':6:1:']),
+         ['cannot be assembled: couplings 1 (line 5) and 2 (line 6) contradict each other', ':6:1:']),
     ]
 
 

@@ -11,7 +11,7 @@ program test_explanation
     failure_interrupted_starts, failure_sharp_curve, failure_unknown_method, &
     failure_relative_tolerance, failure_absolute_tolerance, failure_tolerance_count, failure_infinite_rate, &
     failure_infinite_jacobian, failure_few_points, failure_points_order, failure_not_started, failure_backwards, &
-    failure_interrupted, failure_lost_angles, failure_drive_jumps
+    failure_interrupted, failure_lost_angles, failure_drive_jumps, failure_open_coupling
   use mech9_integration_methods, only: integration_methods
   use mech9_explanation, only: explain
   use mech9_testing, only: tester_type, message_of
@@ -20,6 +20,7 @@ program test_explanation
 
   call each_kind()
   call choices()
+  call couplings()
   call blocks()
   call motions()
   call stopped_integration()
@@ -59,9 +60,10 @@ contains
     type(failure_type), intent(inout) :: failure    !< of any kind
 
     failure%chains = [2]
+    failure%lines = [0]
     failure%coordinates = [4]
     failure%others = [1]
-    allocate (failure%idle(0), failure%replaces(6, 1), failure%values(2, 2))
+    allocate (failure%idle(0), failure%replaces(6, 1), failure%values(3, 2))
     failure%replaces = .false.
     failure%values = 1.5_wp
     failure%name = 'bdg'
@@ -73,6 +75,27 @@ contains
     failure%distance = 1.0e-5_wp
     failure%tolerance = 1.0e-9_wp
   end subroutine fill
+
+  !> Couplings and closed chains that contradict each other, by their numbers, with the lines of couplings.
+  subroutine couplings()
+    character(len=*), parameter :: begin = 'the mechanism cannot be assembled: ', &
+      end = '. Leave one of them out, or mend its numbers; constants of gears follow from the positions in &initial, unless '// &
+            'phase gives them'
+    type(error_type), allocatable :: err
+
+    call raise(err, exit_structure, failure_open_coupling)
+    err%failure%coordinates = [1, 2]
+    err%failure%chains = [-3, -12, 2, -1]
+    err%failure%lines = [7, 20, 0, 5]
+    call says(err, begin//'closed chain 2, couplings 1 (line 5), 3 (line 7) and 12 (line 20) contradict each other: no '// &
+              'coordinates fulfil them together'//end)
+    call raise(err, exit_structure, failure_open_coupling)
+    err%failure%coordinates = [1, 2]
+    err%failure%chains = [-2, 3, 1]
+    err%failure%lines = [6, 0, 0]
+    call says(err, begin//'closed chains 1, 3 and coupling 2 (line 6) contradict each other: no coordinates fulfil them '// &
+              'together'//end)
+  end subroutine couplings
 
   !> Choices of independent coordinates: too few, too many, none possible.
   subroutine choices()

@@ -12,6 +12,7 @@ module mech9_diagnosis
   use mech9_assembly, only: assembly_outcome_type
   use mech9_finite_motion, only: locked_chain_type
   use mech9_release, only: close_free, most_free_coordinates
+  use mech9_contradiction, only: find_holding, find_unfulfilled, name_closures
   use mech9_mobility, only: find_motions, choose_coordinates, shares_of
   implicit none
   private
@@ -33,7 +34,7 @@ contains
     logical, intent(out) :: closed   !< `state` is a closed position
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(assembly_outcome_type) :: outcome
-    type(state_type) :: trial
+    type(state_type) :: trial, place
     real(wp), allocatable :: motions(:, :), best(:, :), positions(:, :)
     logical, dimension(plan%n_coordinates) :: wanted, chosen, returns, held
     integer :: i, k
@@ -45,7 +46,7 @@ contains
     call close_free(plan, state, .true., outcome, err)
     if (allocated(err)) return
     if (.not. outcome%closed) then
-      call refuse_open(plan, outcome, err)
+      call refuse_open(plan, state, outcome, err)
       return
     end if
     closed = .true.
@@ -63,10 +64,13 @@ contains
       call choose_coordinates(motions, wanted, chosen)
       if (all(chosen .eqv. wanted)) return
       ! the least mobile branch counts where branches of different mobility meet
-      if (.not. allocated(best)) best = motions
-      if (size(motions, 2) < size(best, 2)) best = motions
+      if (allocated(best)) then
+        if (size(motions, 2) >= size(best, 2)) cycle
+      end if
+      best = motions
+      place = trial
     end do
-    call refuse_choice(plan, best, wanted, err)
+    call refuse_choice(plan, place, best, wanted, err)
   end subroutine judge_choice
 
   !> Generic closed positions near one that may be singular, and the coordinates that return to their values there each time.
@@ -109,13 +113,15 @@ contains
   end subroutine find_positions
 
   !> Fail because of a choice of independent coordinates, with one that would serve.
-  subroutine refuse_choice(plan, motions, wanted, err)
+  subroutine refuse_choice(plan, state, motions, wanted, err)
     type(plan_type), intent(in) :: plan       !< the plan of the mechanism
-    real(wp), intent(in) :: motions(:, :)     !< (M, mobility) basis of the motions at a closed position
+    type(state_type), intent(in) :: state     !< the closed position
+    real(wp), intent(in) :: motions(:, :)     !< (M, mobility) basis of the motions there
     logical, intent(in) :: wanted(:)          !< (M) the independent coordinates
     type(error_type), allocatable, intent(out) :: err   !< always allocated
     logical :: chosen(size(wanted)), idle(size(wanted))
     real(wp), allocatable :: shares(:, :)
+    integer, allocatable :: set(:)
     integer :: k
 
     call raise(err, exit_structure, failure_wrong_choice)
@@ -125,11 +131,9 @@ contains
     err%failure%others = numbers_of(chosen)
     idle = [(norm2(motions(k, :)) <= least_rate, k=1, size(wanted))]
     err%failure%idle = numbers_of(idle)
-    ! couplings that contradict each other, or closed chains, hold their coordinates
-    err%failure%chains = pack([(-k, k=1, size(plan%couplings))], &
-                              [(all(idle(plan%couplings(k)%coupling%coordinates)), k=1, size(plan%couplings))])
-    k = size(err%failure%chains)
-    if (k > 0) err%place = plan%couplings(-err%failure%chains(k))%coupling%place
+    call find_holding(plan, state, idle, set)
+    call name_closures(plan, set, err%failure)
+    call place_at_last(plan, set, err)
     if (.not. any(chosen)) return
     call shares_of(motions, chosen, shares)
     err%failure%replaces = abs(shares) > least_rate
@@ -145,27 +149,55 @@ contains
   end subroutine refuse_undetermined
 
   !> Fail because of chains that do not close.
-  subroutine refuse_open(plan, outcome, err)
+  subroutine refuse_open(plan, state, outcome, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< the position of least residual, whose frames are placed
     type(assembly_outcome_type), intent(in) :: outcome   !< result of the assembly that failed
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call raise(err, exit_assembly, merge(failure_nearly_closed_chain, failure_open_chain, &
                                          outcome%gap < nearly_closed*plan%length))
-    associate (closure => plan%closures(outcome%worst_closure))
-      err%failure%chains = [closure%chain]
-      if (closure%coupling > 0) then
-        err%failure%kind = failure_open_coupling
-        err%failure%coordinates = plan%couplings(closure%coupling)%coupling%coordinates
-        err%place = plan%couplings(closure%coupling)%coupling%place
-        return
-      end if
-      err%failure%link = plan%steps(closure%closing)%link
-      err%failure%coordinates = [plan%steps(closure%closing)%coordinate]
-    end associate
     err%failure%gap = outcome%gap
     err%failure%size = plan%length
+    associate (closure => plan%closures(outcome%worst_closure))
+      if (closure%coupling > 0) then
+        call refuse_coupling(plan, state, outcome%worst_closure, err)
+      else
+        err%failure%chains = [closure%chain]
+        err%failure%link = plan%steps(closure%closing)%link
+        err%failure%coordinates = [plan%steps(closure%closing)%coordinate]
+      end if
+    end associate
   end subroutine refuse_open
+
+  !> Make a failure that of a coupling which contradicts others, or closed chains.
+  subroutine refuse_coupling(plan, state, worst, err)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< the position of least residual
+    integer, intent(in) :: worst   !< number of the closure with the largest gap, a coupling
+    type(error_type), intent(inout) :: err   !< the failure; its kind is changed
+    integer, allocatable :: set(:)
+
+    err%failure%kind = failure_open_coupling
+    err%failure%coordinates = plan%couplings(plan%closures(worst)%coupling)%coupling%coordinates
+    if (plan%n_coordinates <= most_free_coordinates) call find_unfulfilled(plan, state, set)
+    if (.not. allocated(set)) set = [worst]
+    if (.not. any(plan%closures(set)%coupling > 0)) set = [worst]
+    call name_closures(plan, set, err%failure)
+    call place_at_last(plan, set, err)
+  end subroutine refuse_coupling
+
+  !> Give an error the place of the last coupling among some closures, if there is one.
+  pure subroutine place_at_last(plan, set, err)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    integer, intent(in) :: set(:)   !< numbers of the closures
+    type(error_type), intent(inout) :: err   !< gets the place
+    integer :: last
+
+    last = 0
+    if (size(set) > 0) last = maxval(plan%closures(set)%coupling)
+    if (last > 0) err%place = plan%couplings(last)%coupling%place
+  end subroutine place_at_last
 
   !> Fail because of a chain whose equations are redundant at the start only.
   subroutine refuse_locked(plan, locked, err)

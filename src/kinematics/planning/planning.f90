@@ -227,7 +227,7 @@ contains
         return
       end if
     end if
-    call refuse_open(plan, outcome, err)
+    call refuse_open(plan, state, outcome, err)
   end subroutine assemble_by_other_starts
 
   !> Check that the independent coordinates can move at any rates, over a finite motion.
