@@ -21,7 +21,7 @@ module mech9_failure
   public :: failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
     failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve, &
     failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, failure_open_coupling, failure_coupled, &
-    last_failure
+    failure_off_table, last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
@@ -167,7 +167,10 @@ module mech9_failure
   integer, parameter :: failure_open_coupling = 62
   !> A mechanism is executed in space because coordinates are coupled.
   integer, parameter :: failure_coupled = 63
-  integer, parameter :: last_failure = failure_coupled
+  !> A coordinate goes beyond an end of the table of a coupling: chains, coordinates, values (the coordinate, both ends of the
+  !> table), name (of their unit), t.
+  integer, parameter :: failure_off_table = 64
+  integer, parameter :: last_failure = failure_off_table
 
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type

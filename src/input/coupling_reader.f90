@@ -7,7 +7,8 @@ module mech9_coupling_reader
   use mech9_pair, only: pair_slot_type
   use mech9_coupling, only: coupling_slot_type
   use mech9_linear_coupling, only: linear_coupling_type
-  use mech9_table_coupling, only: table_coupling_type, new_table_coupling
+  use mech9_table_coupling, only: table_coupling_type, new_table_coupling, new_turning_table
+  use mech9_procedure_coupling, only: procedure_coupling_type, make_procedure_coupling
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, has_name, get_integers, get_real, get_reals, get_logical, get_text, span_of
   use mech9_table_file, only: read_table_file, beside
@@ -17,17 +18,19 @@ module mech9_coupling_reader
   private
   public :: read_couplings
 
+  real(wp), parameter :: turn = 2.0_wp*pi   !< a full turn [rad]
   !> A table is a whole turn long, and ends as it begins, within this part of a turn or of its range: numbers of six digits serve.
   real(wp), parameter :: same_end = 1.0e-5_wp
 
 contains
 
   !> All couplings, in the order of the file; of use only where nothing is reported.
-  subroutine read_couplings(document, pairs, positions, angle_unit, couplings, diagnostics)
+  subroutine read_couplings(document, pairs, positions, angle_unit, parameters, couplings, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; a slot is empty where its group has an error
     real(wp), intent(in) :: positions(:)                  !< (M) coordinates at the start, which give constants [rad, m]
     real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
     type(coupling_slot_type), allocatable, intent(out) :: couplings(:)   !< one for each sound group
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
     integer, allocatable :: numbers(:)
@@ -41,12 +44,15 @@ contains
       associate (group => document%groups(numbers(i)))
         call check_coordinates(group, size(positions), ok, diagnostics)
         if (.not. ok) cycle
-        if (get_text(group, 'kind') == 'table') then
+        select case (get_text(group, 'kind'))
+        case ('table')
           call read_table(beside(document%source%name, get_text(group, 'file')), group, pairs, angle_unit, couplings(i), &
                           diagnostics)
-        else
+        case ('user')
+          call read_procedure(group, i, positions, parameters, couplings(i), diagnostics)
+        case default
           call read_linear(group, pairs, positions, angle_unit, couplings(i), diagnostics)
-        end if
+        end select
         if (.not. allocated(couplings(i)%coupling)) cycle
         couplings(i)%coupling%coordinates = get_integers(group, 'coordinates')
         couplings(i)%coupling%place = diagnostics%place(group%span)
@@ -107,8 +113,8 @@ contains
     else
       call check_kinds(group, k, pairs, diagnostics)
       linear%coefficients = [-slope_of(group, diagnostics), 1.0_wp]
-      linear%constant = positions(k(2)) + linear%coefficients(1)*positions(k(1))
       if (linear%name == 'belt') linear%radii = get_reals(group, 'radii')
+      linear%constant = positions(k(2)) + linear%coefficients(1)*positions(k(1))
       if (has_name(group, 'phase')) linear%constant = units(2)*get_real(group, 'phase')
     end if
     if (diagnostics%known() == known) allocate (slot%coupling, source=linear)
@@ -132,18 +138,20 @@ contains
     k = get_integers(group, 'coordinates')
     if (.not. are_given(k, pairs)) return
     units = units_of(k, pairs, angle_unit)
-    if (.not. turns(k(1), pairs)) then
-      call diagnostics%add(span_of(group, 'coordinates', 1), 'a table couples a coordinate that turns, given first, and any '// &
-                           'other; coordinate '//to_text(k(1))//' does not turn')
-      return
-    end if
     call read_table_file(path, span_of(group, 'file', 1), 'q'//to_text(k(1)), 'q'//to_text(k(2)), x, y, ok, diagnostics)
     if (.not. ok) return
     x = units(1)*x
     y = units(2)*y
-    call close_turn(group, k, pairs, angle_unit, x, y, gain, ok, diagnostics)
-    if (.not. ok) return
-    call new_table_coupling(x, y, gain, table, err)
+    if (turns(k(1), pairs) .and. abs(x(size(x)) - x(1) - turn) <= same_end*turn) then
+      call close_turn(group, k, pairs, angle_unit, x, y, gain, ok, diagnostics)
+      if (.not. ok) return
+      call new_turning_table(x, y, gain, table, err)
+    else
+      call new_table_coupling(x, y, table, err)
+    end if
+    table%unit = units(1)
+    table%unit_name = 'm'
+    if (turns(k(1), pairs)) table%unit_name = merge('deg', 'rad', angle_unit < 1.0_wp)
     if (allocated(err)) then
       call explain(err)
       call diagnostics%add(span_of(group, 'file', 1), err%message, err%code)
@@ -151,6 +159,27 @@ contains
       allocate (slot%coupling, source=table)
     end if
   end subroutine read_table
+
+  !> A coupling by a user's procedure. The slot stays empty where an error was reported.
+  subroutine read_procedure(group, number, positions, parameters, slot, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    integer, intent(in) :: number                         !< of the coupling
+    real(wp), intent(in) :: positions(:)                  !< (M) coordinates at the start [rad, m]
+    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user
+    type(coupling_slot_type), intent(inout) :: slot       !< gets the coupling
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(procedure_coupling_type) :: coupling
+    type(error_type), allocatable :: err
+    integer :: k(2)
+
+    k = get_integers(group, 'coordinates')
+    call make_procedure_coupling(number, positions(k(1)), parameters, coupling, err)
+    if (allocated(err)) then
+      call diagnostics%add(span_of(group, 'kind', 1), err%message, err%code)
+    else
+      allocate (slot%coupling, source=coupling)
+    end if
+  end subroutine read_procedure
 
   !> Make a table exactly one turn long, with a second coordinate that ends as it begins or whole turns on; report one that is not.
   subroutine close_turn(group, k, pairs, angle_unit, x, y, gain, ok, diagnostics)
@@ -163,19 +192,11 @@ contains
     real(wp), intent(out) :: gain                         !< change of the second coordinate per rad of the first one, over the turn
     logical, intent(out) :: ok                            !< whether nothing was reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
-    real(wp), parameter :: turn = 2.0_wp*pi
     real(wp) :: rise
     integer :: n
 
     n = size(x)
     gain = 0.0_wp
-    ok = abs(x(n) - x(1) - turn) <= same_end*turn
-    if (.not. ok) then
-      call diagnostics%add(span_of(group, 'file', 1), 'the table goes from '//to_text(x(1)/angle_unit)//' to '// &
-                           to_text(x(n)/angle_unit)//'; it must cover one full turn of coordinate '//to_text(k(1))// &
-                           ', whose last point has the place of the first one again')
-      return
-    end if
     rise = y(n) - y(1)
     if (turns(k(2), pairs)) rise = turn*anint(rise/turn)
     if (.not. turns(k(2), pairs)) rise = 0.0_wp

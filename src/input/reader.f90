@@ -108,7 +108,7 @@ contains
     associate (m => mechanism, n_links => mechanism%structure%shown_links())
       call read_pairs(document, m%structure, m%angle_unit, m%parameters, m%pairs, diagnostics)
       call read_initial(document, problem%partition, m%pairs, m%angle_unit, problem%initial, diagnostics)
-      call read_couplings(document, m%pairs, problem%initial%position, m%angle_unit, m%couplings, diagnostics)
+      call read_couplings(document, m%pairs, problem%initial%position, m%angle_unit, m%parameters, m%couplings, diagnostics)
       call read_points(document, n_links, m%points, diagnostics)
       call read_drives(document, problem%partition, m%pairs, m%angle_unit, request%time%start, m%parameters, problem%drives, &
                        diagnostics)

@@ -4,7 +4,7 @@ module mech9_integration_failure
   use mech9_error, only: error_type, raise, exit_internal, exit_data, exit_integrator
   use mech9_failure, only: failure_unknown_method, failure_tolerance_count, failure_relative_tolerance, &
     failure_absolute_tolerance, failure_inaccurate_step, failure_unsolved_step, failure_accurate_step, &
-    failure_step_memory, failure_step_settings, failure_short_step, failure_off_curve
+    failure_step_memory, failure_step_settings, failure_short_step, failure_off_curve, failure_off_table
   use mech9_integration_methods, only: method_index
   use mech9_stepper, only: evaluation_failed, too_inaccurate, not_convergent, too_accurate, out_of_memory
   use mech9_sundials_system, only: system_box_type
@@ -94,7 +94,7 @@ contains
     err = box%failure
     if (allocated(err%failure)) then
       ! this message tells all
-      if (err%failure%kind == failure_off_curve) return
+      if (err%failure%kind == failure_off_curve .or. err%failure%kind == failure_off_table) return
     end if
     allocate (err%stopped)
     err%stopped%t = t

@@ -1,15 +1,15 @@
 !> Sentences about couplings that cannot be fulfilled.
 module mech9_coupling_words
   use mech9_text, only: to_text
-  use mech9_failure, only: failure_type, failure_open_coupling
-  use mech9_block_names, only: names_with_lines
+  use mech9_failure, only: failure_type, failure_open_coupling, failure_off_table
+  use mech9_block_names, only: chain_names, names_with_lines
   implicit none
   private
   public :: explain_coupling, explain_holding
 
 contains
 
-  !> Couplings that contradict others.
+  !> Couplings that contradict others, or whose tables end.
   pure subroutine explain_coupling(failure, text)
     type(failure_type), intent(in) :: failure             !< any kind
     character(len=:), allocatable, intent(inout) :: text  !< the message
@@ -17,6 +17,12 @@ contains
     select case (failure%kind)
     case (failure_open_coupling)
       call explain_unfulfilled(failure, text)
+    case (failure_off_table)
+      text = 'coordinate '//to_text(failure%coordinates)//' comes to an end of the table of '//chain_names(failure%chains)// &
+             ' at t = '//to_text(failure%t, 10)//' s: it would go on to '//to_text(failure%values(1, 1), 10)//' '//failure%name// &
+             ', and the table leads from '//to_text(failure%values(2, 1), 10)//' to '//to_text(failure%values(3, 1), 10)//' '// &
+             failure%name//'. Start elsewhere in the table, end the motion earlier, or give a longer table; only a table over '// &
+             'exactly one full turn repeats'
     end select
   end subroutine explain_coupling
 

@@ -197,6 +197,7 @@ GEARS = """&structure cq=1 /
 &drive coordinate=1, kind='polynomial', coefficients=0,1 /
 &coupling kind='gear', coordinates=1,2, ratio=2 /
 """
+TABLE_COUPLING = GEARS.replace("kind='gear', coordinates=1,2, ratio=2", "kind='table', coordinates=1,2, file='curve.dat'")
 PATH = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='path', file='curve.dat' /
 &drive coordinate=1, kind='polynomial', coefficients=1, 5 /
@@ -296,6 +297,9 @@ def driven_cases():
         ('coupled', GEARS, ('--plan',), DONE, ['spatial arithmetic: coordinates are coupled\n']),
         ('open_coupling', GEARS + "&coupling kind='gear', coordinates=1,2, ratio=2, phase=1 /\n", (), ASSEMBLY,
          ['cannot be assembled: couplings 1 (line 5) and 2 (line 6) contradict each other', ':6:1:']),
+        ('off_table', TABLE_COUPLING, {'curve.dat': '0 0\n0.1 0\n0.2 0.1\n0.3 0.2\n'}, SINGULAR,
+         ['case.nml:5:1: coordinate 1 comes to an end of the table of coupling 1 at t = ', ' s: it would go on to 0.3',
+          'rad, and the table leads from 0 to 0.3 rad. Start elsewhere in the table']),
     ]
 
 

@@ -29,15 +29,19 @@ expect 0 'with your user_pair_values)' \
 expect 0 'with your user_drive)' "$link" -O2 -o "$folder/cycloidal_drive" "$samples/cycloidal_drive/cycloidal_drive.f90"
 expect 0 'with your user_drive_values)' \
   "$link" -o "$folder/cycloidal_drive_values" "$samples/cycloidal_drive/cycloidal_drive_values.f90"
+expect 0 'with your user_coupling)' "$link" -o "$folder/cardan_coupling" "$samples/cardan_coupling/cardan_coupling.f90"
+expect 0 'with your user_coupling_values)' \
+  "$link" -o "$folder/cardan_coupling_values" "$samples/cardan_coupling/cardan_coupling_values.f90"
 expect 0 'with your user_force)' "$link" -o "$folder/air_drag" "$samples/air_drag/air_drag.f90"
 
 # several hooks in one program, names with blanks, every template compiles
 cp "$samples"/templates/*.f90 "$folder/with blank"
-expect 0 'with your user_drive user_force user_pair)' \
+expect 0 'with your user_coupling user_drive user_force user_pair)' \
   "$link" -o "$folder/with blank/all" "$folder/with blank/user_pair.f90" "$folder/with blank/user_drive.f90" \
-  "$folder/with blank/user_force.f90"
-expect 0 'with your user_drive_values user_pair_values)' "$link" -v -o "$folder/with blank/values" \
-  "$folder/with blank/user_pair_values.f90" "$folder/with blank/user_drive_values.f90"
+  "$folder/with blank/user_force.f90" "$folder/with blank/user_coupling.f90"
+expect 0 'with your user_coupling_values user_drive_values user_pair_values)' "$link" -v -o "$folder/with blank/values" \
+  "$folder/with blank/user_pair_values.f90" "$folder/with blank/user_drive_values.f90" \
+  "$folder/with blank/user_coupling_values.f90"
 
 expect 0 'mech9-link -o NAME FILE...' "$link" --help
 expect 0 'mech9-link 0.' "$link" --version

@@ -5,7 +5,8 @@ Compares the program with itself in part: procedures in Taylor form and in plain
 closed forms, too.
 
 usage: user_programs.py FOLDER      FOLDER holds trammel_k, trammel_values_k, cam_follower_k,
-                                    cycloidal_drive_k, cycloidal_drive_values_k, air_drag_d
+                                    cycloidal_drive_k, cycloidal_drive_values_k, cardan_coupling_k,
+                                    cardan_coupling_values_k, air_drag_d
 """
 import os
 import re
@@ -60,6 +61,15 @@ def check_cycloid(checks, table, why):
     check_point(checks, table, 'A', (0.3 * cos(crank), 0.3 * sin(crank), 0.0), why)
 
 
+def check_cardan(checks, table, why):
+    """The second shaft by the law of the universal joint."""
+    q = Jet(0.3 + 2.0 * table['t'] + table['t'] ** 2, 2.0 + 2.0 * table['t'], 2.0)
+    # the same law as an angle from the first shaft's, which stays within a quarter of a turn
+    second = q + arcsin((1 - np.cos(0.3)) * sin(q) * cos(q) / sqrt(sin(q) * sin(q) + np.cos(0.3) ** 2 * cos(q) * cos(q)))
+    check_coordinate(checks, table, 1, q, why)
+    check_coordinate(checks, table, 2, second, why)
+
+
 def check_air(checks, table, why):
     """The weight falls towards its final speed, the wheel runs out; what is lost is the work of the drag."""
     t = table['t']
@@ -111,14 +121,19 @@ def main():
                                    ('trammel', 'trammel_values', check_trammel),
                                    ('cam_follower', 'cam_follower', check_cam),
                                    ('cycloidal_drive', 'cycloidal_drive', check_cycloid),
-                                   ('cycloidal_drive', 'cycloidal_drive_values', check_cycloid)):
+                                   ('cycloidal_drive', 'cycloidal_drive_values', check_cycloid),
+                                   ('cardan_coupling', 'cardan_coupling', check_cardan),
+                                   ('cardan_coupling', 'cardan_coupling_values', check_cardan)):
         data = os.path.join(TREE, 'user_procs', sample, sample + '.nml')
         forms[program] = table_of(os.path.join(folder, program + '_k'), data)
         check(checks, forms[program], program)
+    data = os.path.join(TREE, 'user_procs', 'cardan_coupling', 'cardan_coupling.nml')
+    forces = table_of(os.path.join(folder, 'cardan_coupling_k'), data, '--set', 'output.reactions=.true.')
+    checks.near(forces['C1'], 0.05 * forces['ddq2'], 1e-13, 'Cardan coupling: its torque turns the second shaft', scale=1.0)
     air = table_of(os.path.join(folder, 'air_drag_d'), os.path.join(TREE, 'user_procs', 'air_drag', 'air_drag.nml'))
     check_air(checks, air, 'air drag')
     check_air_forces(checks, os.path.join(folder, 'air_drag_d'), os.path.join(TREE, 'user_procs', 'air_drag', 'air_drag.nml'))
-    for name in ('trammel', 'cycloidal_drive'):
+    for name in ('trammel', 'cycloidal_drive', 'cardan_coupling'):
         check_same(checks, forms[name], forms[name + '_values'], f'{name}: Taylor arithmetic and plain values agree')
     checks.finish()
 

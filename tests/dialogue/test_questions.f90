@@ -84,7 +84,7 @@ contains
     type(draft_type) :: draft
     character(len=10), parameter :: pairs(4) = [character(len=10) :: 'revolute', 'prismatic', 'helical', 'user']
     character(len=10), parameter :: loads(5) = [character(len=10) :: 'force', 'torque', 'spring', 'coordinate', 'user']
-    character(len=6), parameter :: couplings(6) = [character(len=6) :: 'gear', 'rack', 'belt', 'screw', 'linear', 'table']
+    character(len=6), parameter :: couplings(7) = [character(len=6) :: 'gear', 'rack', 'belt', 'screw', 'linear', 'table', 'user']
     character(len=6), parameter :: links(4) = ['1, 2', '2, 3', '3, 4', '4, 1']
     character(len=1) :: number
     integer :: i

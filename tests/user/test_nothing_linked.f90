@@ -7,6 +7,7 @@ program test_nothing_linked
   use mech9_procedure_pair, only: procedure_pair_type, make_procedure_pair
   use mech9_procedure_drive, only: procedure_drive_type, make_procedure_drive
   use mech9_procedure_load, only: procedure_load_type
+  use mech9_procedure_coupling, only: procedure_coupling_type, make_procedure_coupling
   use mech9_testing, only: tester_type
   implicit none
   type(tester_type) :: test
@@ -21,6 +22,7 @@ contains
     type(procedure_pair_type) :: pair
     type(procedure_drive_type) :: drive
     type(procedure_load_type) :: load
+    type(procedure_coupling_type) :: coupling
     type(motion_view_type) :: state
     type(force_sum_type) :: forces
     type(error_type), allocatable :: err
@@ -35,6 +37,12 @@ contains
     call test%is_true(index(err%message, 'coordinate 5') > 0 .and. index(err%message, 'none is linked') > 0 .and. &
                       index(err%message, 'user_drive') > 0, &
                       'the message names the coordinate, its procedure and that none is linked')
+
+    call make_procedure_coupling(2, 0.0_wp, [real(wp) ::], coupling, err)
+    call test%has_error(err, exit_data, 'a coupling without its procedure is refused')
+    call test%is_true(index(err%message, 'coupling 2') > 0 .and. index(err%message, 'none is linked') > 0 .and. &
+                      index(err%message, 'user_coupling') > 0, &
+                      'the message names the coupling, its procedure and that none is linked')
 
     load%parameters = [real(wp) ::]
     forces = new_force_sum(2, 1)

@@ -50,8 +50,8 @@ module mech9_mechanism_explanations
   type(explanation_type), parameter :: coupling_texts(*) = [ &
     explanation_type('coupling', 'kind', '', &
                   'A gear or a belt couples two coordinates that turn, a rack or a screw one that turns and one that slides. '// &
-                  'linear couples any coordinates by a sum with coefficients, table two of them by a function from a file. '// &
-                  'Enter goes on without a further coupling.', 'gear'), &
+                  'linear couples any coordinates by a sum, table two of them by a function from a file, user by a procedure '// &
+                  'of yours. Enter goes on without a further coupling.', 'gear'), &
     explanation_type('coupling', 'coordinates', '', &
                   'Give the numbers of the coordinates. The first one moves the second; only a linear coupling may have more.', &
                   '1, 2'), &
@@ -70,8 +70,8 @@ module mech9_mechanism_explanations
                   'The second coordinate has this value where the first one is zero. Without it both have their initial '// &
                   'positions together.', '0'), &
     explanation_type('coupling', 'file', 'table', &
-                  'Each line of the file has a value of the first coordinate, which turns, and one of the second. The table '// &
-                  'covers one full turn of the first and repeats.', 'cam.dat (with lines such as: 90 0.012)'), &
+                  'Each line of the file has a value of the first coordinate and one of the second. A table over one full '// &
+                  'turn of the first repeats; any other ends the motion at its ends.', 'cam.dat (with lines such as: 90 0.012)'), &
     explanation_type('coupling', 'coefficients', 'linear', &
                   'The sum of these numbers, each times its coordinate, is constant. Give one for each coordinate.', '1, -2, 1'), &
     explanation_type('coupling', 'constant', 'linear', &

@@ -20,6 +20,7 @@ module mech9_frame_variation
   type :: third_derivatives_type
     real(wp), allocatable :: w(:, :)   !< (3,M) third derivative of the rotation, zero for steps along fixed axes
     real(wp), allocatable :: v(:, :)   !< (3,M) of the origin
+    real(wp), allocatable :: couplings(:)   !< (couplings) of their functions
   end type third_derivatives_type
 
 contains
@@ -29,10 +30,10 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(third_derivatives_type) :: third
 
-    allocate (third%w(3, plan%n_coordinates), third%v(3, plan%n_coordinates), source=0.0_wp)
+    allocate (third%w(3, plan%n_coordinates), third%v(3, plan%n_coordinates), third%couplings(size(plan%couplings)), source=0.0_wp)
   end function new_third_derivatives
 
-  !> Find the third derivatives of the pairs without a fixed axis that move; those at rest need none.
+  !> Find the third derivatives of the pairs without a fixed axis that move, those at rest need none, and of couplings.
   subroutine find_third_derivatives(plan, state, third, err)
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism, in space
     type(state_type), intent(in) :: state                 !< with poses and rates
@@ -48,6 +49,12 @@ contains
       if (.not. abs(state%dq(plan%steps(s)%coordinate)) > 0.0_wp) cycle
       call take_known(plan, state, s, third, known, err)
       if (.not. (known .or. allocated(err))) call differentiate_pair(plan, state, s, third, err)
+      if (allocated(err)) return
+    end do
+    do s = 1, size(plan%couplings)
+      associate (coupling => plan%couplings(s)%coupling)
+        call coupling%find_third(state%q(coupling%coordinates(1)), third%couplings(s), err)
+      end associate
       if (allocated(err)) return
     end do
   end subroutine find_third_derivatives

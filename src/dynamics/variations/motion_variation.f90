@@ -110,7 +110,7 @@ contains
     call set_unknowns(block%coordinates, order, variation)
     call sweep(plan, state, third, block%first_step, block%last_step, order, variation)
     if (size(block%unknowns) == 0) return
-    call find_openings(plan, block, state, order, variation, work%right)
+    call find_openings(plan, block, state, third, order, variation, work%right)
     work%right = -work%right
     call work%equations%solve(work%right, work%change)
     do i = 1, size(block%unknowns)
@@ -164,10 +164,11 @@ contains
   end subroutine sweep
 
   !> The variations of the motions of a block's closing frames relative to their targets, as values of its equations.
-  pure subroutine find_openings(plan, block, state, order, variation, values)
+  pure subroutine find_openings(plan, block, state, third, order, variation, values)
     type(plan_type), intent(in) :: plan               !< the plan of the mechanism, in space
     type(block_type), intent(in) :: block             !< the block
     type(state_type), intent(in) :: state             !< position and motion of the mechanism
+    type(third_derivatives_type), intent(in) :: third   !< of the functions of couplings
     integer, intent(in) :: order                      !< of the derivative in time
     type(variation_type), intent(in) :: variation     !< with the frames
     real(wp), intent(out), contiguous :: values(:)    !< (equations) [rad, lengths of the mechanism; per s or s^2]
@@ -178,7 +179,8 @@ contains
     do c = block%first_closure, block%last_closure
       associate (constraint => plan%constraints(c)%item)
         if (plan%closures(c)%coupling > 0) then
-          values(row + 1) = varied_coupling(plan, c, state, order, variation%q, variation%dq, variation%ddq)
+          values(row + 1) = varied_coupling(plan, c, state, third%couplings(plan%closures(c)%coupling), order, variation%q, &
+                                            variation%dq, variation%ddq)
         else
           call find_opening(plan%closures(c)%closing, plan%closures(c)%target, state, order, variation, w, v)
           call constraint%opening(plan, state, w, v, values(row + 1:row + constraint%equations))

@@ -187,8 +187,8 @@ module mech9_grammar
                   'direction in the moving link along zero, or along the tangent', '1, 0, 0', seldom=.true.)]
 
   type(item_row_type), parameter :: coupling_items(*) = [ &
-    item_row_type('coupling', 'kind', 'text', 1, 1, '', needed, '', '', 'gear rack belt screw linear table', '', &
-                  'which machine part couples the coordinates; linear: a sum with coefficients; table: a function from a file', &
+    item_row_type('coupling', 'kind', 'text', 1, 1, '', needed, '', '', 'gear rack belt screw linear table user', '', &
+                  'which machine part couples them; linear: a sum; table: a function from a file; user: the user''s procedure', &
                   '''gear'''), &
     item_row_type('coupling', 'coordinates', 'integer', 2, unlimited, '', needed, '', '>=1', '', '', &
                   'numbers of the coordinates: two, of which the first moves the second, or any for linear', '2, 5'), &
@@ -206,7 +206,7 @@ module mech9_grammar
                   'the second coordinate where the first one is zero; by default from the positions in &initial', '0', &
                   seldom=.true.), &
     item_row_type('coupling', 'file', 'text', 1, 1, '', needed, '', '', '', 'table', &
-                  'a text file with both coordinates in each line, over a full turn of the first one, beside the data file', &
+                  'a text file with both coordinates in each line; over a full turn of the first one it repeats', &
                   '''cam.dat'''), &
     item_row_type('coupling', 'coefficients', 'real', 2, unlimited, '1 per q', needed, '', '', '', 'linear', &
                   'coefficients of the coordinates in the sum, for the units of this file', '1, -2, 1'), &

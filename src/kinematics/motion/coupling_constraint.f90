@@ -1,11 +1,13 @@
 !> The equation of a coupling as a constraint: a sum of functions of single coordinates, whatever the arithmetic of the frames.
 module mech9_coupling_constraint
   use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_coupling, only: curve_order
   use mech9_plan, only: plan_type, loop_type, constraint_type
   use mech9_state, only: state_type
   implicit none
   private
-  public :: coupling_constraint_type, varied_coupling, bent_force
+  public :: coupling_constraint_type, find_curves, varied_coupling, bent_force
 
   !> The constraint of one coupling.
   type, extends(constraint_type) :: coupling_constraint_type
@@ -27,13 +29,14 @@ contains
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(state_type), intent(in) :: state                 !< with the coordinates
     real(wp), intent(out), contiguous :: values(:)        !< (1) [rad, lengths of the mechanism]
-
+    real(wp) :: curve(0:curve_order)
     integer :: i
 
     values(1) = 0.0_wp
+    curve = curve_of(plan, self%closure, state)
     associate (coupling => plan%couplings(plan%closures(self%closure)%coupling)%coupling)
       do i = 1, size(coupling%coordinates)
-        values(1) = values(1) + coupling%term(i, state%q(coupling%coordinates(i)), 0)
+        values(1) = values(1) + coupling%term(i, state%q(coupling%coordinates(i)), curve, 0)
       end do
     end associate
     values(1) = plan%closures(self%closure)%weight*values(1)
@@ -67,14 +70,16 @@ contains
     real(wp), intent(in) :: sign                          !< without meaning
     type(state_type), intent(in) :: state                 !< with the coordinates
     real(wp), intent(out), contiguous :: values(:)        !< (1) [rad, lengths of the mechanism] per unit of the coordinate
+    real(wp) :: curve(0:curve_order)
     integer :: i, k
 
+    curve = curve_of(plan, self%closure, state)
     k = plan%steps(s)%coordinate
     associate (coupling => plan%couplings(plan%closures(self%closure)%coupling)%coupling)
       do i = 1, size(coupling%coordinates) - 1
         if (coupling%coordinates(i) == k) exit
       end do
-      values(1) = plan%closures(self%closure)%weight*plan%unit_of(k)*coupling%term(i, state%q(k), 1)
+      values(1) = plan%closures(self%closure)%weight*plan%unit_of(k)*coupling%term(i, state%q(k), curve, 1)
     end associate
   end subroutine column
 
@@ -85,17 +90,19 @@ contains
     integer, intent(in) :: order                          !< 1: first derivative, 2: second derivative
     type(state_type), intent(in) :: state                 !< with coordinates, rates and accelerations
     real(wp), intent(out), contiguous :: values(:)        !< (1) [rad, lengths of the mechanism; per s or s^2]
-
+    real(wp) :: curve(0:curve_order)
     integer :: i, k
 
     values(1) = 0.0_wp
+    curve = curve_of(plan, self%closure, state)
     associate (coupling => plan%couplings(plan%closures(self%closure)%coupling)%coupling)
       do i = 1, size(coupling%coordinates)
         k = coupling%coordinates(i)
         if (order == 1) then
-          values(1) = values(1) + coupling%term(i, state%q(k), 1)*state%dq(k)
+          values(1) = values(1) + coupling%term(i, state%q(k), curve, 1)*state%dq(k)
         else
-          values(1) = values(1) + coupling%term(i, state%q(k), 1)*state%ddq(k) + coupling%term(i, state%q(k), 2)*state%dq(k)**2
+          values(1) = values(1) + coupling%term(i, state%q(k), curve, 1)*state%ddq(k) &
+                      + coupling%term(i, state%q(k), curve, 2)*state%dq(k)**2
         end if
       end do
     end associate
@@ -125,33 +132,72 @@ contains
     gap = plan%length*abs(values(1))
   end function gap
 
+  !> Find the functions of the couplings among some closures, and their derivatives, at the coordinates in `state`. Fails where one
+  !> does not exist.
+  subroutine find_curves(plan, first, last, state, err)
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    integer, intent(in) :: first                        !< closures from this one
+    integer, intent(in) :: last                         !< to this one
+    type(state_type), intent(inout) :: state            !< coordinates in; functions out
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    integer :: c, number
+
+    do c = first, last
+      number = plan%closures(c)%coupling
+      if (number == 0) cycle
+      associate (coupling => plan%couplings(number)%coupling)
+        if (coupling%is_linear()) cycle
+        call coupling%find_curve(state%q(coupling%coordinates(1)), state%curve(:, number), err)
+      end associate
+      if (.not. allocated(err)) cycle
+      if (.not. allocated(err%failure)) return
+      err%failure%chains = [-number]
+      err%failure%t = state%t
+      return
+    end do
+  end subroutine find_curves
+
+  !> The function of a coupling and its derivatives; zero where it is linear.
+  pure function curve_of(plan, c, state) result(curve)
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    integer, intent(in) :: c                !< number of the closure that is the coupling
+    type(state_type), intent(in) :: state   !< with the functions of couplings
+    real(wp) :: curve(0:curve_order)
+
+    curve = 0.0_wp
+    if (plan%has_curves) curve = state%curve(:, plan%closures(c)%coupling)
+  end function curve_of
+
   !> The variation of the equation, or of its first or second time derivative, from variations of the motion. The motion
   !> itself is in `state`.
-  pure real(wp) function varied_coupling(plan, c, state, order, q, dq, ddq) result(change)
+  pure real(wp) function varied_coupling(plan, c, state, third, order, q, dq, ddq) result(change)
     type(plan_type), intent(in) :: plan     !< the plan of the mechanism
     integer, intent(in) :: c                !< number of the closure that is the coupling
     type(state_type), intent(in) :: state   !< coordinates, rates and accelerations
+    real(wp), intent(in) :: third           !< third derivative of the coupling's function
     integer, intent(in) :: order            !< 0: of the equation; 1, 2: of its time derivatives
     real(wp), intent(in) :: q(:)            !< (M) variations of the coordinates
     real(wp), intent(in) :: dq(:)           !< (M) variations of the rates
     real(wp), intent(in) :: ddq(:)          !< (M) variations of the accelerations
-    real(wp) :: slope, bend
+    real(wp) :: curve(0:curve_order), slope, bend
     integer :: i, k
 
     change = 0.0_wp
+    curve = curve_of(plan, c, state)
     associate (coupling => plan%couplings(plan%closures(c)%coupling)%coupling)
       do i = 1, size(coupling%coordinates)
         k = coupling%coordinates(i)
-        slope = coupling%term(i, state%q(k), 1)
-        bend = coupling%term(i, state%q(k), 2)
+        slope = coupling%term(i, state%q(k), curve, 1)
+        bend = coupling%term(i, state%q(k), curve, 2)
         select case (order)
         case (0)
           change = change + slope*q(k)
         case (1)
           change = change + slope*dq(k) + bend*state%dq(k)*q(k)
         case default
-          change = change + slope*ddq(k) + bend*(2.0_wp*state%dq(k)*dq(k) + state%ddq(k)*q(k)) &
-                   + coupling%term(i, state%q(k), 3)*state%dq(k)**2*q(k)
+          change = change + slope*ddq(k) + bend*(2.0_wp*state%dq(k)*dq(k) + state%ddq(k)*q(k))
+          ! the function is subtracted
+          if (i == 1) change = change - third*state%dq(k)**2*q(k)
         end select
       end do
     end associate
@@ -166,13 +212,14 @@ contains
     real(wp), intent(in) :: multiplier       !< of the weighed equation
     real(wp), intent(in) :: q(:)             !< (M) variations of the coordinates
     real(wp), intent(inout) :: forces(:)     !< (M) the sum [N m, N]
-
+    real(wp) :: curve(0:curve_order)
     integer :: i, k
 
+    curve = curve_of(plan, c, state)
     associate (coupling => plan%couplings(plan%closures(c)%coupling)%coupling)
       do i = 1, size(coupling%coordinates)
         k = coupling%coordinates(i)
-        forces(k) = forces(k) + plan%closures(c)%weight*multiplier*coupling%term(i, state%q(k), 2)*q(k)
+        forces(k) = forces(k) + plan%closures(c)%weight*multiplier*coupling%term(i, state%q(k), curve, 2)*q(k)
       end do
     end associate
   end subroutine bent_force

@@ -5,6 +5,7 @@ module mech9_frame_motion
   use mech9_error, only: error_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
+  use mech9_coupling_constraint, only: find_curves
   use mech9_planar_view, only: show_poses, show_velocities, show_accelerations
   implicit none
   private
@@ -15,12 +16,12 @@ module mech9_frame_motion
 contains
 
   !> Poses of a block's frames and the screws of their steps, from the coordinates in `state`. The frames of earlier blocks must
-  !> be in place. An error arises only where a user pair has no pose.
+  !> be in place. Fails only where a pair has no pose, or a coupling no value.
   subroutine place_frames(plan, block, state, err)
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
     type(block_type), intent(in) :: block               !< the block
     type(state_type), intent(inout) :: state            !< coordinates in; poses and screws of the block's frames out
-    type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call place_unshown(plan, block, state, err)
     if (allocated(err) .or. .not. block%is_shown) return
@@ -32,13 +33,14 @@ contains
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
     type(block_type), intent(in) :: block               !< the block
     type(state_type), intent(inout) :: state            !< coordinates in; poses and screws of the block's frames out
-    type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (block%arithmetic == 0) then
       call place_all(plan, state, err)
     else
       call plan%arithmetics(block%arithmetic)%kind%place(plan, block%first_step, block%last_step, state, err)
     end if
+    if (plan%has_curves .and. .not. allocated(err)) call find_curves(plan, block%first_closure, block%last_closure, state, err)
   end subroutine place_unshown
 
   !> Poses of a block's frames after a small change of its unknowns, without those in space of planar frames that are read
@@ -48,7 +50,7 @@ contains
     type(block_type), intent(in) :: block               !< the block
     real(wp), intent(in) :: change(:)                   !< (unknowns) change of the coordinates, in units of these
     type(state_type), intent(inout) :: state            !< changed coordinates in; poses and screws of the block's frames out
-    type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (block%arithmetic == 0) then
       call place_all(plan, state, err)
@@ -56,6 +58,7 @@ contains
       call plan%arithmetics(block%arithmetic)%kind%place_after_change(plan, block%first_step, block%last_step, &
                                                                       block%unknowns, change, state, err)
     end if
+    if (plan%has_curves .and. .not. allocated(err)) call find_curves(plan, block%first_closure, block%last_closure, state, err)
   end subroutine place_frames_after_change
 
   !> Velocities of a block's frames from the rates in `state`.
@@ -91,7 +94,7 @@ contains
   subroutine place_all(plan, state, err)
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
     type(state_type), intent(inout) :: state            !< coordinates in; poses and screws of all frames out
-    type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: b, last
 
     b = 1
@@ -102,6 +105,8 @@ contains
       if (allocated(err)) return
       if (shows_any(plan, b, last)) call show_poses(plan, plan%planar%shown, plan%blocks(b)%first_step, &
                                                     plan%blocks(last)%last_step, state)
+      if (plan%has_curves) call find_curves(plan, plan%blocks(b)%first_closure, plan%blocks(last)%last_closure, state, err)
+      if (allocated(err)) return
       b = last + 1
     end do
   end subroutine place_all

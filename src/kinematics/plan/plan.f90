@@ -13,7 +13,7 @@ module mech9_plan
   use mech9_error, only: error_type
   use mech9_pose, only: pose_type
   use mech9_pair, only: pair_slot_type
-  use mech9_coupling, only: coupling_slot_type
+  use mech9_coupling, only: coupling_slot_type, curve_order
   use mech9_planar_plan, only: planar_plan_type
   use mech9_state, only: state_type
   implicit none
@@ -146,6 +146,7 @@ module mech9_plan
     integer, allocatable :: free_places(:)          !< their places among the independent ones
     type(pair_slot_type), allocatable :: pairs(:)   !< (M) only pairs without a fixed axis are set
     type(coupling_slot_type), allocatable :: couplings(:)   !< of the mechanism
+    logical :: has_curves = .false.                 !< some of them are not linear
     type(planar_plan_type) :: planar                !< the plan in planar arithmetic, as far as that can be used
   end type plan_type
 
@@ -332,6 +333,7 @@ contains
     integer :: i
 
     allocate (state%q(plan%n_coordinates), state%dq(plan%n_coordinates), state%ddq(plan%n_coordinates), source=0.0_wp)
+    if (plan%has_curves) allocate (state%curve(0:curve_order, size(plan%couplings)), source=0.0_wp)
     do i = 1, size(plan%arithmetics)
       call plan%arithmetics(i)%kind%make_frames(plan%n_coordinates, state)
     end do

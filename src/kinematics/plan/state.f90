@@ -28,6 +28,8 @@ module mech9_state
                                                  !< have come to rest
     real(wp), allocatable :: motor_rate(:)       !< derivatives of these states in time
     integer, allocatable :: limited(:)           !< limits at which the motors work: -1, 0 for none, 1
+    real(wp), allocatable :: curve(:, :)         !< (0:2,couplings) functions of couplings and their derivatives; not allocated:
+                                                 !< all couplings are linear
     real(wp), allocatable :: angle(:)            !< (M) angle by which each step turns [rad]
     real(wp), allocatable :: turn(:, :)          !< (2,M) its cosine and sine
     real(wp), allocatable :: r(:, :, :)          !< (3,3,0:M) rotation of each frame

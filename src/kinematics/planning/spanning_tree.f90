@@ -273,6 +273,8 @@ contains
     integer, intent(in) :: number                !< of the coupling
     type(plan_type), intent(inout) :: plan       !< with its steps, which lose their periods
     type(closure_type), intent(inout) :: closure !< gets its equation; one of those of the plan
+    real(wp) :: ends(2)
+    integer :: first
 
     closure%chain = -number
     closure%coupling = number
@@ -284,5 +286,14 @@ contains
     end associate
     allocate (closure%loop%signs(size(closure%loop%steps)), source=1.0_wp)
     plan%steps(closure%loop%steps)%period = 0.0_wp
+    associate (coupling => plan%couplings(number)%coupling)
+      if (coupling%is_linear()) return
+      ends = coupling%ends()
+      first = plan%step_of(coupling%coordinates(1))
+    end associate
+    plan%has_curves = .true.
+    associate (step => plan%steps(first))
+      step%range = [max(step%range(1), ends(1)), min(step%range(2), ends(2))]
+    end associate
   end subroutine make_coupling
 end module mech9_spanning_tree

@@ -1,7 +1,8 @@
 !> A coupling whose equation is linear: of gears, racks, belts and screws.
 module mech9_linear_coupling
   use mech9_kinds, only: wp
-  use mech9_coupling, only: coupling_type, coupling_name_length
+  use mech9_error, only: error_type
+  use mech9_coupling, only: coupling_type, coupling_name_length, curve_order
   implicit none
   private
   public :: linear_coupling_type
@@ -14,6 +15,8 @@ module mech9_linear_coupling
     real(wp), allocatable :: radii(:)          !< (2) radii of the pulleys of a belt, for pictures [m]; else not allocated
   contains
     procedure :: term
+    procedure :: find_curve
+    procedure :: find_third
     procedure :: weight
     procedure :: is_linear
     procedure :: kind_name
@@ -22,11 +25,12 @@ module mech9_linear_coupling
 contains
 
   !> One term of the equation, or its derivative by its coordinate; the constant is part of the first term.
-  pure real(wp) function term(self, i, q, order)
+  pure real(wp) function term(self, i, q, curve, order)
     class(linear_coupling_type), intent(in) :: self   !< the coupling
     integer, intent(in) :: i                          !< number of the term, from 1 to n
     real(wp), intent(in) :: q                         !< its coordinate [rad, m]
-    integer, intent(in) :: order                      !< 0: the term; 1, 2, 3: a derivative
+    real(wp), intent(in) :: curve(0:curve_order)      !< without meaning
+    integer, intent(in) :: order                      !< 0: the term; 1, 2: a derivative
 
     term = 0.0_wp
     if (order == 1) term = self%coefficients(i)
@@ -34,6 +38,26 @@ contains
     term = self%coefficients(i)*q
     if (i == 1) term = term - self%constant
   end function term
+
+  !> A linear equation has no curve.
+  subroutine find_curve(self, q, curve, err)
+    class(linear_coupling_type), intent(in) :: self       !< the coupling
+    real(wp), intent(in) :: q                             !< without meaning
+    real(wp), intent(out) :: curve(0:curve_order)         !< zero
+    type(error_type), allocatable, intent(out) :: err     !< never allocated
+
+    curve = 0.0_wp
+  end subroutine find_curve
+
+  !> A linear equation has no third derivative.
+  subroutine find_third(self, q, third, err)
+    class(linear_coupling_type), intent(in) :: self       !< the coupling
+    real(wp), intent(in) :: q                             !< without meaning
+    real(wp), intent(out) :: third                        !< zero
+    type(error_type), allocatable, intent(out) :: err     !< never allocated
+
+    third = 0.0_wp
+  end subroutine find_third
 
   !> The factor that makes the largest derivative of the equation one.
   pure real(wp) function weight(self, units)

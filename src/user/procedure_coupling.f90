@@ -1,0 +1,163 @@
+!> A coupling given by a user's procedure, in either form.
+module mech9_procedure_coupling
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_data
+  use mech9_text, only: to_text
+  use mech9_taylor, only: taylor, variable
+  use mech9_differentiation, only: half_width, step_count, trial_step, derivatives_from_stencil
+  use mech9_coupling, only: coupling_name_length, curve_order
+  use mech9_function_coupling, only: function_coupling_type
+  use mech9_not_linked, only: not_linked
+  use mech9_user_coupling, only: user_coupling
+  use mech9_user_coupling_values, only: user_coupling_values
+  implicit none
+  private
+  public :: procedure_coupling_type, make_procedure_coupling
+
+  !> A coupling by a user's procedure.
+  type, extends(function_coupling_type) :: procedure_coupling_type
+    integer :: number = 0                    !< of the coupling in the data file
+    real(wp), allocatable :: parameters(:)   !< numbers for the user's procedure
+    logical :: plain_values = .false.        !< the form in plain reals is linked, not the one in Taylor arithmetic
+  contains
+    procedure :: find_curve
+    procedure :: find_third
+    procedure :: kind_name
+  end type procedure_coupling_type
+
+  ! Forms of a value, or of a second derivative, of which differences are taken
+  integer, parameter :: of_value = 0, of_second = 2
+
+contains
+
+  !> Make the coupling and find out which form of procedure is linked. Fails where none is, and where it gives no numbers.
+  subroutine make_procedure_coupling(number, start, parameters, coupling, err)
+    integer, intent(in) :: number                           !< of the coupling in the data file
+    real(wp), intent(in) :: start                           !< a first coordinate for which the procedure may be called [rad, m]
+    real(wp), intent(in) :: parameters(:)                   !< numbers for the user's procedure
+    type(procedure_coupling_type), intent(out) :: coupling  !< the coupling, without its coordinates
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(taylor) :: second
+    real(wp) :: value, curve(0:curve_order)
+
+    coupling%number = number
+    coupling%parameters = parameters
+    call user_coupling(number, variable(start), parameters, second)
+    coupling%plain_values = second%value <= not_linked
+    if (coupling%plain_values) then
+      call user_coupling_values(number, start, parameters, value)
+      if (value <= not_linked) then
+        call raise(err, exit_data, 'coupling '//to_text(number)//' asks for a user procedure, but none is linked; '// &
+                   'see docs/user-procedures.md for how to write user_coupling and link it')
+        return
+      end if
+    end if
+    call coupling%find_curve(start, curve, err)
+    coupling%steepest = abs(curve(1))
+  end subroutine make_procedure_coupling
+
+  !> The procedure's value and derivatives. Fails where they are not finite.
+  subroutine find_curve(self, q, curve, err)
+    class(procedure_coupling_type), intent(in) :: self   !< the coupling
+    real(wp), intent(in) :: q                            !< the first coordinate [rad, m]
+    real(wp), intent(out) :: curve(0:curve_order)        !< value and derivatives
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    type(taylor) :: second
+    logical :: ok
+
+    if (self%plain_values) then
+      call differentiate(self, q, of_value, curve, ok)
+    else
+      call user_coupling(self%number, variable(q), self%parameters, second)
+      curve = [second%value, second%first, second%second]
+      ok = all(ieee_is_finite(curve))
+    end if
+    if (ok) return
+    curve = 0.0_wp
+    call refuse(self, q, err)
+  end subroutine find_curve
+
+  !> The third derivative, by differences of the second one. Fails where there are no finite numbers.
+  subroutine find_third(self, q, third, err)
+    class(procedure_coupling_type), intent(in) :: self   !< the coupling
+    real(wp), intent(in) :: q                            !< the first coordinate [rad, m]
+    real(wp), intent(out) :: third                       !< third derivative
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    real(wp) :: bend(0:curve_order)
+    logical :: ok
+
+    call differentiate(self, q, of_second, bend, ok)
+    third = 0.0_wp
+    if (ok) third = bend(1)
+    if (.not. ok) call refuse(self, q, err)
+  end subroutine find_third
+
+  !> The failure of a procedure whose numbers are not finite.
+  subroutine refuse(self, q, err)
+    class(procedure_coupling_type), intent(in) :: self   !< the coupling
+    real(wp), intent(in) :: q                            !< the first coordinate [rad, m]
+    type(error_type), allocatable, intent(out) :: err    !< always allocated
+
+    call raise(err, exit_data, 'the user procedure of coupling '//to_text(self%number)// &
+               ' gives numbers that are not finite where its first coordinate is '//to_text(q, 12)//' (rad, m)', self%place)
+  end subroutine refuse
+
+  !> The value or the second derivative, with two derivatives from differences. The widest stencil whose error is round-off is
+  !> taken, or else the one with the least error. `ok` is false where no stencil has finite values.
+  recursive subroutine differentiate(self, q, form, curve, ok)
+    class(procedure_coupling_type), intent(in) :: self   !< the coupling
+    real(wp), intent(in) :: q                            !< the first coordinate [rad, m]
+    integer, intent(in) :: form                          !< of_value or of_second
+    real(wp), intent(out) :: curve(0:curve_order)        !< it and its derivatives
+    logical, intent(out) :: ok                           !< whether there are finite values
+    real(wp) :: values(-half_width:half_width), h, first, second, error, best
+    integer :: number, i
+
+    best = huge(best)
+    curve = 0.0_wp
+    do number = 1, step_count
+      h = trial_step(number, 1.0_wp)
+      do i = -half_width, half_width
+        values(i) = sample(self, q + i*h, form)
+      end do
+      if (.not. all(ieee_is_finite(values))) cycle   ! too wide: outside the procedure's domain
+      call derivatives_from_stencil(values, h, first, second, error)
+      if (error < best) then
+        best = error
+        curve = [values(0), first, second]
+      end if
+      ! the error is small, or mere round-off, which only grows as stencils get narrower
+      if (error <= max(1.0e-12_wp, 16.0_wp*epsilon(h)/h**2)*maxval(abs(values))) exit
+    end do
+    ok = best < huge(best)
+  end subroutine differentiate
+
+  !> The procedure's value or its second derivative at one place.
+  recursive real(wp) function sample(self, q, form)
+    class(procedure_coupling_type), intent(in) :: self   !< the coupling
+    real(wp), intent(in) :: q                            !< the first coordinate [rad, m]
+    integer, intent(in) :: form                          !< of_value or of_second
+    type(taylor) :: second
+    real(wp) :: curve(0:curve_order)
+    logical :: ok
+
+    if (.not. self%plain_values) then
+      call user_coupling(self%number, variable(q), self%parameters, second)
+      sample = merge(second%value, second%second, form == of_value)
+    else if (form == of_value) then
+      call user_coupling_values(self%number, q, self%parameters, sample)
+    else
+      call differentiate(self, q, of_value, curve, ok)
+      sample = merge(curve(2), huge(curve), ok)
+    end if
+  end function sample
+
+  !> The name of the kind in the data file.
+  pure function kind_name(self) result(name)
+    class(procedure_coupling_type), intent(in) :: self   !< the coupling
+    character(len=coupling_name_length) :: name
+
+    name = 'user'
+  end function kind_name
+end module mech9_procedure_coupling
