@@ -12,17 +12,23 @@ module mech9_mobility_report
   use mech9_block_solver, only: block_work_type, new_block_work, factorize_block, solve_rates
   use mech9_generic_position, only: generic_position_type, find_generic_position
   use mech9_frame_motion, only: step_screw
+  use mech9_release, only: most_free_coordinates
+  use mech9_contradiction, only: find_repeating
   use mech9_block_equations, only: block_jacobian
   implicit none
   private
   public :: mobility_report_type, idle_type, report_mobility
-
 
   !> Coordinates in series that can move, with one freedom, while the links at both ends of the series stand still.
   type :: idle_type
     integer, allocatable :: coordinates(:)    !< numbers of the coordinates
     integer :: ends(2) = 0                    !< numbers of the links at both ends
   end type idle_type
+
+  !> Closures that repeat each other.
+  type :: chains_type
+    integer, allocatable :: chains(:)         !< numbers of closed chains, and of couplings, negative; not allocated: none
+  end type chains_type
 
   !> Ranks at a general position near the start, if one was found, and at the start.
   type :: mobility_report_type
@@ -32,6 +38,7 @@ module mech9_mobility_report
     integer, allocatable :: ranks(:)          !< rank of each block
     integer, allocatable :: at_start(:)       !< rank of each block at the start: smaller if that is singular
     integer, allocatable :: redundant(:)      !< number of equations of each closure that follow from the closures before it
+    type(chains_type), allocatable :: repeating(:)   !< of each closure that is a redundant coupling: those that repeat each other
     logical, allocatable :: moves(:)          !< (M) the coordinate could be independent
     integer, allocatable :: dimensions(:)     !< (M) most dimensions of the motions of a loop with the coordinate; 0 if on none
     !> (M, independent) rate of each coordinate per unit rate of each independent one, in their units
@@ -66,10 +73,28 @@ contains
     allocate (report%ranks(size(plan%blocks)), report%at_start(size(plan%blocks)))
     call find_ranks(plan, state, report%ranks, report%redundant)
     call find_ranks(plan, start, report%at_start)
+    call find_repetitions(plan, state, report)
     report%by_rank = plan%n_coordinates - sum(report%ranks)
     call find_shares(plan, state, report)
     call find_idle(mechanism, plan, state, report%dimensions, report%idle)
   end subroutine report_mobility
+
+  !> The closures from which redundant couplings follow.
+  subroutine find_repetitions(plan, state, report)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< position and motion of the mechanism
+    type(mobility_report_type), intent(inout) :: report   !< with `redundant`; gets `repeating`
+    integer, allocatable :: set(:)
+    integer :: c
+
+    allocate (report%repeating(size(plan%closures)))
+    if (plan%n_coordinates > most_free_coordinates) return
+    do c = 1, size(plan%closures)
+      if (report%redundant(c) == 0 .or. plan%closures(c)%coupling == 0) cycle
+      call find_repeating(plan, state, c, set)
+      report%repeating(c)%chains = plan%closures(set)%chain
+    end do
+  end subroutine find_repetitions
 
   !> Rank of each block, and the closures to which redundant equations belong.
   subroutine find_ranks(plan, state, ranks, redundant)

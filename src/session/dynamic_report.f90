@@ -18,6 +18,7 @@ module mech9_dynamic_report
   use mech9_simulation, only: coordinate_change_type
   use mech9_free_simulation, only: free_simulation_type
   use mech9_force_record, only: reacting_pairs
+  use mech9_uniqueness, only: uniqueness_type
   use mech9_quantity_record, only: quantity_record_type
   use mech9_run_words, only: duration, each, begin_report, add_structure, add_uniqueness
   implicit none
@@ -185,7 +186,7 @@ contains
     type(diagnostics_type), intent(in) :: diagnostics         !< messages and exit code of the run
     type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
     type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
-    logical, allocatable, intent(in) :: unique(:, :)   !< (6,M) unique components of wrenches; not allocated: none are recorded
+    type(uniqueness_type), allocatable, intent(in) :: unique   !< of forces; not allocated: none are recorded
     type(quantity_record_type), intent(in) :: quantities   !< of the run
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(json_type) :: json

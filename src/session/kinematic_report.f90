@@ -15,6 +15,7 @@ module mech9_kinematic_report
   use mech9_law_notes, only: print_jumps
   use mech9_recording, only: recording_outcome_type
   use mech9_force_record, only: reacting_pairs
+  use mech9_uniqueness, only: uniqueness_type
   use mech9_quantity_record, only: quantity_record_type
   use mech9_run_words, only: duration, each, begin_report, add_structure, add_uniqueness
   implicit none
@@ -101,7 +102,7 @@ contains
     type(diagnostics_type), intent(in) :: diagnostics     !< messages and exit code of the run
     type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
     type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
-    logical, allocatable, intent(in) :: unique(:, :)   !< (6,M) unique components of wrenches; not allocated: none are recorded
+    type(uniqueness_type), allocatable, intent(in) :: unique   !< of forces; not allocated: none are recorded
     type(quantity_record_type), intent(in) :: quantities   !< of the run
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(json_type) :: json

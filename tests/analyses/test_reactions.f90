@@ -18,7 +18,7 @@ program test_reactions
   use mech9_reactions, only: reactions_type, new_reactions, find_reactions
   use mech9_required_wrenches, only: find_required
   use mech9_joint_geometry, only: joint_geometry_type, new_joint_geometry, find_geometry
-  use mech9_uniqueness, only: find_unique
+  use mech9_uniqueness, only: uniqueness_type, find_unique
   use mech9_mixed_structures, only: structure_type, random_structure, finished, below
   use mech9_loaded_mechanisms, only: loaded_loop, five_bar, loaded_fig1, open_chain
   use mech9_testing, only: tester_type
@@ -101,7 +101,7 @@ contains
     type(reactions_type) :: reactions
     type(error_type), allocatable :: err
     real(wp), allocatable :: needed(:), a(:, :)
-    logical, allocatable :: unique(:, :)
+    type(uniqueness_type) :: unique
     real(wp) :: scale, conditioning
     integer :: i, n, before
 
@@ -143,7 +143,7 @@ contains
     call check_balance(model, plan, reaction_plan, state, reactions, scale, why)
     if (conditioning > 1.0e-3_wp) call check_cost(plan, reaction_plan, reactions, why)
     call find_unique(plan, reaction_plan, state, unique)
-    call test%is_true(all(unique(:, pack([(i, i=1, plan%n_coordinates)], reaction_plan%alone(plan%step_of)))), &
+    call test%is_true(all(unique%pairs(:, pack([(i, i=1, plan%n_coordinates)], reaction_plan%alone(plan%step_of)))), &
                       why//': all components of open chains are unique')
     before = calls
     call find_reactions(model%mechanism, plan, reaction_plan, state, reactions, err)

@@ -7,6 +7,7 @@ Compares the program with itself in part: other choices of independent coordinat
 
 usage: couplings.py MECH9K MECH9D
 """
+import json
 import os
 import re
 import sys
@@ -400,6 +401,40 @@ def check_random_trains(checks, kinematics):
         checks.near(found[f'F{driven}'] * found[f'dq{driven}'] / np.max(power), power / np.max(power), 1e-9, f'train {trial}: power')
 
 
+def check_repetitions(checks, kinematics):
+    """Couplings that repeat each other: told by name, with forces that are not unique, of least norm; all others keep theirs."""
+    masses = ''.join(f'&body link={k}, mass=1, centre={k - 1},0,0, inertia=0,0,{0.1 * k},0,0,0 /\n' for k in range(2, 6))
+    text = chain_of_wheels(4).replace('coefficients=0,1', 'coefficients=0,1,1') + masses + '&output reactions=.true. /\n'
+    plain = table(kinematics, text + '&time end=1, intervals=2 /\n')
+    twice = text + "&coupling kind='belt', coordinates=2,3, radii=2,1, crossed=.true. /\n&time end=1, intervals=2 /\n"
+    found = table(kinematics, twice)
+    for name in plain:
+        if name != 'C2':
+            checks.near(found[name], plain[name], 1e-12, f'a repeated gear: {name} as without it')
+    checks.near(found['C2'] + found['C4'], plain['C2'], 1e-12, 'two couplings share the force')
+    checks.near(found['C2'], found['C4'], 1e-12, 'in equal parts, which is the least norm')
+    done = output(kinematics, twice, '--check')
+    checks.true(done.returncode == 0 and 'coupling 4: redundant, it follows from coupling 2;' in done.stdout
+                and 'does not determine those of couplings 2, 4,' in done.stdout, 'the check names both', done.stdout + done.stderr)
+    done = output(kinematics, text, '--check')
+    checks.true('not determine those of couplings' not in done.stdout, 'forces of single gears are unique', done.stdout)
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, 'case.nml'), 'w', encoding='utf-8') as file:
+            file.write(twice)
+        done = run(kinematics, 'case.nml', '--report', 'report.json', '--hdf5', 'case.h5', folder=folder)
+        with open(os.path.join(folder, 'report.json'), encoding='utf-8') as file:
+            report = json.load(file)
+        checks.true([c['unique'] for c in report['couplings']] == [True, False, True, False], 'the report tells it', str(report))
+        checks.true('those of couplings 2, 4,' in done.stderr, 'the run tells it', done.stderr)
+        try:
+            import h5py
+        except ImportError:
+            checks.left_out('h5py is not installed (Debian: python3-h5py)')
+            return
+        with h5py.File(os.path.join(folder, 'case.h5'), 'r') as file:
+            checks.true(list(file['coupling_unique'][()]) == [1, 0, 1, 0], 'the HDF5 file tells it')
+
+
 def check_tables_with_ends(checks, kinematics, dynamics):
     """Tables over a slide, and over a part of a turn: they end with their points, where the motion stops with its time."""
     with tempfile.TemporaryDirectory() as folder:
@@ -537,6 +572,7 @@ def main(kinematics, dynamics):
     check_contradictions(checks, kinematics)
     check_random_contradictions(checks, kinematics)
     check_random_trains(checks, kinematics)
+    check_repetitions(checks, kinematics)
     check_tables(checks, kinematics, dynamics)
     check_tables_with_ends(checks, kinematics, dynamics)
     checks.finish()

@@ -1,8 +1,9 @@
-!> The components of wrenches that equilibrium determines.
+!> The components of wrenches, and the forces of couplings, that equilibrium determines.
 !>
 !> A component is unique exactly where it is zero in all wrenches that balance nothing, do no work on any coordinate and need no
 !> drive: in the null space of the equations of equilibrium. A random wrench of this space shows it, since its components are
-!> zero only where those of the whole space are. Three of them leave no chance to an accident.
+!> zero only where those of the whole space are. Three of them leave no chance to an accident. Forces of couplings that have
+!> no effect together are part of it.
 module mech9_uniqueness
   use mech9_kinds, only: wp
   use mech9_tolerances, only: rank_tolerance_for
@@ -15,10 +16,17 @@ module mech9_uniqueness
   use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type
   use mech9_joint_geometry, only: joint_geometry_type, new_joint_geometry, find_geometry
   use mech9_cluster_balance, only: cluster_balance_type, new_cluster_balance
+  use mech9_coupling_forces, only: coupling_forces_type, new_coupling_forces, draw_idle_couplings
   use mech9_singular_cluster, only: singular_cluster_type, decompose_cluster
   implicit none
   private
-  public :: find_unique
+  public :: uniqueness_type, find_unique
+
+  !> Forces that equilibrium determines.
+  type :: uniqueness_type
+    logical, allocatable :: pairs(:, :)     !< (6,M) components of the wrench of each pair
+    logical, allocatable :: couplings(:)    !< (couplings) the force of each
+  end type uniqueness_type
 
   !> Number of random wrenches.
   integer, parameter :: samples = 3
@@ -31,32 +39,55 @@ contains
     type(plan_type), intent(in) :: plan                  !< the plan of the mechanism, with all blocks
     type(reaction_plan_type), intent(in) :: reactions    !< its plan of inverse dynamics
     type(state_type), intent(in) :: start                !< an assembled position
-    logical, allocatable, intent(out) :: unique(:, :)    !< (6,M)
+    type(uniqueness_type), intent(out) :: unique         !< components and forces that are unique
     type(generic_position_type) :: generic
     type(joint_geometry_type) :: geometry
     type(state_type) :: state
+    real(wp) :: forces(plan%n_coordinates, samples)
     integer :: c
     logical :: found
 
-    allocate (unique(6, plan%n_coordinates), source=.true.)
-    if (size(reactions%clusters) == 0) return
+    allocate (unique%pairs(6, plan%n_coordinates), unique%couplings(size(plan%couplings)), source=.true.)
+    if (size(reactions%clusters) == 0 .and. size(plan%couplings) == 0) return
     call find_generic_position(plan, plan%blocks, start, generic, found)
     state = start
     if (found) state = generic%state
     geometry = new_joint_geometry(plan)
     call find_geometry(plan, reactions, state, geometry)
+    call judge_couplings(plan, state, unique%couplings, forces)
     do c = 1, size(reactions%clusters)
-      call judge_cluster(plan, reactions, reactions%clusters(c), state, geometry, unique)
+      call judge_cluster(plan, reactions, reactions%clusters(c), state, geometry, forces, unique%pairs)
     end do
   end subroutine find_unique
 
+  !> The couplings whose forces are unique, and random forces of the others that have no effect together.
+  subroutine judge_couplings(plan, state, unique, forces)
+    type(plan_type), intent(in) :: plan         !< the plan of the mechanism, with all blocks
+    type(state_type), intent(in) :: state       !< the position
+    logical, intent(inout) :: unique(:)         !< (couplings) becomes false where the force is not unique
+    real(wp), intent(out) :: forces(:, :)       !< (M,samples) on the coordinates [N m, N]
+    type(coupling_forces_type) :: couplings
+    type(random_type) :: random
+    real(wp) :: multipliers(size(unique))
+    integer :: sample
+
+    couplings = new_coupling_forces(plan)
+    do sample = 1, samples
+      call draw_idle_couplings(plan, state, random, couplings, multipliers, forces(:, sample))
+      unique = unique .and. abs(multipliers) <= rank_tolerance_for(plan%data_tolerance)
+    end do
+    ! round-off would count as forces
+    if (all(unique)) forces = 0.0_wp
+  end subroutine judge_couplings
+
   !> The unique components of the pairs of one cluster.
-  subroutine judge_cluster(plan, reactions, cluster, state, geometry, unique)
+  subroutine judge_cluster(plan, reactions, cluster, state, geometry, forces, unique)
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(reaction_plan_type), intent(in) :: reactions     !< the plan of inverse dynamics
     type(joined_cluster_type), intent(in) :: cluster      !< the cluster
     type(state_type), intent(in) :: state                 !< the position
     type(joint_geometry_type), intent(in) :: geometry     !< of the position
+    real(wp), intent(in) :: forces(:, :)                  !< (M,samples) of couplings on the coordinates [N m, N]
     logical, intent(inout) :: unique(:, :)                !< (6,M) becomes false where a component is not unique
     type(cluster_balance_type) :: balance
     type(singular_cluster_type) :: singular
@@ -70,7 +101,7 @@ contains
     call balance%set_position(cluster, geometry, reactions, reactions%length, regular)
     if (.not. regular) call decompose_cluster(cluster, balance, tolerance, singular)
     do sample = 1, samples
-      call draw(balance, random, wrenches)
+      call draw(balance, cluster, geometry, forces(:, sample), random, wrenches)
       if (regular) then
         call remove_determined(cluster, balance, wrenches)
       else
@@ -82,18 +113,25 @@ contains
     end do
   end subroutine judge_cluster
 
-  !> Random wrenches that do no work on dependent coordinates.
-  subroutine draw(balance, random, wrenches)
+  !> Random wrenches that do no work on dependent coordinates beside that of the couplings.
+  subroutine draw(balance, cluster, geometry, forces, random, wrenches)
     type(cluster_balance_type), intent(in) :: balance   !< the equations of the cluster
+    type(joined_cluster_type), intent(in) :: cluster    !< the cluster
+    type(joint_geometry_type), intent(in) :: geometry   !< of the position
+    real(wp), intent(in) :: forces(:)                   !< (M) of couplings on the coordinates [N m, N]
     type(random_type), intent(inout) :: random          !< source of the numbers
     real(wp), intent(out) :: wrenches(:, :)             !< (6,pairs) scaled
-    integer :: i, j
+    integer :: i, j, k
 
     do i = 1, size(wrenches, 2)
+      k = cluster%pairs(i)
       do j = 1, 6
         wrenches(j, i) = random%symmetric()
       end do
-      if (balance%held(i)) wrenches(:, i) = wrenches(:, i) - dot_product(balance%axis(:, i), wrenches(:, i))*balance%axis(:, i)
+      if (.not. balance%held(i)) cycle
+      wrenches(:, i) = wrenches(:, i) - dot_product(balance%axis(:, i), wrenches(:, i))*balance%axis(:, i)
+      if (geometry%length(k) > 0.0_wp) &
+        wrenches(:, i) = wrenches(:, i) + (forces(k)/geometry%length(k))*balance%axis(:, i)
     end do
   end subroutine draw
 

@@ -2,6 +2,7 @@
 !> transposed equations of the blocks, from the last block to the first.
 module mech9_loop_forces
   use mech9_kinds, only: wp
+  use mech9_random, only: random_type
   use mech9_rotation, only: turn_back, cross
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
@@ -11,7 +12,8 @@ module mech9_loop_forces
   use mech9_tree_forces, only: loop_wrench_type
   implicit none
   private
-  public :: loop_forces_type, new_loop_forces, eliminate_dependent, loop_wrenches, vary_couplings, coupling_force
+  public :: loop_forces_type, new_loop_forces, eliminate_dependent, draw_idle_forces, loop_wrenches, vary_couplings, &
+    coupling_force, coupling_multiplier
 
   !> The forces of the equations of one block, and scratch.
   type :: multipliers_type
@@ -51,6 +53,7 @@ contains
     integer :: b
 
     do b = size(plan%blocks), 1, -1
+      loops%blocks(b)%values = 0.0_wp
       if (size(plan%blocks(b)%unknowns) == 0) cycle
       associate (block => plan%blocks(b), multipliers => loops%blocks(b))
         multipliers%right = forces(block%coordinates)*plan%unit_of(block%coordinates)
@@ -60,6 +63,33 @@ contains
       end associate
     end do
   end subroutine eliminate_dependent
+
+  !> Forces of closed chains and couplings, at random, that together have no effect on any coordinate: there are some where
+  !> equations are redundant, and all others are zero.
+  subroutine draw_idle_forces(plan, state, work, loops, random)
+    type(plan_type), intent(in) :: plan               !< the plan of the mechanism
+    type(state_type), intent(in) :: state             !< position of the mechanism
+    type(block_work_type), intent(inout) :: work(:)   !< (blocks) with the factors of their Jacobians
+    type(loop_forces_type), intent(inout) :: loops    !< gets the multipliers
+    type(random_type), intent(inout) :: random        !< source of the numbers
+    type(loop_forces_type) :: drawn
+    real(wp) :: forces(plan%n_coordinates)
+    integer :: b, i
+
+    drawn = loops
+    forces = 0.0_wp
+    do b = 1, size(plan%blocks)
+      do i = 1, size(drawn%blocks(b)%values)
+        drawn%blocks(b)%values(i) = random%symmetric()
+      end do
+      call hand_on(plan, plan%blocks(b), state, drawn%blocks(b)%values, forces)
+    end do
+    ! the equations determine the effect of the drawn forces; only the rest has none
+    call eliminate_dependent(plan, state, work, loops, forces)
+    do b = 1, size(plan%blocks)
+      loops%blocks(b)%values = loops%blocks(b)%values + drawn%blocks(b)%values
+    end do
+  end subroutine draw_idle_forces
 
   !> Subtract the forces of the chains of a block on all coordinates of their loops.
   subroutine hand_on(plan, block, state, multipliers, forces)
@@ -103,20 +133,27 @@ contains
     end do
   end subroutine vary_couplings
 
-  !> The generalized force that a coupling exerts on one of its coordinates.
-  pure real(wp) function coupling_force(plan, b, c, k, state, loops) result(force)
+  !> The multiplier of the weighed equation of a coupling.
+  pure real(wp) function coupling_multiplier(plan, b, c, loops) result(multiplier)
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     integer, intent(in) :: b                       !< number of the block
     integer, intent(in) :: c                       !< number of its closure that is the coupling
+    type(loop_forces_type), intent(in) :: loops    !< with the multipliers
+
+    multiplier = loops%blocks(b)%values(sum(plan%closures(plan%blocks(b)%first_closure:c)%rank))
+  end function coupling_multiplier
+
+  !> The generalized force that a coupling exerts on one of its coordinates.
+  pure real(wp) function coupling_force(plan, c, k, state, multiplier) result(force)
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    integer, intent(in) :: c                       !< number of the closure that is the coupling
     integer, intent(in) :: k                       !< number of the coordinate
     type(state_type), intent(in) :: state          !< position of the mechanism
-    type(loop_forces_type), intent(in) :: loops    !< with the multipliers
+    real(wp), intent(in) :: multiplier             !< of the weighed equation
     real(wp) :: values(1)
-    integer :: row
 
-    row = sum(plan%closures(plan%blocks(b)%first_closure:c)%rank)
     call plan%constraints(c)%item%column(plan, plan%step_of(k), 1.0_wp, state, values)
-    force = values(1)*loops%blocks(b)%values(row)/plan%unit_of(k)
+    force = values(1)*multiplier/plan%unit_of(k)
   end function coupling_force
 
   !> The forces of the closed chains from their multipliers.

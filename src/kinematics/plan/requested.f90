@@ -80,6 +80,8 @@ contains
         associate (steps => plan%steps(block%first_step:block%last_step))
           needed(b) = needed(b) .or. any(requested%coordinates(steps%coordinate) .and. steps%range(2) < huge(1.0_wp))
         end associate
+        ! equations that determine nothing, because they are redundant, must hold all the same, and share forces with others
+        needed(b) = needed(b) .or. (size(block%unknowns) == 0 .and. block%equations > 0)
         if (needed(b)) call mark_outer_frames(plan, block, frames)
       end associate
     end do

@@ -9,7 +9,7 @@ module mech9_force_record
   use mech9_simulation, only: simulation_type
   use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
   use mech9_reactions, only: reactions_type, new_reactions, find_reactions
-  use mech9_uniqueness, only: find_unique
+  use mech9_uniqueness, only: uniqueness_type, find_unique
   use mech9_columns, only: columns_type
   implicit none
   private
@@ -17,7 +17,7 @@ module mech9_force_record
 
   type :: force_record_type
     logical :: wanted = .false.              !< forces are recorded
-    logical, allocatable :: unique(:, :)     !< (6,M) components of wrenches that equilibrium determines, see mech9_uniqueness
+    type(uniqueness_type), allocatable :: unique   !< of forces; not allocated: no reactions are recorded
     type(reactions_type) :: reactions        !< of the present state
     type(reaction_plan_type), private :: plan
     integer, private :: events = -1          !< changes of coordinates of the simulation until the plan was made; -1: there is none
@@ -63,12 +63,13 @@ contains
 
     if (.not. model%request%output%reactions) return
     call make_reaction_plan(model%mechanism, plan, reactions)
+    allocate (self%unique)
     call find_unique(plan, reactions, start, self%unique)
     associate (structure => model%mechanism%structure)
       if (.not. allocated(structure%joints)) return
       do j = 1, size(structure%joints)
         associate (numbers => structure%joints(j)%coordinates())
-          self%unique(:, numbers(1)) = self%unique(:, numbers(size(numbers)))
+          self%unique%pairs(:, numbers(1)) = self%unique%pairs(:, numbers(size(numbers)))
         end associate
       end do
     end associate

@@ -122,9 +122,13 @@ contains
     end do
     call file%put('component', components, 'component in the axes of the pair''s frame in its moving link, z along its axis')
     call file%make_scale('component')
-    call file%put('reaction_unique', merge(1, 0, forces%unique(:, columns%reacting)), &
+    call file%put('reaction_unique', merge(1, 0, forces%unique%pairs(:, columns%reacting)), &
                   '1 where equilibrium determines the component; elsewhere that of least norm is given')
     call file%attach_scales('reaction_unique', ['/pair     ', '/component'])
+    if (columns%couplings == 0) return
+    call file%put('coupling_unique', merge(1, 0, forces%unique%couplings), &
+                  '1 where equilibrium determines the force of the coupling; elsewhere that of least norm is given')
+    call file%attach_scales('coupling_unique', ['/coupling'])
   end subroutine write_uniqueness
 
   subroutine write_vector(file, name, values, long_name)

@@ -1,11 +1,15 @@
 !> Sentences about the forces in pairs: which components equilibrium determines.
 module mech9_force_text
-  use mech9_text, only: to_text
+  use mech9_text, only: to_text, some_of
+  use mech9_masks, only: numbers_of
+  use mech9_uniqueness, only: uniqueness_type
   use mech9_mechanism, only: mechanism_type
   implicit none
   private
   public :: print_uniqueness, print_undetermined, print_forceless, component_names
 
+  !> Most numbers that a list shows.
+  integer, parameter :: longest_list = 24
   !> Components of a wrench, in the axes of the pair's frame in its moving link.
   character(len=2), parameter :: component_names(6) = ['fx', 'fy', 'fz', 'mx', 'my', 'mz']
 
@@ -15,11 +19,12 @@ contains
   subroutine print_uniqueness(unit, recorded, unique)
     integer, intent(in) :: unit              !< the output unit
     logical, intent(in) :: recorded(:)       !< (M) pairs whose forces are recorded
-    logical, intent(in) :: unique(:, :)      !< (6,M) components that it determines
+    type(uniqueness_type), intent(in) :: unique   !< components and forces that it determines
     character(len=:), allocatable :: names
     integer :: i, k
 
-    if (all(unique .or. spread(.not. recorded, 1, 6))) then
+    call print_couplings(unit, unique)
+    if (all(unique%pairs .or. spread(.not. recorded, 1, 6))) then
       write (unit, '(a)') 'forces and moments in the pairs: equilibrium determines all components'
       return
     end if
@@ -27,10 +32,10 @@ contains
       'least norm are given'
     write (unit, '(a)') '(in the axes of the pair''s frame in its moving link, z along the axis):'
     do k = 1, size(recorded)
-      if (all(unique(:, k)) .or. .not. recorded(k)) cycle
+      if (all(unique%pairs(:, k)) .or. .not. recorded(k)) cycle
       names = ''
       do i = 1, 6
-        if (.not. unique(i, k)) names = names//' '//component_names(i)
+        if (.not. unique%pairs(i, k)) names = names//' '//component_names(i)
       end do
       write (unit, '(a)') '  R'//to_text(k)//':'//names
     end do
@@ -40,13 +45,25 @@ contains
   subroutine print_undetermined(unit, recorded, unique)
     integer, intent(in) :: unit              !< the output unit
     logical, intent(in) :: recorded(:)       !< (M) pairs whose forces are recorded
-    logical, intent(in) :: unique(:, :)      !< (6,M) components that it determines
+    type(uniqueness_type), intent(in) :: unique   !< components and forces that it determines
     integer :: n
 
-    n = count(spread(recorded, 1, 6) .and. .not. unique)
+    call print_couplings(unit, unique)
+    n = count(spread(recorded, 1, 6) .and. .not. unique%pairs)
     if (n > 0) write (unit, '(a)') 'equilibrium does not determine '//to_text(n)//' of the '//to_text(6*count(recorded))// &
       ' components of forces and moments in the pairs; --check names them, and those of least norm are given'
   end subroutine print_undetermined
+
+  !> Print the couplings whose forces equilibrium does not determine, if there are any.
+  subroutine print_couplings(unit, unique)
+    integer, intent(in) :: unit                   !< the output unit
+    type(uniqueness_type), intent(in) :: unique   !< components and forces that it determines
+
+    if (all(unique%couplings)) return
+    write (unit, '(a)') 'forces of couplings: equilibrium does not determine those of couplings '// &
+      some_of(numbers_of(.not. unique%couplings), longest_list)//', which repeat each other or closed chains; those of least '// &
+      'norm are given'
+  end subroutine print_couplings
 
   !> Say that all forces are zero, where no link has mass and no load acts.
   subroutine print_forceless(unit, mechanism)

@@ -1,6 +1,7 @@
 !> Words and JSON that the reports of all runs share.
 module mech9_run_words
   use mech9_kinds, only: wp
+  use mech9_uniqueness, only: uniqueness_type
   use mech9_text, only: to_text
   use mech9_error, only: error_type, place_type
   use mech9_json, only: json_type
@@ -155,7 +156,7 @@ contains
   subroutine add_uniqueness(json, recorded, unique)
     type(json_type), intent(inout) :: json  !< the report, inside its object
     logical, intent(in) :: recorded(:)      !< (M) pairs whose wrenches are recorded
-    logical, intent(in) :: unique(:, :)     !< (6,M) components that it determines
+    type(uniqueness_type), intent(in) :: unique  !< components and forces that it determines
     integer :: i, k
 
     call json%begin_array('reactions')
@@ -165,9 +166,18 @@ contains
       call json%add('pair', k)
       call json%begin_array('unique')
       do i = 1, 6
-        if (unique(i, k)) call json%add(component_names(i))
+        if (unique%pairs(i, k)) call json%add(component_names(i))
       end do
       call json%end_array()
+      call json%end_object()
+    end do
+    call json%end_array()
+    if (size(unique%couplings) == 0) return
+    call json%begin_array('couplings')
+    do k = 1, size(unique%couplings)
+      call json%begin_object()
+      call json%add('coupling', k)
+      call json%add('unique', unique%couplings(k))
       call json%end_object()
     end do
     call json%end_array()

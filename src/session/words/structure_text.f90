@@ -100,7 +100,7 @@ contains
     do c = 1, size(plan%closures)
       if (report%redundant(c) == 0) cycle
       if (plan%closures(c)%coupling > 0) then
-        write (unit, '(a)') chain_names(plan%closures(c:c)%chain)//': redundant, it follows from others'
+        call print_repetition(unit, plan%closures(c)%chain, report%repeating(c)%chains)
       else
         write (unit, '(a)') 'closed chain '//to_text(plan%closures(c)%chain)//': '// &
           to_text(report%redundant(c))//' of its '//to_text(plan%closures(c)%rank)//' equations redundant'
@@ -116,6 +116,20 @@ contains
       call print_idle(unit, structure, report%idle(i))
     end do
   end subroutine print_mobility_report
+
+  !> Write that a coupling follows from others, or from closed chains.
+  subroutine print_repetition(unit, coupling, chains)
+    integer, intent(in) :: unit                         !< Fortran unit to write to
+    integer, intent(in) :: coupling                     !< its number, negative
+    integer, allocatable, intent(in) :: chains(:)       !< those that repeat each other, with it; not allocated: not known
+
+    if (.not. allocated(chains)) then
+      write (unit, '(a)') chain_names([coupling])//': redundant, it follows from others'
+    else
+      write (unit, '(a)') chain_names([coupling])//': redundant, it follows from '// &
+        chain_names(pack(chains, chains /= coupling))//'; the forces of couplings that repeat each other are not unique'
+    end if
+  end subroutine print_repetition
 
   !> Write the coordinates of an idle freedom, and the joints with several freedoms to which they belong.
   subroutine print_idle(unit, structure, idle)
