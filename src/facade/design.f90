@@ -15,6 +15,7 @@ module mech9_design
   contains
     procedure :: independent
     procedure :: pair
+    procedure :: coupling
     procedure :: initial
     procedure :: drive
     procedure :: body
@@ -67,6 +68,35 @@ contains
     if (present(orientation)) names = names//', orientation='//quoted(orientation)
     call self%add('pair', names)
   end subroutine pair
+
+  !> Couple coordinates, as gears, racks, belts and screws do. Which of the numbers are needed follows from the kind.
+  pure subroutine coupling(self, kind, coordinates, ratio, radius, radii, crossed, pitch, phase, coefficients, constant, file)
+    class(design_type), intent(inout) :: self               !< the design
+    character(len=*), intent(in) :: kind                    !< 'gear', 'rack', 'belt', 'screw', 'linear', 'table' or 'user'
+    integer, intent(in) :: coordinates(:)                   !< two numbers, of which the first moves the second; any for 'linear'
+    real(wp), intent(in), optional :: ratio                 !< of a gear: change of the second coordinate per that of the first
+    real(wp), intent(in), optional :: radius                !< of the pinion of a rack [m]
+    real(wp), intent(in), optional :: radii(2)              !< of the pulleys of a belt [m]
+    logical, intent(in), optional :: crossed                !< the belt is crossed
+    real(wp), intent(in), optional :: pitch                 !< advance of a screw per turn [m]
+    real(wp), intent(in), optional :: phase                 !< second coordinate where the first is zero; from `initial` if absent
+    real(wp), intent(in), optional :: coefficients(:)       !< of the coordinates in a linear equation
+    real(wp), intent(in), optional :: constant              !< their sum; 0 unless given
+    character(len=*), intent(in), optional :: file          !< of a table, from the current folder
+    character(len=:), allocatable :: names
+
+    names = 'kind='//quoted(kind)//', coordinates='//integers(coordinates)
+    if (present(ratio)) names = names//', ratio='//reals([ratio])
+    if (present(radius)) names = names//', radius='//reals([radius])
+    if (present(radii)) names = names//', radii='//reals(radii)
+    if (present(crossed)) names = names//', crossed='//trim(merge('.true. ', '.false.', crossed))
+    if (present(pitch)) names = names//', pitch='//reals([pitch])
+    if (present(phase)) names = names//', phase='//reals([phase])
+    if (present(coefficients)) names = names//', coefficients='//reals(coefficients)
+    if (present(constant)) names = names//', constant='//reals([constant])
+    if (present(file)) names = names//', file='//quoted(file)
+    call self%add('coupling', names)
+  end subroutine coupling
 
   !> Say where a coordinate starts: the position of an independent one in a free motion, or of a dependent one about there.
   pure subroutine initial(self, coordinate, position, velocity)

@@ -2,6 +2,7 @@
 module mech9_motion
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
+  use mech9_text, only: to_text
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_model, only: model_type
   use mech9_point, only: point_type
@@ -11,6 +12,8 @@ module mech9_motion
   use mech9_frame_motion, only: point_motion
   use mech9_simulation, only: simulation_type, simulation_statistics_type, interruption_type, &
     coordinate_change_type, estimated_errors_type, judge_error
+  use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
+  use mech9_reactions, only: reactions_type, new_reactions, find_reactions
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation
   use mech9_accuracy, only: find_accuracy
@@ -26,6 +29,9 @@ module mech9_motion
     private
     type(model_type), pointer :: model => null()            !< owned; the simulation refers to it
     class(simulation_type), allocatable :: simulation
+    type(reaction_plan_type) :: reaction_plan               !< of forces, once they are asked for
+    type(reactions_type) :: reactions                       !< of the last position whose forces were asked for
+    integer :: planned = -1                                 !< changes of coordinates until the plan was made; -1: never
   contains
     procedure :: start_kinematics
     procedure :: start_dynamics
@@ -36,6 +42,7 @@ module mech9_motion
     procedure :: dq
     procedure :: ddq
     procedure :: point
+    procedure :: coupling_force
     procedure :: energies
     procedure :: closure
     procedure :: events
@@ -256,6 +263,41 @@ contains
     if (present(acceleration)) acceleration = a
   end subroutine point
 
+  !> Force of a coupling on the second of its coordinates [N m, N]. Fails with exit_usage where there is no such coupling, or where
+  !> the mechanism does not ask for forces (&output reactions=.true.), with exit_singular where no finite forces balance the links.
+  subroutine coupling_force(self, number, force, err)
+    class(motion_type), intent(inout), target :: self      !< the motion
+    integer, intent(in) :: number                          !< of the coupling, in the order of the groups
+    real(wp), intent(out) :: force                         !< not a number after a failure [N m, N]
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    force = ieee_value(force, ieee_quiet_nan)
+    if (.not. allocated(self%simulation)) then
+      call raise(err, exit_usage, 'a motion must be started before its forces are known')
+      return
+    end if
+    call self%simulation%present_for_forces(plan, state)
+    if (number < 1 .or. number > size(plan%couplings)) then
+      call raise(err, exit_usage, 'the mechanism has no coupling '//to_text(number))
+    else if (.not. self%model%request%output%reactions) then
+      call raise(err, exit_usage, 'forces are known only where they are asked for; give &output reactions=.true. /')
+    end if
+    if (allocated(err)) return
+    if (self%planned /= size(self%simulation%events)) then
+      call make_reaction_plan(self%model%mechanism, plan, self%reaction_plan)
+      self%reactions = new_reactions(plan, self%reaction_plan)
+      self%planned = size(self%simulation%events)
+    end if
+    call find_reactions(self%model%mechanism, plan, self%reaction_plan, state, self%reactions, err)
+    if (allocated(err)) then
+      call explain(err)
+    else
+      force = self%reactions%couplings%values(number)
+    end if
+  end subroutine coupling_force
+
   !> Energies of the present position; not numbers where no motion is started.
   subroutine energies(self, kinetic, potential)
     class(motion_type), intent(inout) :: self   !< the motion
@@ -304,5 +346,6 @@ contains
       deallocate (self%simulation)
     end if
     if (associated(self%model)) deallocate (self%model)
+    self%planned = -1
   end subroutine close_motion
 end module mech9_motion

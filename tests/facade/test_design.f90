@@ -9,6 +9,7 @@ program test_design
   call check_refusals()
   call check_everything_else()
   call check_path()
+  call check_couplings()
   call test%finish()
 
 contains
@@ -47,6 +48,44 @@ contains
     call test%has_error(err, exit_usage, 'a name that no point has is refused')
     call motion%close()
   end subroutine check_bits
+
+  !> Two wheels and a rack: the couplings arrive, and their forces are those that turn the wheel and push the rack.
+  subroutine check_couplings()
+    real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], x(3) = [1.0_wp, 0.0_wp, 0.0_wp]
+    type(design_type) :: design
+    type(mechanism_type) :: mechanism
+    type(motion_type) :: motion
+    type(error_type), allocatable :: err
+    real(wp) :: force
+
+    call design%independent([1])
+    call design%pair(1, 'revolute', [1, 2], axis=z)
+    call design%pair(2, 'revolute', [1, 3], axis=z, point=x)
+    call design%pair(3, 'prismatic', [1, 4], axis=x)
+    call design%coupling('gear', [1, 2], ratio=-1.0_wp/3.0_wp, phase=0.2_wp)
+    call design%coupling('rack', [2, 3], radius=0.3_wp)
+    call design%body(3, 1.0_wp, centre=x, inertia=[0.0_wp, 0.0_wp, 0.6_wp, 0.0_wp, 0.0_wp, 0.0_wp])
+    call design%body(4, 2.0_wp)
+    call design%drive(1, [0.0_wp, 0.0_wp, 1.5_wp])
+    call design%add('output', 'reactions=.true.')
+    call design%finish(mechanism, err)
+    call test%no_error(err, 'a design with couplings is accepted')
+    call motion%coupling_force(1, force, err)
+    call test%has_error(err, exit_usage, 'forces of a motion that has not started are refused')
+    call motion%start_kinematics(mechanism, err)
+    call motion%advance(1.0_wp, err)
+    call test%no_error(err, 'its motion runs')
+    call test%near(motion%q(2), 0.2_wp - 0.5_wp, 1.0e-15_wp, 'the second wheel follows the first one')
+    call test%near(motion%ddq(3), -0.3_wp, 1.0e-15_wp, 'the rack follows the second wheel')
+    call motion%coupling_force(2, force, err)
+    call test%no_error(err, 'the force of the rack is found')
+    call test%near(force, -0.6_wp, 1.0e-14_wp, 'it pushes the rack: 2 kg times -0.3 m/s^2')
+    call motion%coupling_force(1, force, err)
+    call test%near(force, -0.6_wp - 0.18_wp, 1.0e-14_wp, 'the torque of the gear turns the wheel and pushes the rack')
+    call motion%coupling_force(3, force, err)
+    call test%has_error(err, exit_usage, 'a coupling that does not exist is refused')
+    call motion%close()
+  end subroutine check_couplings
 
   !> A bead on a straight wire through the points of a file, which is looked for in the current folder.
   subroutine check_path()
