@@ -59,6 +59,8 @@ contains
     allocate (planar_block_arithmetic_type :: both(2)%kind)
     plan%arithmetics = both
     do b = 1, size(plan%blocks)
+      ! a block without steps has equations of couplings only
+      if (plan%blocks(b)%last_step < plan%blocks(b)%first_step) cycle
       if (plan%planar%plane_of(plan%blocks(b)%last_step) == 0) cycle
       plan%blocks(b)%arithmetic = 2
       do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
