@@ -24,6 +24,8 @@ module mech9_coupling
     procedure(is_linear_interface), deferred :: is_linear
     procedure :: ends => without_ends
     procedure(kind_name_interface), deferred :: kind_name
+    procedure :: constants => unknown_constants
+    procedure :: varied_term => unvaried_term
   end type coupling_type
 
   !> One of several couplings of different kinds.
@@ -89,4 +91,24 @@ contains
 
     ends = [-huge(ends), huge(ends)]
   end function without_ends
+
+  !> The numbers on which the equation depends smoothly, in an order of its own. This procedure, for couplings whose numbers are
+  !> not known, gives none.
+  pure subroutine unknown_constants(self, values)
+    class(coupling_type), intent(in) :: self         !< the coupling
+    real(wp), allocatable, intent(out) :: values(:)  !< its numbers; not allocated where they are not known
+
+  end subroutine unknown_constants
+
+  !> The derivative of a term, or of a derivative of it by its coordinate, by one parameter while the coordinate is held. This
+  !> procedure is for couplings without numbers.
+  pure real(wp) function unvaried_term(self, change, i, q, order)
+    class(coupling_type), intent(in) :: self   !< the coupling
+    real(wp), intent(in) :: change(:)          !< derivatives of its numbers
+    integer, intent(in) :: i                   !< number of the term, from 1 to n
+    real(wp), intent(in) :: q                  !< its coordinate [rad, m]
+    integer, intent(in) :: order               !< 0: of the term; 1, 2: of a derivative
+
+    unvaried_term = 0.0_wp
+  end function unvaried_term
 end module mech9_coupling

@@ -20,6 +20,8 @@ module mech9_linear_coupling
     procedure :: weight
     procedure :: is_linear
     procedure :: kind_name
+    procedure :: constants
+    procedure :: varied_term
   end type linear_coupling_type
 
 contains
@@ -81,4 +83,27 @@ contains
 
     name = self%name
   end function kind_name
+
+  !> The coefficients and the sum.
+  pure subroutine constants(self, values)
+    class(linear_coupling_type), intent(in) :: self   !< the coupling
+    real(wp), allocatable, intent(out) :: values(:)   !< (n+1) the coefficients, then the constant
+
+    values = [self%coefficients, self%constant]
+  end subroutine constants
+
+  !> The derivative of a term, or of its derivative by its coordinate, by one parameter while the coordinate is held.
+  pure real(wp) function varied_term(self, change, i, q, order)
+    class(linear_coupling_type), intent(in) :: self   !< the coupling
+    real(wp), intent(in) :: change(:)                 !< (n+1) derivatives of the coefficients and of the constant
+    integer, intent(in) :: i                          !< number of the term, from 1 to n
+    real(wp), intent(in) :: q                         !< its coordinate [rad, m]
+    integer, intent(in) :: order                      !< 0: of the term; 1, 2: of a derivative
+
+    varied_term = 0.0_wp
+    if (order == 1) varied_term = change(i)
+    if (order > 0) return
+    varied_term = change(i)*q
+    if (i == 1) varied_term = varied_term - change(size(change))
+  end function varied_term
 end module mech9_linear_coupling

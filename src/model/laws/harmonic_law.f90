@@ -16,6 +16,8 @@ module mech9_harmonic_law
   contains
     procedure :: evaluate
     procedure :: greatest_rate
+    procedure :: constants
+    procedure :: vary
   end type harmonic_law_type
 
 contains
@@ -46,4 +48,32 @@ contains
 
     rate = abs(self%amplitude*self%angular_frequency)
   end function greatest_rate
+
+  !> The four numbers of the law.
+  pure subroutine constants(self, values)
+    class(harmonic_law_type), intent(in) :: self     !< the harmonic law
+    real(wp), allocatable, intent(out) :: values(:)  !< mean, amplitude, angular frequency and phase
+
+    values = [self%mean, self%amplitude, self%angular_frequency, self%phase]
+  end subroutine constants
+
+  !> The derivatives by one parameter, from those of the four numbers.
+  subroutine vary(self, change, t, q, dq, ddq)
+    class(harmonic_law_type), intent(in) :: self   !< the harmonic law
+    real(wp), intent(in) :: change(:)              !< derivatives of the four numbers
+    real(wp), intent(in) :: t                      !< time [s]
+    real(wp), intent(out) :: q                     !< derivative of the coordinate [rad, m]
+    real(wp), intent(out) :: dq                    !< derivative of its rate [rad/s, m/s]
+    real(wp), intent(out) :: ddq                   !< derivative of its acceleration [rad/s^2, m/s^2]
+    real(wp) :: c, s, turned
+
+    associate (amplitude => self%amplitude, frequency => self%angular_frequency)
+      s = sin(frequency*t + self%phase)
+      c = cos(frequency*t + self%phase)
+      turned = change(3)*t + change(4)
+      q = change(1) + change(2)*s + amplitude*turned*c
+      dq = (change(2)*frequency + amplitude*change(3))*c - amplitude*frequency*turned*s
+      ddq = -(change(2)*frequency + 2.0_wp*amplitude*change(3))*frequency*s - amplitude*frequency**2*turned*c
+    end associate
+  end subroutine vary
 end module mech9_harmonic_law

@@ -19,6 +19,8 @@ module mech9_law
     procedure :: next_joint
     procedure :: check_time
     procedure :: owner
+    procedure :: constants => unknown_constants
+    procedure :: vary => vary_nothing
   end type law_type
 
   !> One of several drives of different kinds.
@@ -117,6 +119,29 @@ contains
     if (self%motor > 0) owner = 'motor '//to_text(self%motor)
     if (self%coordinate > 0 .and. self%motor == 0) owner = 'drive of coordinate '//to_text(self%coordinate)
   end function owner
+
+  !> The numbers on which the law depends smoothly, in an order of its own. This procedure, for laws whose numbers are not known,
+  !> gives none.
+  pure subroutine unknown_constants(self, values)
+    class(law_type), intent(in) :: self              !< the law
+    real(wp), allocatable, intent(out) :: values(:)  !< its numbers; not allocated where they are not known
+
+  end subroutine unknown_constants
+
+  !> The derivatives of q, dq and ddq by one parameter, from those of the numbers of the law. This procedure is for laws without
+  !> such numbers.
+  subroutine vary_nothing(self, change, t, q, dq, ddq)
+    class(law_type), intent(in) :: self      !< the law
+    real(wp), intent(in) :: change(:)        !< derivatives of its numbers
+    real(wp), intent(in) :: t                !< time [s]
+    real(wp), intent(out) :: q               !< derivative of the coordinate [rad, m]
+    real(wp), intent(out) :: dq              !< derivative of its rate [rad/s, m/s]
+    real(wp), intent(out) :: ddq             !< derivative of its acceleration [rad/s^2, m/s^2]
+
+    q = 0.0_wp
+    dq = 0.0_wp
+    ddq = 0.0_wp
+  end subroutine vary_nothing
 
   !> A time at or near a joint, moved into the piece on one side of it by a little more than round-off.
   pure real(wp) function from_inside(t, direction)

@@ -18,6 +18,8 @@ module mech9_polynomial_law
   contains
     procedure :: evaluate
     procedure :: greatest_rate
+    procedure :: constants
+    procedure :: vary
   end type polynomial_law_type
 
 contains
@@ -30,21 +32,52 @@ contains
     real(wp), intent(out) :: dq                         !< its rate [rad/s, m/s]
     real(wp), intent(out) :: ddq                        !< its acceleration [rad/s^2, m/s^2]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    call sum_terms(self%coefficients, t, q, dq, ddq)
+    if (.not. (ieee_is_finite(q) .and. ieee_is_finite(dq) .and. ieee_is_finite(ddq))) &
+      call raise(err, exit_data, 'the polynomial of the '//trim(self%owner())//' or a derivative of it is beyond all '// &
+                 'numbers at t = '//to_text(t, 12)//' s; correct its coefficients', self%place)
+  end subroutine evaluate
+
+  !> A polynomial and its first two derivatives.
+  pure subroutine sum_terms(coefficients, t, q, dq, ddq)
+    real(wp), intent(in) :: coefficients(:)   !< of 1, t, t^2, ...
+    real(wp), intent(in) :: t                 !< [s]
+    real(wp), intent(out) :: q                !< the polynomial at t
+    real(wp), intent(out) :: dq               !< its first derivative
+    real(wp), intent(out) :: ddq              !< its second derivative
     integer :: i
 
     q = 0.0_wp
     dq = 0.0_wp
     ddq = 0.0_wp
-    do i = size(self%coefficients), 1, -1
+    do i = size(coefficients), 1, -1
       ddq = ddq*t + dq
       dq = dq*t + q
-      q = q*t + self%coefficients(i)
+      q = q*t + coefficients(i)
     end do
     ddq = 2.0_wp*ddq
-    if (.not. (ieee_is_finite(q) .and. ieee_is_finite(dq) .and. ieee_is_finite(ddq))) &
-      call raise(err, exit_data, 'the polynomial of the '//trim(self%owner())//' or a derivative of it is beyond all '// &
-                 'numbers at t = '//to_text(t, 12)//' s; correct its coefficients', self%place)
-  end subroutine evaluate
+  end subroutine sum_terms
+
+  !> The coefficients.
+  pure subroutine constants(self, values)
+    class(polynomial_law_type), intent(in) :: self   !< the polynomial law
+    real(wp), allocatable, intent(out) :: values(:)  !< c0, c1, ...
+
+    values = self%coefficients
+  end subroutine constants
+
+  !> The derivatives by one parameter: a polynomial with the derivatives of the coefficients.
+  subroutine vary(self, change, t, q, dq, ddq)
+    class(polynomial_law_type), intent(in) :: self   !< the polynomial law
+    real(wp), intent(in) :: change(:)                !< derivatives of the coefficients
+    real(wp), intent(in) :: t                        !< time [s]
+    real(wp), intent(out) :: q                       !< derivative of the coordinate [rad, m]
+    real(wp), intent(out) :: dq                      !< derivative of its rate [rad/s, m/s]
+    real(wp), intent(out) :: ddq                     !< derivative of its acceleration [rad/s^2, m/s^2]
+
+    call sum_terms(change, t, q, dq, ddq)
+  end subroutine vary
 
   !> The bound is the sum of the sizes of the terms of the Taylor series of the rate at t, k |q^(k)|/k! |h|^(k-1) for k up
   !> to `highest`, and of a bound of the remainder, from the next derivative of the polynomial with the sizes of the
