@@ -33,12 +33,13 @@ module mech9_spanning_tree
 contains
 
   !> Lay out steps, frames and closures chain by chain. Ranks and rows of the closures, and the blocks, are found later.
-  subroutine lay_out_frames(mechanism, partition, start, plan, length)
+  subroutine lay_out_frames(mechanism, partition, start, plan, length, origin)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates, and the order of computation
     real(wp), intent(in) :: start(:)                !< (M) coordinates at the start [rad, m]
     type(plan_type), intent(out) :: plan   !< the plan of the mechanism
     real(wp), intent(in), optional :: length        !< the mechanism's size, where it is known from an earlier plan [m]
+    real(wp), intent(in), optional :: origin(3)     !< origin of frame 0 in link 1, where it is known from an earlier plan [m]
     type(chain_type), allocatable :: chains(:)
     type(layout_type) :: layout
     integer :: i
@@ -60,6 +61,7 @@ contains
     allocate (plan%closures(plan%n_coordinates - plan%n_links + 1 + size(plan%couplings)))
     call find_size(mechanism, start, plan)
     if (present(length)) plan%length = length
+    if (present(origin)) plan%origin = origin
     call find_units(mechanism, plan)
     plan%link_in_frame(1)%p = -plan%origin
     allocate (layout%depth(0:plan%n_coordinates), source=0)
