@@ -21,7 +21,8 @@ module mech9_failure
   public :: failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
     failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve, &
     failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, failure_open_coupling, failure_coupled, &
-    failure_off_table, last_failure
+    failure_off_table, failure_no_neighbours, failure_unknown_derivative, failure_singular_sensitivity, &
+    failure_opening_parameter, last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
@@ -170,7 +171,18 @@ module mech9_failure
   !> A coordinate goes beyond an end of the table of a coupling: chains, coordinates, values (the coordinate, both ends of the
   !> table), name (of their unit), t.
   integer, parameter :: failure_off_table = 64
-  integer, parameter :: last_failure = failure_off_table
+
+  ! Sensitivities
+
+  !> A parameter cannot be changed in both directions: name.
+  integer, parameter :: failure_no_neighbours = 65
+  !> A parameter sets numbers whose derivatives are not known: name.
+  integer, parameter :: failure_unknown_derivative = 66
+  !> Derivatives by parameters do not exist in a singular position: chains, coordinates, t.
+  integer, parameter :: failure_singular_sensitivity = 67
+  !> A change of a parameter opens a closed chain: chains, coordinates, name, t.
+  integer, parameter :: failure_opening_parameter = 68
+  integer, parameter :: last_failure = failure_opening_parameter
 
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type

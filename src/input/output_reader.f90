@@ -8,7 +8,7 @@ module mech9_output_reader
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_output
+  public :: read_output, check_sensitivities
 
 contains
 
@@ -40,6 +40,7 @@ contains
       call diagnostics%add(span_of(group, 'reaction_pairs'), 'reactions=.false. contradicts reaction_pairs; leave one of them out')
     output%drive_forces = get_logical(group, 'drive_forces')
     output%force_arrows = get_logical(group, 'force_arrows')
+    output%sensitivities = get_logical(group, 'sensitivities')
     if (output%compression > 9) &
       call diagnostics%add(span_of(group, 'compression', 1), 'compression goes from 0 (none) to 9 (the smallest file)')
     if (output%derivatives > 2) call diagnostics%add(span_of(group, 'derivatives', 1), 'derivatives is 0 (positions), '// &
@@ -56,6 +57,34 @@ contains
       end associate
     end do
   end subroutine read_output
+
+  !> Report sensitivities that are not computed, and those without a parameter.
+  pure subroutine check_sensitivities(document, needs_drives, n_parameters, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
+    integer, intent(in) :: n_parameters                   !< how many parameters the data file has
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    character(len=14), parameter :: forces(3) = ['reactions     ', 'reaction_pairs', 'drive_forces  ']
+    type(group_type) :: group
+    integer :: i
+
+    group = group_or_empty(document, 'output')
+    if (.not. get_logical(group, 'sensitivities')) return
+    if (.not. needs_drives) then
+      call diagnostics%add(span_of(group, 'sensitivities', 1), 'sensitivities are computed by mech9k only; leave them out here')
+      return
+    end if
+    if (n_parameters == 0) call diagnostics%add(span_of(group, 'sensitivities', 1), 'sensitivities are derivatives by the '// &
+                                                'parameters, and there are none; give a group &parameter for each')
+    do i = 1, size(forces)
+      if (.not. has_name(group, trim(forces(i)))) cycle
+      if (i /= 2) then
+        if (.not. get_logical(group, trim(forces(i)))) cycle
+      end if
+      call diagnostics%add(span_of(group, trim(forces(i))), 'derivatives of forces are not computed; leave out '// &
+                           trim(forces(i))//', or sensitivities')
+    end do
+  end subroutine check_sensitivities
 
   !> Report recorded coordinates, or pairs, that do not exist or are named twice.
   pure subroutine check_coordinates(group, name, counted, n_coordinates, coordinates, diagnostics)

@@ -21,7 +21,7 @@ module mech9_reader
   use mech9_load_reader, only: read_loads
   use mech9_motor_reader, only: read_motors
   use mech9_rod_holding, only: hold_idle_rods
-  use mech9_output_reader, only: read_output
+  use mech9_output_reader, only: read_output, check_sensitivities
   use mech9_study_reader, only: read_study
   use mech9_quantity_reader, only: read_quantities
   use mech9_cam_reader, only: read_cams
@@ -86,6 +86,7 @@ contains
                                              model%mechanism%loads, model%mechanism%n_motors, diagnostics)
     call check_drives(document, needs_drives, model, diagnostics)
     if (.not. needs_drives) call check_motors(document, model, diagnostics)
+    call check_sensitivities(document, needs_drives, size(model%parameters), diagnostics)
     if (.not. diagnostics%failed()) call hold_idle_rods(needs_drives, model)
   end subroutine read_checked
 

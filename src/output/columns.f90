@@ -12,6 +12,7 @@ module mech9_columns
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_motor_states, only: find_action
+  use mech9_sensitivity, only: sensitivity_type
   use mech9_poses, only: poses_type, poses_of
   use mech9_frame_motion, only: point_motion
   implicit none
@@ -34,6 +35,8 @@ module mech9_columns
     integer :: couplings = 0                !< how many couplings have columns of their forces, after those of pairs
     integer :: motors = 0                   !< how many columns belong to motors, after those of forces
     real(wp), allocatable :: motor_factors(:)   !< (motors) factors from the program's units to those of the results
+    integer :: sensitivities = 0            !< how many columns, the last ones, are derivatives by parameters
+    type(string_type), allocatable :: parameters(:)   !< names of these parameters
     type(poses_type) :: poses               !< columns after the others, if they were requested
   contains
     procedure :: append
@@ -42,6 +45,8 @@ module mech9_columns
     procedure :: fill_forces
     procedure :: append_motors
     procedure :: fill_motors
+    procedure :: append_sensitivities
+    procedure :: fill_sensitivities
     procedure :: width
     procedure :: family_of
     procedure :: fill
@@ -193,6 +198,51 @@ contains
       row(at) = action%force
     end do
   end subroutine fill_motors
+
+  !> Append the derivatives of all columns of the motion but time, by each parameter.
+  pure subroutine append_sensitivities(self, parameters)
+    class(columns_type), intent(inout) :: self       !< the columns
+    type(string_type), intent(in) :: parameters(:)   !< names of the parameters
+    character(len=:), allocatable :: name, unit
+    integer :: p, i
+
+    self%parameters = parameters
+    self%sensitivities = size(parameters)*(self%motion - 1)
+    do p = 1, size(parameters)
+      do i = 2, self%motion
+        name = self%names(i)%text
+        unit = self%units(i)%text
+        call self%append('d('//name//')/d('//parameters(p)%text//')', unit//'/'//parameters(p)%text, &
+                         'derivative of '//name//' by '//parameters(p)%text)
+      end do
+    end do
+  end subroutine append_sensitivities
+
+  !> Fill the columns of the derivatives by parameters in a row.
+  pure subroutine fill_sensitivities(self, sensitivity, row)
+    class(columns_type), intent(in) :: self               !< the columns
+    type(sensitivity_type), intent(in) :: sensitivity     !< the derivatives
+    real(wp), intent(inout) :: row(:)                     !< numbers of one row, one for each column
+    integer :: at, p, order, i, k
+
+    at = self%count - self%sensitivities
+    do p = 1, size(self%parameters)
+      do order = 0, self%derivatives
+        do i = 1, size(self%coordinates)
+          at = at + 1
+          row(at) = sensitivity%q(p, order, self%coordinates(i))*self%factors(i)
+        end do
+      end do
+      do i = 1, size(sensitivity%points, 4)
+        do order = 0, self%derivatives
+          do k = 1, 3
+            at = at + 1
+            row(at) = sensitivity%points(p, k, order, i)
+          end do
+        end do
+      end do
+    end do
+  end subroutine fill_sensitivities
 
   !> Append a column.
   pure subroutine append(self, name, unit, long_name)

@@ -12,6 +12,8 @@ module mech9_hdf5_sink
   use mech9_result_sink, only: result_sink_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_series, only: hdf5_series_type
+  use mech9_hdf5_sensitivities, only: quantities_of_sensitivity, add_sensitivities, &
+    put_parameters
   implicit none
   private
   public :: hdf5_sink_type, put_force_scales, common_unit
@@ -57,11 +59,12 @@ contains
 
     call self%file%create(path, err)
     if (allocated(err)) return
-    scalars = columns%count - columns%motion - columns%forces()
+    scalars = columns%count - columns%motion - columns%forces() - columns%sensitivities
     self%takes_poses = .true.
-    call self%series%start(quantities_of_motion + scalars, columns%width(), request%time%intervals + 1, &
-                           request%output%compression)
+    call self%series%start(quantities_of_motion + scalars + quantities_of_sensitivity, columns%width(), &
+                           request%time%intervals + 1, request%output%compression)
     call add_quantities(self, mechanism, columns, scalars)
+    if (columns%sensitivities > 0) call add_sensitivities(self%series, columns)
     if (columns%poses%n_links > 0) call add_poses(self, columns)
     call self%series%create(self%file)
     call add_coordinate_scales(self%file, mechanism, columns)
@@ -69,6 +72,7 @@ contains
     has_axes = size(mechanism%points) > 0
     if (columns%forces() > 0) call put_force_scales(self%file, mechanism, columns, has_axes)
     if (columns%poses%n_links > 0) call add_pose_scales(self%file, columns%poses, has_axes)
+    if (columns%sensitivities > 0) call put_parameters(self%file, columns)
     call self%series%attach(self%file)
     call self%pacer%start(longest_wait)
     call self%tell(err)
@@ -97,7 +101,7 @@ contains
     end do
     if (columns%forces() > 0) call add_forces(self, columns)
     do i = 1, scalars
-      at = columns%count - scalars + i
+      at = columns%motion + columns%forces() + i
       call self%series%add(identifier(columns%names(at)%text), [at], [integer ::], &
                            columns%long_names(at)%text, columns%units(at)%text, ['/time'])
     end do

@@ -7,6 +7,7 @@ module mech9_dynamic_task
   use mech9_diagnostics, only: diagnostics_type
   use mech9_partition, only: free_coordinate
   use mech9_model, only: model_type
+  use mech9_variable_model, only: variable_model_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -61,10 +62,11 @@ contains
   end subroutine assemble
 
   !> Make the plan, assemble the mechanism, compute its state at the start, and run unless only an answer is requested.
-  subroutine work(self, options, model, diagnostics, reported, kept)
+  subroutine work(self, options, model, variable, diagnostics, reported, kept)
     class(dynamic_task_type), intent(in) :: self            !< the dynamic task
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in), target :: model           !< the model
+    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
@@ -80,7 +82,7 @@ contains
       return
     end if
     if (is_all_driven(model)) then
-      call work_driven(self%program_name, .true., options, model, diagnostics, reported, kept)
+      call work_driven(self%program_name, .true., options, model, variable, diagnostics, reported, kept)
       return
     end if
     reported = .false.

@@ -6,6 +6,7 @@ module mech9_kinematic_task
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
+  use mech9_variable_model, only: variable_model_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -55,23 +56,25 @@ contains
   end subroutine assemble
 
   !> Make the plan, assemble the mechanism, and run unless only an answer is requested.
-  subroutine work(self, options, model, diagnostics, reported, kept)
+  subroutine work(self, options, model, variable, diagnostics, reported, kept)
     class(kinematic_task_type), intent(in) :: self          !< the kinematic task
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in), target :: model           !< the model
+    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
 
-    call work_driven(self%program_name, .false., options, model, diagnostics, reported, kept)
+    call work_driven(self%program_name, .false., options, model, variable, diagnostics, reported, kept)
   end subroutine work
 
   !> The work on a mechanism whose independent coordinates are all driven.
-  subroutine work_driven(program_name, with_masses, options, model, diagnostics, reported, kept)
+  subroutine work_driven(program_name, with_masses, options, model, variable, diagnostics, reported, kept)
     character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     logical, intent(in) :: with_masses                      !< bodies count, and energies are recorded
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in), target :: model               !< the model
+    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
@@ -97,22 +100,23 @@ contains
                        requested_by_results(model%mechanism, model%request%output, pictures%any_wanted()), start, &
                        diagnostics)
       if (options%has('range')) call print_ranges(output_unit, model, plan, start)
-      if (options%has('check')) call check_motion(model, plan, start, err)
+      if (options%has('check')) call check_motion(model, variable, plan, start, err)
       if (options%has('cam') .and. .not. allocated(err)) &
         call work_on_cams(program_name, options, model, plan, start, diagnostics, reported, err)
       if (allocated(err)) call diagnostics%add_error(err)
       return
     end if
     call new_driven_simulation(model, plan, start, simulation, pictures%any_wanted(), with_masses)
-    call carry_out(program_name, options, pictures, model, plan, simulation, diagnostics, reported, kept)
+    call carry_out(program_name, options, pictures, model, variable, plan, simulation, diagnostics, reported, kept)
   end subroutine work_driven
 
   !> Fail in a check where a run would fail: at a start from which the motion cannot begin, or at drives without values
   !> at the end of the time.
-  subroutine check_motion(model, plan, start, err)
+  subroutine check_motion(model, variable, plan, start, err)
     type(model_type), intent(in), target :: model           !< the model
-    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
-    type(state_type), intent(in) :: start               !< assembled position
+    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    type(plan_type), intent(in) :: plan                     !< the plan of the mechanism
+    type(state_type), intent(in) :: start                   !< assembled position
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(driven_simulation_type), target :: simulation
     type(row_source_type) :: source
@@ -121,7 +125,8 @@ contains
 
     call new_driven_simulation(model, plan, start, simulation)
     call new_row_source('mech9k', simulation, source)
-    call source%begin_quantities(err)
+    if (model%request%output%sensitivities) call source%add_sensitivities(variable, simulation%plan, err)
+    if (.not. allocated(err)) call source%begin_quantities(err)
     if (allocated(err)) return
     allocate (row(source%columns%width()))
     call source%row_at(model%request%time%start, row, err)
@@ -129,11 +134,12 @@ contains
   end subroutine check_motion
 
   !> The run itself and its report.
-  subroutine carry_out(program_name, options, pictures, model, plan, simulation, diagnostics, reported, kept)
+  subroutine carry_out(program_name, options, pictures, model, variable, plan, simulation, diagnostics, reported, kept)
     character(len=*), intent(in) :: program_name                        !< mech9k or mech9d
     type(command_line_type), intent(in) :: options                      !< the command line
     type(picture_requests_type), intent(in) :: pictures                 !< the pictures of the mechanism that are requested
     type(model_type), intent(in), target :: model                           !< the model
+    class(variable_model_type), intent(inout) :: variable               !< the model as a function of its parameters
     type(plan_type), intent(in) :: plan                                 !< the plan of the mechanism
     type(driven_simulation_type), intent(inout), target :: simulation   !< to be started
     type(diagnostics_type), intent(inout) :: diagnostics                !< gets what is wrong
@@ -148,6 +154,12 @@ contains
 
     call new_row_source(program_name, simulation, source)
     call source%forces%judge(model, plan, simulation%assembled)
+    reported = .false.
+    if (model%request%output%sensitivities) call source%add_sensitivities(variable, simulation%plan, err)
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+      return
+    end if
     call begin_run(options, pictures, model, plan, simulation%requested, source, results, diagnostics, ready)
     reported = ready .and. options%has('report')
     if (.not. ready) return

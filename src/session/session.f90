@@ -12,6 +12,7 @@ module mech9_session
   use mech9_parser, only: read_document
   use mech9_setting, only: apply_setting
   use mech9_drive_reader, only: files_of_groups
+  use mech9_varied_document, only: varied_document_type, new_varied_document
   use mech9_reader, only: read_structure_only, read_model
   use mech9_varied_document, only: varied_document_type, new_varied_document
   use mech9_data_help, only: write_data_help
@@ -88,7 +89,7 @@ contains
     type(structure_type) :: structure
     type(partition_type) :: partition
     type(model_type), target :: model
-    type(varied_document_type) :: varied
+    type(varied_document_type) :: variable
     type(string_type), allocatable :: settings(:), inputs(:)
     type(error_type), allocatable :: err
     logical :: legible, reported
@@ -127,11 +128,12 @@ contains
         call refuse_overwriting(options, inputs, err, model%request%output)
         reported = allocated(err)
         if (allocated(err)) call diagnostics%add_error(err)
+        if (options%has('study') .or. model%request%output%sensitivities) &
+          call new_varied_document(document, diagnostics%sources, task%needs_drives, variable)
         if (.not. allocated(err) .and. options%has('study')) then
-          call new_varied_document(document, diagnostics%sources, task%needs_drives, varied)
-          call work_on_study(task%program_name, options, varied, model, diagnostics)
+          call work_on_study(task%program_name, options, variable, model, diagnostics)
         else if (.not. allocated(err)) then
-          call task%work(options, model, diagnostics, reported, kept)
+          call task%work(options, model, variable, diagnostics, reported, kept)
         end if
       else if (legible .and. task%needs_drives) then
         call judge_choice_of(document, diagnostics, choice)

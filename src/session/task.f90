@@ -6,6 +6,7 @@ module mech9_task
   use mech9_diagnostics, only: diagnostics_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_model, only: model_type
+  use mech9_variable_model, only: variable_model_type
   use mech9_result_units, only: unit_of
   use mech9_masks, only: numbers_of
   use mech9_film, only: film_type, new_film
@@ -55,11 +56,12 @@ module mech9_task
     end subroutine assemble_interface
 
     !> Carry out the options. Errors are added to `diagnostics`, which knows the places in the data file.
-    subroutine work_interface(self, options, model, diagnostics, reported, kept)
-      import :: task_type, command_line_type, model_type, diagnostics_type, kept_rows_type
+    subroutine work_interface(self, options, model, variable, diagnostics, reported, kept)
+      import :: task_type, command_line_type, model_type, variable_model_type, diagnostics_type, kept_rows_type
       class(task_type), intent(in) :: self                    !< the task
       type(command_line_type), intent(in) :: options          !< the command line
       type(model_type), intent(in), target :: model           !< the model
+      class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
       type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
       logical, intent(out) :: reported                        !< a report was asked for, and it is written: there was a run
       type(kept_rows_type), intent(inout), optional :: kept   !< the rows of a run, for who looks at them after it

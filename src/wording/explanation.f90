@@ -21,6 +21,7 @@ module mech9_explanation
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_coupling_words, only: explain_coupling
   use mech9_choice_words, only: explain_choice, longest_list
+  use mech9_sensitivity_words, only: explain_sensitivity
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
   implicit none
   private
@@ -58,6 +59,7 @@ contains
     call explain_equilibrium(failure, text)
     call explain_no_plane(failure, text)
     call explain_coupling(failure, text)
+    call explain_sensitivity(failure, text)
   end subroutine explain_failure
 
   !> Chains that do not close or do not move, and independent coordinates that do not determine the others.

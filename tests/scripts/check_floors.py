@@ -13,8 +13,9 @@ from mech9_cases import TREE, Checks, text_of
 FLOORS = ['base', 'system', 'numerics', 'spatial', 'structure', 'model/couplings', 'model/laws', 'model/request', 'model',
           'sampling', 'user', 'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
           'ode', 'dynamics', 'dynamics/planning', 'dynamics/variations', 'simulation', 'analyses/reactions', 'analyses/equilibrium',
-          'analyses', 'wording', 'input/document', 'input', 'output', 'pictures/plots', 'pictures/scene', 'pictures/films',
-          'terminal', 'session/command', 'session/words', 'facade', 'session/results', 'session/study', 'session', 'dialogue/drafts',
+          'analyses/sensitivity', 'analyses', 'wording', 'input/document', 'input', 'output', 'pictures/plots', 'pictures/scene',
+          'pictures/films', 'terminal', 'session/command', 'session/words', 'facade', 'session/results', 'session/study', 'session',
+          'dialogue/drafts',
           'interchange/xml', 'interchange', 'dialogue',
           'programs']
 MOST_FILES = 25            # in one folder: more are hard to find one's way in

@@ -20,7 +20,7 @@ module mech9_tolerances
     trusted_crossing_rates, first_move, doubtful_conditioning, worthwhile_improvement, regular_conditioning, &
     refused_conditioning, trusted_closing, trusted_between_steps, steepest_slope, negligible_inertia, &
     doubtful_margin, short_way, third_derivative_step, locked, locked_together, balanced, balanced_singular, &
-    regular_balance
+    regular_balance, opened_by_parameter
 
   ! Ranks and singular positions: judged alike by --check, driven motion and dynamics.
 
@@ -246,6 +246,9 @@ module mech9_tolerances
   !> Distance in time of two evaluations whose difference gives third derivatives, over the time that the motion takes for
   !> 1 rad: the square of this and round-off over it are both the error, about 1e-10.
   real(wp), parameter :: third_derivative_step = 1.0e-5_wp
+  !> A chain that a parameter opens does so by a part of the order of 1 of the largest shift of its links; one that stays closed does
+  !> so to round-off times the conditioning of its block, which is 1e-7 or better.
+  real(wp), parameter :: opened_by_parameter = 1.0e-7_wp
 
 contains
 

@@ -43,6 +43,7 @@ module mech9_request
     logical :: reactions = .false.               !< the wrenches of pairs have columns
     integer, allocatable :: reaction_pairs(:)    !< coordinates of these pairs; none listed: all
     logical :: drive_forces = .false.            !< the forces of drives have columns
+    logical :: sensitivities = .false.           !< the derivatives by all parameters have columns
     logical :: force_arrows = .false.            !< pictures show the forces in pairs as arrows
   contains
     procedure :: recorded

@@ -2,10 +2,13 @@
 module mech9_row_source
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_text, only: string_type
   use mech9_system, only: interrupted
+  use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_simulation, only: simulation_type, interruption_type
+  use mech9_sensitivity, only: sensitivity_type, new_sensitivity, find_sensitivities
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_film, only: film_type
   use mech9_force_record, only: force_record_type
@@ -19,12 +22,14 @@ module mech9_row_source
     class(simulation_type), pointer, private :: simulation => null()   !< not owned
     type(columns_type) :: columns
     type(force_record_type) :: forces      !< computes the forces that are recorded
+    type(sensitivity_type), allocatable :: sensitivity   !< finds derivatives by parameters, where it is allocated
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
     type(quantity_record_type) :: quantities   !< of the whole run
     real(wp), allocatable, private :: between(:)   !< a row between two outputs
   contains
     procedure :: begin_quantities
     procedure :: row_at
+    procedure :: add_sensitivities
   end type row_source_type
 
   !> A motion stops where the user interrupts the program.
@@ -56,6 +61,23 @@ contains
       call source%columns%append('conditioning', '1', 'least singular value of the worst chains')
     if (simulation%with_error) call source%columns%append('error', 'rad,m', 'estimated error of the coordinates and points')
   end subroutine new_row_source
+
+  !> Add the derivatives of the motion by the parameters of the model, after all other columns. Fails where they do not exist.
+  subroutine add_sensitivities(self, variable, plan, err)
+    class(row_source_type), intent(inout) :: self           !< the row source
+    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    type(plan_type), intent(in) :: plan                     !< the plan that the simulation executes
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(string_type) :: names(size(self%simulation%model%parameters))
+    integer :: i
+
+    do i = 1, size(names)
+      names(i)%text = self%simulation%model%parameters(i)%name
+    end do
+    allocate (self%sensitivity)
+    call new_sensitivity(variable, self%simulation%model, plan, self%columns%derivatives, self%sensitivity, err)
+    if (.not. allocated(err)) call self%columns%append_sensitivities(names)
+  end subroutine add_sensitivities
 
   !> Find the columns of the quantities that the model requests. Fails with exit_data where one is not recorded.
   subroutine begin_quantities(self, err)
@@ -142,6 +164,11 @@ contains
       end if
       if (simulation%with_error) row(next + 1) = simulation%error
     end associate
+    if (allocated(self%sensitivity)) then
+      call find_sensitivities(self%simulation%model, state, self%sensitivity, err)
+      if (allocated(err)) return
+      call self%columns%fill_sensitivities(self%sensitivity, row)
+    end if
   end subroutine fill_row
 
   !> Show the film the present position and its row.

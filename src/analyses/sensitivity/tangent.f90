@@ -1,0 +1,302 @@
+!> The derivatives of all constants of a mechanism by one of its parameters.
+!>
+!> The constants are smooth functions of one number that the readers of the data file evaluate. Their derivatives come from
+!> central differences of eighth order over models with shifted values, with a step at which truncation is below round-off. All
+!> that follows from the constants (positions, rates, accelerations) is differentiated exactly elsewhere.
+module mech9_tangent
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_data
+  use mech9_failure, only: failure_no_neighbours, failure_unknown_derivative
+  use mech9_rotation, only: cross
+  use mech9_pose, only: pose_type
+  use mech9_parameter, only: parameter_type
+  use mech9_model, only: model_type
+  use mech9_variable_model, only: variable_model_type
+  use mech9_plan, only: plan_type
+  use mech9_mechanism_constants, only: gather_constants, align_axes, constants_of_coordinate, constants_of_pose
+  implicit none
+  private
+  public :: tangent_type, law_tangent_type, find_tangent
+
+  !> Derivatives of the numbers of a law or a coupling.
+  type :: law_tangent_type
+    logical :: varies = .false.           !< some of them are not zero
+    real(wp), allocatable :: change(:)    !< of each number
+  end type law_tangent_type
+
+  !> Derivatives by one parameter, per unit of the parameter in the data file. Those of a pose are a twist: the rotation, then the
+  !> shift of the point that coincides with the origin of the frame in which the pose is given.
+  type :: tangent_type
+    real(wp), allocatable :: before(:, :)      !< (6,M) of the pose of each coordinate's axis in the parent frame [rad, m]
+    logical, allocatable :: moves(:)           !< (M) this twist is not zero
+    real(wp), allocatable :: offset(:)         !< (M) of the offset of each coordinate [rad, m]
+    real(wp), allocatable :: slide(:)          !< (M) of the advance per unit of the coordinate [m/rad]
+    real(wp), allocatable :: in_target(:, :)   !< (6,M) of the pose of the closing frame of a coordinate's step in the target frame
+    real(wp), allocatable :: link(:, :)        !< (6,N) of each link's own system in its first frame
+    real(wp), allocatable :: points(:, :)      !< (3,P) of the positions of points in their links [m]
+    type(law_tangent_type), allocatable :: drives(:)      !< in the order of the drives
+    type(law_tangent_type), allocatable :: couplings(:)   !< in the order of the couplings
+  end type tangent_type
+
+  integer, parameter :: half_width = 4
+  !> Weights of f(x + i h) - f(x - i h) over h in the central difference of eighth order, and of sixth order.
+  real(wp), parameter :: eighth(half_width) = [4.0_wp/5.0_wp, -1.0_wp/5.0_wp, 4.0_wp/105.0_wp, -1.0_wp/280.0_wp]
+  real(wp), parameter :: sixth(half_width) = [3.0_wp/4.0_wp, -3.0_wp/20.0_wp, 1.0_wp/60.0_wp, 0.0_wp]
+  !> The step is a power of two, near this part of the length over which the constants change: truncation of a function such as
+  !> 1/x is then near 1e-15, and differences lose two digits of the sixteen that numbers have.
+  real(wp), parameter :: step_part = 2.0_wp**(-7)
+  !> Factors of this length that are tried one after the other, until the two orders agree to `agreement` of the largest derivative.
+  real(wp), parameter :: factors(7) = [1.0_wp, 2.0_wp**(-4), 2.0_wp**4, 2.0_wp**(-8), 2.0_wp**8, 2.0_wp**(-12), 2.0_wp**(-16)]
+  real(wp), parameter :: agreement = 2.0e-12_wp
+
+contains
+
+  !> The tangent of a model for one of its parameters. Fails where no model exists beside the present one, and where the parameter
+  !> sets numbers whose derivatives are not known.
+  subroutine find_tangent(variable, model, plan, number, tangent, err)
+    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    type(model_type), intent(in) :: model                   !< the present model
+    type(plan_type), intent(in) :: plan                     !< its plan
+    integer, intent(in) :: number                           !< of the parameter
+    type(tangent_type), intent(out) :: tangent              !< the derivatives
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp), allocatable :: change(:)
+
+    if (.not. knows_derivatives(model, model%parameters(number))) then
+      call raise(err, exit_data, failure_unknown_derivative)
+    else
+      call differentiate(variable, model, plan, number, change, err)
+    end if
+    if (allocated(err)) then
+      err%failure%name = model%parameters(number)%name
+      err%place = model%parameters(number)%place
+      return
+    end if
+    call read_change(model, plan, change, tangent)
+  end subroutine find_tangent
+
+  !> Whether the numbers that a parameter may set have known derivatives.
+  pure logical function knows_derivatives(model, parameter) result(known)
+    type(model_type), intent(in) :: model             !< the model
+    type(parameter_type), intent(in) :: parameter     !< the parameter
+    real(wp), allocatable :: values(:)
+    logical :: is_screw
+    integer :: i
+
+    known = .not. sets_any(parameter, [character(len=9) :: 'time'])
+    if (sets_any(parameter, [character(len=9) :: 'drive', 'user'])) then
+      do i = 1, size(model%problem%drives)
+        call model%problem%drives(i)%drive%constants(values)
+        known = known .and. allocated(values)
+      end do
+    end if
+    if (sets_any(parameter, [character(len=9) :: 'coupling', 'initial', 'user']) .and. allocated(model%mechanism%couplings)) then
+      do i = 1, size(model%mechanism%couplings)
+        call model%mechanism%couplings(i)%coupling%constants(values)
+        known = known .and. allocated(values)
+      end do
+    end if
+    if (sets_any(parameter, [character(len=9) :: 'user'])) then
+      do i = 1, size(model%mechanism%pairs)
+        known = known .and. model%mechanism%pairs(i)%pair%user_calls() == 0
+      end do
+    end if
+  end function knows_derivatives
+
+  !> Whether a parameter sets a number of any of these groups.
+  pure logical function sets_any(parameter, groups) result(sets)
+    type(parameter_type), intent(in) :: parameter   !< the parameter
+    character(len=9), intent(in) :: groups(:)       !< names of groups of the data file
+    integer :: i
+
+    sets = .false.
+    do i = 1, size(parameter%targets)
+      sets = sets .or. any(groups == parameter%targets(i)%group)
+    end do
+  end function sets_any
+
+  !> The derivatives of all constants by one parameter.
+  subroutine differentiate(variable, model, plan, number, change, err)
+    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    type(model_type), intent(in) :: model                   !< the present model
+    type(plan_type), intent(in) :: plan                     !< its plan
+    integer, intent(in) :: number                           !< of the parameter
+    real(wp), allocatable, intent(out) :: change(:)         !< the derivatives
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp), allocatable :: present(:), trial(:)
+    real(wp) :: scale, error, best
+    integer :: i
+
+    call gather_constants(model, plan%length, plan%origin, present)
+    scale = abs(model%parameters(number)%value)
+    if (.not. scale > 0.0_wp) scale = 1.0_wp
+    best = huge(best)
+    do i = 1, size(factors)
+      call try_step(variable, model, plan, number, step_part*2.0_wp**exponent(scale)*factors(i), present, trial, error)
+      if (error < best) then
+        best = error
+        change = trial
+      end if
+      if (best <= agreement) exit
+    end do
+    call restore(variable, model)
+    if (.not. allocated(change)) call raise(err, exit_data, failure_no_neighbours)
+  end subroutine differentiate
+
+  !> Let the model as a function keep the present values again.
+  subroutine restore(variable, model)
+    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    type(model_type), intent(in) :: model                   !< the present model
+    type(model_type) :: again
+    type(error_type), allocatable :: err
+
+    call variable%at(values_of(model), again, err)
+  end subroutine restore
+
+  !> The present values of all parameters.
+  pure function values_of(model) result(values)
+    type(model_type), intent(in) :: model   !< the present model
+    real(wp) :: values(size(model%parameters))
+    integer :: i
+
+    values = [(model%parameters(i)%value, i=1, size(values))]
+  end function values_of
+
+  !> The differences at one step, and an estimate of their error: what the two orders differ by, and the round-off of the constants,
+  !> as a part of the largest derivative.
+  subroutine try_step(variable, model, plan, number, h, present, change, error)
+    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    type(model_type), intent(in) :: model                   !< the present model
+    type(plan_type), intent(in) :: plan                     !< its plan
+    integer, intent(in) :: number                           !< of the parameter
+    real(wp), intent(in) :: h                               !< the step, in the unit of the parameter
+    real(wp), intent(in) :: present(:)                      !< the present constants
+    real(wp), allocatable, intent(out) :: change(:)         !< their derivatives
+    real(wp), intent(out) :: error                          !< estimated; huge where a model beside the present one does not exist
+    real(wp), allocatable :: above(:), below(:), lower(:), round_off(:)
+    real(wp) :: values(size(model%parameters)), middle
+    integer :: i
+
+    error = huge(error)
+    change = 0.0_wp*present
+    lower = change
+    round_off = change
+    values = values_of(model)
+    middle = values(number)
+    do i = 1, half_width
+      values(number) = middle + i*h
+      call constants_at(variable, model, values, plan, above)
+      values(number) = middle - i*h
+      call constants_at(variable, model, values, plan, below)
+      if (size(above) /= size(present) .or. size(below) /= size(present)) return
+      change = change + eighth(i)*(above - below)
+      lower = lower + sixth(i)*(above - below)
+      where (abs(above - below) > 0.0_wp) round_off = 2.0_wp*epsilon(h)*abs(present)
+    end do
+    if (.not. all(ieee_is_finite(change))) return
+    change = change/h
+    error = maxval(abs(change - lower/h) + round_off/h)
+    if (error > 0.0_wp) error = error/max(maxval(abs(change)), tiny(error))
+  end subroutine try_step
+
+  !> The constants at some values of the parameters; none where there is no such model.
+  subroutine constants_at(variable, present, values, plan, constants)
+    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    type(model_type), intent(in) :: present                 !< the present model
+    real(wp), intent(in) :: values(:)                       !< of all parameters
+    type(plan_type), intent(in) :: plan                     !< the plan of the present model
+    real(wp), allocatable, intent(out) :: constants(:)      !< the constants
+    type(model_type) :: model
+    type(error_type), allocatable :: err
+
+    call variable%at(values, model, err)
+    if (allocated(err)) then
+      allocate (constants(0))
+    else
+      call align_axes(present, model)
+      call gather_constants(model, plan%length, plan%origin, constants)
+    end if
+  end subroutine constants_at
+
+  !> The derivatives of the row of constants as twists and numbers of the parts of the mechanism.
+  subroutine read_change(model, plan, change, tangent)
+    type(model_type), intent(in) :: model         !< the present model
+    type(plan_type), intent(in) :: plan           !< its plan
+    real(wp), intent(in) :: change(:)             !< derivatives of the row
+    type(tangent_type), intent(out) :: tangent    !< the same, by parts
+    integer :: at, i, k, m
+
+    m = plan%n_coordinates
+    allocate (tangent%before(6, m), tangent%in_target(6, m), tangent%link(6, plan%n_links), tangent%offset(m), &
+              tangent%slide(m), source=0.0_wp)
+    do k = 1, m
+      at = constants_of_coordinate*(k - 1)
+      tangent%before(:, k) = twist_of(plan%steps(plan%step_of(k))%before, change(at + 1:at + 12))
+      tangent%offset(k) = change(at + 13)
+      tangent%slide(k) = change(at + 14)
+    end do
+    do i = 1, size(plan%closures)
+      if (plan%closures(i)%coupling > 0) cycle
+      k = plan%steps(plan%closures(i)%closing)%coordinate
+      at = constants_of_coordinate*(k - 1) + 14
+      tangent%in_target(:, k) = twist_of(plan%closures(i)%in_target, change(at + 1:at + 12))
+    end do
+    at = constants_of_coordinate*m
+    do i = 1, plan%n_links
+      tangent%link(:, i) = twist_of(plan%link_in_frame(i), change(at + 1:at + 12))
+      at = at + constants_of_pose
+    end do
+    allocate (tangent%points(3, size(model%mechanism%points)))
+    tangent%points = reshape(change(at + 1:at + size(tangent%points)), shape(tangent%points))
+    at = at + size(tangent%points)
+    tangent%moves = [(any(abs(tangent%before(:, k)) > 0.0_wp), k=1, m)]
+    call read_laws(model, change(at + 1:), tangent)
+  end subroutine read_change
+
+  !> The derivatives of the numbers of drives and couplings.
+  subroutine read_laws(model, change, tangent)
+    type(model_type), intent(in) :: model           !< the present model
+    real(wp), intent(in) :: change(:)               !< the part of the row that belongs to them
+    type(tangent_type), intent(inout) :: tangent    !< gets them
+    real(wp), allocatable :: values(:)
+    integer :: at, i, n
+
+    n = 0
+    if (allocated(model%mechanism%couplings)) n = size(model%mechanism%couplings)
+    allocate (tangent%drives(size(model%problem%drives)), tangent%couplings(n))
+    at = 0
+    do i = 1, size(tangent%drives)
+      call model%problem%drives(i)%drive%constants(values)
+      call take_part(values, change, at, tangent%drives(i))
+    end do
+    do i = 1, n
+      call model%mechanism%couplings(i)%coupling%constants(values)
+      call take_part(values, change, at, tangent%couplings(i))
+    end do
+  end subroutine read_laws
+
+  !> Take the derivatives of the numbers of one law or coupling.
+  pure subroutine take_part(values, change, at, part)
+    real(wp), allocatable, intent(in) :: values(:)   !< its numbers; not allocated where they are not known
+    real(wp), intent(in) :: change(:)                !< derivatives of the numbers of all
+    integer, intent(inout) :: at                     !< how many were taken; grows
+    type(law_tangent_type), intent(out) :: part      !< gets those of this one
+
+    if (.not. allocated(values)) return
+    part%change = change(at + 1:at + size(values))
+    part%varies = any(abs(part%change) > 0.0_wp)
+    at = at + size(values)
+  end subroutine take_part
+
+  !> The twist by which a pose changes, from the derivatives of its numbers.
+  pure function twist_of(pose, change) result(twist)
+    type(pose_type), intent(in) :: pose       !< the pose
+    real(wp), intent(in) :: change(12)        !< derivatives of its rotation, by columns, and of its origin
+    real(wp) :: twist(6), spin(3, 3)
+
+    spin = matmul(reshape(change(:9), [3, 3]), transpose(pose%r))
+    twist(1:3) = 0.5_wp*[spin(3, 2) - spin(2, 3), spin(1, 3) - spin(3, 1), spin(2, 1) - spin(1, 2)]
+    twist(4:6) = change(10:12) - cross(twist(1:3), pose%p)
+  end function twist_of
+end module mech9_tangent

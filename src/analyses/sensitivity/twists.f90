@@ -1,0 +1,106 @@
+!> A twist is a motion of a body: its rotation, and the shift of its point at the origin of frame 0. It has derivatives in time.
+module mech9_twists
+  use mech9_kinds, only: wp
+  use mech9_rotation, only: turn, cross
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_frame_variation, only: third_derivatives_type
+  implicit none
+  private
+  public :: bracket, carried, frame_twists_type, new_frame_twists, find_frame_twists, shift_at
+
+  !> The twists of a motion: velocities and accelerations of all frames, and what each step gives per unit rate with its first two
+  !> derivatives in time. Rotation first, then shift, in the axes of frame 0.
+  type :: frame_twists_type
+    real(wp), allocatable :: velocity(:, :)      !< (6,0:M) of each frame [rad/s, m/s]
+    real(wp), allocatable :: acceleration(:, :)  !< (6,0:M) derivative of `velocity` in time [rad/s^2, m/s^2]
+    real(wp), allocatable :: step(:, :, :)       !< (6,0:2,M) of each step per unit rate, and its derivatives in time
+  end type frame_twists_type
+
+contains
+
+  !> Twists of frames that are all at rest.
+  pure function new_frame_twists(m) result(twists)
+    integer, intent(in) :: m   !< number of steps
+    type(frame_twists_type) :: twists
+
+    allocate (twists%velocity(6, 0:m), twists%acceleration(6, 0:m), twists%step(6, 0:2, m), source=0.0_wp)
+  end function new_frame_twists
+
+  !> The derivative in time of a twist b that is fixed in a body which moves with twist a.
+  pure function bracket(a, b) result(c)
+    real(wp), intent(in) :: a(6)   !< twist of the body
+    real(wp), intent(in) :: b(6)   !< the fixed twist
+    real(wp) :: c(6)
+
+    c(1:3) = cross(a(1:3), b(1:3))
+    c(4:6) = cross(a(1:3), b(4:6)) + cross(a(4:6), b(1:3))
+  end function bracket
+
+  !> A twist that is constant in a frame, seen in frame 0, and its first two derivatives in time.
+  pure function carried(state, twists, f, twist) result(series)
+    type(state_type), intent(in) :: state           !< with the poses of the frames
+    type(frame_twists_type), intent(in) :: twists   !< of the frames
+    integer, intent(in) :: f                        !< the frame
+    real(wp), intent(in) :: twist(6)                !< in the frame [rad, m]
+    real(wp) :: series(6, 0:2)
+
+    series(1:3, 0) = turn(state%r(:, :, f), twist(1:3))
+    series(4:6, 0) = turn(state%r(:, :, f), twist(4:6)) + cross(state%p(:, f), series(1:3, 0))
+    series(:, 1) = bracket(twists%velocity(:, f), series(:, 0))
+    series(:, 2) = bracket(twists%acceleration(:, f), series(:, 0)) + bracket(twists%velocity(:, f), series(:, 1))
+  end function carried
+
+  !> The shift of a point by a twist.
+  pure function shift_at(twist, place) result(shift)
+    real(wp), intent(in) :: twist(6)   !< rotation, and shift at the origin
+    real(wp), intent(in) :: place(3)   !< the point, from the origin [m]
+    real(wp) :: shift(3)
+
+    shift = twist(4:6) + cross(twist(1:3), place)
+  end function shift_at
+
+  !> The twists of a motion whose frames have their poses, velocities and accelerations.
+  pure subroutine find_frame_twists(plan, state, third, first, last, twists)
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism, in space
+    type(state_type), intent(in) :: state               !< the motion
+    type(third_derivatives_type), intent(in) :: third   !< of the pairs without a fixed axis
+    integer, intent(in) :: first                        !< frames from this one
+    integer, intent(in) :: last                         !< to this one
+    type(frame_twists_type), intent(inout) :: twists    !< gets the twists
+    real(wp) :: own(6, 2)
+    integer :: s, i, k
+
+    do s = first, last
+      i = plan%steps(s)%parent
+      k = plan%steps(s)%coordinate
+      associate (p => state%p(:, s), v => state%v(:, s), omega => state%omega(:, s), alpha => state%alpha(:, s), &
+                 axis => twists%step, frame => twists%velocity(:, i))
+        twists%velocity(:, s) = [omega, v - cross(omega, p)]
+        twists%acceleration(:, s) = [alpha, state%a(:, s) - cross(alpha, p) - cross(omega, v)]
+        axis(:, 0, s) = [state%axis_w(:, s), state%axis_v(:, s) - cross(state%axis_w(:, s), p)]
+        axis(:, 1, s) = bracket(frame, axis(:, 0, s))
+        axis(:, 2, s) = bracket(twists%acceleration(:, i), axis(:, 0, s)) + bracket(frame, axis(:, 1, s))
+        if (plan%steps(s)%is_screw) cycle
+        call own_derivatives(state, third, s, own)
+        axis(:, 2, s) = axis(:, 2, s) + 2.0_wp*state%dq(k)*bracket(frame, own(:, 1)) + state%ddq(k)*own(:, 1) &
+                     + state%dq(k)**2*own(:, 2)
+        axis(:, 1, s) = axis(:, 1, s) + state%dq(k)*own(:, 1)
+      end associate
+    end do
+  end subroutine find_frame_twists
+
+  !> First and second derivative in its coordinate of the twist of a step without a fixed axis, with the parent frame fixed.
+  pure subroutine own_derivatives(state, third, s, own)
+    type(state_type), intent(in) :: state               !< with the derivatives of the pair
+    type(third_derivatives_type), intent(in) :: third   !< of the pair
+    integer, intent(in) :: s                            !< the step
+    real(wp), intent(out) :: own(6, 2)                  !< the derivatives
+
+    associate (p => state%p(:, s), w => state%axis_w(:, s), v => state%axis_v(:, s), w_rate => state%axis_w_rate(:, s), &
+               v_rate => state%axis_v_rate(:, s))
+      own(:, 1) = [w_rate, v_rate - cross(w_rate, p) - cross(w, v)]
+      own(:, 2) = [third%w(:, s), third%v(:, s) - cross(third%w(:, s), p) - 2.0_wp*cross(w_rate, v) - cross(w, v_rate)]
+    end associate
+  end subroutine own_derivatives
+end module mech9_twists

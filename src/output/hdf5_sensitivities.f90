@@ -1,0 +1,70 @@
+!> Derivatives by parameters in an HDF5 file: a group of data sets beside those of the motion.
+module mech9_hdf5_sensitivities
+  use mech9_columns, only: columns_type
+  use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_hdf5_series, only: hdf5_series_type
+  implicit none
+  private
+  public :: quantities_of_sensitivity, add_sensitivities, put_parameters
+
+  !> Number of data sets: coordinates and points with their derivatives in time.
+  integer, parameter :: quantities_of_sensitivity = 6
+
+contains
+
+  !> Add the derivatives of coordinates and points. The parameter is the last dimension.
+  subroutine add_sensitivities(series, columns)
+    type(hdf5_series_type), intent(inout) :: series   !< the quantities of the file
+    type(columns_type), intent(in) :: columns         !< columns of the rows to come
+    character(len=3), parameter :: names(0:2) = ['q  ', 'dq ', 'ddq']
+    character(len=12), parameter :: of_points(0:2) = ['position    ', 'velocity    ', 'acceleration']
+    integer :: order, n, points, each, before, i, k, p
+
+    n = size(columns%coordinates)
+    each = columns%motion - 1
+    points = each/(columns%derivatives + 1) - n
+    do order = 0, columns%derivatives
+      before = columns%count - columns%sensitivities + order*n
+      call series%add('sensitivity/'//trim(names(order)), &
+                      [((before + (p - 1)*each + i, p=1, size(columns%parameters)), i=1, n)], [size(columns%parameters), n], &
+                      'derivatives of '//trim(names(order))//' by the parameters', unit_of_all(columns, order*n + 2, n), &
+                      ['/time      ', '/coordinate', '/parameter '])
+    end do
+    if (points == 0) return
+    do order = 0, columns%derivatives
+      before = columns%count - columns%sensitivities + (columns%derivatives + 1)*n + 3*order
+      call series%add('sensitivity/'//trim(of_points(order)), &
+                      [(((before + (p - 1)*each + 3*(columns%derivatives + 1)*(i - 1) + k, p=1, size(columns%parameters)), &
+                         k=1, 3), i=1, points/3)], [size(columns%parameters), 3, points/3], &
+                      'derivatives of '//trim(of_points(order))//' by the parameters', &
+                      unit_of_all(columns, (columns%derivatives + 1)*n + 3*order + 2, 1), &
+                      ['/time     ', '/point    ', '/axis     ', '/parameter'])
+    end do
+  end subroutine add_sensitivities
+
+  !> The unit of some columns, per unit of a parameter in the data file.
+  pure function unit_of_all(columns, first, n) result(text)
+    type(columns_type), intent(in) :: columns   !< the columns
+    integer, intent(in) :: first                !< the first of them
+    integer, intent(in) :: n                    !< their number
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = first, first + n - 1
+      if (index(' '//text//' ', ' '//columns%units(i)%text//' ') > 0) cycle
+      if (i > first) text = text//' or '
+      text = text//columns%units(i)%text
+    end do
+    text = text//' per unit of the parameter in the data file'
+  end function unit_of_all
+
+  !> Write the names of the parameters.
+  subroutine put_parameters(file, columns)
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    type(columns_type), intent(in) :: columns     !< with the names of the parameters
+
+    call file%put('parameter', columns%parameters, 'name of the parameter')
+    call file%make_scale('parameter')
+  end subroutine put_parameters
+end module mech9_hdf5_sensitivities

@@ -1,0 +1,33 @@
+!> Sentences about derivatives by parameters that do not exist.
+module mech9_sensitivity_words
+  use mech9_text, only: to_text
+  use mech9_failure, only: failure_type, failure_no_neighbours, failure_unknown_derivative, failure_singular_sensitivity, &
+    failure_opening_parameter
+  use mech9_block_names, only: chain_names
+  implicit none
+  private
+  public :: explain_sensitivity
+
+contains
+
+  !> The sentence about a failure of sensitivities. `text` stays as it is for any other kind.
+  pure subroutine explain_sensitivity(failure, text)
+    type(failure_type), intent(in) :: failure             !< any kind
+    character(len=:), allocatable, intent(inout) :: text  !< the message
+
+    select case (failure%kind)
+    case (failure_no_neighbours)
+      text = 'derivatives by the parameter '''//failure%name//''' do not exist: its value cannot be changed a little in both '// &
+             'directions, because the data file would be wrong. Give a value inside the range that is allowed'
+    case (failure_unknown_derivative)
+      text = 'derivatives by the parameter '''//failure%name//''' are not computed: it sets a time, or a number of a law, a '// &
+             'coupling or a procedure whose derivatives are not known. Leave out the parameter, or sensitivities'
+    case (failure_singular_sensitivity)
+      text = 'derivatives by the parameters do not exist at t = '//to_text(failure%t, 10)//' s, in a singular position of '// &
+             chain_names(failure%chains)//'. Choose times that leave it out, or leave out sensitivities'
+    case (failure_opening_parameter)
+      text = 'derivatives by the parameter '''//failure%name//''' do not exist: '//chain_names(failure%chains)//' would not '// &
+             'stay closed if it changed alone. Let the parameter set the other dimensions too that must change with it'
+    end select
+  end subroutine explain_sensitivity
+end module mech9_sensitivity_words
