@@ -14,7 +14,9 @@ module mech9_design
     character(len=:), allocatable :: text    !< the groups so far
   contains
     procedure :: independent
-    procedure :: pair
+    procedure, private :: simple_pair
+    procedure, private :: compound_joint
+    generic :: pair => simple_pair, compound_joint
     procedure :: coupling
     procedure :: initial
     procedure :: drive
@@ -39,8 +41,8 @@ contains
 
   !> Add a pair. Points and directions are given in the system of the link that they belong to; those of the moving link are the
   !> same numbers as in the reference link unless given.
-  pure subroutine pair(self, coordinate, kind, links, point, axis, moving_point, moving_axis, zero, moving_zero, pitch, file, &
-                       orientation)
+  pure subroutine simple_pair(self, coordinate, kind, links, point, axis, moving_point, moving_axis, zero, moving_zero, pitch, &
+                              file, orientation)
     class(design_type), intent(inout) :: self             !< the design
     integer, intent(in) :: coordinate                     !< number of the pair's coordinate
     character(len=*), intent(in) :: kind                  !< 'revolute', 'prismatic', 'helical', 'path' or 'user'
@@ -67,7 +69,32 @@ contains
     if (present(file)) names = names//', file='//quoted(file)
     if (present(orientation)) names = names//', orientation='//quoted(orientation)
     call self%add('pair', names)
-  end subroutine pair
+  end subroutine simple_pair
+
+  !> Add a joint with several freedoms, as a pair with several coordinates. Points and directions as of other pairs.
+  pure subroutine compound_joint(self, coordinates, kind, links, point, axis, moving_point, moving_axis, zero, moving_zero)
+    class(design_type), intent(inout) :: self             !< the design
+    integer, intent(in) :: coordinates(:)                 !< numbers of its coordinates, in the order of docs/how-to-model.md
+    character(len=*), intent(in) :: kind                  !< 'spherical', 'universal', 'cylindrical', 'planar' or 'free'
+    integer, intent(in) :: links(2)                       !< reference link and moving link; 1 is the frame
+    real(wp), intent(in), optional :: point(3)            !< centre, or a point on the axis, in the reference link [m]
+    real(wp), intent(in), optional :: axis(3)             !< direction of the axis in the reference link
+    real(wp), intent(in), optional :: moving_point(3)     !< the same point in the moving link [m]
+    real(wp), intent(in), optional :: moving_axis(3)      !< the same direction in the moving link; of a universal joint its second
+                                                          !< axis
+    real(wp), intent(in), optional :: zero(3)             !< direction from which angles count, in the reference link
+    real(wp), intent(in), optional :: moving_zero(3)      !< direction in the moving link that lies on `zero` at angle 0
+    character(len=:), allocatable :: names
+
+    names = 'coordinates='//integers(coordinates)//', kind='//quoted(kind)//', links='//integers(links)
+    if (present(point)) names = names//', point='//reals(point)
+    if (present(axis)) names = names//', axis='//reals(axis)
+    if (present(moving_point)) names = names//', moving_point='//reals(moving_point)
+    if (present(moving_axis)) names = names//', moving_axis='//reals(moving_axis)
+    if (present(zero)) names = names//', zero='//reals(zero)
+    if (present(moving_zero)) names = names//', moving_zero='//reals(moving_zero)
+    call self%add('pair', names)
+  end subroutine compound_joint
 
   !> Couple coordinates, as gears, racks, belts and screws do. Which of the numbers are needed follows from the kind.
   pure subroutine coupling(self, kind, coordinates, ratio, radius, radii, crossed, pitch, phase, coefficients, constant, file)

@@ -10,6 +10,7 @@ program test_design
   call check_everything_else()
   call check_path()
   call check_couplings()
+  call check_compound_joint()
   call test%finish()
 
 contains
@@ -116,6 +117,33 @@ contains
     open (newunit=unit, file='wire.dat', status='old')
     close (unit, status='delete')
   end subroutine check_path
+
+  !> A shaft that drives another one at an angle beta by a universal joint: tan(q4) = cos(beta) tan(q1), with q1 and q4 counted from
+  !> the position in which the fork of the first shaft stands across the plane of both.
+  subroutine check_compound_joint()
+    real(wp), parameter :: beta = 0.5_wp, angle = 0.7_wp, ahead(3) = [cos(beta), sin(beta), 0.0_wp], &
+      across(3) = [-sin(beta), cos(beta), 0.0_wp], x(3) = [1.0_wp, 0.0_wp, 0.0_wp], y(3) = [0.0_wp, 1.0_wp, 0.0_wp], &
+      z(3) = [0.0_wp, 0.0_wp, 1.0_wp]
+    type(design_type) :: design
+    type(mechanism_type) :: mechanism
+    type(motion_type) :: motion
+    type(error_type), allocatable :: err
+
+    call design%independent([1])
+    call design%pair(1, 'revolute', [1, 2], axis=x, zero=y)
+    call design%pair(4, 'revolute', [1, 3], axis=ahead, zero=across)
+    call design%pair([2, 3], 'universal', [2, 3], axis=z, moving_axis=across, point=[0.0_wp, 0.0_wp, 0.0_wp])
+    call design%drive(1, [angle])
+    call design%finish(mechanism, err)
+    call test%no_error(err, 'a design with a universal joint is accepted')
+    call motion%start_kinematics(mechanism, err)
+    call test%no_error(err, 'a motion with a universal joint starts')
+    call test%near(motion%q(4), atan2(cos(beta)*sin(angle), cos(angle)), 1e-14_wp, 'the shaft turns by the law of the joint')
+    call motion%close()
+    call design%pair([5, 6], 'spherical', [1, 3], moving_point=z)
+    call design%finish(mechanism, err)
+    call test%has_error(err, exit_data, 'a joint with too few coordinates is refused')
+  end subroutine check_compound_joint
 
   subroutine check_refusals()
     type(design_type) :: design, empty
