@@ -32,7 +32,7 @@ contains
     if (has_name(group, 'moving_axis')) zero = default_zero(get_reals(group, 'moving_axis'))
     axis = real_or(group, 'moving_axis', axis)
     zero = real_or(group, 'moving_zero', zero)
-    if (diagnostics%count == found) &
+    if (diagnostics%count == found .or. has_name(group, 'moving_axis')) &
       call make_frame(group, 'moving_', real_or(group, 'moving_point', reference%p), axis, zero, moving, diagnostics)
   end subroutine read_axis_frames
 

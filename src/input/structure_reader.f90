@@ -165,7 +165,7 @@ contains
     call take_pairs(document, n, data, diagnostics)
     if (.not. data%all_pairs .or. any(data%group_of_pair == 0)) return
     n = data%n_links
-    if (n == 0) n = min(maxval(data%links), size(data%links, 2) + 1)
+    if (n == 0) n = min(maxval(data%links), size(data%pairs) + 1)
     call structure_from_pairs(n, data%links, cq_of(data), structure, independent, findings)
     call report(findings, document, data, diagnostics)
     known = size(findings) == 0

@@ -51,7 +51,7 @@ contains
     call explain_holding(failure, text)
   end subroutine explain_choice
 
-  !> Append "; 1 more of the coordinates 2, 3 must be independent (cq)", or nothing.
+  !> Append "; 1 more of the coordinates 2, 3 must be independent (cq)", or "; coordinate 2 must be independent, too (cq)", or nothing.
   pure subroutine explain_needed(failure, wanted, text)
     type(failure_type), intent(in) :: failure             !< of the kind failure_wrong_choice
     logical, intent(in) :: wanted(:)                      !< (M) the independent coordinates of the data file
@@ -67,11 +67,17 @@ contains
       could = could .or. (failure%replaces(:, i) .and. .not. wanted)
     end do
     if (missing == 0) return
-    text = text//'; '//to_text(missing)//' more of the coordinates '// &
-           some_of(numbers_of(could), longest_list)//' must be independent (cq)'
+    if (count(could) == 1) then
+      text = text//'; coordinate '//to_text(numbers_of(could))//' must be independent'
+      if (any(wanted)) text = text//', too'
+      text = text//' (cq)'
+    else
+      text = text//'; '//to_text(missing)//' more of the coordinates '// &
+             some_of(numbers_of(could), longest_list)//' must be independent (cq)'
+    end if
   end subroutine explain_needed
 
-  !> Append "; take 1 of the coordinates 1, 2 off the independent ones (cq)", or nothing.
+  !> Append "; take 1 of the coordinates 1, 2 off the independent ones (cq)", or the same of one coordinate, or nothing.
   pure subroutine explain_surplus(failure, wanted, chosen, text)
     type(failure_type), intent(in) :: failure             !< of the kind failure_wrong_choice
     logical, intent(in) :: wanted(:)                      !< (M) the independent coordinates of the data file
@@ -87,8 +93,12 @@ contains
       k = failure%others(i)
       if (wanted(k) .and. any(surplus .and. failure%replaces(:, i))) could(k) = .true.
     end do
-    text = text//'; take '//to_text(count(surplus))//' of the coordinates '// &
-           some_of(numbers_of(could), longest_list)//' off the independent ones (cq)'
+    if (count(could) == 1) then
+      text = text//'; take coordinate '//to_text(numbers_of(could))
+    else
+      text = text//'; take '//to_text(count(surplus))//' of the coordinates '//some_of(numbers_of(could), longest_list)
+    end if
+    text = text//' off the independent ones (cq)'
   end subroutine explain_surplus
 
   !> Numbers as a mask.

@@ -149,11 +149,11 @@ def wrong_choices(s):
     s.says(done.stderr, 'the mobility is 1', '2 coordinates are independent', 'take 1 of the coordinates 1, 2 off',
            'cq = 1 would serve; instead of 1 also 2, 3, 4')
     done = s.ends(s.mech9k, STRUCTURE, flat(1), '--check')
-    s.says(done.stderr, 'the mobility is 2', '1 more of the coordinates 5 must be independent', 'cq = 1, 5 would serve')
+    s.says(done.stderr, 'the mobility is 2', 'coordinate 5 must be independent, too (cq)', 'cq = 1, 5 would serve')
     done = s.ends(s.mech9k, STRUCTURE, flat(1, 4, 5))
     s.says(done.stderr, 'the mobility is 2', 'take 1 of the coordinates 1, 4 off')
     done = s.ends(s.mech9k, STRUCTURE, flat(1, 4))
-    s.says(done.stderr, '1 more of the coordinates 5 must be', 'take 1 of the coordinates 1, 4 off')
+    s.says(done.stderr, 'coordinate 5 must be independent, too', 'take 1 of the coordinates 1, 4 off')
     # the rod has two freedoms, but only one of them can move the cranks
     done = s.ends(s.mech9k, STRUCTURE, ROD.format(spin=8), '--check')
     s.says(done.stderr, 'the mobility is 2', 'take 1 of the coordinates 1, 8 off',

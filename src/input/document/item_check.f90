@@ -194,7 +194,8 @@ contains
 
     if (known_word(value%text, row)) return
     word = printable(value%text, 40)
-    hint = nearest_name(word, words_of(row%words))
+    hint = trim(own_name(lower(word), row%words))
+    if (hint == '') hint = nearest_name(word, words_of(row%words))
     if (hint == '') then
       hint = '; it is one of: '//trim(row%words)
     else
@@ -206,6 +207,24 @@ contains
       call diagnostics%add(value%span, 'unknown '//name//' '''//word//''''//hint)
     end if
   end subroutine check_word
+
+  !> The name that a kind of pair has here, where textbooks or other programs call it by another one; empty for other words.
+  pure character(len=12) function own_name(word, words) result(name)
+    character(len=*), intent(in) :: word    !< a word that is not known, in lower case
+    character(len=*), intent(in) :: words   !< the words that are known
+    character(len=12), parameter :: names(2, 22) = reshape([character(len=12) :: &
+      'ball', 'spherical', 'ball_joint', 'spherical', 'socket', 'spherical', 'gimbal', 'spherical', 'hinge', 'revolute', &
+      'pin', 'revolute', 'pivot', 'revolute', 'rotary', 'revolute', 'continuous', 'revolute', 'slide', 'prismatic', &
+      'slider', 'prismatic', 'sliding', 'prismatic', 'translation', 'prismatic', 'screw', 'helical', 'hooke', 'universal', &
+      'cardan', 'universal', 'u-joint', 'universal', 'plane', 'planar', 'floating', 'free', '6dof', 'free', 'curve', 'path', &
+      'cam', 'path'], [2, 22])
+    integer :: i
+
+    name = ''
+    do i = 1, size(names, 2)
+      if (names(1, i) == word .and. index(' '//words//' ', ' '//trim(names(2, i))//' ') > 0) name = names(2, i)
+    end do
+  end function own_name
 
   !> Whether a text is one of the words of its row, in any case of letters.
   pure logical function known_word(text, row)

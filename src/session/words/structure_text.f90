@@ -110,7 +110,7 @@ contains
       if (i <= most_lines) call print_alternatives(unit, plan, report, i)
     end do
     call print_marked(unit, .not. report%moves, 'cannot move, hence not be independent: ', &
-                      '; the links that these pairs join move as one body')
+                      still_links(structure, report%moves))
     call print_marked(unit, report%dimensions == 0, 'on no closed chain: ')
     do i = 1, size(report%idle)
       call print_idle(unit, structure, report%idle(i))
@@ -130,6 +130,21 @@ contains
         chain_names(pack(chains, chains /= coupling))//'; the forces of couplings that repeat each other are not unique'
     end if
   end subroutine print_repetition
+
+  !> The consequence of coordinates that cannot move for the links.
+  pure function still_links(structure, moves) result(words)
+    type(structure_type), intent(in) :: structure   !< links and joints
+    logical, intent(in) :: moves(:)                 !< (M) the coordinate can move
+    character(len=:), allocatable :: words
+    integer :: k
+
+    words = '; the links that these pairs join move as one body'
+    if (count(.not. moves) == 1) words = '; the links that this pair joins move as one body'
+    do k = 1, size(moves)
+      if (moves(k) .or. structure%joint_of(k) == 0) cycle
+      words = '; a joint moves its links against each other by its other coordinates, and not at all where it has none'
+    end do
+  end function still_links
 
   !> Write the coordinates of an idle freedom, and the joints with several freedoms to which they belong.
   subroutine print_idle(unit, structure, idle)
