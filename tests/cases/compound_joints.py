@@ -322,6 +322,39 @@ def check_rod(cases):
         cases.checks.equal(float(np.max(np.abs(table['q5']))) > 0.0, '0.02' in rod, 'a rod between balls in mech9d: held or free')
 
 
+def check_least_norm(cases):
+    """A shaft that hangs in a hinge and in one joint more: of all wrenches that carry its weight, those of least norm are given, in
+    which a joint counts once. The right ones come from the pseudoinverse of the six equations of equilibrium."""
+    weight, centre = 1.5 * np.array([3.0, -5.0, -8.0]), np.array([0.1, 0.2, 0.3])
+    body = '&body link=2, mass=1.5, centre=0.1,0.2,0.3 /\n&gravity acceleration=3,-5,-8 /\n&output reactions=.true. /\n'
+    cross = np.array([[0, -1.0, 0], [1.0, 0, 0], [0, 0, 0]])     # e_z x, as a matrix
+    for kind, joint, height, forces, moments in (
+            ('spherical', "coordinates=2,3,4, kind='spherical', point=0,0,0.8", 0.8, (0, 1, 2), ()),
+            ('cylindrical', "coordinates=2,3, kind='cylindrical', axis=0,0,1, point=0,0,0.8, moving_point=0,0,0.5", 0.5, (0, 1), (0, 1)),
+            ('universal', "coordinates=2,3, kind='universal', axis=0,1,0, moving_axis=0,0,1, point=0,0,0.8", 0.8, (0, 1, 2), (0,))):
+        text = "&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /\n&pair " + joint + ', links=1,2 /\n' \
+            "&drive coordinate=1, kind='polynomial', coefficients=0 /\n&time end=0.1, intervals=1 /\n" + body
+        table = cases.table(cases.mech9k, text)
+        # unknown: force and moment over the size in the hinge, where a drive holds the shaft, then those of the joint about its point
+        size = 0.8
+        a = np.zeros((6, 12))
+        a[:3, :3] = a[:3, 6:9] = np.eye(3)
+        a[3:, 3:6] = a[3:, 9:12] = np.eye(3)
+        a[3:, 6:9] = height / size * cross
+        known = [6 + k for k in range(3) if k not in forces] + [9 + k for k in range(3) if k not in moments]
+        if kind == 'universal':
+            # the first axis is y, the second z: the moment is along x
+            assert known == [10, 11]
+        free = [k for k in range(12) if k not in known]
+        right = -np.concatenate([weight, np.cross(centre, weight) / size])
+        solution = np.zeros(12)
+        solution[free] = np.linalg.pinv(a[:, free]) @ right
+        names = [f'R{k}.{part}' for k in (1, 2) for part in ('fx', 'fy', 'fz', 'mx', 'my', 'mz')]
+        given = np.array([table[name][0] for name in names]) / np.tile([1, 1, 1, size, size, size], 2)
+        error = float(np.max(np.abs(given - solution)))
+        cases.checks.true(error < 1e-12 * np.max(np.abs(solution)), f'least norm with a {kind} joint: it counts once ({error:.2g})')
+
+
 BAD = [
     ('a coordinate twice in a joint', "&pair coordinates=2,3,3, links=2,3, kind='spherical' /", '2:23', 'coordinate 3 is named twice'),
     ('a coordinate of another pair', "&pair coordinates=2,1,4, links=2,3, kind='spherical' /", '2:21',
@@ -337,6 +370,14 @@ BAD = [
      'the two axes of the universal joint of coordinates 2, 3 are parallel'),
     ('a zero axis', "&pair coordinates=2,3,4, links=2,3, kind='spherical', axis=0,0,0 /", '2:60',
      'the axis of the spherical joint of coordinates 2, 3, 4 is zero'),
+    ('two vectors at once', "&pair coordinates=2,3,4, links=2,3, kind='spherical', axis=0,0,0, moving_axis=0,0,0 /", '2:79',
+     'the moving_axis of the spherical joint of coordinates 2, 3, 4 is zero'),
+    ('a link that no pair reaches', "&pair coordinates=2,3,4, links=3,4, kind='spherical' /", '2:34',
+     'pair 2 names link 4; the links are 1 to 3'),
+    ('a ball', "&pair coordinates=2,3,4, links=2,3, kind='ball' /", '2:42', "unknown pair kind 'ball'; did you mean 'spherical'?"),
+    ('a hinge', "&pair coordinate=2, links=2,3, kind='hinge', axis=0,0,1 /", '2:37', "did you mean 'revolute'?"),
+    ('a Hooke joint', "&pair coordinates=2,3, links=2,3, kind='Hooke', axis=0,0,1 /", '2:40', "did you mean 'universal'?"),
+    ('a gimbal', "&pair coordinates=2,3,4, links=2,3, kind='gimbal' /", '2:42', "did you mean 'spherical'?"),
     ('no axis', "&pair coordinates=2,3, links=2,3, kind='cylindrical' /", '2:1', "&pair needs 'axis'"),
     ('a gap in the numbers', "&pair coordinates=2,4,5, links=2,3, kind='spherical' /", '2:23', 'there is no coordinate 5'),
     ('a body of a link of the joint', "&pair coordinates=2,3,4, links=2,3, kind='spherical' /\n&body link=4, mass=1 /", '3:12',
@@ -376,6 +417,7 @@ def main():
         check_platform(cases)
         check_shaft(cases)
         check_rod(cases)
+        check_least_norm(cases)
         check_bad_input(cases)
         cases.checks.finish()
 

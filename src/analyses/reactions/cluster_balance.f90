@@ -6,6 +6,10 @@
 !> the displacements that the links of an elastic mechanism would take whose pairs are all equally stiff. M^T M has one block
 !> for each link and each pair, and is factorized by Cholesky's method; a correction from the balance of the links removes
 !> the error that squaring M makes.
+!>
+!> All pairs of a joint with several freedoms pass on the same wrench, since the links between them have neither mass nor loads. Their
+!> wrenches are taken about one point, that of the last pair, and the square of each is divided by the number of the joint's pairs:
+!> the joint counts once. All turns of such a joint are about lines through this point, so that the moments about them stay the same.
 module mech9_cluster_balance
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross
@@ -22,6 +26,7 @@ module mech9_cluster_balance
     integer, allocatable :: block_of(:)           !< (pairs) block that joins both links; 0 where one is not a node
     logical, allocatable :: turned(:)             !< (pairs) the block's rows are those of the reference link
     logical, allocatable :: held(:)               !< (pairs) only the part across the axis is unknown
+    real(wp), allocatable :: parts(:)             !< (pairs) number of pairs that count as one together
     real(wp), allocatable :: axis(:, :)           !< (6,pairs) of length 1
     real(wp), allocatable :: arm(:, :, :)         !< (3,2,pairs) from the places of moving and reference link, over the size
   contains
@@ -43,6 +48,7 @@ contains
     self%factors = new_block_cholesky(6, size(cluster%links), cluster%nodes)
     call self%factors%find_blocks(cluster%nodes, self%block_of, self%turned)
     self%held = reactions%pairs(cluster%pairs)%dependent
+    self%parts = real(reactions%pairs(cluster%pairs)%in_joint, wp)
     allocate (self%axis(6, n), self%arm(3, 2, n), source=0.0_wp)
   end function new_cluster_balance
 
@@ -61,7 +67,8 @@ contains
       k = cluster%pairs(i)
       self%axis(:, i) = geometry%axis(:, k)
       do side = 1, 2
-        self%arm(:, side, i) = (geometry%point(:, k) - geometry%place(:, reactions%pairs(k)%links(side)))/length
+        self%arm(:, side, i) = (geometry%point(:, reactions%pairs(k)%last) &
+                                - geometry%place(:, reactions%pairs(k)%links(side)))/length
       end do
       call add_pair(self, cluster%nodes(:, i), i)
     end do
@@ -86,13 +93,13 @@ contains
     do side = 1, 2
       if (nodes(side) == 0) cycle
       associate (at => self%factors%position(nodes(side)))
-        call add_block(1.0_wp, self%arm(:, side, i), self%arm(:, side, i), work_on(:, side), work_on(:, side), &
+        call add_block(self%parts(i), self%arm(:, side, i), self%arm(:, side, i), work_on(:, side), work_on(:, side), &
                        self%factors%diagonal(:, :, at))
       end associate
     end do
     if (self%block_of(i) == 0) return
     side = merge(2, 1, self%turned(i))
-    call add_block(-1.0_wp, self%arm(:, side, i), self%arm(:, 3 - side, i), work_on(:, side), work_on(:, 3 - side), &
+    call add_block(-self%parts(i), self%arm(:, side, i), self%arm(:, 3 - side, i), work_on(:, side), work_on(:, 3 - side), &
                    self%factors%blocks(:, :, self%block_of(i)))
   end subroutine add_pair
 
@@ -154,7 +161,7 @@ contains
         end associate
       end do
       if (self%held(i)) motion = motion - dot_product(self%axis(:, i), motion)*self%axis(:, i)
-      wrenches(:, i) = wrenches(:, i) + motion
+      wrenches(:, i) = wrenches(:, i) + self%parts(i)*motion
     end do
   end subroutine spread
 

@@ -25,6 +25,10 @@ module mech9_reaction_plan
     integer :: links(2) = 0             !< moving link, reference link
     real(wp) :: direction = 1.0_wp      !< 1 if the step leads to the moving link, else -1
     logical :: dependent = .true.       !< its coordinate is dependent: no drive holds it
+    !> Number of pairs in its joint with several freedoms, which pass on one wrench and count once for the least norm together; 1 for
+    !> other pairs.
+    integer :: in_joint = 1
+    integer :: last = 0                 !< coordinate of the last pair of the joint, about whose point the wrench counts; else its own
     type(pose_type) :: frame            !< pose of the pair's frame in the moving link; its z is the axis
   end type joined_pair_type
 
@@ -72,6 +76,14 @@ contains
     do i = 1, plan%n_coordinates
       reactions%pairs(i) = joined_pair(mechanism%pairs(i)%pair, plan, i)
     end do
+    if (allocated(mechanism%structure%joints)) then
+      do i = 1, size(mechanism%structure%joints)
+        associate (joint => mechanism%structure%joints(i))
+          reactions%pairs(joint%coordinates())%in_joint = joint%freedoms
+          reactions%pairs(joint%coordinates())%last = joint%numbers(joint%freedoms)
+        end associate
+      end do
+    end if
     clusters = find_clusters(plan)
     reactions%alone = .not. clusters%closed
     reactions%begins = plan%steps%parent == clusters%base
@@ -128,6 +140,7 @@ contains
     logical :: is_screw
 
     joined%step = plan%step_of(coordinate)
+    joined%last = coordinate
     joined%links = [pair%moving, pair%reference]
     joined%direction = merge(-1.0_wp, 1.0_wp, plan%steps(joined%step)%reversed)
     joined%dependent = plan%steps(joined%step)%dependent

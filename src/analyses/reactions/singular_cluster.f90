@@ -17,6 +17,7 @@ module mech9_singular_cluster
     real(wp), allocatable :: values(:)       !< (6 nodes) not increasing
     real(wp), allocatable :: forces(:, :)    !< (6 nodes,6 nodes) left vectors, by columns
     real(wp), allocatable :: wrenches(:, :)  !< (6 nodes,6 pairs) right vectors, by rows
+    real(wp), allocatable :: root(:)         !< (pairs) by which wrenches are divided for the norm to count joints once
   contains
     procedure :: solve
     procedure :: remove_determined
@@ -31,7 +32,7 @@ contains
     real(wp), intent(in) :: tolerance                       !< part of the largest singular value
     type(singular_cluster_type), intent(out) :: singular    !< its singular values and vectors
     real(wp), allocatable :: a(:, :), work(:), one(:, :), motion(:, :)
-    integer :: n, m, j, info
+    integer :: n, m, i, j, info
 
     n = 6*size(cluster%links)
     m = 6*size(cluster%pairs)
@@ -41,8 +42,13 @@ contains
       one(1 + mod(j - 1, 6), 1 + (j - 1)/6) = 1.0_wp
       motion = 0.0_wp
       call balance%spread(cluster, one, motion)
+      ! of the unknowns that are divided by the roots of the parts in which they count
+      do i = 1, size(cluster%pairs)
+        motion(:, i) = motion(:, i)/sqrt(balance%parts(i))
+      end do
       a(j, :) = reshape(motion, [m])
     end do
+    singular%root = sqrt(balance%parts)
     allocate (singular%values(n), singular%forces(n, n), singular%wrenches(n, m))
     call dgesvd('S', 'S', n, m, a, n, singular%values, singular%forces, n, singular%wrenches, n, work, size(work), info)
     singular%rank = count(singular%values > tolerance*singular%values(1))
@@ -61,6 +67,9 @@ contains
       parts(i) = dot_product(self%forces(:, i), reshape(required, [size(required)]))/self%values(i)
     end do
     wrenches = reshape(matmul(parts, self%wrenches(:self%rank, :)), shape(wrenches))
+    do i = 1, size(wrenches, 2)
+      wrenches(:, i) = self%root(i)*wrenches(:, i)
+    end do
   end subroutine solve
 
   !> Remove from wrenches the part that the balance of the links determines.
@@ -68,8 +77,15 @@ contains
     class(singular_cluster_type), intent(in) :: self        !< singular values and vectors
     real(wp), intent(inout), contiguous :: wrenches(:, :)   !< (6,pairs) scaled
     real(wp) :: parts(self%rank)
+    integer :: i
 
+    do i = 1, size(wrenches, 2)
+      wrenches(:, i) = wrenches(:, i)/self%root(i)
+    end do
     parts = matmul(self%wrenches(:self%rank, :), reshape(wrenches, [size(wrenches)]))
     wrenches = wrenches - reshape(matmul(parts, self%wrenches(:self%rank, :)), shape(wrenches))
+    do i = 1, size(wrenches, 2)
+      wrenches(:, i) = self%root(i)*wrenches(:, i)
+    end do
   end subroutine remove_determined
 end module mech9_singular_cluster
