@@ -1,17 +1,19 @@
 !> Rods between two ball joints that the user has left to turn about themselves: one angle of them becomes independent.
 !>
-!> It is held where it is, unless the rod resists such a turn and moves freely. The angle is one that changes as the rod turns: the
-!> third turn of a joint whose z axis in the rod, its moving link, lies along the rod; the first turn of a joint whose x axis in
-!> the rod, its reference link, does; else the angle that changes most at the guesses of the start.
+!> It is held, unless the rod resists such a turn and moves freely. The angle is that of a turn about an axis of the rod: the
+!> third turn of a joint whose moving link the rod is, or the first turn of one whose reference link it is. It is held where it is
+!> if the rod can point in all directions so. Otherwise it is held at the nearest position where the rod can, so that chains
+!> close: there the middle axis is at a right angle to the rod's line.
 module mech9_rod_holding
-  use mech9_kinds, only: wp
+  use mech9_kinds, only: wp, pi
   use mech9_rotation, only: cross, unit
-  use mech9_pose, only: pose_type, inverse, compose
+  use mech9_error, only: error_type
+  use mech9_pose, only: pose_type, inverse, compose, identity_pose
   use mech9_three_turns, only: cyclic
   use mech9_idle_rods, only: idle_rod_type, find_idle_rods
   use mech9_compound_joint, only: compound_joint_type
   use mech9_partition, only: free_coordinate, driven_coordinate, dependent_coordinate, new_partition
-  use mech9_pair, only: screw_factors_type
+  use mech9_pair, only: pair_motion_type, screw_factors_type
   use mech9_law, only: drive_slot_type
   use mech9_polynomial_law, only: polynomial_law_type
   use mech9_mechanism, only: mechanism_type
@@ -20,12 +22,13 @@ module mech9_rod_holding
   private
   public :: hold_idle_rods
 
-  !> A rod whose moment of inertia about its line is below this part of the largest one does not resist a turn about it.
+  !> A rod does not resist a turn about its line where its moment of inertia about it is below this part of the largest one of the
+  !> mechanism: the equation of such a turn is little more than round-off of the others, which makes steps ever shorter.
   real(wp), parameter :: slender = 1.0e-9_wp
-  !> Angles that take less than this part of a turn of the rod are not held.
-  real(wp), parameter :: least_part = 0.3_wp
   !> The rod lies along an axis where the cosine of their angle is above this.
   real(wp), parameter :: in_line = 0.9_wp
+  !> A line is in a plane where its direction is that far from it.
+  real(wp), parameter :: round_off = 1.0e-13_wp
 
 contains
 
@@ -45,7 +48,9 @@ contains
       call choose_angle(model%mechanism, rods(i), kinds, model%problem%initial%position, k)
       if (k == 0) cycle
       changed = .true.
-      if (all_driven .or. .not. resists(model%mechanism, rods(i))) then
+      if (.not. model%problem%initial%position_given(k)) &
+        call let_point_anywhere(model%mechanism, rods(i), k, model%problem%initial%position)
+      if (all_driven .or. .not. resists(model%mechanism, rods(i), model%problem%initial%position)) then
         kinds(k) = driven_coordinate
         call hold(k, model%problem%initial%position(k), model%problem%drives)
       else
@@ -58,47 +63,110 @@ contains
     model%problem%partition%kind = kinds
   end subroutine hold_idle_rods
 
-  !> The angle of a rod's joints that changes most as the rod turns about itself; 0 where an angle is independent already or
-  !> coupled, where the balls have one centre, or where all change little.
+  !> The angle about an axis of the rod that changes more as the rod turns about itself; 0 where an angle is independent already or
+  !> coupled, or where the balls have one centre.
   subroutine choose_angle(mechanism, rod, kinds, q, angle)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(idle_rod_type), intent(in) :: rod          !< the rod
     integer, intent(in) :: kinds(:)                 !< (M) driven, free or dependent
     real(wp), intent(in) :: q(:)                    !< (M) guesses of the coordinates [rad, m]
     integer, intent(out) :: angle                   !< number of its coordinate
-    type(pose_type) :: frames(2)
-    real(wp) :: line(3), rates(3), best
+    real(wp) :: lines(3, 2), rates(3), best
     integer :: i, k
 
     angle = 0
-    best = least_part
     do i = 1, 2
       associate (joint => mechanism%structure%joints(rod%joints(i)))
         if (any(kinds(joint%coordinates()) /= dependent_coordinate) .or. is_coupled(mechanism, joint%coordinates())) return
-        frames(i) = frame_in(mechanism, joint, rod%link)
       end associate
     end do
-    line = frames(2)%p - frames(1)%p
-    if (.not. norm2(line) > 0.0_wp) return
-    line = unit(line)
-    do i = 1, 2
-      associate (joint => mechanism%structure%joints(rod%joints(i)), of_frame => matmul(transpose(frames(i)%r), line))
-        ! the turns at the ends of the chain are about axes of the links: the part of the rod's turn that they take never changes
-        if (joint%ends(2) == rod%link .and. abs(of_frame(3)) > in_line) angle = joint%numbers(3)
-        if (joint%ends(1) == rod%link .and. abs(of_frame(1)) > in_line) angle = joint%numbers(1)
-        if (angle > 0) return
-      end associate
-    end do
+    lines = lines_of(mechanism, rod, q)
+    if (.not. norm2(lines) > 0.0_wp) return
+    best = -1.0_wp
     do i = 1, 2
       associate (joint => mechanism%structure%joints(rod%joints(i)))
-        rates = rates_of(matmul(transpose(frames(i)%r), line), joint%ends(2) == rod%link, q(joint%coordinates()))
-        k = maxloc(abs(rates), dim=1)
+        k = turn_of_rod(mechanism, rod, i)
+        ! the turn about an axis along the rod takes its whole turn, whatever the guesses are
+        if (abs(lines(k, i)) > in_line) then
+          angle = joint%numbers(k)
+          return
+        end if
+        rates = rates_of(lines(:, i), k == 3, q(joint%coordinates()))
         if (abs(rates(k)) <= best) cycle
         best = abs(rates(k))
         angle = joint%numbers(k)
       end associate
     end do
   end subroutine choose_angle
+
+  !> Directions of a rod's line in the frames of its two ball joints; 0 where the balls have one centre.
+  function lines_of(mechanism, rod, q) result(lines)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(idle_rod_type), intent(in) :: rod          !< the rod
+    real(wp), intent(in) :: q(:)                    !< (M) guesses of the coordinates [rad, m]
+    real(wp) :: lines(3, 2), line(3)
+    type(pose_type) :: frames(2), links(size(rod%links))
+    integer :: i
+
+    call place_links(mechanism, rod, q, links, frames)
+    line = frames(2)%p - frames(1)%p
+    if (norm2(line) > 0.0_wp) line = unit(line)
+    do i = 1, 2
+      lines(:, i) = matmul(line, frames(i)%r)
+    end do
+  end function lines_of
+
+  !> The turn of one of a rod's two joints that is about an axis of the rod: the third one of its moving link, else the first one.
+  pure integer function turn_of_rod(mechanism, rod, i) result(turn)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(idle_rod_type), intent(in) :: rod          !< the rod
+    integer, intent(in) :: i                        !< 1 or 2
+
+    associate (link => rod%links(merge(1, size(rod%links), i == 1)))
+      turn = merge(3, 1, mechanism%structure%joints(rod%joints(i))%ends(2) == link)
+    end associate
+  end function turn_of_rod
+
+  !> Change the guesses of a ball joint's angles so that the rod points as before, and can point in all directions while one of
+  !> them is held.
+  subroutine let_point_anywhere(mechanism, rod, held, q)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(idle_rod_type), intent(in) :: rod          !< the rod
+    integer, intent(in) :: held                     !< number of the coordinate to be held
+    real(wp), intent(inout) :: q(:)                 !< (M) guesses of the coordinates [rad, m]
+    real(wp) :: lines(3, 2)
+    integer :: i
+
+    lines = lines_of(mechanism, rod, q)
+    do i = 1, 2
+      associate (k => mechanism%structure%joints(rod%joints(i))%numbers)
+        if (k(3) == held) call turn_across(lines(:, i), q(k(1)), q(k(2)), q(k(3)))
+        ! seen from the rod, the turns follow in the opposite order; a reflection that exchanges x and z restores it
+        if (k(1) == held) call turn_across(lines(3:1:-1, i), q(k(3)), q(k(2)), q(k(1)))
+      end associate
+    end do
+  end subroutine let_point_anywhere
+
+  !> Change turns about x, y', z'' so that the third one brings a line into the plane of x and z, and that the line points as before.
+  pure subroutine turn_across(line, first, second, third)
+    real(wp), intent(in) :: line(3)       !< direction of the line in the moving frame
+    real(wp), intent(inout) :: first      !< angle about x [rad]
+    real(wp), intent(inout) :: second     !< angle about y' [rad]
+    real(wp), intent(inout) :: third      !< angle about z'' [rad]
+    real(wp) :: a(2), b(2), c(2), angle
+
+    ! the line after each of the turns: x and y, x and z, y and z
+    a = [cos(third)*line(1) - sin(third)*line(2), sin(third)*line(1) + cos(third)*line(2)]
+    if (abs(a(2)) <= round_off) return
+    b = [cos(second)*a(1) + sin(second)*line(3), cos(second)*line(3) - sin(second)*a(1)]
+    c = [cos(first)*a(2) - sin(first)*b(2), sin(first)*a(2) + cos(first)*b(2)]
+    angle = -atan2(line(2), line(1))
+    third = angle + pi*anint((third - angle)/pi)
+    angle = atan2(-c(1), c(2))
+    first = angle + pi*anint((first - angle)/pi)
+    angle = atan2(line(3), cos(third)*line(1) - sin(third)*line(2)) - atan2(cos(first)*c(2) - sin(first)*c(1), b(1))
+    second = angle + 2.0_wp*pi*anint((second - angle)/(2.0_wp*pi))
+  end subroutine turn_across
 
   !> Whether a coupling contains any of some coordinates.
   pure logical function is_coupled(mechanism, coordinates)
@@ -114,6 +182,57 @@ contains
       end do
     end do
   end function is_coupled
+
+  !> The poses of a rod's links in its first one, and the frames of both ball joints there.
+  subroutine place_links(mechanism, rod, q, links, frames)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(idle_rod_type), intent(in) :: rod          !< the rod
+    real(wp), intent(in) :: q(:)                    !< (M) guesses of the coordinates [rad, m]
+    type(pose_type), intent(out) :: links(:)        !< poses of the links
+    type(pose_type), intent(out) :: frames(2)       !< poses of the joints' frames
+    integer :: i, n
+
+    n = size(links)
+    links(1) = identity_pose
+    do i = 2, n
+      links(i) = compose(links(i - 1), pose_of_next(mechanism, rod%links(i - 1), rod%between(i - 1), q))
+    end do
+    frames(1) = frame_in(mechanism, mechanism%structure%joints(rod%joints(1)), rod%links(1))
+    frames(2) = compose(links(n), frame_in(mechanism, mechanism%structure%joints(rod%joints(2)), rod%links(n)))
+  end subroutine place_links
+
+  !> The pose of the link beyond a pair or a joint in the link before it. Pairs whose pose is not that of a screw count as closed.
+  function pose_of_next(mechanism, link, coordinate, q) result(pose)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: link                     !< number of the link before it
+    integer, intent(in) :: coordinate               !< the pair's coordinate, or the first one of the joint
+    real(wp), intent(in) :: q(:)                    !< (M) guesses of the coordinates [rad, m]
+    type(pose_type) :: pose
+    type(pair_motion_type) :: motion
+    type(screw_factors_type) :: factors
+    type(error_type), allocatable :: err
+    integer, allocatable :: numbers(:)
+    logical :: is_screw
+    integer :: i, j
+
+    j = mechanism%structure%joint_of(coordinate)
+    numbers = [coordinate]
+    if (j > 0) numbers = mechanism%structure%joints(j)%coordinates()
+    pose = identity_pose
+    do i = 1, size(numbers)
+      associate (pair => mechanism%pairs(numbers(i))%pair)
+        call pair%as_screw(factors, is_screw)
+        if (.not. is_screw) cycle
+        call pair%evaluate(q(numbers(i)), motion, err)
+        if (.not. allocated(err)) pose = compose(pose, motion%pose)
+      end associate
+    end do
+    if (j > 0) then
+      if (mechanism%structure%joints(j)%ends(1) /= link) pose = inverse(pose)
+    else if (mechanism%pairs(coordinate)%pair%reference /= link) then
+      pose = inverse(pose)
+    end if
+  end function pose_of_next
 
   !> The frame of a spherical joint in one of its links.
   function frame_in(mechanism, joint, link) result(frame)
@@ -151,26 +270,31 @@ contains
     end if
   end function rates_of
 
-  !> Whether a rod has a moment of inertia about its line.
-  logical function resists(mechanism, rod)
+  !> Whether a rod has a moment of inertia about its line that counts.
+  logical function resists(mechanism, rod, q)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(idle_rod_type), intent(in) :: rod          !< the rod
-    type(pose_type) :: frames(2)
-    real(wp) :: line(3), arm(3), moment, largest
-    integer :: i
+    real(wp), intent(in) :: q(:)                    !< (M) guesses of the coordinates [rad, m]
+    type(pose_type) :: frames(2), links(size(rod%links))
+    real(wp) :: line(3), of_link(3), from(3), arm(3), moment, largest
+    integer :: i, n
 
-    do i = 1, 2
-      frames(i) = frame_in(mechanism, mechanism%structure%joints(rod%joints(i)), rod%link)
-    end do
+    call place_links(mechanism, rod, q, links, frames)
     line = unit(frames(2)%p - frames(1)%p)
     moment = 0.0_wp
     largest = 0.0_wp
     do i = 1, size(mechanism%bodies)
       associate (body => mechanism%bodies(i))
-        if (body%link /= rod%link) cycle
-        arm = cross(line, body%centre - frames(1)%p)
-        moment = moment + dot_product(line, matmul(body%inertia, line)) + body%mass*dot_product(arm, arm)
-        largest = largest + maxval(abs(body%inertia)) + body%mass*dot_product(body%centre - frames(1)%p, body%centre - frames(1)%p)
+        n = findloc(rod%links, body%link, dim=1)
+        if (n == 0) then
+          largest = max(largest, maxval(abs(body%inertia)) + body%mass*dot_product(body%centre, body%centre))
+          cycle
+        end if
+        of_link = matmul(transpose(links(n)%r), line)
+        from = body%centre - matmul(transpose(links(n)%r), frames(1)%p - links(n)%p)
+        arm = cross(of_link, from)
+        moment = moment + dot_product(of_link, matmul(body%inertia, of_link)) + body%mass*dot_product(arm, arm)
+        largest = max(largest, maxval(abs(body%inertia)) + body%mass*dot_product(from, from))
       end associate
     end do
     resists = moment > slender*largest

@@ -14,12 +14,15 @@ module mech9_ball_angles
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: place_all, spread_all_velocities, spread_all_accelerations
+  use mech9_requested, only: requested_type
   use mech9_ball_joints, only: ball_joint_type, find_ball_joints
+  use mech9_held_angles, only: held_angles_type
   implicit none
   private
   public :: ball_angles_type
 
   type :: ball_angles_type
+    type(held_angles_type) :: held                    !< angles of rods that are held, and what they imply
     type(ball_joint_type), allocatable :: joints(:)   !< all whose angles may be replaced
     logical, allocatable :: replaced(:)               !< (joints) other angles are integrated
     type(plan_type) :: plan                           !< with the angles of the data file; set where joints are found
@@ -30,8 +33,10 @@ module mech9_ball_angles
     real(wp), private :: lock = 0.0_wp                !< distance from gimbal lock below which directions are not known [rad]
   contains
     procedure :: begin
+    procedure :: restart
     procedure :: in_use
     procedure :: in_doubt
+    procedure :: move_as
     procedure :: change
     procedure :: may_continue
     procedure :: continue_to
@@ -45,27 +50,60 @@ module mech9_ball_angles
 
 contains
 
-  !> Find the ball joints of a plan, and replace the angles of those that are near gimbal lock.
-  subroutine begin(self, model, partition, plan, state, err)
+  !> Begin with the angles of the data file: find the rods that are held, then as `restart`.
+  subroutine begin(self, model, requested, plan, state, err)
     class(ball_angles_type), intent(inout) :: self      !< the angles
     type(model_type), intent(in) :: model               !< the model
-    type(partition_type), intent(in) :: partition       !< of the coordinates
+    type(requested_type), intent(in) :: requested       !< the part of the motion that is worked out
+    type(plan_type), intent(inout) :: plan              !< with the angles of the data file; then of the integrated motion
+    type(state_type), intent(inout) :: state            !< for this plan, with rates
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
+
+    call self%held%begin(model, plan)
+    call self%restart(model, model%problem%partition, requested, plan, state, err)
+  end subroutine begin
+
+  !> Find the ball joints of a plan, replace the angles of those that are near gimbal lock, and hold other angles of rods where these
+  !> serve clearly better.
+  subroutine restart(self, model, partition, requested, plan, state, err)
+    class(ball_angles_type), intent(inout) :: self      !< the angles; gets the partition of the motion
+    type(model_type), intent(in) :: model               !< the model
+    type(partition_type), intent(in) :: partition       !< of the coordinates, with the angles that were held so far
+    type(requested_type), intent(in) :: requested       !< the part of the motion that is worked out
     type(plan_type), intent(inout) :: plan              !< with the angles of the data file; then of the integrated motion
     type(state_type), intent(inout) :: state            !< for this plan, with rates
     type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
     type(state_type) :: given
+    logical :: changed
 
-    call find_ball_joints(model%mechanism, partition, plan, self%joints)
+    self%held%partition = partition
+    call find_joints(self, model, plan)
+    call self%held%take_best(model, requested, self%joints, self%in_doubt(state%q), plan, state, changed, err)
+    if (allocated(err)) return
+    if (changed) call find_joints(self, model, plan)
+    self%lock = model%request%solver%absolute_tolerance + model%request%solver%relative_tolerance
+    if (size(self%joints) > 0) then
+      self%plan = plan
+      if (any(self%in_doubt(state%q))) then
+        given = state
+        call self%change(given, plan, state, err)
+        if (allocated(err)) return
+      end if
+    end if
+    call self%held%hold_positions(plan, state)
+  end subroutine restart
+
+  !> Find the ball joints of a plan, none of whose angles is replaced yet.
+  subroutine find_joints(self, model, plan)
+    class(ball_angles_type), intent(inout) :: self      !< the angles; gets the joints
+    type(model_type), intent(in) :: model               !< the model
+    type(plan_type), intent(in) :: plan                 !< with the angles of the data file
+
+    call find_ball_joints(model%mechanism, self%held%as_if_not_held(), plan, self%joints)
     if (allocated(self%replaced)) deallocate (self%replaced, self%headings, self%swings)
     allocate (self%replaced(size(self%joints)), source=.false.)
     allocate (self%headings(size(self%joints)), self%swings(size(self%joints)))
-    self%lock = model%request%solver%absolute_tolerance + model%request%solver%relative_tolerance
-    if (size(self%joints) == 0) return
-    self%plan = plan
-    if (.not. any(self%in_doubt(state%q))) return
-    given = state
-    call self%change(given, plan, state, err)
-  end subroutine begin
+  end subroutine find_joints
 
   !> Whether angles of any joint are replaced.
   pure logical function in_use(self)
@@ -92,6 +130,19 @@ contains
       end associate
     end do
   end function in_doubt
+
+  !> Whether the same angles move the joints, and the same are held, as with others of the same mechanism.
+  pure logical function move_as(self, other)
+    class(ball_angles_type), intent(in) :: self   !< the angles
+    class(ball_angles_type), intent(in) :: other  !< the others
+    integer :: i
+
+    move_as = size(self%replaced) == size(other%replaced)
+    if (move_as) move_as = all(self%replaced .eqv. other%replaced)
+    do i = 1, size(self%held%rods)
+      move_as = move_as .and. self%held%rods(i)%held == other%held%rods(i)%held
+    end do
+  end function move_as
 
   !> Change the angles of the joints that are in doubt. The plan and the state of the integrated motion follow from those in the
   !> angles of the data file, which must be shown.

@@ -6,9 +6,12 @@ module mech9_driven_angles
   use mech9_kinds, only: wp
   use mech9_tolerances, only: third_derivative_step
   use mech9_error, only: error_type
+  use mech9_law, only: drive_slot_type
+  use mech9_partition, only: partition_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_requested, only: requested_type
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_ball_angles, only: ball_angles_type
   implicit none
@@ -21,12 +24,12 @@ module mech9_driven_angles
 contains
 
   !> Begin a motion at its assembled start, with other angles in ball joints that stand near gimbal lock.
-  subroutine begin_with_angles(model, plan, assembled, t, derivatives, driven, angles, err)
+  subroutine begin_with_angles(model, requested, plan, assembled, t, driven, angles, err)
     type(model_type), intent(in) :: model                  !< the model
+    type(requested_type), intent(in) :: requested          !< the part of the motion that is worked out
     type(plan_type), intent(inout) :: plan                 !< with the angles of the data file; then as the motion executes it
     type(state_type), intent(in) :: assembled              !< the assembled position
     real(wp), intent(in) :: t                              !< time of the start [s]
-    integer, intent(in) :: derivatives                     !< order of the highest derivative found at every position
     type(driven_motion_type), intent(out) :: driven        !< the driven motion
     type(ball_angles_type), intent(inout) :: angles        !< of the ball joints
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
@@ -34,17 +37,18 @@ contains
 
     start = assembled
     start%t = t
-    call angles%begin(model, model%problem%partition, plan, start, err)
+    call angles%begin(model, requested, plan, start, err)
     if (allocated(err)) return
-    call start_driven_motion(model%problem%drives, plan, start, t, driven, err, derivatives)
+    call start_driven_motion(angles%held%drives, plan, start, t, driven, err, requested%derivatives)
     if (allocated(err)) return
     call note_angles(angles, driven)
-    call show_angles(model, plan, angles, driven, err)
+    call show_angles(plan, angles, driven, err)
   end subroutine begin_with_angles
 
   !> Go on to a time, as `advance` does.
-  subroutine advance_with_angles(model, plan, t, driven, angles, err)
+  subroutine advance_with_angles(model, requested, plan, t, driven, angles, err)
     type(model_type), intent(in) :: model                  !< the model
+    type(requested_type), intent(in) :: requested          !< the part of the motion that is worked out
     type(plan_type), intent(inout) :: plan                 !< as the motion executes it
     real(wp), intent(in) :: t                              !< time to go to [s]
     type(driven_motion_type), intent(inout) :: driven      !< the driven motion
@@ -54,21 +58,20 @@ contains
 
     do
       if (angles%in_use()) then
-        call advance_short(model, plan, t, driven, angles, reached, err)
+        call advance_short(plan, t, driven, angles, reached, err)
       else
-        call advance(model%problem%drives, plan, driven, t, err)
+        call advance(angles%held%drives, plan, driven, t, err)
         reached = .not. driven%paused
       end if
       if (allocated(err)) exit
-      if (driven%paused) call change_angles(model, plan, driven, angles, err)
+      if (driven%paused) call change_angles(model, requested, plan, driven, angles, err)
       if (allocated(err) .or. reached) exit
     end do
-    if (.not. allocated(err)) call show_angles(model, plan, angles, driven, err)
+    if (.not. allocated(err)) call show_angles(plan, angles, driven, err)
   end subroutine advance_with_angles
 
   !> Go on towards a time, as far as the angles of the data file can be continued at once.
-  subroutine advance_short(model, plan, t, driven, angles, reached, err)
-    type(model_type), intent(in) :: model                  !< the model
+  subroutine advance_short(plan, t, driven, angles, reached, err)
     type(plan_type), intent(in) :: plan                    !< as the motion executes it
     real(wp), intent(in) :: t                              !< time to go towards [s]
     type(driven_motion_type), intent(inout) :: driven      !< the driven motion
@@ -84,9 +87,9 @@ contains
     do i = 1, most_halvings
       reached = .not. h < abs(t - before%state%t)
       if (reached) then
-        call advance(model%problem%drives, plan, driven, t, err)
+        call advance(angles%held%drives, plan, driven, t, err)
       else
-        call advance(model%problem%drives, plan, driven, before%state%t + sign(h, t - before%state%t), err)
+        call advance(angles%held%drives, plan, driven, before%state%t + sign(h, t - before%state%t), err)
       end if
       if (allocated(err)) return
       reached = reached .and. .not. driven%paused
@@ -98,27 +101,38 @@ contains
     call angles%continue_to(driven%state)
   end subroutine advance_short
 
-  !> Start anew at the present position with other angles in the joints that are near gimbal lock.
-  subroutine change_angles(model, plan, driven, angles, err)
+  !> Start anew at the present position with other angles in the joints that are near gimbal lock, or with other angles of rods held.
+  subroutine change_angles(model, requested, plan, driven, angles, err)
     type(model_type), intent(in) :: model                  !< the model
+    type(requested_type), intent(in) :: requested          !< the part of the motion that is worked out
     type(plan_type), intent(inout) :: plan                 !< as the motion executes it
     type(driven_motion_type), intent(inout) :: driven      !< the driven motion
     type(ball_angles_type), intent(inout) :: angles        !< of the ball joints
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(driven_motion_type) :: before
+    type(partition_type) :: partition
     type(plan_type) :: changed_plan
     type(state_type) :: changed
     real(wp) :: t
 
     t = driven%predictor%t
     driven%state%t = t
-    if (angles%in_use()) call show_angles(model, plan, angles, driven, err)
+    if (angles%in_use()) call show_angles(plan, angles, driven, err)
     if (allocated(err)) return
-    call angles%change(driven%state, changed_plan, changed, err)
+    if (size(angles%held%rods) > 0) then
+      changed_plan = plan
+      changed = driven%state
+      if (angles%in_use()) changed_plan = angles%plan
+      if (angles%in_use()) changed = angles%state
+      partition = angles%held%partition
+      call angles%restart(model, partition, requested, changed_plan, changed, err)
+    else
+      call angles%change(driven%state, changed_plan, changed, err)
+    end if
     if (allocated(err)) return
     before = driven
     plan = changed_plan
-    call start_driven_motion(model%problem%drives, plan, changed, t, driven, err, before%derivatives)
+    call start_driven_motion(angles%held%drives, plan, changed, t, driven, err, before%derivatives)
     if (allocated(err)) return
     driven%positions = before%positions - 1
     driven%steps = before%steps
@@ -136,6 +150,7 @@ contains
     type(driven_motion_type), intent(inout) :: driven   !< the driven motion
     integer :: i
 
+    if (size(angles%held%rods) > 0) driven%rods = angles%held%rods
     if (size(angles%joints) == 0) return
     allocate (driven%angles(size(angles%joints)))
     do i = 1, size(angles%joints)
@@ -145,8 +160,7 @@ contains
   end subroutine note_angles
 
   !> Show the present position in the angles of the data file, if others are in use.
-  subroutine show_angles(model, plan, angles, driven, err)
-    type(model_type), intent(in) :: model                  !< the model
+  subroutine show_angles(plan, angles, driven, err)
     type(plan_type), intent(in) :: plan                    !< as the motion executes it
     type(ball_angles_type), intent(inout) :: angles        !< of the ball joints
     type(driven_motion_type), intent(inout) :: driven      !< the driven motion
@@ -156,14 +170,14 @@ contains
     if (.not. angles%in_use()) return
     call angles%continue_to(driven%state)
     dddq = 0.0_wp
-    if (angles%in_lock() .and. driven%derivatives > 1) call find_third_derivatives(model, plan, driven, dddq)
+    if (angles%in_lock() .and. driven%derivatives > 1) call find_third_derivatives(angles%held%drives, plan, driven, dddq)
     call angles%show(driven%state, dddq, err)
   end subroutine show_angles
 
   !> Third derivatives of all coordinates by a central difference of the accelerations, of one side at an end of the motion. They
   !> are zero where the motion leads to neither side.
-  subroutine find_third_derivatives(model, plan, driven, dddq)
-    type(model_type), intent(in) :: model              !< the model
+  subroutine find_third_derivatives(drives, plan, driven, dddq)
+    type(drive_slot_type), intent(in) :: drives(:)     !< of the driven coordinates
     type(plan_type), intent(in) :: plan                !< as the motion executes it
     type(driven_motion_type), intent(in) :: driven     !< the driven motion
     real(wp), intent(out) :: dddq(:)                   !< (M) [rad/s^3, m/s^3]
@@ -176,7 +190,7 @@ contains
                                    sqrt(maxval(abs(driven%state%ddq)/plan%unit_of)), tiny(dt)/epsilon(dt))
     do i = 1, 2
       other = driven
-      call advance(model%problem%drives, plan, other, driven%state%t + (2*i - 3)*dt, err)
+      call advance(drives, plan, other, driven%state%t + (2*i - 3)*dt, err)
       t(i) = other%state%t
       ddq(:, i) = other%state%ddq
       if (allocated(err)) then

@@ -81,7 +81,7 @@ contains
     real(wp), intent(in) :: t                              !< time of the start [s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
 
-    call begin_with_angles(self%model, self%plan, self%assembled, t, self%requested%derivatives, self%driven, self%angles, err)
+    call begin_with_angles(self%model, self%requested, self%plan, self%assembled, t, self%driven, self%angles, err)
   end subroutine begin
 
   !> The position at time t, on the same branch.
@@ -90,7 +90,7 @@ contains
     real(wp), intent(in) :: t                              !< time to go to [s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
 
-    call advance_with_angles(self%model, self%plan, t, self%driven, self%angles, err)
+    call advance_with_angles(self%model, self%requested, self%plan, t, self%driven, self%angles, err)
   end subroutine go_to
 
   !> The plan and the present state.

@@ -18,6 +18,7 @@ module mech9_free_simulation
   use mech9_integrator, only: integration_statistics_type
   use mech9_integrated_vector, only: unpack_state
   use mech9_motion_system, only: set_motion_system
+  use mech9_held_angles, only: copy_drives
   use mech9_motion_coefficients, only: find_coefficients
   use mech9_integrated_motion, only: integrated_motion_type
   use mech9_limit_passing, only: stop_at_limits
@@ -102,19 +103,24 @@ contains
     call leave_out_unrequested(used, simulation%requested)
     call request_planned(used, simulation%requested)
     start = assembled
-    call simulation%motion%angles%begin(model, model%problem%partition, used, start, err)
+    call simulation%motion%angles%begin(model, simulation%requested, used, start, err)
     if (allocated(err)) return
     allocate (simulation%motion%system)
     simulation%motion%system%plan = used
     simulation%motion%system%state = start
-    call set_motion_system(model, model%problem%partition, simulation%motion%system, err)
+    associate (held => simulation%motion%angles%held)
+      call copy_drives(held%drives, simulation%motion%system%drives)
+      call set_motion_system(model, held%partition, simulation%motion%system, err)
+    end associate
     if (allocated(err)) then
       call name_cause_at_start(model, plan, assembled, err)
       return
     end if
     simulation%coefficients = simulation%motion%system%work%coefficients
     if (.not. simulation%motion%angles%in_use()) return
-    call find_coefficients(model%mechanism, simulation%motion%angles%plan, assembled, simulation%coefficients, err)
+    ! with other angles held, those of the data file may be singular; the coefficients do not depend on which is held
+    if (size(simulation%motion%angles%held%rods) == 0) &
+      call find_coefficients(model%mechanism, simulation%motion%angles%plan, assembled, simulation%coefficients, err)
     if (.not. allocated(err)) call add_event(simulation)
   end subroutine new_free_simulation
 
@@ -285,13 +291,13 @@ contains
     logical :: changed
 
     associate (motion => self%motion)
-      if (size(motion%angles%joints) == 0) return
+      if (size(motion%angles%joints) == 0 .and. size(motion%angles%held%rods) == 0) return
       if (motion%angles%in_use()) then
         call unpack_state(motion%system%plan, motion%t, motion%y, motion%system%state)
         call self%continue_angles(motion%t, err)
         if (allocated(err)) return
       end if
-      call motion%change_angles(changed, err)
+      call motion%change_angles(self%requested, changed, err)
     end associate
     if (changed) changed = .not. same_replaced(self)
     if (changed) call add_event(self)

@@ -14,6 +14,7 @@ module mech9_integrated_motion
   use mech9_coordinate_choice, only: best_independent, carry_over, worth_taking
   use mech9_integrated_vector, only: pack_rates
   use mech9_motion_system, only: motion_system_type, set_motion_system
+  use mech9_held_angles, only: copy_drives
   use mech9_ball_angles, only: ball_angles_type
   use mech9_dense_output, only: dense_output_type
   use mech9_limit_watch, only: limit_watch_type
@@ -133,19 +134,23 @@ contains
                       other%state, failure, wanted, in_vain, same_frames)
     end if
     if (gives_up(failure, err) .or. in_vain) return
-    call angles%begin(self%system%model, partition, other%plan, other%state, failure)
+    angles = self%angles
+    call angles%restart(self%system%model, partition, requested, other%plan, other%state, failure)
     if (gives_up(failure, err)) return
+    same_frames = same_frames .and. .not. angles%in_use() .and. all(angles%held%partition%kind == partition%kind)
+    call copy_drives(angles%held%drives, other%drives)
     ! they may have no inertia in this position; what fails in any coordinates will do so in the present ones, too
-    if (same_frames .and. .not. angles%in_use()) then
-      call set_motion_system(self%system%model, partition, other, failure, self%system)
+    if (same_frames) then
+      call set_motion_system(self%system%model, angles%held%partition, other, failure, self%system)
     else
-      call set_motion_system(self%system%model, partition, other, failure)
+      call set_motion_system(self%system%model, angles%held%partition, other, failure)
     end if
   end subroutine take_coordinates
 
-  !> Go on with other angles in the ball joints whose present ones are near gimbal lock.
-  subroutine change_angles(self, changed, err)
+  !> Go on with other angles in the ball joints whose present ones are near gimbal lock, or with other angles of rods held.
+  subroutine change_angles(self, requested, changed, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion, to whose end the angles are continued
+    type(requested_type), intent(in) :: requested          !< the part of the motion that is worked out
     logical, intent(out) :: changed                        !< the angles are others now
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(motion_system_type), pointer :: other
@@ -153,24 +158,48 @@ contains
     type(error_type), allocatable :: failure
 
     changed = .false.
-    if (.not. any(self%angles%in_doubt(self%y))) return
+    if (.not. (any(self%angles%in_doubt(self%y)) .or. self%angles%held%in_doubt(self%system%state))) return
     call self%system%settle(self%t, self%y, failure)
     if (.not. allocated(failure)) call self%system%present(failure)
     if (.not. allocated(failure)) call self%show_angles(failure)
     if (gives_up(failure, err)) return
     angles = self%angles
     allocate (other)
-    call angles%change(self%system%state, other%plan, other%state, failure)
-    if (.not. allocated(failure)) call set_motion_system(self%system%model, self%system%partition, other, failure)
-    if (gives_up(failure, err)) then
+    call take_angles(self, requested, angles, other, failure)
+    changed = .not. (gives_up(failure, err) .or. angles%move_as(self%angles))
+    if (changed) then
+      self%angles = angles
+      call replace_system(self, other)
+      call self%begin(err)
+    else
       deallocate (other)
-      return
     end if
-    self%angles = angles
-    call replace_system(self, other)
-    changed = .true.
-    call self%begin(err)
   end subroutine change_angles
+
+  !> Make the system in the angles that serve best, at the present state.
+  subroutine take_angles(self, requested, angles, other, failure)
+    class(integrated_motion_type), intent(in) :: self       !< the motion
+    type(requested_type), intent(in) :: requested           !< the part of the motion that is worked out
+    type(ball_angles_type), intent(inout) :: angles         !< those of the motion; then those of the system
+    type(motion_system_type), intent(inout) :: other        !< gets the system
+    type(error_type), allocatable, intent(out) :: failure   !< allocated if these angles cannot serve
+
+    if (size(angles%held%rods) > 0) then
+      if (angles%in_use()) then
+        other%plan = angles%plan
+        other%state = angles%state
+      else
+        other%plan = self%system%plan
+        other%state = self%system%state
+      end if
+      call angles%restart(self%system%model, self%system%partition, requested, other%plan, other%state, failure)
+    else
+      call angles%change(self%system%state, other%plan, other%state, failure)
+    end if
+    if (allocated(failure) .or. angles%move_as(self%angles)) return
+    call copy_drives(angles%held%drives, other%drives)
+    call set_motion_system(self%system%model, angles%held%partition, other, failure)
+  end subroutine take_angles
 
   !> Show the present state of the system in the angles of the data file, if others are integrated.
   subroutine show_angles(self, err)

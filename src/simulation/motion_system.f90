@@ -11,6 +11,7 @@ module mech9_motion_system
     failure_lost_inertia, failure_infinite_rate
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_driven_equations, only: hold
+  use mech9_law, only: drive_slot_type
   use mech9_partition, only: partition_type
   use mech9_motor, only: motor_action_type
   use mech9_model, only: model_type
@@ -28,6 +29,7 @@ module mech9_motion_system
   use mech9_motor_states, only: start_motors, find_motor_rates, find_limits, find_action
   use mech9_frame_motion, only: place_all
   use mech9_branch_stepping, only: set_inputs
+  use mech9_held_angles, only: copy_drives
   use mech9_smooth_interval, only: smooth_interval_type
   implicit none
   private
@@ -37,6 +39,7 @@ module mech9_motion_system
   type, extends(ode_system_type) :: motion_system_type
     type(model_type), pointer :: model => null()     !< constant, the same for all systems of a motion
     type(partition_type) :: partition                !< of the coordinates, as they are now
+    type(drive_slot_type), allocatable :: drives(:)  !< of the driven coordinates, as they are now
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
     type(lagrange_work_type) :: work
@@ -65,7 +68,8 @@ module mech9_motion_system
 contains
 
   !> Make the system from its plan and an assembled start with the independent rates, which stand in it. The motion there is found,
-  !> and work%coefficients are those of the start. What an earlier system knows of frames and blocks that stay is taken over.
+  !> and work%coefficients are those of the start. What an earlier system knows of frames and blocks that stay is taken over. The
+  !> drives are those of the model unless they stand in the system.
   subroutine set_motion_system(model, partition, system, err, known)
     type(model_type), intent(in), target :: model        !< the model; it must outlive the system
     type(partition_type), intent(in) :: partition        !< of the coordinates
@@ -76,6 +80,7 @@ contains
     system%settles = .true.
     system%model => model
     system%partition = partition
+    if (.not. allocated(system%drives)) call copy_drives(model%problem%drives, system%drives)
     if (present(known)) then
       call make_dynamics_plan(model%mechanism, system%plan, system%dynamics, known%plan, known%dynamics)
     else
@@ -149,7 +154,7 @@ contains
 
     call unpack_state(self%plan, t, y, self%state)
     self%state%t = self%interval%time_inside(t)
-    call set_inputs(self%model%problem%drives, self%state%t, self%state%q, self%state%dq, self%state%ddq, err)
+    call set_inputs(self%drives, self%state%t, self%state%q, self%state%dq, self%state%ddq, err)
   end subroutine take_vector
 
   !> Pass a joint of the laws. Where rates of driven coordinates jump, those of the free ones change by the impulse of the drives:
@@ -175,8 +180,8 @@ contains
     end where
     if (maxval(abs(jump)) > 0.0_wp) call take_impulse(self, jump(self%plan%independent), y, err)
     if (allocated(err)) return
-    do i = 1, size(self%model%problem%drives)
-      associate (k => self%model%problem%drives(i)%drive%coordinate)
+    do i = 1, size(self%drives)
+      associate (k => self%drives(i)%drive%coordinate)
         y(k) = self%state%q(k)
       end associate
     end do
@@ -239,8 +244,8 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i, k
 
-    do i = 1, size(self%model%problem%drives)
-      k = self%model%problem%drives(i)%drive%coordinate
+    do i = 1, size(self%drives)
+      k = self%drives(i)%drive%coordinate
       if (abs(self%state%q(k) - y(k)) <= trusted_closing*self%plan%unit_of(k)) cycle
       call raise(err, exit_singular, failure_drive_jumps)
       err%failure%t = self%state%t

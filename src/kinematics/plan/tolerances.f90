@@ -19,8 +19,8 @@ module mech9_tolerances
     far_slide, escaped_slide, escaping_speed, escape_law, just_short_of_end, shorter_crossing, trusted_crossing, &
     trusted_crossing_rates, first_move, doubtful_conditioning, worthwhile_improvement, regular_conditioning, &
     refused_conditioning, trusted_closing, trusted_between_steps, steepest_slope, negligible_inertia, &
-    doubtful_margin, short_way, third_derivative_step, locked, locked_together, balanced, balanced_singular, &
-    regular_balance, opened_by_parameter
+    doubtful_margin, lesser_share, lesser_share_near, short_way, third_derivative_step, locked, locked_together, balanced, &
+    balanced_singular, regular_balance, opened_by_parameter
 
   ! Ranks and singular positions: judged alike by --check, driven motion and dynamics.
 
@@ -227,6 +227,11 @@ module mech9_tolerances
   !> The angles of a ball joint are replaced by others where the sine of the angle between their first and third axis is below
   !> this. The others' sine is then above 0.9.
   real(wp), parameter :: doubtful_margin = 0.4_wp
+  !> Another angle of a rod between two ball joints is held in place of the present one where the present one's share in a turn of
+  !> the rod about itself is below this part of the greatest share ...
+  real(wp), parameter :: lesser_share = 0.5_wp
+  !> ... or below this part near a singular position, for which the held angle may be the reason. The greatest share is above 0.2.
+  real(wp), parameter :: lesser_share_near = 0.8_wp
   !> Longest way of a ball joint's third axis over which its angles are continued at once, in parts of its distance from gimbal
   !> lock. They cannot change by half a turn while this is below 1; ways are bounded by twice the greater speed of both ends.
   real(wp), parameter :: short_way = 0.5_wp

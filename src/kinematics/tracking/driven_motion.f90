@@ -18,6 +18,7 @@ module mech9_driven_motion
     branch_point, uncertain, escape
   use mech9_special_start, only: starting_rates_type, find_starting_rates, start_crossing
   use mech9_branch_crossing, only: branch_crossing_type, build_crossing, position_within
+  use mech9_held_rods, only: held_rod_type, should_change
   use mech9_frame_motion, only: spread_velocities
   use mech9_block_equations, only: largest_gap
   implicit none
@@ -44,6 +45,7 @@ module mech9_driven_motion
     real(wp) :: worst_closure = 0.0_wp            !< largest closure error at any output [m]
     real(wp), allocatable :: limit(:)             !< (M) independent coordinates where the motion ends [rad, m]
     type(ball_angles_in_use_type), allocatable :: angles(:)   !< of the ball joints whose angles can be replaced; may be missing
+    type(held_rod_type), allocatable :: rods(:)   !< rods one of whose angles is held; may be missing
     logical :: paused = .false.                   !< the motion waits for other angles of a ball joint, short of the time to go to
   end type driven_motion_type
 
@@ -161,7 +163,7 @@ contains
 
   !> Go on to a time on the same branch; the state then has position, rates and accelerations there. Fails with exit_singular
   !> where the motion cannot go on; the state is then the last one that was reached. Where the angles of a ball joint come near
-  !> to their singular position, the motion is `paused` at the end of a step.
+  !> to their singular position, or another angle of a rod should be held, the motion is `paused` at the end of a step.
   subroutine advance(drives, plan, driven, t, err)
     type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
@@ -209,12 +211,18 @@ contains
     end if
   end subroutine advance
 
-  !> Whether the angles of a ball joint are near their singular position, so that others should be taken.
+  !> Whether the angles of a ball joint are near their singular position, so that others should be taken, or another angle of a rod
+  !> should be held.
   pure logical function angles_in_doubt(driven)
     type(driven_motion_type), intent(in) :: driven   !< the driven motion
     integer :: i
 
     angles_in_doubt = .false.
+    if (allocated(driven%rods)) then
+      do i = 1, size(driven%rods)
+        angles_in_doubt = angles_in_doubt .or. should_change(driven%rods(i), driven%state, any(is_near(driven%monitors)))
+      end do
+    end if
     if (.not. allocated(driven%angles)) return
     do i = 1, size(driven%angles)
       associate (angles => driven%angles(i))
