@@ -1,9 +1,10 @@
 !> Rods between two ball joints that the user has left to turn about themselves: one angle of them becomes independent.
 !>
-!> It is held, unless the rod resists such a turn and moves freely. The angle is that of a turn about an axis of the rod: the
-!> third turn of a joint whose moving link the rod is, or the first turn of one whose reference link it is. It is held where it is
-!> if the rod can point in all directions so. Otherwise it is held at the nearest position where the rod can, so that chains
-!> close: there the middle axis is at a right angle to the rod's line.
+!> It is held, unless the rod resists such a turn and moves freely. An angle that takes nearly the whole turn at the start is held
+!> where it is: the rod can point in nearly all directions so. Where there is none, the angle is that of a turn about an axis of the
+!> rod, which is the third turn of a joint whose moving link the rod is, or the first turn of one whose reference link it is. It is
+!> held at the nearest position where the rod can point in all directions, so that chains close: there the middle axis is at a
+!> right angle to the rod's line.
 module mech9_rod_holding
   use mech9_kinds, only: wp, pi
   use mech9_rotation, only: cross, unit
@@ -25,8 +26,9 @@ module mech9_rod_holding
   !> A rod does not resist a turn about its line where its moment of inertia about it is below this part of the largest one of the
   !> mechanism: the equation of such a turn is little more than round-off of the others, which makes steps ever shorter.
   real(wp), parameter :: slender = 1.0e-9_wp
-  !> The rod lies along an axis where the cosine of their angle is above this.
-  real(wp), parameter :: in_line = 0.9_wp
+  !> An angle takes nearly the whole turn of a rod about itself where its share is above this: about such an axis the rod
+  !> can point in nearly all directions while the angle is held.
+  real(wp), parameter :: nearly_whole = 0.9_wp
   !> A line is in a plane where its direction is that far from it.
   real(wp), parameter :: round_off = 1.0e-13_wp
 
@@ -38,17 +40,17 @@ contains
     type(model_type), intent(inout) :: model    !< the model without errors
     type(idle_rod_type), allocatable :: rods(:)
     integer, allocatable :: kinds(:)
-    logical :: changed
+    logical :: changed, serves_there
     integer :: i, k
 
     call find_idle_rods(model%mechanism%structure, rods)
     kinds = model%problem%partition%kind
     changed = .false.
     do i = 1, size(rods)
-      call choose_angle(model%mechanism, rods(i), kinds, model%problem%initial%position, k)
+      call choose_angle(model%mechanism, rods(i), kinds, model%problem%initial%position, k, serves_there)
       if (k == 0) cycle
       changed = .true.
-      if (.not. model%problem%initial%position_given(k)) &
+      if (.not. (serves_there .or. model%problem%initial%position_given(k))) &
         call let_point_anywhere(model%mechanism, rods(i), k, model%problem%initial%position)
       if (all_driven .or. .not. resists(model%mechanism, rods(i), model%problem%initial%position)) then
         kinds(k) = driven_coordinate
@@ -63,40 +65,40 @@ contains
     model%problem%partition%kind = kinds
   end subroutine hold_idle_rods
 
-  !> The angle about an axis of the rod that changes more as the rod turns about itself; 0 where an angle is independent already or
-  !> coupled, or where the balls have one centre.
-  subroutine choose_angle(mechanism, rod, kinds, q, angle)
+  !> The angle that changes more of the two about axes of the rod, unless another one of its joints takes nearly the whole turn of
+  !> the rod about itself and they do not; 0 where an angle is independent already or coupled, or where the balls have one centre.
+  subroutine choose_angle(mechanism, rod, kinds, q, angle, serves_there)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(idle_rod_type), intent(in) :: rod          !< the rod
     integer, intent(in) :: kinds(:)                 !< (M) driven, free or dependent
     real(wp), intent(in) :: q(:)                    !< (M) guesses of the coordinates [rad, m]
     integer, intent(out) :: angle                   !< number of its coordinate
-    real(wp) :: lines(3, 2), rates(3), best
-    integer :: i, k
+    logical, intent(out) :: serves_there            !< it takes nearly the whole turn at the guesses
+    real(wp) :: lines(3, 2), shares(3, 2)
+    integer :: numbers(3, 2), i, at(2)
+    logical :: about_rod(3, 2)
 
     angle = 0
+    serves_there = .false.
     do i = 1, 2
       associate (joint => mechanism%structure%joints(rod%joints(i)))
         if (any(kinds(joint%coordinates()) /= dependent_coordinate) .or. is_coupled(mechanism, joint%coordinates())) return
+        numbers(:, i) = joint%coordinates()
       end associate
     end do
     lines = lines_of(mechanism, rod, q)
     if (.not. norm2(lines) > 0.0_wp) return
-    best = -1.0_wp
+    about_rod = .false.
     do i = 1, 2
-      associate (joint => mechanism%structure%joints(rod%joints(i)))
-        k = turn_of_rod(mechanism, rod, i)
-        ! the turn about an axis along the rod takes its whole turn, whatever the guesses are
-        if (abs(lines(k, i)) > in_line) then
-          angle = joint%numbers(k)
-          return
-        end if
-        rates = rates_of(lines(:, i), k == 3, q(joint%coordinates()))
-        if (abs(rates(k)) <= best) cycle
-        best = abs(rates(k))
-        angle = joint%numbers(k)
+      associate (k => turn_of_rod(mechanism, rod, i))
+        about_rod(k, i) = .true.
+        shares(:, i) = abs(shares_of(lines(:, i), k == 3, q(numbers(:, i))))
       end associate
     end do
+    ! the share of a turn about an axis along the rod stays what it is, wherever the rod points
+    at = maxloc(shares, mask=about_rod .or. (shares > nearly_whole .and. .not. any(about_rod .and. shares > nearly_whole)))
+    serves_there = shares(at(1), at(2)) > nearly_whole
+    angle = numbers(at(1), at(2))
   end subroutine choose_angle
 
   !> Directions of a rod's line in the frames of its two ball joints; 0 where the balls have one centre.
@@ -252,23 +254,22 @@ contains
     end if
   end function frame_in
 
-  !> Rates of the turns about x, y', z'' as one of both links turns with a rate of one; less than those that are large where the
-  !> angles are near their singular position.
-  pure function rates_of(line, moving, q) result(rates)
+  !> Shares of the turns about x, y', z'' in a turn of one of both links with a rate of one: their rates, times the cosine of the
+  !> second angle, with which the rates become large near the singular position of the angles.
+  pure function shares_of(line, moving, q) result(shares)
     real(wp), intent(in) :: line(3)   !< direction of the angular velocity, in the joint's frame in the link that turns
     logical, intent(in) :: moving     !< this is the moving link, else the reference link
     real(wp), intent(in) :: q(3)      !< the angles [rad]
-    real(wp) :: rates(3), across
+    real(wp) :: shares(3), across
 
-    ! rates are multiplied by the cosine of the second angle
     if (moving) then
       across = line(1)*cos(q(3)) - line(2)*sin(q(3))
-      rates = [across, (line(1)*sin(q(3)) + line(2)*cos(q(3)))*cos(q(2)), line(3)*cos(q(2)) - across*sin(q(2))]
+      shares = [across, (line(1)*sin(q(3)) + line(2)*cos(q(3)))*cos(q(2)), line(3)*cos(q(2)) - across*sin(q(2))]
     else
       across = line(3)*cos(q(1)) - line(2)*sin(q(1))
-      rates = -[line(1)*cos(q(2)) - across*sin(q(2)), (line(3)*sin(q(1)) + line(2)*cos(q(1)))*cos(q(2)), across]
+      shares = -[line(1)*cos(q(2)) - across*sin(q(2)), (line(3)*sin(q(1)) + line(2)*cos(q(1)))*cos(q(2)), across]
     end if
-  end function rates_of
+  end function shares_of
 
   !> Whether a rod has a moment of inertia about its line that counts.
   logical function resists(mechanism, rod, q)
