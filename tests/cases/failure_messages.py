@@ -103,6 +103,11 @@ def open_chain(first, link, n):
 LONG = 500
 
 
+def sensitive(target, *groups, end=1):
+    """A parallelogram whose derivatives by one number are asked for."""
+    return four_bar(FLAT, *groups, f"&parameter name='number', sets='{target}' /\n", '&output sensitivities=.true. /\n', end=end)
+
+
 def large(independent, coordinates, links, closed_chain):
     """A closed chain and a long open chain beside it."""
     independent = [*independent, *range(coordinates + 1, coordinates + LONG + 1)]
@@ -300,6 +305,14 @@ def driven_cases():
         ('off_table', TABLE_COUPLING, {'curve.dat': '0 0\n0.1 0\n0.2 0.1\n0.3 0.2\n'}, SINGULAR,
          ['case.nml:5:1: coordinate 1 comes to an end of the table of coupling 1 at t = ', ' s: it would go on to 0.3',
           'rad, and the table leads from 0 to 0.3 rad. Start elsewhere in the table']),
+        ('no_neighbours', sensitive('mechanism.data_tolerance', turned(60), drive(1, '60')), (), DATA,
+         ["derivatives by the parameter 'number' do not exist: its value cannot be changed a little in both directions"]),
+        ('unknown_derivative', sensitive('time.end', turned(60), drive(1, '60')), (), DATA,
+         ["derivatives by the parameter 'number' are not computed: it sets a time"]),
+        ('singular_sensitivity', sensitive('drive.coefficients(1)', turned(-20), drive(1, '-20,20'), end=2), (), SINGULAR,
+         ['derivatives by the parameters do not exist at t = 1 s, in a singular position of closed chain 1']),
+        ('opening_parameter', sensitive('pair(2).axis(1)', turned(60), drive(1, '60')), (), DATA,
+         ["derivatives by the parameter 'number' do not exist: closed chain 1 would not stay closed"]),
     ]
 
 
