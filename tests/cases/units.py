@@ -26,6 +26,7 @@ from loops import Loops
 
 UNITS = (1e3, 1e-3)     # numbers of lengths in millimetres, in kilometres, against those in metres
 LIMIT = 1e-9            # of a dead point, as promised
+GRAVITY = 9.81          # m/s2
 
 # a pendulum with a spring at its pin, of which no other data file has one
 SPRING_AT_PIN = """
@@ -177,8 +178,11 @@ class Units:
                 return
             # beside a singular position each solution loses as much as its matrix is ill conditioned
             lost = max(1.0, 0.01 / least) ** (1 + column.count('d'))
-            # relative to the largest number of the column, unless they all are zeros but for round-off
+            # relative to the largest number of the column, unless they all are zeros but for round-off; accelerations of a
+            # mechanism at rest are differences of forces, and have the round-off of gravity
             largest = largest_like(column, table)
+            if 'evaluations' in report and re.match(r'ddq|.*\.a[xyz]$', column):
+                largest = max(largest, GRAVITY)
             self.checks.near(found, values, tolerance_of(column) * lost, f'{why}: {column}',
                              scale=largest if largest > tolerance_of(column) else 1.0)
 
