@@ -297,7 +297,7 @@ def check_rod(cases):
         done = run(cases.mech9k, cases.write(text), '--no-write')
         cases.checks.equal(done.returncode, 0, 'a rod between balls: moved')
         said = 'note: link 3 can turn by itself between the spherical joint of coordinates 2, 3, 4 and the spherical joint of ' \
-            'coordinates 5, 6, 7; coordinate 5 is held at 0'
+            'coordinates 5, 6, 7; coordinate 5 is held at 0 rad'
         cases.checks.equal(said in done.stderr, not more, 'a rod between balls: the note')
         table = cases.table(cases.mech9k, text)
         if reference is None:

@@ -5,7 +5,7 @@ module mech9_held_text
   use mech9_held_rods, only: held_angle
   use mech9_partition, only: free_coordinate
   use mech9_model, only: model_type
-  use mech9_result_units, only: unit_of
+  use mech9_result_units, only: unit_of, unit_name
   use mech9_joint_words, only: joint_name
   implicit none
   private
@@ -37,8 +37,8 @@ contains
       if (has_negligible_inertia(model, rods(i)%links)) &
         words = words//', with a negligible moment of inertia about the line between them'
       write (unit, '(a)') words//'; coordinate '//to_text(k)//' is held at '// &
-        to_text(model%problem%initial%position(k)/unit_of(model%mechanism, k), 6)//', or another angle of these joints '// &
-        'where this one would stop the motion'
+        to_text(model%problem%initial%position(k)/unit_of(model%mechanism, k), 6)//' '//trim(unit_name(model%mechanism, k))// &
+        ', or another angle of these joints where this one would stop the motion'
     end do
   end subroutine print_held
 
