@@ -127,8 +127,12 @@ contains
         do k = 1, size(parameters(j)%targets)
           if (j == last .and. k >= i) exit
           if (.not. is_same(parameters(j)%targets(k), parameters(last)%targets(i))) cycle
-          call diagnostics%add(span_of(document%groups(number), 'sets', i), 'parameter '''//parameters(j)%name// &
-                               ''' sets this number already; one parameter is enough')
+          if (j == last) then
+            call diagnostics%add(span_of(document%groups(number), 'sets', i), 'this number is named twice')
+          else
+            call diagnostics%add(span_of(document%groups(number), 'sets', i), 'parameter '''//parameters(j)%name// &
+                                 ''' sets this number already; one parameter is enough')
+          end if
         end do
       end do
     end do

@@ -31,7 +31,9 @@ contains
         quantity%take = get_text(group, 'take')
         quantity%place = diagnostics%place(span_of(group, 'of', 1))
         call check_name(group, quantity%name, diagnostics)
-        if (quantity%take == 'at' .neqv. has_name(group, 'at')) then
+        if (quantity%take == 'at' .and. .not. has_name(group, 'at')) then
+          call diagnostics%add(span_of(group, 'take', 1), 'take=''at'' needs ''at'': the time of the value')
+        else if (quantity%take /= 'at' .and. has_name(group, 'at')) then
           call diagnostics%add(span_of(group, 'take', 1), '''at'' gives the time for take=''at'', and belongs to no other one')
         else if (has_name(group, 'at')) then
           quantity%at = get_real(group, 'at')

@@ -4,6 +4,7 @@ module mech9_cam_task
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, add_place, exit_usage
   use mech9_text, only: string_type, to_text
+  use mech9_counted, only: counted
   use mech9_path, only: ending_of
   use mech9_command_line, only: command_line_type
   use mech9_cam_files, only: cam_file_type, read_cam_file
@@ -99,7 +100,8 @@ contains
           call raise(err, exit_usage, 'there are '//to_text(n_cams)//' cams; tell which one by its number, as in --cam 1:'// &
                      file%path)
         else if (file%number > n_cams) then
-          call raise(err, exit_usage, 'there is no cam '//to_text(file%number)//'; they are 1 to '//to_text(n_cams))
+          call raise(err, exit_usage, 'there is no cam '//to_text(file%number)//'; this file has '// &
+                     counted(n_cams, 'cam'))
         else if (any(ending_of(file%path) == [character(len=4) :: 'png', 'pdf', 'gif', 'html'])) then
           call raise(err, exit_usage, "a cam is drawn into a file whose name ends in .svg, not '"//file%path//"'")
         end if

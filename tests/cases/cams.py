@@ -372,7 +372,7 @@ def bad_input(s):
             ('&cam link=2, follower=1, roller=0.01 /', DATA, 'the centre of the roller on link 1 does not move against the cam'),
             ('&cam link=2, follower=1 /', DATA, 'the edge on link 1 does not move against the cam')):
         s.refused(good.replace(cam, changed), code, words)
-    s.refused(good, USAGE, 'there is no cam 2; they are 1 to 1', '--cam', '2:-')
+    s.refused(good, USAGE, 'there is no cam 2; this file has 1 cam', '--cam', '2:-')
     s.refused(good, USAGE, 'ends in .svg', '--cam', 'cam.png')
     s.refused(good, USAGE, '--cam needs an argument', '--cam')
     path = s.write('case.nml', good)

@@ -62,6 +62,13 @@ def told(checks, program, path):
     done = run(program, path, '--set', 'parameter(1).sets=pair(2).pont(1)')
     checks.true(done.returncode == DATA and "--set: unknown name 'pont' in &pair; did you mean 'point'?" in done.stderr,
                 f'{name}: an unknown number has its place and the nearest name', done.stderr)
+    for setting, message in (('parameter(1).sets=pair.point(1)', 'there are 4 groups &pair; say which one: pair(2).point(1)'),
+                             ("parameter(1).sets='pair(2).point(1)','pair(2).point(1)'", 'this number is named twice'),
+                             ("parameter(2).sets='pair(2).point(1)'", "parameter 'crank' sets this number already"),
+                             ('parameter(3).value=1', 'this file has 2 groups &parameter, and --set adds another one'),
+                             ('parameter(4).value=1', 'this file has 2 groups &parameter only')):
+        done = run(program, path, '--set', setting)
+        checks.true(done.returncode == DATA and message in done.stderr, f'{name}: {setting}: {message}', done.stderr)
 
 
 def main():

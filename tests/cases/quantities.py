@@ -137,9 +137,17 @@ def same_rows(checks, program, folder):
 def mistakes(checks, program, folder):
     path = os.path.join(folder, 'wrong.nml')
     for group, message in ((quantity(1, 'B.z1', 'max'), "11:25: quantity 'n1' is of column 'B.z1', which is not recorded; did you mean 'B.z'?"),
-                           (quantity(1, 'R4.fx', 'max'), "quantity 'n1' is of column 'R4.fx', which is not recorded"),
+                           (quantity(1, 'R4.fx', 'max'), "'R4.fx', which is not recorded; set reactions=.true. in &output"),
+                           (quantity(1, 'R4.fx', 'max') + '&output reaction_pairs=1 /\n', '; pair 4 is not among reaction_pairs in &output'),
+                           (quantity(1, 'F1', 'max'), "'F1', which is not recorded; set drive_forces=.true. in &output"),
+                           (quantity(1, 'F2', 'max'), "'F2', which is not recorded; coordinate 2 has no drive"),
+                           (quantity(1, 'dq1', 'max') + '&output derivatives=0 /\n', '; set derivatives=1 in &output'),
+                           (quantity(1, 'B.ax', 'max') + '&output derivatives=1 /\n', '; set derivatives=2 in &output'),
+                           (quantity(1, 'C1', 'max'), '; there are no couplings'),
+                           (quantity(1, 'conditioning', 'max'), '; set conditioning=.true. in &output'),
+                           (quantity(1, 'E.total', 'max'), '; mech9d alone records energies'),
                            (quantity(1, 'B.x', 'maximum'), "unknown take 'maximum'"),
-                           (quantity(1, 'B.x', 'at'), "'at' gives the time for take='at'"),
+                           (quantity(1, 'B.x', 'at'), "take='at' needs 'at': the time of the value"),
                            (quantity(1, 'B.x', 'max', ', at=0.1'), "'at' gives the time for take='at'"),
                            (quantity(1, 'B.x', 'at', ', at=0.8'), 'this time is not among those of the results, 0 to 0.7 s'),
                            (quantity(1, 'B.x', 'max') + quantity(1, 'B.x', 'min'), "a second &quantity for name 'n1'")):
@@ -155,6 +163,25 @@ def mistakes(checks, program, folder):
             checks.true(file.read() == 'kept', f'{group.strip()}: nothing is written over')
 
 
+def couplings(checks, program, folder):
+    """The columns of couplings are told where one is missing."""
+    path = os.path.join(folder, 'coupled.nml')
+    shafts = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=1,3, kind='revolute', axis=0,0,1 /
+&pair coordinate=3, links=1,4, kind='revolute', axis=0,0,1 /
+&coupling kind='gear', coordinates=1,2, ratio=2 /
+&coupling kind='gear', coordinates=2,3, ratio=2 /
+&drive coordinate=1, kind='polynomial', coefficients=0,1 /
+"""
+    for column, more, message in (('C3', '', '; the columns are C1, C2, with reactions=.true. in &output'), ('C2', '', '; set reactions=.true. in &output'),
+                                  ('C3', '&output reactions=.true. /\n', '; the columns are C1, C2')):
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(shafts + more + quantity(1, column, 'max'))
+        done = run(program, path)
+        checks.true(done.returncode == DATA and message + '\n' in done.stderr, f'{column}: {message}', done.stderr)
+
+
 def main():
     checks = Checks()
     mech9k, mech9d = sys.argv[1:3]
@@ -165,6 +192,7 @@ def main():
         oscillations(checks, mech9d)
         same_rows(checks, mech9k, folder)
         mistakes(checks, mech9k, folder)
+        couplings(checks, mech9k, folder)
     checks.finish()
 
 

@@ -126,7 +126,7 @@ contains
     call refused("sets='pair(2).point(1)', low=1, high=1", "'high' must be greater than 'low'")
     call refused("sets='load.stiffness', value=-3", "parameter 'a' sets load.stiffness to -3, and 'stiffness' must be >=0")
     call refused("sets='pair(2).point(1)', value=1e99, factors=1e9", 'which is too large or too small')
-    call refused("sets='pair(2).point(1)','pair( 2 ).point(1)', value=1", "parameter 'a' sets this number already")
+    call refused("sets='pair(2).point(1)','pair( 2 ).point(1)', value=1", "this number is named twice")
     call refused("sets='pair(2).point(1)' / &parameter name='b', sets='PAIR(2).Point(1)'", "parameter 'a' sets this number already")
     call refused("sets='pair(2).point(1)' / &parameter name='a', sets='pair(2).point(2)'", "a second &parameter for name 'a'")
     call refused("sets='pair(2).point(1)' / &parameter name='b c', sets='pair(2).point(2)'", "'name' must be of letters")

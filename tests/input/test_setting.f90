@@ -75,7 +75,7 @@ contains
     call refused('time(1:2).end=1', '--set: write --set group.name=value')
     call refused('time(', '--set: write --set group.name=value')
     call refused('pair.kind=helical', '--set: there are 4 groups &pair; say which one: pair(2)')
-    call refused('pair(9).kind=helical', '--set: there are only 4 groups &pair')
+    call refused('pair(9).kind=helical', '--set: this file has 4 groups &pair only')
     call refused('time.end=1 start=0', '--set: the setting ends before this; give one --set for each name')
     call refused('time.end=1 /', '--set: the setting ends before this; give one --set for each name')
     call refused('time.end=', "--set: a value is missing after this; an empty text is written ''"//eol// &

@@ -3,6 +3,7 @@
 !> A document that passes can be read by mech9_lookup without further checks.
 module mech9_checker
   use mech9_text, only: to_text, lower, nearest_name
+  use mech9_counted, only: counted
   use mech9_source, only: span_type
   use mech9_grammar, only: group_table, item_table, find_group_row, rows_of_group, find_item_rows, &
                            item_row_for_kind, takes_kind, names_of_groups, names_in_group
@@ -38,12 +39,30 @@ contains
         group%sound = .not. has_bad_value(group)
         call check_group(group, diagnostics)
         group%sound = group%sound .and. diagnostics%count == found
+        if (.not. group%sound .and. group%span%source > 1) call explain_added(document, i, diagnostics)
       end associate
     end do
     do i = 1, size(group_table)
       call check_repeated(document, i, diagnostics)
     end do
   end subroutine check_document
+
+  !> Tell that --set adds a group that has errors, beside those of the file: its number may be a mistake.
+  pure subroutine explain_added(document, number, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    integer, intent(in) :: number                         !< number of the group
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the words
+    integer :: i, count
+
+    associate (group => document%groups(number))
+      count = 0
+      do i = 1, number - 1
+        if (document%groups(i)%name == group%name) count = count + 1
+      end do
+      if (count > 0) call diagnostics%add(group%span, 'this file has '//counted(count, 'group')//' &'//group%name// &
+                                          ', and --set adds another one; change a group of the file by its number')
+    end associate
+  end subroutine explain_added
 
   !> Report a group that is not in the grammar, with the nearest known name.
   pure subroutine report_unknown_group(group, diagnostics)

@@ -132,6 +132,7 @@ contains
     type(span_type), intent(in) :: span                   !< its place
     integer, intent(out) :: group                         !< position of the group in the document
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    character(len=14) :: position
     integer :: i, count
 
     count = 0
@@ -147,8 +148,10 @@ contains
       call diagnostics%add(span, 'this file has '//to_text(count)//trim(merge(' group ', ' groups', count == 1))//' &'// &
                            trim(name%group)//' only')
     else if (name%number == 0 .and. count > 1) then
+      position = ''
+      if (name%position > 0) position = '('//to_text(name%position)//')'
       call diagnostics%add(span, 'there are '//to_text(count)//' groups &'//trim(name%group)//'; say which one: '// &
-                           trim(name%group)//'(2).'//trim(name%item))
+                           trim(name%group)//'(2).'//trim(name%item)//trim(position))
       group = 0
     end if
     name%number = max(name%number, 1)

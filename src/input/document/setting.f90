@@ -1,6 +1,7 @@
 !> Changes to a document from the command line: --set group.name=value.
 module mech9_setting
   use mech9_text, only: lower, to_text
+  use mech9_counted, only: counted
   use mech9_source, only: source_type, span_type, source_from_text
   use mech9_grammar, only: item_table, find_item_rows
   use mech9_document, only: document_type, group_type, item_type, subscript_type, value_text, &
@@ -142,7 +143,7 @@ contains
     else if (max(occurrence, 1) <= size(same)) then
       number = same(max(occurrence, 1))
     else if (occurrence > size(same) + 1) then
-      call diagnostics%add(span, 'there are only '//to_text(size(same))//' groups &'//name)
+      call diagnostics%add(span, 'this file has '//counted(size(same), 'group')//' &'//name//' only')
     else
       group%name = name
       group%span = span

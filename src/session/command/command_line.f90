@@ -265,8 +265,8 @@ contains
     else if (option%form == whole_number .and. .not. is_whole_number(argument)) then
       call raise(err, exit_usage, name//" needs a whole number from 1 on, not '"//argument//"'")
     else if (option%form == part_of_whole .and. .not. is_part(argument)) then
-      call raise(err, exit_usage, name//" needs the number of a part and how many parts there are, as in "//name// &
-                 " 3/8; not '"//argument//"'")
+      call raise(err, exit_usage, name//" needs the number K of a part, from 1 to N, and how many parts N there are, as in "// &
+                 name//" 3/8; not '"//argument//"'")
     else if (option%form == assignment .and. .not. is_assignment(argument)) then
       call raise(err, exit_usage, name//' needs '//trim(option%argument)//', as in '//name &
                  //" time.end=2; not '"//argument//"'")

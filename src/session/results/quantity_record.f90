@@ -2,12 +2,14 @@
 module mech9_quantity_record
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
-  use mech9_text, only: nearest_name, to_text
+  use mech9_text, only: to_text
   use mech9_error, only: error_type, raise, exit_data
   use mech9_quantity, only: quantity_type
+  use mech9_model, only: model_type
   use mech9_chebyshev, only: chebyshev_type, new_chebyshev
   use mech9_tracked_quantity, only: tracked_quantity_type
   use mech9_columns, only: columns_type
+  use mech9_missing_column, only: remedy_of_missing
   use mech9_facts, only: facts_type
   use mech9_json, only: json_type
   implicit none
@@ -43,24 +45,25 @@ module mech9_quantity_record
 contains
 
   !> Find the columns of the quantities. Fails with exit_data at the place of a quantity whose column is not recorded.
-  subroutine begin(self, quantities, columns, err)
+  subroutine begin(self, model, columns, err)
     class(quantity_record_type), intent(out) :: self        !< the record
-    type(quantity_type), intent(in) :: quantities(:)        !< in the order of the data file
+    type(model_type), intent(in) :: model                   !< the model, which requests quantities
     type(columns_type), intent(in) :: columns               !< of the run
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    integer :: i
+    integer :: i, n
 
-    self%quantities = quantities
+    self%quantities = model%request%quantities
+    n = size(self%quantities)
     self%columns = columns
-    allocate (self%tracked(size(quantities)))
-    allocate (self%numbers(size(quantities)), source=ieee_value(1.0_wp, ieee_quiet_nan))
-    allocate (self%piece(points_between, size(quantities)), source=0.0_wp)
+    allocate (self%tracked(n))
+    allocate (self%numbers(n), source=ieee_value(1.0_wp, ieee_quiet_nan))
+    allocate (self%piece(points_between, n), source=0.0_wp)
     call new_chebyshev(points_between, self%rule)
-    do i = 1, size(quantities)
+    do i = 1, n
       associate (quantity => self%quantities(i), tracked => self%tracked(i))
         tracked%take = quantity%take
         tracked%at = quantity%at
-        call find_column(quantity, columns, tracked%column, err)
+        call find_column(quantity, model, columns, tracked%column, err)
         if (allocated(err)) return
         call columns%family_of(tracked%column, tracked%family, tracked%order)
       end associate
@@ -68,23 +71,18 @@ contains
   end subroutine begin
 
   !> Find the column of a quantity.
-  subroutine find_column(quantity, columns, column, err)
+  subroutine find_column(quantity, model, columns, column, err)
     type(quantity_type), intent(in) :: quantity             !< the quantity
+    type(model_type), intent(in) :: model                   !< the model, which explains a column that is missing
     type(columns_type), intent(in) :: columns               !< of the run
     integer, intent(out) :: column                          !< its number
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    character(len=:), allocatable :: meant
-    character(len=len(quantity%column) + 8) :: known(columns%count)
 
     do column = 1, columns%count
       if (columns%names(column)%text == quantity%column) return
-      known(column) = columns%names(column)%text
     end do
-    meant = nearest_name(quantity%column, known)
-    if (meant /= '') meant = '; did you mean '''//meant//'''?'
-    if (meant == '') meant = '; columns are the headings of the table, and &output decides which there are'
     call raise(err, exit_data, 'quantity '''//quantity%name//''' is of column '''//quantity%column//''', which is not recorded'// &
-               meant, quantity%place)
+               remedy_of_missing(quantity%column, model, columns), quantity%place)
   end subroutine find_column
 
   !> Whether there are no quantities.

@@ -4,6 +4,7 @@ module mech9_row_source
   use mech9_error, only: error_type
   use mech9_text, only: string_type
   use mech9_system, only: interrupted
+  use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -15,7 +16,7 @@ module mech9_row_source
   use mech9_quantity_record, only: quantity_record_type
   implicit none
   private
-  public :: row_source_type, signal_interruption_type, new_row_source
+  public :: row_source_type, signal_interruption_type, new_row_source, find_columns
 
   type :: row_source_type
     character(len=6) :: program_name = ''
@@ -48,19 +49,29 @@ contains
 
     source%program_name = program_name
     source%simulation => simulation
-    source%columns = kinematic_columns(simulation%model%mechanism, simulation%model%request%output)
-    call source%forces%begin(simulation%model, source%columns)
-    call source%columns%append_motors(simulation%model%mechanism)
-    if (simulation%with_energies) then
-      call source%columns%append('E.kinetic', 'J', 'kinetic energy')
-      call source%columns%append('E.potential', 'J', 'potential energy of gravity and springs')
-      call source%columns%append('E.total', 'J', 'kinetic and potential energy')
-    end if
-    call source%columns%append('closure', 'm', 'largest error of a closed chain')
-    if (simulation%with_conditioning) &
-      call source%columns%append('conditioning', '1', 'least singular value of the worst chains')
-    if (simulation%with_error) call source%columns%append('error', 'rad,m', 'estimated error of the coordinates and points')
+    call find_columns(simulation%model, simulation%with_energies, simulation%with_error, source%columns, source%forces)
   end subroutine new_row_source
+
+  !> The columns of a run. They are known before the mechanism is assembled.
+  subroutine find_columns(model, with_energies, with_error, columns, forces)
+    type(model_type), intent(in) :: model             !< the model
+    logical, intent(in) :: with_energies              !< the energies are recorded
+    logical, intent(in) :: with_error                 !< an estimated error is recorded
+    type(columns_type), intent(out) :: columns        !< all but sensitivities
+    type(force_record_type), intent(out) :: forces    !< computes the forces that are recorded
+
+    columns = kinematic_columns(model%mechanism, model%request%output)
+    call forces%begin(model, columns)
+    call columns%append_motors(model%mechanism)
+    if (with_energies) then
+      call columns%append('E.kinetic', 'J', 'kinetic energy')
+      call columns%append('E.potential', 'J', 'potential energy of gravity and springs')
+      call columns%append('E.total', 'J', 'kinetic and potential energy')
+    end if
+    call columns%append('closure', 'm', 'largest error of a closed chain')
+    if (model%request%output%conditioning) call columns%append('conditioning', '1', 'least singular value of the worst chains')
+    if (with_error) call columns%append('error', 'rad,m', 'estimated error of the coordinates and points')
+  end subroutine find_columns
 
   !> Add the derivatives of the motion by the parameters of the model, after all other columns. Fails where they do not exist.
   subroutine add_sensitivities(self, variable, plan, err)
@@ -85,7 +96,7 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (.not. allocated(self%simulation%model%request%quantities)) return
-    call self%quantities%begin(self%simulation%model%request%quantities, self%columns, err)
+    call self%quantities%begin(self%simulation%model, self%columns, err)
     allocate (self%between(self%columns%width()), source=0.0_wp)
   end subroutine begin_quantities
 
