@@ -41,6 +41,7 @@ contains
     output%drive_forces = get_logical(group, 'drive_forces')
     output%force_arrows = get_logical(group, 'force_arrows')
     output%sensitivities = get_logical(group, 'sensitivities')
+    if (output%sensitivities) output%sensitivities_place = diagnostics%place(span_of(group, 'sensitivities', 1))
     if (output%compression > 9) &
       call diagnostics%add(span_of(group, 'compression', 1), 'compression goes from 0 (none) to 9 (the smallest file)')
     if (output%derivatives > 2) call diagnostics%add(span_of(group, 'derivatives', 1), 'derivatives is 0 (positions), '// &

@@ -2,11 +2,12 @@
 module mech9_study_reader
   use mech9_kinds, only: wp, long
   use mech9_text, only: to_text
+  use mech9_counted, only: counted
   use mech9_error, only: error_type
   use mech9_source, only: source_type, span_type, read_source
   use mech9_numeral, only: numeral_type, read_numeral
   use mech9_document, only: document_type, group_type
-  use mech9_lookup, only: groups_named, has_name, get_integer, get_text, span_of
+  use mech9_lookup, only: groups_named, has_name, has_unsound, get_integer, get_text, span_of
   use mech9_diagnostics, only: diagnostics_type, printable
   use mech9_table_file, only: beside
   use mech9_sobol, only: most_sobol_dimensions
@@ -31,10 +32,12 @@ contains
     associate (group => document%groups(numbers(1)))
       study%kind = get_text(group, 'kind')
       study%place = diagnostics%place(group%span)
+      if (has_unsound(document, 'parameter')) return     ! the number of parameters is not known
       if (size(parameters) == 0) then
         call diagnostics%add(group%span, 'a study needs at least one &parameter')
         return
       end if
+      call check_headings(document, diagnostics)
       if (has_name(group, 'runs')) study%runs = get_integer(group, 'runs')
       if (has_name(group, 'seed')) study%seed = get_integer(group, 'seed')
       select case (study%kind)
@@ -50,6 +53,31 @@ contains
       end select
     end associate
   end subroutine read_study
+
+  !> Report names of parameters and quantities that two columns of the study's table would have.
+  pure subroutine check_headings(document, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    integer, allocatable :: parameters(:), groups(:)
+    character(len=40) :: name, other       ! longer names are refused
+    integer :: i, j
+
+    parameters = groups_named(document, 'parameter')
+    groups = [parameters, groups_named(document, 'quantity')]
+    do i = 1, size(groups)
+      associate (group => document%groups(groups(i)))
+        name = get_text(group, 'name')
+        if (any(name == [character(len=9) :: 'run', 'exit_code'])) call diagnostics%add(span_of(group, 'name', 1), &
+          'the table of a study has a column '''//trim(name)//''' already; choose another name')
+        if (i <= size(parameters)) cycle          ! two parameters of one name are reported already
+        do j = 1, size(parameters)
+          other = get_text(document%groups(parameters(j)), 'name')
+          if (other == name) call diagnostics%add(span_of(group, 'name', 1), 'a parameter has the name '''//trim(name)// &
+                                                  ''' too; each column of the study''s table needs a name of its own')
+        end do
+      end associate
+    end do
+  end subroutine check_headings
 
   !> Count the runs of a grid; report parameters without low, high or count.
   pure subroutine count_grid(document, group, parameters, runs, diagnostics)
@@ -157,8 +185,9 @@ contains
     end do
     if (n == 0) return
     if (n /= size(list, 1)) then
-      call diagnostics%add(span_type(number, first, max(first, last)), 'there are '//to_text(size(list, 1))//' parameters, and '// &
-                           'this line has '//to_text(n)//' values')
+      call diagnostics%add(span_type(number, first, max(first, last)), &
+                           trim(merge('there is ', 'there are', size(list, 1) == 1))//' '// &
+                           counted(size(list, 1), 'parameter')//', and this line has '//counted(n, 'value'))
       return
     end if
     runs = runs + 1

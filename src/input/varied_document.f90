@@ -2,7 +2,7 @@
 module mech9_varied_document
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise
-  use mech9_source, only: source_type
+  use mech9_source, only: source_type, span_type
   use mech9_document, only: document_type
   use mech9_checker, only: check_document
   use mech9_diagnostics, only: diagnostics_type
@@ -51,6 +51,7 @@ contains
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(diagnostics_type) :: diagnostics
     character(len=:), allocatable :: text
+    type(span_type) :: span
 
     diagnostics%sources = self%sources
     self%parameters%value = values
@@ -58,7 +59,7 @@ contains
     model%parameters = self%parameters
     call read_checked(self%document, self%needs_drives, model, diagnostics)
     if (.not. diagnostics%failed()) return
-    call diagnostics%render(1, text)
-    call raise(err, diagnostics%code(), text)
+    call diagnostics%get(1, text, span)
+    call raise(err, diagnostics%code(), text, diagnostics%place(span))
   end subroutine at
 end module mech9_varied_document

@@ -110,7 +110,7 @@ def draws(cases, mech9d):
         text = PENDULUM + f"&study kind='{kind}', runs=32, seed=4 /\n"
         rows, printed = cases.study(mech9d, text, why=kind)
         for name in ('swing', 'speed'):
-            line = re.search(rf'{name}: mean (\S+) \(standard error (\S+)\), deviation (\S+) ', printed)
+            line = re.search(rf'{name}: mean (\S+) (?:rad|rad/s) \(standard error (\S+)\), deviation (\S+) ', printed)
             told = [float(word) for word in line.groups()]
             mean, deviation = np.mean(rows[name]), np.std(rows[name], ddof=1)
             cases.checks.true(np.allclose(told, [mean, deviation / np.sqrt(32), deviation], rtol=5e-2, atol=1e-12)
@@ -138,7 +138,7 @@ def parts(cases, mech9k):
     cases.checks.true(done.returncode == USAGE and '--part K/N is a part of --study' in done.stderr, 'parts of a study only', done.stderr)
     for wrong in ('8/7', '0/3', '3', 'a/b', '1/2/3'):
         done = run(mech9k, cases.write(text), '--study', '--part', wrong)
-        cases.checks.true(done.returncode == USAGE and "--part needs the number of a part and how many parts there are" in done.stderr,
+        cases.checks.true(done.returncode == USAGE and "--part needs the number K of a part, from 1 to N, and how many parts N there are" in done.stderr,
                           f'part {wrong} is refused', done.stderr)
 
 
@@ -155,8 +155,21 @@ def mistakes(cases, mech9k):
             (parameters(given, given) + "&study kind='random' /", (), DATA, "&study needs 'runs'"),
             (parameters(given, given) + "&study kind='grid', runs=3 /", (), DATA, "'runs' does not belong to studies of kind 'grid'"),
             (parameters() + "&study kind='list', file='none.dat' /", (), FILE, "the list 'none.dat'"),
-            (parameters() + "&study kind='list', file='short.dat' /", (), DATA, 'there are 2 parameters, and this line has 1 values'),
+            (parameters() + "&study kind='list', file='short.dat' /", (), DATA, 'there are 2 parameters, and this line has 1 value'),
             (parameters() + "&study kind='list', file='word.dat' /", (), DATA, "'long' is not a number"),
+            (parameters(given, given) + "&study kind='grid' /\n&quantity name='force', of='F1', take='peak' /", (), DATA,
+             "15:28: quantity 'force' is of column 'F1', which is not recorded; set drive_forces=.true. in &output"),
+            (parameters(given, given) + "&study kind='grid' /\n&output sensitivities=.true. /", (), DATA,
+             '15:23: a study records no sensitivities: leave out sensitivities in &output'),
+            (parameters(given, given) + "&study kind='grid' /\n&quantity name='rod', of='q1', take='peak' /", (), DATA,
+             "15:16: a parameter has the name 'rod' too"),
+            (parameters(given, given) + "&study kind='grid' /\n&quantity name='run', of='q1', take='peak' /", (), DATA,
+             "15:16: the table of a study has a column 'run' already"),
+            (parameters(given, given).replace("'crank'", "'exit_code'") + "&study kind='grid' /", (), DATA,
+             "12:17: the table of a study has a column 'exit_code' already"),
+            (parameters(given, given).replace("'crank'", "'rod'") + "&study kind='grid' /", (), DATA, "a second &parameter for name 'rod'"),
+            (parameters(given, given) + "&study kind='grid' /\n&quantity name='late', of='q1', take='peak' /", (), DATA,
+             "a second &quantity for name 'late'"),
             ("&study kind='grid' /", (), DATA, 'a study needs at least one &parameter'),
             (parameters(), (), USAGE, '--study carries out the study of a group &study, and this file has none'),
             (parameters(given, given) + "&study kind='grid' /", ('--plot', 'q1'), USAGE, 'leave --plot out'),
@@ -164,6 +177,63 @@ def mistakes(cases, mech9k):
         done = run(mech9k, cases.write(SLIDER_CRANK + text + '\n'), '--study', '--table', table, *options)
         check.true(done.returncode == code and message in done.stderr, f'{text} {options}: {message}', f'{done.returncode}: {done.stderr}')
         check.true(text_of(table) == 'kept', f'{text} {options}: nothing is written over')
+
+
+def failures(cases, mech9k, mech9d):
+    """The first failed run is told with its reason; where all runs fail, the study fails with it, and the table is written."""
+    check = cases.checks
+    text = SLIDER_CRANK + parameters(', low=0.2, high=0.8, count=4', ', low=0.5, high=1.1, count=3') + "&study kind='grid' /\n"
+    rows, printed = cases.study(mech9k, text, why='failures')
+    first = int(rows['run'][rows['exit_code'] != DONE][0])
+    code, _ = cases.single(mech9k, text, (rows['crank'][first - 1], rows['rod'][first - 1]))
+    alone = run(mech9k, os.path.join(cases.folder, 'case.nml'), '--no-write', *(word for i, name in enumerate(('crank', 'rod')) for word in
+                ('--set', f'parameter({i + 1}).value={float(rows[name][first - 1])!r}'))).stderr.splitlines()
+    reason = next(line.split(': ', 1)[1] for line in alone if line.startswith(os.path.join(cases.folder, 'case.nml')))
+    check.true(f'run {first}: {reason}' in printed, 'failures: the first one is told', (reason, printed))
+    table = os.path.join(cases.folder, 'failed.dat')
+    for program, text, code, message in (
+            (mech9k, SLIDER_CRANK + parameters(', low=1.3, high=1.5, count=3', ', low=0.5, high=0.6, count=2') + "&study kind='grid' /\n", 0, 'run 1: '),
+            (mech9d, PENDULUM.replace('&initial coordinate=1, position=0.4 /\n', '') + "&study kind='random', runs=3 /\n", 0, 'run 1: ')):
+        done = run(program, cases.write(text), '--study', '--table', table)
+        rows = read_table(text_of(table))
+        check.true(done.returncode == rows['exit_code'][0] != DONE and message in done.stderr, f'all fail: {message}', done.stderr)
+        check.true(np.all(rows['exit_code'] != DONE), 'all fail: the table is written', rows['exit_code'])
+    done = run(mech9k, cases.write(SLIDER_CRANK + parameters(', low=0.2, high=0.3, count=2', ', low=1, high=1.1, count=2') + "&study kind='grid' /\n"),
+               '--study', '--table', os.path.join(cases.folder, 'none', 'x.dat'))
+    check.true(done.returncode == FILE and 'table: ' not in done.stderr, 'a table that cannot be written is not told as written', done.stderr)
+
+
+def reports(cases, mech9k):
+    """The report has the runs, the failed ones by code, and least, greatest and mean of each column of the table; units are those of
+    a single run; a part without runs is told."""
+    check = cases.checks
+    report = os.path.join(cases.folder, 'study.json')
+    text = SLIDER_CRANK + parameters(', low=0.2, high=0.8, count=4', ', low=0.5, high=1.1, count=3') + "&study kind='grid' /\n"
+    text += "&quantity name='way', of='B.x', take='integral' /\n"
+    rows, printed = cases.study(mech9k, text, '--report', report, why='report')
+    told = json.loads(text_of(report))
+    whole = rows['exit_code'] == DONE
+    check.true(told['study'] == 'grid' and told['runs'] == 12 and told['exit_code'] == DONE, 'report: its runs', told)
+    for one in told['failed_runs']:
+        failed = rows['run'][rows['exit_code'] == one['exit_code']]
+        check.true(one['runs'] == len(failed) and one['first_run'] == failed[0], 'report: failed runs', one)
+    check.true(sum(one['runs'] for one in told['failed_runs']) == np.sum(~whole), 'report: all failed runs', told['failed_runs'])
+    for ranges, kept, names in ((told['parameters'], rows['run'] > 0, ['crank', 'rod']), (told['quantities'], whole, ['stroke', 'late', 'way'])):
+        check.true([one['name'] for one in ranges] == names, 'report: names', ranges)
+        for one in ranges:
+            column = rows[one['name']][kept]
+            check.true(one['least'] == column.min() and one['greatest'] == column.max()
+                       and np.isclose(one['mean'], column.mean(), rtol=1e-13, atol=1e-15), f"report: {one['name']}", one)
+    units = re.search('# units: (.*)', text_of(os.path.join(cases.folder, 'study.dat'))).group(1)
+    check.true(re.fullmatch(r'\s*1\s+1\s+1\s+m\s+m\s+m_s\s+1\s*', units), 'units of the table', units)
+    check.true(re.search(r'^stroke: \S+ to \S+ m$', printed, re.M) and re.search(r'^way: \S+ to \S+ m s$', printed, re.M), 'units of the summary', printed)
+    done = run(mech9k, cases.write(text), '--study', '--part', '13/20', '--no-write')
+    check.true(done.returncode == DONE and 'note: this part has no runs: the study has 12\n' in done.stderr, 'an empty part is told', done.stderr)
+    cases.write('0.3 0.4\n', 'long.dat')
+    done = run(mech9k, cases.write(SLIDER_CRANK + parameters().splitlines()[0] + "\n&study kind='list', file='long.dat' /\n"), '--study')
+    check.true('there is 1 parameter, and this line has 2 values' in done.stderr, 'one parameter', done.stderr)
+    done = run(mech9k, cases.write(SLIDER_CRANK + parameters(', lo=1').splitlines()[0] + "\n&study kind='grid' /\n"), '--study')
+    check.true("unknown name 'lo'" in done.stderr and 'at least one' not in done.stderr, 'a wrong parameter is one error', done.stderr)
 
 
 def main():
@@ -176,6 +246,8 @@ def main():
         draws(cases, mech9d)
         parts(cases, mech9k)
         mistakes(cases, mech9k)
+        failures(cases, mech9k, mech9d)
+        reports(cases, mech9k)
     checks.finish()
 
 

@@ -44,6 +44,7 @@ module mech9_request
     integer, allocatable :: reaction_pairs(:)    !< coordinates of these pairs; none listed: all
     logical :: drive_forces = .false.            !< the forces of drives have columns
     logical :: sensitivities = .false.           !< the derivatives by all parameters have columns
+    type(place_type) :: sensitivities_place      !< place of this request in the data file
     logical :: force_arrows = .false.            !< pictures show the forces in pairs as arrows
   contains
     procedure :: recorded

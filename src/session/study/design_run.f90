@@ -11,10 +11,13 @@ module mech9_design_run
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation
   use mech9_accuracy, only: find_accuracy
   use mech9_explained_assembly, only: assemble_driven_start, assemble_free_start
-  use mech9_row_source, only: row_source_type, signal_interruption_type, new_row_source
+  use mech9_row_source, only: row_source_type, signal_interruption_type, new_row_source, find_columns
+  use mech9_columns, only: columns_type
+  use mech9_force_record, only: force_record_type
+  use mech9_quantity_record, only: quantity_record_type
   implicit none
   private
-  public :: run_design, begin_design
+  public :: run_design, begin_design, find_quantities
 
 contains
 
@@ -30,7 +33,7 @@ contains
     type(plan_type) :: plan
     type(state_type) :: start
 
-    if (program_name == 'mech9k' .or. .not. any(model%problem%partition%kind == free_coordinate)) then
+    if (is_driven(program_name, model)) then
       call assemble_driven_start(model, plan, start, err)
       if (allocated(err)) return
       call new_driven_simulation(model, plan, start, driven, .false., program_name == 'mech9d')
@@ -44,6 +47,28 @@ contains
       call free%close()
     end if
   end subroutine run_design
+
+  !> Whether the motion follows from drives alone.
+  pure logical function is_driven(program_name, model)
+    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+    type(model_type), intent(in) :: model          !< the model
+
+    is_driven = program_name == 'mech9k' .or. .not. any(model%problem%partition%kind == free_coordinate)
+  end function is_driven
+
+  !> Find the columns of the quantities that the runs of a model will have. Fails with exit_data where one is not recorded.
+  subroutine find_quantities(program_name, model, quantities, err)
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+    type(model_type), intent(in) :: model                   !< the model
+    type(quantity_record_type), intent(out) :: quantities   !< with their columns
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(columns_type) :: columns
+    type(force_record_type) :: forces
+
+    call find_columns(model, program_name == 'mech9d' .and. model%request%output%energies, &
+                      model%request%solver%accuracy > 0.0_wp .and. .not. is_driven(program_name, model), columns, forces)
+    call quantities%begin(model, columns, err)
+  end subroutine find_quantities
 
   !> Begin the rows of a simulation, with their quantities.
   subroutine begin_design(program_name, simulation, source, err)

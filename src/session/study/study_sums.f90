@@ -23,6 +23,7 @@ module mech9_study_sums
     procedure :: begin
     procedure :: add
     procedure :: add_failure
+    procedure :: made
     procedure :: deviation
     procedure :: error_of_mean
     procedure :: error_of_deviation
@@ -79,6 +80,13 @@ contains
     end if
     self%failed(i) = self%failed(i) + 1
   end subroutine add_failure
+
+  !> How many runs there were.
+  pure integer function made(self)
+    class(study_sums_type), intent(in) :: self   !< the sums
+
+    made = self%done + sum(self%failed)
+  end function made
 
   !> The standard deviations of the quantities; 0 for fewer than two runs.
   pure function deviation(self)

@@ -3,13 +3,13 @@ module mech9_study_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_usage, exit_interrupted
+  use mech9_error, only: error_type, raise, add_place, exit_usage, exit_data, exit_interrupted
   use mech9_text, only: to_text
-  use mech9_counted, only: counted
   use mech9_clock, only: seconds
   use mech9_version, only: version
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
+  use mech9_explanation, only: explain
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_study_values, only: values_of_run
@@ -18,9 +18,10 @@ module mech9_study_task
   use mech9_row_source, only: row_source_type
   use mech9_written_files, only: result_paths_type, find_result_paths, standard_output_path
   use mech9_progress, only: progress_type
-  use mech9_run_words, only: duration
-  use mech9_design_run, only: run_design
+  use mech9_quantity_record, only: quantity_record_type
+  use mech9_design_run, only: run_design, find_quantities
   use mech9_study_sums, only: study_sums_type
+  use mech9_study_words, only: print_study, save_study_report
   implicit none
   private
   public :: work_on_study
@@ -28,45 +29,70 @@ module mech9_study_task
 contains
 
   !> Carry out the study that a data file describes.
-  subroutine work_on_study(program_name, options, varied, model, diagnostics)
+  subroutine work_on_study(program_name, options, varied, model, diagnostics, reported)
     character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     type(command_line_type), intent(in) :: options          !< the command line
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
+    logical, intent(out) :: reported                        !< a report was asked for, and it is written
     type(result_paths_type) :: paths
+    type(quantity_record_type) :: quantities
     type(columns_type) :: columns
     type(table_type) :: table
-    type(study_sums_type) :: sums
-    type(error_type), allocatable :: err, at_close
-    real(wp) :: clock
+    type(error_type), allocatable :: err
 
-    if (model%request%study%kind == '') then
-      call raise(err, exit_usage, '--study carries out the study of a group &study, and this file has none')
+    reported = .false.
+    call check_study(program_name, model, quantities, err)
+    if (allocated(err)) then
       call diagnostics%add_error(err)
       return
     end if
     call find_result_paths(options, model%request%output, paths)
     if (paths%table == '' .and. .not. options%has('no-write')) paths%table = standard_output_path
-    if (model%request%output%hdf5 /= '' .and. .not. options%has('quiet')) &
-      write (error_unit, '(a)') 'note: a study writes no HDF5 file; its results are in the table'
-    columns = columns_of_study(model)
+    if (.not. options%has('quiet')) call print_notes(model, options%part())
+    columns = columns_of_study(model, quantities)
     if (paths%table /= '') call table%open(paths%table, model%mechanism%title, program_name//' '//version, &
                                            columns%names(:columns%count), columns%units(:columns%count), err)
-    clock = seconds()
-    if (.not. allocated(err)) call make_runs(program_name, options%has('quiet'), options%part(), varied, model, table, &
-                                            paths%table /= '', sums, err)
-    if (paths%table /= '') call table%close(at_close)
-    if (.not. allocated(err)) call move_alloc(at_close, err)
-    if (allocated(err)) call diagnostics%add_error(err)
-    if (options%has('quiet')) return
-    call print_summary(error_unit, model, sums, seconds() - clock)
-    if (paths%table /= '' .and. paths%table /= standard_output_path) write (error_unit, '(2a)') 'table: ', paths%table
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+      return
+    end if
+    call carry_out(program_name, options, varied, model, quantities, table, paths%table, diagnostics, reported)
   end subroutine work_on_study
 
-  !> The columns of the table of a study.
-  pure function columns_of_study(model) result(columns)
+  !> Report a study that cannot be carried out, and find the columns of its quantities.
+  subroutine check_study(program_name, model, quantities, err)
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+    type(model_type), intent(in) :: model                   !< the model with the values of the data file
+    type(quantity_record_type), intent(out) :: quantities   !< with their columns
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+
+    if (model%request%study%kind == '') then
+      call raise(err, exit_usage, '--study carries out the study of a group &study, and this file has none')
+    else if (model%request%output%sensitivities) then
+      call raise(err, exit_data, 'a study records no sensitivities: leave out sensitivities in &output', &
+                 model%request%output%sensitivities_place)
+    else
+      call find_quantities(program_name, model, quantities, err)
+    end if
+  end subroutine check_study
+
+  !> Tell what the user may have expected of the study, and does not get.
+  subroutine print_notes(model, part)
     type(model_type), intent(in) :: model   !< the model
+    integer, intent(in) :: part(2)          !< number of the part that is made, and how many parts there are
+
+    if (model%request%output%hdf5 /= '') &
+      write (error_unit, '(a)') 'note: a study writes no HDF5 file; its results are in the table'
+    if (part(1) > model%request%study%runs) &
+      write (error_unit, '(a)') 'note: this part has no runs: the study has '//to_text(model%request%study%runs)
+  end subroutine print_notes
+
+  !> The columns of the table of a study.
+  function columns_of_study(model, quantities) result(columns)
+    type(model_type), intent(in) :: model                  !< the model
+    type(quantity_record_type), intent(in) :: quantities   !< with their columns
     type(columns_type) :: columns
     integer :: i
 
@@ -76,28 +102,80 @@ contains
       call columns%append(model%parameters(i)%name, '')
     end do
     do i = 1, size(model%request%quantities)
-      call columns%append(model%request%quantities(i)%name, '')
+      call columns%append(model%request%quantities(i)%name, quantities%unit_of(i))
     end do
     call columns%append('exit_code', '')
   end function columns_of_study
 
-  !> Make the runs of a part and write their rows. A run that fails is a row with its code and without quantities (NaN).
-  subroutine make_runs(program_name, quiet, part, varied, model, table, has_table, sums, err)
+  !> Make the runs, close the table, and tell how the study went. Where every run failed, the first failure is that of the study.
+  subroutine carry_out(program_name, options, varied, model, quantities, table, path, diagnostics, reported)
     character(len=*), intent(in) :: program_name            !< mech9k or mech9d
-    logical, intent(in) :: quiet                            !< no progress is shown
-    integer, intent(in) :: part(2)                          !< number of the part that is made, and how many parts there are
+    type(command_line_type), intent(in) :: options          !< the command line
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
-    type(table_type), intent(inout) :: table                !< open, if there is one
-    logical, intent(in) :: has_table                        !< there is a table
-    type(study_sums_type), intent(inout) :: sums            !< gets the sums over the runs
-    type(error_type), allocatable, intent(out) :: err       !< allocated where rows cannot be written, or the user interrupts
+    type(quantity_record_type), intent(in) :: quantities    !< with their columns
+    type(table_type), intent(inout) :: table                !< open, if there is one; closed on return
+    character(len=*), intent(in) :: path                    !< of the table; '-' is standard output; empty: no table
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
+    logical, intent(inout) :: reported                      !< the report is written
+    type(study_sums_type) :: values, sums
+    type(error_type), allocatable :: err, first, at_close
+    real(wp) :: clock
+    logical :: quiet, written
+
+    quiet = options%has('quiet')
+    clock = seconds()
+    call make_runs(program_name, quiet, options%part(), varied, model, table, path /= '', values, sums, first, err)
+    if (path /= '') call table%close(at_close)
+    if (.not. allocated(err)) call move_alloc(at_close, err)
+    if (.not. quiet) call print_study(error_unit, model, quantities, sums, seconds() - clock)
+    written = path /= '' .and. path /= standard_output_path
+    if (allocated(err)) written = written .and. err%code == exit_interrupted
+    if (written .and. .not. quiet) write (error_unit, '(2a)') 'table: ', path
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+    else if (allocated(first) .and. sums%done == 0) then
+      call diagnostics%add_error(first)
+    else if (allocated(first) .and. .not. quiet) then
+      call print_failure(first, diagnostics)
+    end if
+    if (.not. options%has('report')) return
+    call save_study_report(options%argument('report'), program_name, model, quantities, values, sums, path, diagnostics, err)
+    reported = .true.
+    if (allocated(err)) call diagnostics%add_error(err)
+  end subroutine carry_out
+
+  !> Print the message of a failed run, with its place in the data file.
+  subroutine print_failure(failure, diagnostics)
+    type(error_type), intent(in) :: failure               !< of the run
+    type(diagnostics_type), intent(in) :: diagnostics     !< of the program, which knows the data file
+    type(diagnostics_type) :: own
+
+    own%sources = diagnostics%sources
+    call own%add_error(failure)
+    call own%report(error_unit)
+  end subroutine print_failure
+
+  !> Make the runs of a part and write their rows. A run that fails is a row with its code and without quantities (NaN).
+  subroutine make_runs(program_name, quiet, part, varied, model, table, has_table, values, sums, first, err)
+    character(len=*), intent(in) :: program_name               !< mech9k or mech9d
+    logical, intent(in) :: quiet                               !< no progress is shown
+    integer, intent(in) :: part(2)                             !< number of the part that is made, and how many parts there are
+    class(variable_model_type), intent(inout) :: varied        !< the model as a function of its parameters
+    type(model_type), intent(in) :: model                      !< the model with the values of the data file
+    type(table_type), intent(inout) :: table                   !< open, if there is one
+    logical, intent(in) :: has_table                           !< there is a table
+    type(study_sums_type), intent(inout) :: values             !< gets the sums of the parameters over all runs
+    type(study_sums_type), intent(inout) :: sums               !< gets the sums of the quantities over the runs
+    type(error_type), allocatable, intent(out) :: first        !< why the first failed run failed, with its number
+    type(error_type), allocatable, intent(out) :: err          !< allocated where rows cannot be written, or the user interrupts
     type(progress_type) :: progress
     type(error_type), allocatable :: failure
     real(wp), allocatable :: row(:)
     integer :: run, n
 
     n = size(model%parameters)
+    call values%begin(n)
     call sums%begin(size(model%request%quantities))
     allocate (row(n + size(model%request%quantities) + 2))
     call progress%start(program_name, quiet)
@@ -114,15 +192,28 @@ contains
         end if
         row(size(row)) = failure%code
         call sums%add_failure(run, failure%code)
+        if (.not. allocated(first)) call keep_first(run, failure, first)
       else
         call sums%add(row(n + 2:size(row) - 1))
       end if
+      call values%add(row(2:n + 1))
       if (has_table) call table%write_row(row, err)
       if (allocated(err)) exit
       call progress%update(real(run, wp)/model%request%study%runs)
     end do
     call progress%finish()
   end subroutine make_runs
+
+  !> Keep the failure of the first run that failed, with the number of the run in its message.
+  subroutine keep_first(run, failure, first)
+    integer, intent(in) :: run                                   !< its number
+    type(error_type), allocatable, intent(inout) :: failure      !< of the run; moved
+    type(error_type), allocatable, intent(out) :: first          !< gets it
+
+    call move_alloc(failure, first)
+    call explain(first)
+    call add_place(first, 'run '//to_text(run))
+  end subroutine keep_first
 
   !> Make one run.
   subroutine make_run(program_name, varied, values, numbers, err)
@@ -138,34 +229,4 @@ contains
     if (.not. allocated(err)) call run_design(program_name, model, source, numbers, err)
     if (allocated(err)) numbers = ieee_value(1.0_wp, ieee_quiet_nan)
   end subroutine make_run
-
-  !> Print how the study went: failed runs by code, and for runs that were drawn the means and deviations of the quantities.
-  subroutine print_summary(unit, model, sums, time)
-    integer, intent(in) :: unit                   !< Fortran unit to write to
-    type(model_type), intent(in) :: model         !< the model
-    type(study_sums_type), intent(in) :: sums     !< over the runs
-    real(wp), intent(in) :: time                  !< time that the study took [s]
-    real(wp), dimension(size(model%request%quantities)) :: deviation, of_mean, of_deviation
-    integer :: i
-    logical :: drawn
-
-    if (.not. allocated(sums%mean)) return
-    write (unit, '(a)') counted(sums%done + sum(sums%failed), 'run')//': '//duration(time)
-    do i = 1, sums%n_codes
-      write (unit, '(a)') counted(sums%failed(i), 'run')//' failed with exit code '//to_text(sums%codes(i))// &
-        ', the first one is run '//to_text(sums%first_failed(i))
-    end do
-    drawn = all(model%request%study%kind /= ['grid', 'list'])
-    deviation = sums%deviation()
-    of_mean = sums%error_of_mean()
-    of_deviation = sums%error_of_deviation()
-    do i = 1, size(deviation)
-      if (sums%done == 0) exit
-      associate (name => model%request%quantities(i)%name)
-        if (drawn) write (unit, '(a)') name//': mean '//to_text(sums%mean(i), 8)//' (standard error '//to_text(of_mean(i), 2)// &
-          '), deviation '//to_text(deviation(i), 6)//' (standard error '//to_text(of_deviation(i), 2)//')'
-        write (unit, '(a)') name//': '//to_text(sums%low(i), 8)//' to '//to_text(sums%high(i), 8)
-      end associate
-    end do
-  end subroutine print_summary
 end module mech9_study_task
