@@ -19,5 +19,23 @@ module mech9_problem
     type(partition_type) :: partition                 !< driven, free and dependent coordinates
     type(drive_slot_type), allocatable :: drives(:)   !< in the order of the data file
     type(initial_type) :: initial
+  contains
+    procedure :: has_drive
   end type problem_type
+
+contains
+
+  !> Whether a drive of the data file moves a coordinate. Angles that the program itself holds have none.
+  pure function has_drive(self) result(has)
+    class(problem_type), intent(in) :: self         !< the problem
+    logical :: has(size(self%partition%kind))       !< (M)
+    integer :: i
+
+    has = .false.
+    do i = 1, size(self%drives)
+      associate (drive => self%drives(i)%drive)
+        if (drive%coordinate > 0 .and. drive%place%line > 0) has(drive%coordinate) = .true.
+      end associate
+    end do
+  end function has_drive
 end module mech9_problem

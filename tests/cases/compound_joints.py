@@ -306,6 +306,8 @@ def check_rod(cases):
         for name in ('q8', 'dq8', 'ddq8', 'P.x', 'P.y', 'P.z', 'P.vx', 'P.az'):
             error = float(np.max(np.abs(table[name] - reference[name])))
             cases.checks.true(error < 1e-10, f'a rod between balls: {name} does not depend on its turn ({error:.2g})')
+    forces = cases.table(cases.mech9k, '&structure cq=1 /\n' + joints + rest + '&output drive_forces=.true. /\n')
+    cases.checks.equal([name for name in forces if name[0] == 'F'], ['F1'], 'a rod between balls: a held angle has no drive')
     done = run(cases.mech9k, cases.write('&structure cq=1 /\n' + joints + rest), '--check')
     cases.checks.true('idle: coordinates' in done.stdout and 'the spherical joint of coordinates 5, 6, 7) can move while links 2 and 4 '
                       'stand still' in done.stdout, 'a rod between balls: --check names the joints', done.stdout)

@@ -2,7 +2,6 @@
 module mech9_force_record
   use mech9_error, only: error_type
   use mech9_masks, only: numbers_of
-  use mech9_partition, only: driven_coordinate
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -47,7 +46,7 @@ contains
     associate (output => model%request%output)
       self%wanted = output%with_forces()
       if (.not. self%wanted) return
-      driven = output%drive_forces .and. model%problem%partition%kind == driven_coordinate
+      driven = output%drive_forces .and. model%problem%has_drive()
       call columns%append_forces(model%mechanism, numbers_of(driven), numbers_of(reacting_pairs(model)))
     end associate
   end subroutine begin
