@@ -131,7 +131,9 @@ def test_hostile_keys():
             terminal.expect('1> ')
             terminal.type(random_keys(chance, 3000))
             terminal.type(b'\r\r\x03')
-            checks.equal(terminal.ends(), 130, f'three thousand random keys, {session}: Ctrl-C still ends it')
+            # Ctrl-C that comes between two prompts is a signal, which ends the probe by itself
+            end = terminal.ends()
+            checks.true(end in (130, -signal.SIGINT), f'three thousand random keys, {session}: Ctrl-C still ends it', end)
             checks.true('Backtrace' not in terminal.plain() and 'Sanitizer' not in terminal.plain(), 'no crash', terminal.plain()[-2000:])
 
 
