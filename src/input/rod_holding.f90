@@ -40,7 +40,7 @@ contains
     type(model_type), intent(inout) :: model    !< the model without errors
     type(idle_rod_type), allocatable :: rods(:)
     integer, allocatable :: kinds(:)
-    logical :: changed, serves_there
+    logical :: changed, serves_there, turns_freely
     integer :: i, k
 
     call find_idle_rods(model%mechanism%structure, rods)
@@ -52,12 +52,14 @@ contains
       changed = .true.
       if (.not. (serves_there .or. model%problem%initial%position_given(k))) &
         call let_point_anywhere(model%mechanism, rods(i), k, model%problem%initial%position)
-      if (all_driven .or. .not. resists(model%mechanism, rods(i), model%problem%initial%position)) then
-        kinds(k) = driven_coordinate
-        call hold(k, model%problem%initial%position(k), model%problem%drives)
-      else
+      turns_freely = .not. all_driven
+      if (turns_freely) turns_freely = resists(model%mechanism, rods(i), model%problem%initial%position)
+      if (turns_freely) then
         kinds(k) = free_coordinate
         model%problem%initial%position_given(k) = .true.
+      else
+        kinds(k) = driven_coordinate
+        call hold(k, model%problem%initial%position(k), model%problem%drives)
       end if
     end do
     if (.not. changed) return

@@ -231,7 +231,8 @@ contains
     independent = .false.
     independent(plan%independent) = .true.
     do b = 1, size(plan%blocks)
-      if (size(plan%blocks(b)%unknowns) == 0 .or. below(random, 2) == 0) cycle
+      if (size(plan%blocks(b)%unknowns) == 0) cycle
+      if (below(random, 2) == 0) cycle
       associate (steps => plan%closures(plan%blocks(b)%first_closure)%loop%steps)
         do i = 1, size(steps)
           k = plan%steps(steps(i))%coordinate

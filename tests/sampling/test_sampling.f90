@@ -59,10 +59,11 @@ contains
   !> 2**(k-m), too: they form a net with t = 0. Shifted points are as even.
   subroutine even_points()
     integer, parameter :: m = 8
-    integer(long) :: digits(0:2**m - 1, most_sobol_dimensions)
+    integer(long), allocatable :: digits(:, :)
     logical :: hit(0:2**m - 1)
     integer :: i, k, dimension, cell
 
+    allocate (digits(0:2**m - 1, most_sobol_dimensions))
     do dimension = 1, most_sobol_dimensions
       do i = 0, 2**m - 1
         digits(i, dimension) = sobol_bits(i, dimension)
@@ -140,9 +141,11 @@ contains
     character(len=6), parameter :: kinds(3) = ['random', 'latin ', 'sobol ']
     type(parameter_type) :: parameters(3)
     type(study_type) :: study
-    real(wp) :: values(3, n), mean(3), deviation(3), tolerance
+    real(wp), allocatable :: values(:, :)
+    real(wp) :: mean(3), deviation(3), tolerance
     integer :: i, k
 
+    allocate (values(3, n))
     parameters%value = [2.0_wp, 1.0_wp, 0.0_wp]
     parameters%spread = [0.5_wp, 0.25_wp, 0.0_wp]
     parameters%uniform = [.false., .true., .false.]

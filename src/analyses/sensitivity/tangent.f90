@@ -81,7 +81,6 @@ contains
     type(model_type), intent(in) :: model             !< the model
     type(parameter_type), intent(in) :: parameter     !< the parameter
     real(wp), allocatable :: values(:)
-    logical :: is_screw
     integer :: i
 
     known = .not. sets_any(parameter, [character(len=9) :: 'time'])
