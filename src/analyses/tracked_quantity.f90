@@ -21,7 +21,7 @@ module mech9_tracked_quantity
     real(wp) :: at = 0.0_wp                 !< time of the value where `take` is at [s]
     integer :: column = 0                   !< number of its column
     integer :: family(0:2) = 0              !< columns of a position, its rate and its acceleration; 0 where they are not known
-    integer :: order = 0                    !< 0, 1 or 2: which of these three its column is
+    integer :: order = 0                    !< of its column: 0 position, 1 rate, 2 acceleration
     type(quantity_sums_type) :: sums
     real(wp), private :: value_at = 0.0_wp  !< value at the time `at`
     integer, private :: seen = 0            !< outputs so far

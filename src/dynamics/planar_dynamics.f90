@@ -78,7 +78,7 @@ contains
   subroutine take_blocks(known, unchanged, self)
     class(dynamics_arithmetic_type), intent(in) :: known   !< the planar arithmetic in other coordinates
     logical, intent(in) :: unchanged(:)                    !< (blocks) the block is the same there
-    class(planar_dynamics_type), intent(inout) :: self     !< gets them
+    class(planar_dynamics_type), intent(inout) :: self     !< gets these parts
     integer :: b
 
     allocate (self%blocks(size(unchanged)))

@@ -18,7 +18,7 @@ contains
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(pose_type), intent(out) :: reference             !< the frame in the reference link
     type(pose_type), intent(out) :: moving                !< the frame in the moving link
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     real(wp) :: axis(3), zero(3)
     integer :: found
 
@@ -55,7 +55,7 @@ contains
     real(wp), intent(in) :: axis(3)                       !< direction of its z axis, in the link; of any length
     real(wp), intent(in) :: zero(3)                       !< direction near its x axis, in the link; of any length
     type(pose_type), intent(out) :: frame                 !< pose of the frame in the link
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     logical :: ok
 
     call pose_from_axis(point, axis, zero, frame, ok)

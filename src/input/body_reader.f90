@@ -27,7 +27,7 @@ contains
     type(structure_type), intent(in) :: structure           !< the structure; without links where it is not known
     type(pair_slot_type), intent(in) :: pairs(:)            !< (M) pairs by coordinate; a slot is empty where its group has an error
     type(body_type), allocatable, intent(out) :: bodies(:)  !< one for each sound group, in their order
-    type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     type(turning_search_type) :: search
     integer, allocatable :: numbers(:)
     real(wp) :: j(6)
@@ -63,7 +63,7 @@ contains
     type(body_type), intent(in) :: body                   !< the body that the group describes
     logical, intent(in) :: judged                         !< whether it is known how the link can turn
     type(turning_search_type), intent(inout) :: search    !< directions in which links turn; used where `judged` is true
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=:), allocatable :: problem
     real(wp) :: direction(3)
     logical :: has_one, is_enough

@@ -22,7 +22,7 @@ contains
     type(structure_type), intent(in) :: structure                 !< links and pairs; none where it is not known
     type(pair_slot_type), intent(in) :: pairs(:)                  !< (M) by coordinate; a slot is empty where its group has an error
     type(cam_request_type), allocatable, intent(out) :: cams(:)   !< in the order of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics          !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics          !< gets the errors
     type(pair_axes_type), allocatable :: axes(:)
     integer, allocatable :: numbers(:)
     integer :: i, found
@@ -48,7 +48,7 @@ contains
     type(group_type), intent(in) :: group                 !< the group of the data file
     integer, intent(in) :: n_links                        !< how many links there are; 0: unknown
     type(cam_request_type), intent(out) :: cam            !< its numbers
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     cam%link = get_integer(group, 'link')
     cam%follower = get_integer(group, 'follower')
@@ -77,7 +77,7 @@ contains
     type(structure_type), intent(in) :: structure         !< links and pairs
     type(pair_axes_type), intent(in) :: axes(:)           !< (M) the axes of all pairs
     type(cam_request_type), intent(inout) :: cam          !< gets its guide
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     logical :: guides(size(axes)), with_frame(size(axes))
     integer :: k
 
@@ -107,7 +107,7 @@ contains
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(pair_axes_type), intent(in) :: axes(:)           !< (M) the axes of all pairs
     type(cam_request_type), intent(inout) :: cam          !< gets its axis and its coordinate
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: k, rank, best
 
     best = 0

@@ -32,7 +32,7 @@ contains
     real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
     real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
     type(coupling_slot_type), allocatable, intent(out) :: couplings(:)   !< one for each sound group
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:)
     logical :: ok
     integer :: i
@@ -65,7 +65,7 @@ contains
     type(group_type), intent(in) :: group                 !< the group of the data file
     integer, intent(in) :: n_coordinates                  !< how many coordinates the mechanism has
     logical, intent(out) :: ok                            !< whether nothing was reported
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: k(:)
     integer :: i
 
@@ -94,7 +94,7 @@ contains
     real(wp), intent(in) :: positions(:)                  !< (M) coordinates at the start [rad, m]
     real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
     type(coupling_slot_type), intent(inout) :: slot       !< gets the coupling
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(linear_coupling_type) :: linear
     integer, allocatable :: k(:)
     real(wp), allocatable :: units(:)
@@ -127,7 +127,7 @@ contains
     type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate
     real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
     type(coupling_slot_type), intent(inout) :: slot       !< gets the coupling
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(table_coupling_type) :: table
     type(error_type), allocatable :: err
     real(wp), allocatable :: x(:), y(:), units(:)
@@ -167,7 +167,7 @@ contains
     real(wp), intent(in) :: positions(:)                  !< (M) coordinates at the start [rad, m]
     real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user
     type(coupling_slot_type), intent(inout) :: slot       !< gets the coupling
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(procedure_coupling_type) :: coupling
     type(error_type), allocatable :: err
     integer :: k(2)
@@ -191,7 +191,7 @@ contains
     real(wp), intent(inout) :: y(:)                       !< (n) values of the second coordinate [rad, m]; the last one is moved
     real(wp), intent(out) :: gain                         !< change of the second coordinate per rad of the first one, over the turn
     logical, intent(out) :: ok                            !< whether nothing was reported
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     real(wp) :: rise
     integer :: n
 
@@ -256,7 +256,7 @@ contains
   !> The change of the second coordinate per change of the first one [rad/rad, m/rad, m/m].
   real(wp) function slope_of(group, diagnostics) result(slope)
     type(group_type), intent(in) :: group                 !< the group of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     real(wp) :: radii(2)
 
     select case (get_text(group, 'kind'))
@@ -281,7 +281,7 @@ contains
     type(group_type), intent(in) :: group                 !< the group of the data file
     character(len=*), intent(in) :: name                  !< name of the number
     real(wp), intent(in) :: value                         !< the number
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     if (.not. abs(value) > 0.0_wp) &
       call diagnostics%add(span_of(group, name, 1), 'with '//name//'=0 the first coordinate would not move the second one')
@@ -292,7 +292,7 @@ contains
     type(group_type), intent(in) :: group                 !< the group of the data file
     integer, intent(in) :: k(2)                           !< numbers of its coordinates
     type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; a slot is empty where its group has an error
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     if (.not. are_given(k, pairs)) return
     select case (get_text(group, 'kind'))
@@ -315,7 +315,7 @@ contains
     type(group_type), intent(in) :: group                 !< the group of the data file
     real(wp), intent(in) :: coefficients(:)               !< its coefficients
     integer, intent(in) :: n                              !< number of its coordinates
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: i
 
     if (size(coefficients) /= n) then

@@ -27,7 +27,7 @@ contains
     type(document_type), intent(in) :: document           !< the data file as groups and items
     logical, intent(in) :: needed                         !< every independent coordinate must have a drive
     type(model_type), intent(in) :: model                 !< all that was read; sound where there are no errors
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:)
     integer :: i
     logical :: sound
@@ -50,7 +50,7 @@ contains
   subroutine check_curves(document, model, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(model_type), intent(in) :: model                 !< all that was read
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(pair_guide_type) :: guide
     type(error_type), allocatable :: err
     integer, allocatable :: drives(:), initials(:)
@@ -85,7 +85,7 @@ contains
     integer, intent(in) :: coordinate                     !< number of the coordinate
     real(wp), intent(in) :: q                             !< its place at the start [m]
     real(wp), intent(in) :: length                        !< of the curve [m]
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     if (q >= -same_zero*length .and. q <= (1.0_wp + same_zero)*length) return
     call diagnostics%add(span, 'coordinate '//to_text(coordinate)//' would start at '//to_text(q)// &
@@ -96,7 +96,7 @@ contains
   subroutine check_motors(document, model, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(model_type), intent(in) :: model                 !< all that was read; sound where there are no errors
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:)
     integer :: i, j, k
     logical :: sound
@@ -122,7 +122,7 @@ contains
   pure subroutine check_complete(document, partition, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(partition_type), intent(in) :: partition         !< kinds of the coordinates; none where the structure is unknown
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:), cq(:)
     type(span_type) :: span
     logical :: driven(size(partition%kind))
@@ -152,7 +152,7 @@ contains
     logical, intent(in) :: sound                          !< the model is sound apart from such groups
     character(len=*), intent(in) :: use                   !< the words for that of which it is incapable, for example 'be driven'
     character(len=*), intent(in) :: otherwise             !< the remedy where no choice is found
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=:), allocatable :: remedy
     integer, allocatable :: choice(:)
     integer :: k
@@ -178,7 +178,7 @@ contains
   subroutine check_start(group, model, diagnostics)
     type(group_type), intent(in) :: group                 !< a group &initial
     type(model_type), intent(in) :: model                 !< all that was read
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(error_type), allocatable :: err
     real(wp) :: q, dq, ddq
     integer :: i, k
@@ -206,7 +206,7 @@ contains
     class(law_type), intent(in) :: drive                !< of the same coordinate
     real(wp), intent(in) :: given                         !< initial value [rad, m; per s]
     real(wp), intent(in) :: driven                        !< value of the drive at the start [rad, m; per s]
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     real(wp) :: unit
 
     if (abs(given - driven) <= same_value*max(abs(given), abs(driven)) + same_zero) return

@@ -39,7 +39,7 @@ contains
     real(wp), intent(in) :: start                                 !< time of the first result [s]
     real(wp), intent(in) :: parameters(:)                         !< numbers of the group &user, for the user's procedures
     type(drive_slot_type), allocatable, intent(out) :: drives(:)  !< the drives of sound groups, in their order
-    type(diagnostics_type), intent(inout) :: diagnostics          !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics          !< gets the errors
     integer, allocatable :: numbers(:)
     integer :: i, n, k
 
@@ -83,7 +83,7 @@ contains
   pure subroutine check_coordinate(group, partition, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(partition_type), intent(in) :: partition         !< kinds of the coordinates; none where the structure is unknown
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: k
 
     if (size(partition%kind) == 0) return
@@ -102,7 +102,7 @@ contains
     real(wp), intent(in) :: start                         !< time at the start [s]
     real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
     type(drive_slot_type), intent(out) :: slot            !< gets the drive; stays empty where an error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(procedure_drive_type) :: user_drive
     type(error_type), allocatable :: err
 
@@ -123,7 +123,7 @@ contains
     real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
     real(wp), intent(in) :: unit                          !< unit of the law's values in the file [rad, m or 1]
     class(law_type), allocatable, intent(out) :: law      !< the law
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(polynomial_law_type) :: polynomial
 
     select case (name)
@@ -147,7 +147,7 @@ contains
     type(group_type), intent(in) :: group                 !< the group of the data file
     real(wp), intent(in) :: unit                          !< unit of the law's values in the file [rad, m or 1]
     class(law_type), allocatable, intent(inout) :: law    !< gets the law; stays unallocated where an error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(table_law_type) :: table
     type(error_type), allocatable :: err
     real(wp), allocatable :: t(:), q(:)
@@ -171,7 +171,7 @@ contains
     type(group_type), intent(in) :: group                 !< the group of the data file
     real(wp), intent(in) :: unit                          !< unit of the law's values in the file [rad, m or 1]
     class(law_type), allocatable, intent(inout) :: law    !< gets the law; stays unallocated where an error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(segments_law_type) :: segments
     integer :: i, known, n
 
@@ -206,7 +206,7 @@ contains
   subroutine check_period(group, times, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     real(wp), intent(in) :: times(:)                      !< ends of the segments [s]
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     real(wp) :: period, span
 
     period = get_real(group, 'period')
@@ -221,7 +221,8 @@ contains
     end if
   end subroutine check_period
 
-  !> The files that drives, laws of loads and motors, curves of pairs and couplings are read from, in a document that may be unchecked yet.
+  !> The files that drives, laws of loads and motors, curves of pairs and couplings are read from, in a document that may be
+  !> unchecked yet.
   pure subroutine files_of_groups(document, paths)
     type(document_type), intent(in) :: document              !< the data file as groups and items
     type(string_type), allocatable, intent(out) :: paths(:)  !< path of each file, from the working directory

@@ -89,7 +89,7 @@ contains
     type(group_type), intent(in) :: group                      !< the group of the data file
     type(compound_joint_type), intent(in) :: joint             !< the joint, with the numbers of its own links
     type(pair_slot_type), allocatable, intent(out) :: pairs(:) !< in the order of the joint's coordinates
-    type(diagnostics_type), intent(inout) :: diagnostics       !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics       !< gets the errors
     type(screw_pair_type) :: chain(joint%freedoms)
     type(pose_type) :: reference, moving
     integer :: found, i
@@ -156,7 +156,7 @@ contains
   pure subroutine read_universal(group, chain, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(screw_pair_type), intent(inout) :: chain(:)      !< gets the two pairs
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     real(wp), parameter :: origin(3) = 0.0_wp
     type(pose_type) :: first, second
     real(wp) :: point(3), moving_point(3), axis(3)

@@ -27,7 +27,7 @@ contains
     real(wp), intent(in) :: angle_unit                          !< unit of angles in the file [rad]
     real(wp), intent(in) :: parameters(:)                       !< numbers of the group &user, for the user's procedure
     type(load_slot_type), allocatable, intent(out) :: loads(:)  !< one for each sound group, in their order
-    type(diagnostics_type), intent(inout) :: diagnostics        !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics        !< gets the errors
     integer, allocatable :: numbers(:)
     integer :: i
 
@@ -105,7 +105,7 @@ contains
   pure subroutine check_coordinate(group, n_coordinates, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     integer, intent(in) :: n_coordinates                  !< how many coordinates there are; 0: unknown
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     if (n_coordinates > 0 .and. get_integer(group, 'coordinate') > n_coordinates) &
       call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '// &
@@ -116,7 +116,7 @@ contains
   pure subroutine check_spring(group, n_links, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     integer, intent(in) :: n_links                        !< how many links there are; 0: unknown
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: links(2)
 
     links = get_integers(group, 'links')

@@ -26,7 +26,7 @@ contains
     integer, intent(in) :: n_links                        !< number of links by &mechanism; 0: taken from the matrix
     type(matrix_type), intent(out) :: matrix              !< the coincidence matrix with the places of its elements
     logical, intent(out) :: ok                            !< whether no error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     logical :: in_rows
     integer :: i, n, found
 
@@ -84,7 +84,7 @@ contains
   pure subroutine place_item(item, matrix, diagnostics)
     type(item_type), intent(in) :: item                   !< a row, column or element of the matrix
     type(matrix_type), intent(inout) :: matrix            !< the coincidence matrix with the places of its elements
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: rows(2), columns(2), i, j, n, expected
 
     n = size(matrix%c, 1)
@@ -153,7 +153,7 @@ contains
   pure subroutine check_complete(group, matrix, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(matrix_type), intent(in) :: matrix               !< the coincidence matrix with the places of its elements
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: i, j
 
     do i = 1, size(matrix%c, 1)

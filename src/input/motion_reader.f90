@@ -24,7 +24,7 @@ contains
     type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; a slot is empty where its group has an error
     real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
     type(initial_type), intent(out) :: initial            !< positions and velocities at the start; zero where not given
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:)
     real(wp) :: unit
     integer :: i, k, m
@@ -59,7 +59,7 @@ contains
     type(document_type), intent(in) :: document              !< the data file as groups and items
     integer, intent(in) :: n_links                           !< how many links there are; 0 where it is not known
     type(point_type), allocatable, intent(out) :: points(:)  !< one for each sound group, in their order
-    type(diagnostics_type), intent(inout) :: diagnostics     !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics     !< gets the errors
     integer, allocatable :: numbers(:)
     integer :: i
 
@@ -83,7 +83,7 @@ contains
     character(len=*), intent(in) :: name                  !< name of the item that holds the number of the link
     integer, intent(in) :: position                       !< position of the number in the list
     integer, intent(in) :: n_links                        !< how many links there are; 0 where it is not known
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     real(wp), allocatable :: numbers(:)
 
     if (n_links == 0) return

@@ -26,7 +26,7 @@ contains
     real(wp), intent(in) :: angle_unit                            !< unit of angles in the file [rad]
     type(load_slot_type), allocatable, intent(inout) :: loads(:)  !< gets the motors of sound groups
     integer, intent(out) :: n_motors                              !< how many motors there are
-    type(diagnostics_type), intent(inout) :: diagnostics          !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics          !< gets the errors
     type(load_slot_type), allocatable :: all(:)
     class(motor_type), allocatable :: motor
     integer, allocatable :: numbers(:)
@@ -67,7 +67,7 @@ contains
     type(document_type), intent(in) :: document           !< the data file as groups and items
     integer, intent(in) :: numbers(:)                     !< groups of the motors
     type(load_slot_type), intent(in) :: motors(:)         !< the motors
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: coordinates(size(motors)), i
 
     coordinates = 0
@@ -89,7 +89,7 @@ contains
     type(group_type), intent(in) :: group                     !< the group of the data file
     real(wp), intent(in) :: angle_unit                        !< unit of angles in the file [rad]
     class(motor_type), allocatable, intent(out) :: motor      !< the motor
-    type(diagnostics_type), intent(inout) :: diagnostics      !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics      !< gets the errors
     type(dc_motor_type) :: dc
 
     dc%voltage = 1.0_wp
@@ -114,7 +114,7 @@ contains
     type(pair_slot_type), intent(in) :: pairs(:)              !< (M) pairs by coordinate; size 0 where they are not known
     real(wp), intent(in) :: angle_unit                        !< unit of angles in the file [rad]
     class(motor_type), allocatable, intent(out) :: motor      !< the motor
-    type(diagnostics_type), intent(inout) :: diagnostics      !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics      !< gets the errors
     type(pid_motor_type) :: pid
     type(polynomial_law_type) :: constant
     real(wp) :: unit
@@ -147,7 +147,7 @@ contains
   subroutine check_pid_motor(group, pid, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(pid_motor_type), intent(in) :: pid               !< the controller
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     if (.not. (has_law(group) .or. has_name(group, 'setpoint'))) &
       call diagnostics%add(group%span, 'the controller has no setpoint; give setpoint=, or law= and its names, for instance '// &

@@ -17,7 +17,7 @@ contains
   pure subroutine check_name(group, name, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     character(len=*), intent(in) :: name                  !< the name that it gives
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     if (len(name) > 0 .and. len(name) <= longest_name .and. verify(name, name_letters) == 0) return
     call diagnostics%add(span_of(group, 'name', 1), '''name'' must be of letters (a to z), digits and _, at most '// &

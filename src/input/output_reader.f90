@@ -17,7 +17,7 @@ contains
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(structure_type), intent(in) :: structure         !< links and joints; without coordinates where it is not known
     type(output_settings_type), intent(out) :: output     !< the settings, with defaults for those not given
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(group_type) :: group
     integer :: i, n_coordinates
 
@@ -64,7 +64,7 @@ contains
     type(document_type), intent(in) :: document           !< the data file as groups and items
     logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
     integer, intent(in) :: n_parameters                   !< how many parameters the data file has
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=14), parameter :: forces(3) = ['reactions     ', 'reaction_pairs', 'drive_forces  ']
     type(group_type) :: group
     integer :: i
@@ -94,7 +94,7 @@ contains
     character(len=*), intent(in) :: counted               !< 'coordinate' or 'pair'
     integer, intent(in) :: n_coordinates                  !< how many coordinates there are
     integer, intent(in) :: coordinates(:)                 !< numbers of the recorded coordinates
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: i
 
     do i = 1, size(coordinates)

@@ -41,7 +41,7 @@ contains
     real(wp), intent(in) :: angle_unit                          !< unit of angles in the file [rad]
     real(wp), intent(in) :: parameters(:)                       !< numbers of the group &user, for the user's procedures
     type(pair_slot_type), allocatable, intent(out) :: pairs(:)  !< (M) pairs by coordinate; empty where the group is wrong
-    type(diagnostics_type), intent(inout) :: diagnostics        !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics        !< gets the errors
     type(pair_slot_type) :: slot
     integer, allocatable :: numbers(:)
     integer :: i, k
@@ -66,7 +66,7 @@ contains
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(structure_type), intent(in) :: structure         !< links and joints; without coordinates where it is not known
     type(pair_slot_type), intent(inout) :: pairs(:)       !< (M) gets the pairs by coordinate
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(compound_joint_type) :: joint
     type(pair_slot_type), allocatable :: chain(:)
     integer :: i, j
@@ -88,7 +88,7 @@ contains
     real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
     real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
     type(pair_slot_type), intent(out) :: slot             !< gets the pair; stays empty where an error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(screw_pair_type) :: screw
     type(path_pair_type) :: path
     type(procedure_pair_type) :: procedure_pair
@@ -128,7 +128,7 @@ contains
     type(group_type), intent(in) :: group                 !< the group of the data file
     real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
     type(screw_pair_type), intent(out) :: pair            !< the pair of screw motion
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=12), parameter :: others(6) = [character(len=12) :: 'point', 'axis', 'zero', 'moving_point', &
                                                  'moving_axis', 'moving_zero']
     real(wp) :: dh(4)
@@ -156,7 +156,7 @@ contains
   pure subroutine read_frames(group, pair, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(screw_pair_type), intent(out) :: pair            !< the pair of screw motion
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(pose_type) :: reference, moving
     integer :: found
 
@@ -182,7 +182,7 @@ contains
     character(len=*), intent(in) :: data_file             !< path of the data file
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(path_pair_type), intent(out) :: pair             !< the pair along a curve
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(space_curve_type) :: curve
     type(pose_type) :: reference, moving
     type(span_type), allocatable :: spans(:)
@@ -210,7 +210,7 @@ contains
     real(wp), intent(inout) :: points(:, :)               !< (3,n) the points, at least four; ends that meet are made equal [m]
     type(span_type), intent(in) :: spans(:)               !< (n) their places in the file
     type(space_curve_type), intent(out) :: curve          !< the curve
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(error_type), allocatable :: err
     real(wp) :: size_of_curve, distance
     integer :: i, n, found

@@ -23,7 +23,7 @@ contains
   pure subroutine read_parameters(document, parameters, diagnostics)
     type(document_type), intent(inout) :: document                     !< checked; gets the numbers that the parameters set
     type(parameter_type), allocatable, intent(out) :: parameters(:)    !< one for each sound group, in their order
-    type(diagnostics_type), intent(inout) :: diagnostics               !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics               !< gets the errors
     integer, allocatable :: numbers(:)
     integer :: i, found
 
@@ -43,8 +43,8 @@ contains
   !> Read the name and the numbers of a parameter.
   pure subroutine read_settings(group, parameter, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
-    type(parameter_type), intent(inout) :: parameter      !< gets what the group gives
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(parameter_type), intent(inout) :: parameter      !< gets the names and numbers of the group
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     parameter%name = get_text(group, 'name')
     call check_name(group, parameter%name, diagnostics)
@@ -69,7 +69,7 @@ contains
     type(document_type), intent(inout) :: document        !< checked; gets items for defaults
     integer, intent(in) :: number                         !< position of the parameter's group
     type(parameter_type), intent(inout) :: parameter      !< gets its targets
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(number_place_type) :: place
     type(number_name_type) :: name
     type(group_type) :: group
@@ -99,7 +99,7 @@ contains
     type(group_type), intent(in) :: group                 !< the group of the parameter
     character(len=*), intent(in) :: name                  !< of the item
     real(wp), intent(inout) :: numbers(:)                 !< one for each target
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     real(wp), allocatable :: given(:)
 
     given = get_reals(group, name)
@@ -116,9 +116,9 @@ contains
   !> Report numbers that this parameter or one before sets too.
   pure subroutine check_targets(document, parameters, number, diagnostics)
     type(document_type), intent(in) :: document           !< checked
-    type(parameter_type), intent(in) :: parameters(:)     !< those that have been read; the last one is checked
+    type(parameter_type), intent(in) :: parameters(:)     !< the parameters that have been read; the last one is checked
     integer, intent(in) :: number                         !< position of its group
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: i, j, k, last
 
     last = size(parameters)
@@ -153,7 +153,7 @@ contains
     type(document_type), intent(in) :: document           !< checked
     integer, intent(in) :: number                         !< position of the parameter's group
     type(parameter_type), intent(inout) :: parameter      !< gets its value
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     logical, allocatable :: later(:)
     type(span_type) :: from, own
     integer :: i
@@ -197,7 +197,7 @@ contains
   !> The value of a parameter with which a target has its present number.
   pure real(wp) function value_of_target(document, target) result(value)
     type(document_type), intent(in) :: document           !< checked
-    type(parameter_target_type), intent(in) :: target     !< a number of it
+    type(parameter_target_type), intent(in) :: target     !< the number of the document that it sets
 
     associate (item => document%groups(target%group_place)%items(target%item_place))
       value = (item%values(target%position)%number - target%term)/target%factor
@@ -207,7 +207,7 @@ contains
   !> Place of the number that a target has in the file or in --set.
   pure type(span_type) function span_of_target(document, target) result(span)
     type(document_type), intent(in) :: document           !< checked
-    type(parameter_target_type), intent(in) :: target     !< a number of it
+    type(parameter_target_type), intent(in) :: target     !< the number of the document that it sets
 
     span = document%groups(target%group_place)%items(target%item_place)%values(target%position)%span
   end function span_of_target
@@ -216,7 +216,7 @@ contains
   pure subroutine place_parameters(document, parameters, diagnostics)
     type(document_type), intent(inout) :: document        !< checked, with an item for each target
     type(parameter_type), intent(in) :: parameters(:)     !< all parameters, with their values
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: i, j, row
     real(wp) :: number
 

@@ -18,7 +18,7 @@ contains
     type(document_type), intent(in) :: document                     !< the data file as groups and items
     type(time_grid_type), intent(in) :: time                        !< the times of the results
     type(quantity_type), allocatable, intent(out) :: quantities(:)  !< one for each sound group, in their order
-    type(diagnostics_type), intent(inout) :: diagnostics            !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics            !< gets the errors
     integer, allocatable :: numbers(:)
     integer :: i
 

@@ -41,7 +41,7 @@ contains
     type(document_type), intent(in) :: document            !< the data file as groups and items
     type(structure_type), intent(out) :: structure         !< links and coordinates; of use only without errors
     type(partition_type), intent(out) :: partition         !< kinds of coordinates and their order; of use only without errors
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
     type(document_type) :: checked
     logical :: known
 
@@ -57,7 +57,7 @@ contains
     type(document_type), intent(in) :: document           !< the data file as groups and items
     logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
     type(model_type), intent(out) :: model                !< the mechanism, its problem, and the request for results
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(document_type) :: checked
 
     if (size(document%groups) == 0) return          ! the reason was reported when the file was read
@@ -74,7 +74,7 @@ contains
     type(document_type), intent(in) :: document           !< checked
     logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
     type(model_type), intent(inout) :: model              !< with its parameters; gets all else
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     logical :: known
 
     call read_settings(document, model%mechanism, diagnostics)
@@ -104,7 +104,7 @@ contains
     type(mechanism_type), intent(inout) :: mechanism      !< the mechanism, with its structure
     type(problem_type), intent(inout) :: problem          !< the problem, with its partition
     type(request_type), intent(inout) :: request          !< the request for results, with its times
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     associate (m => mechanism, n_links => mechanism%structure%shown_links())
       call read_pairs(document, m%structure, m%angle_unit, m%parameters, m%pairs, diagnostics)
@@ -127,7 +127,7 @@ contains
   pure subroutine check_pairs_given(document, mechanism, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(mechanism_type), intent(in) :: mechanism         !< the mechanism
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:)
 
     if (mechanism%structure%n_coordinates == 0 .or. has_group(document, 'pair')) return
@@ -141,7 +141,7 @@ contains
   pure subroutine read_settings(document, mechanism, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(mechanism_type), intent(inout) :: mechanism      !< the mechanism
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(group_type) :: group
 
     group = group_or_empty(document, 'mechanism')
@@ -159,7 +159,7 @@ contains
   pure subroutine read_request(document, request, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(request_type), intent(inout) :: request          !< the request for results
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(group_type) :: group
 
     group = group_or_empty(document, 'solver')
@@ -175,7 +175,7 @@ contains
   pure subroutine read_time(group, time, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(time_grid_type), intent(out) :: time             !< the times of the results [s]
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     time%start = get_real(group, 'start')
     time%end = get_real(group, 'end')

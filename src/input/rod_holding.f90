@@ -75,7 +75,7 @@ contains
     integer, intent(in) :: kinds(:)                 !< (M) driven, free or dependent
     real(wp), intent(in) :: q(:)                    !< (M) guesses of the coordinates [rad, m]
     integer, intent(out) :: angle                   !< number of its coordinate
-    logical, intent(out) :: serves_there            !< it takes nearly the whole turn at the guesses
+    logical, intent(out) :: serves_there            !< this angle takes nearly the whole turn at the guesses
     real(wp) :: lines(3, 2), shares(3, 2)
     integer :: numbers(3, 2), i, at(2)
     logical :: about_rod(3, 2)
@@ -151,7 +151,8 @@ contains
     end do
   end subroutine let_point_anywhere
 
-  !> Change turns about x, y', z'' so that the third one brings a line into the plane of x and z, and that the line points as before.
+  !> Change turns about x, y', z'' so that the third one brings a line into the plane of x and z, and that the line points as
+  !> before.
   pure subroutine turn_across(line, first, second, third)
     real(wp), intent(in) :: line(3)       !< direction of the line in the moving frame
     real(wp), intent(inout) :: first      !< angle about x [rad]

@@ -45,7 +45,7 @@ contains
     type(structure_type), intent(out) :: structure         !< links of each coordinate
     type(partition_type), intent(out) :: partition         !< kinds of the coordinates, none driven, and the order of computation
     logical, intent(out) :: known                          !< whether no error leaves the structure unknown
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
     type(source_data_type) :: data
     logical, allocatable :: independent(:)
     integer :: found
@@ -111,7 +111,7 @@ contains
     type(source_data_type), intent(inout) :: data         !< the data on the structure, gathered from all groups
     type(structure_type), intent(inout) :: structure      !< links of each coordinate
     logical, allocatable, intent(inout) :: independent(:) !< (M) the coordinate is independent
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(finding_type), allocatable :: findings(:)
     integer :: m, n, most
     logical :: ok
@@ -150,7 +150,7 @@ contains
     type(structure_type), intent(inout) :: structure      !< links of each coordinate
     logical, allocatable, intent(inout) :: independent(:) !< (M) the coordinate is independent
     logical, intent(out) :: known                         !< whether no error leaves the structure unknown
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(finding_type), allocatable :: findings(:)
     integer :: n
 
@@ -178,7 +178,7 @@ contains
     type(structure_type), intent(inout) :: structure         !< the structure by the first set, where it is given
     logical, allocatable, intent(inout) :: independent(:)    !< (M) the coordinate is independent
     type(structural_vectors_type), intent(inout) :: vectors  !< structural vectors: links in the order of computation, and so on
-    type(diagnostics_type), intent(inout) :: diagnostics     !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics     !< gets the errors
     type(structure_type) :: second
     logical, allocatable :: by_rdw(:)
     type(finding_type), allocatable :: findings(:)
@@ -216,7 +216,7 @@ contains
   pure subroutine settle_joints(data, by_rdw, diagnostics)
     type(source_data_type), intent(in) :: data            !< the data on the structure, gathered from all groups
     logical, intent(inout) :: by_rdw(:)  !< (M) independent by rdw; of a joint only its first coordinate, then all of them
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: cq(:), k(:)
     integer :: i, j
 
@@ -255,7 +255,7 @@ contains
     type(structure_type), intent(in) :: first             !< the structure by the matrix c or the pairs
     type(structure_type), intent(in) :: second            !< the structure by nrg and nws
     logical, intent(in) :: by_rdw(:)                      !< (M) the coordinate is independent by rdw
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(finding_type), allocatable :: findings(:)
     integer :: i
 
@@ -286,7 +286,7 @@ contains
     type(source_data_type), intent(in) :: data            !< the data on the structure, gathered from all groups
     integer, intent(in) :: cq(:)                          !< numbers of the independent coordinates
     logical, intent(in) :: by_rdw(:)                      !< (M) the coordinate is independent by rdw
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: k
     logical :: in_cq
 
@@ -311,7 +311,7 @@ contains
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(source_data_type), intent(inout) :: data         !< the data on the structure, gathered from all groups
     type(structure_type), intent(in) :: structure         !< links of each coordinate
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(finding_type), allocatable :: findings(:)
     integer, allocatable :: links(:, :)
     integer :: k
@@ -332,7 +332,7 @@ contains
     type(document_type), intent(in) :: document           !< the data file as groups and items
     integer, intent(in) :: n_coordinates                  !< how many coordinates the pairs should have
     type(source_data_type), intent(inout) :: data         !< the data on the structure, gathered from all groups
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: missing(:), coordinates(:)
     integer :: i, j, k, m
 
@@ -379,7 +379,7 @@ contains
     type(finding_type), intent(in) :: findings(:)         !< errors that the structure floor found
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(source_data_type), intent(in) :: data            !< the data on the structure, gathered from all groups
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: i
 
     do i = 1, size(findings)

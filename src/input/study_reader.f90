@@ -24,7 +24,7 @@ contains
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(parameter_type), intent(in) :: parameters(:)     !< the parameters
     type(study_type), intent(out) :: study                !< of use only where nothing is reported
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:)
 
     numbers = groups_named(document, 'study')
@@ -57,7 +57,7 @@ contains
   !> Report names of parameters and quantities that two columns of the study's table would have.
   pure subroutine check_headings(document, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: parameters(:), groups(:)
     character(len=40) :: name, other       ! longer names are refused
     integer :: i, j
@@ -85,7 +85,7 @@ contains
     type(group_type), intent(in) :: group                 !< group of the study
     type(parameter_type), intent(in) :: parameters(:)     !< the parameters
     integer, intent(out) :: runs                          !< how many points the grid has
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:)
     integer(long) :: product
     integer :: i
@@ -110,7 +110,7 @@ contains
   pure subroutine check_spreads(document, parameters, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(parameter_type), intent(in) :: parameters(:)     !< the parameters
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:)
     integer :: i
 
@@ -128,7 +128,7 @@ contains
     type(group_type), intent(in) :: group                 !< group of the study
     integer, intent(in) :: n_parameters                   !< how many parameters there are
     type(study_type), intent(inout) :: study              !< gets its values and the number of its runs
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(source_type) :: source
     type(error_type), allocatable :: err
     integer :: number, line, found
@@ -157,7 +157,7 @@ contains
     integer, intent(in) :: line                           !< number of the line, from 1
     real(wp), intent(inout) :: list(:, :)                 !< (parameters,lines) the values so far
     integer, intent(inout) :: runs                        !< how many lines had values so far
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=*), parameter :: separators = ' ,;'//achar(9)//achar(13)//achar(10)
     type(numeral_type) :: numeral
     integer :: first, last, at, length, n

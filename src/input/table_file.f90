@@ -29,7 +29,7 @@ contains
     real(wp), allocatable, intent(out) :: t(:)            !< times [s], or values of a coordinate, in the unit of the file
     real(wp), allocatable, intent(out) :: q(:)            !< values of the coordinate, in the unit of the file
     logical, intent(out) :: ok                            !< whether no error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(source_type) :: source
     type(error_type), allocatable :: err
     integer :: number, line, n, found
@@ -70,7 +70,7 @@ contains
     real(wp), intent(inout) :: t(:)                       !< times or values, in the unit of the file; the first n are in use
     real(wp), intent(inout) :: q(:)                       !< values, in the unit of the file; the first n are in use
     integer, intent(inout) :: n                           !< how many points are in use
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(span_type) :: fields(2), whole
     real(wp) :: numbers(2)
     integer :: count
@@ -106,7 +106,7 @@ contains
     real(wp), allocatable, intent(out) :: points(:, :)    !< (3,n) [m]; z is 0 in a plane
     type(span_type), allocatable, intent(out) :: spans(:) !< (n) places of the points in the file
     logical, intent(out) :: ok                            !< whether no error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(source_type) :: source
     type(span_type), allocatable :: fields(:)
     type(span_type) :: whole
@@ -160,7 +160,7 @@ contains
     integer, intent(in) :: number                         !< of the file among the sources
     integer, intent(in) :: n                              !< number of its points
     type(span_type), intent(in) :: asked_at               !< place of the file's name in the data file
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=:), allocatable :: pair
     type(place_type) :: place
 
@@ -178,7 +178,7 @@ contains
     integer, intent(inout) :: count                       !< how many words the line has; afterwards how many are chosen
     type(span_type), intent(inout) :: fields(:)           !< places of the words; afterwards the first ones are those chosen
     logical, intent(out) :: ok                            !< whether the line has all of these columns
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     ok = count >= maxval(chosen)
     if (ok) then
@@ -223,7 +223,7 @@ contains
     type(span_type), intent(in) :: fields(:)              !< places of the words
     real(wp), intent(out) :: numbers(:)                   !< (words) the numbers
     logical, intent(out) :: ok                            !< whether no error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(numeral_type) :: numeral
     integer :: i
 

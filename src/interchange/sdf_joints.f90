@@ -152,7 +152,7 @@ contains
   subroutine read_limits(tree, axis, joint, robot, err)
     type(xml_tree_type), intent(in) :: tree              !< the document
     integer, intent(in) :: axis                          !< number of the element <axis>; 0: none
-    type(robot_joint_type), intent(inout) :: joint       !< gets them
+    type(robot_joint_type), intent(inout) :: joint       !< gets the axes
     type(robot_type), intent(inout) :: robot             !< gets notes
     type(error_type), allocatable, intent(inout) :: err  !< the failure
     real(wp) :: friction

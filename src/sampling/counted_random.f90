@@ -35,7 +35,7 @@ contains
     end do
   end subroutine philox
 
-  !> A number between 0 and 1, which it never is.
+  !> A number greater than 0 and less than 1.
   pure real(wp) function uniform_at(seed, run, dimension) result(u)
     integer, intent(in) :: seed        !< of the study, not negative
     integer, intent(in) :: run         !< number of the run, not negative

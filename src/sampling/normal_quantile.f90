@@ -9,7 +9,7 @@ contains
 
   !> The number that a normal variable of mean 0 and deviation 1 exceeds with probability 1 - p.
   pure real(wp) function normal_quantile(p) result(x)
-    real(wp), intent(in) :: p   !< between 0 and 1, which it is not
+    real(wp), intent(in) :: p   !< probability, greater than 0 and less than 1
     real(wp) :: tail, t, difference
     integer :: pass
 

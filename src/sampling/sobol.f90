@@ -58,8 +58,8 @@ module mech9_sobol
 
 contains
 
-  !> A coordinate of a point, between 0 and 1, which it never is. All points are shifted digit by digit as the seed says; this keeps
-  !> them as even, and makes means over them estimates without bias.
+  !> A coordinate of a point, greater than 0 and less than 1. All points are shifted digit by digit by numbers that follow from the
+  !> seed. The shift leaves them as even as they were, and makes means over them estimates without bias.
   pure real(wp) function sobol_at(seed, run, dimension) result(u)
     integer, intent(in) :: seed        !< of the study, not negative
     integer, intent(in) :: run         !< number of the point, from 1

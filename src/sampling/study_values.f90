@@ -16,7 +16,7 @@ contains
   !> The values of all parameters in a run. They depend on its number alone, not on other runs.
   pure subroutine values_of_run(study, parameters, run, values)
     type(study_type), intent(in) :: study                !< the study
-    type(parameter_type), intent(in) :: parameters(:)    !< with what the study needs of them
+    type(parameter_type), intent(in) :: parameters(:)    !< with ranges, or values and spreads
     integer, intent(in) :: run                           !< number of the run, 1 to study%runs
     real(wp), intent(out) :: values(:)                   !< (parameters) in the units of the file
     integer :: i, rest
@@ -54,7 +54,7 @@ contains
   !> The value that a parameter does not exceed with probability u: about its value by its spread, else between low and high.
   pure real(wp) function quantile(parameter, u) result(value)
     type(parameter_type), intent(in) :: parameter   !< with a spread or a range
-    real(wp), intent(in) :: u                       !< between 0 and 1, which it is not
+    real(wp), intent(in) :: u                       !< probability, greater than 0 and less than 1
 
     if (.not. parameter%spread > 0.0_wp) then
       value = parameter%low + (parameter%high - parameter%low)*u

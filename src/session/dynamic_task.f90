@@ -67,7 +67,7 @@ contains
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in), target :: model           !< the model
     class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
-    type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
     type(model_type), target :: used
@@ -136,7 +136,7 @@ contains
     type(plan_type), intent(in) :: plan                               !< the plan of the mechanism
     type(state_type), intent(in) :: start                             !< assembled position
     type(free_simulation_type), intent(inout), target :: simulation   !< to be started
-    type(diagnostics_type), intent(inout) :: diagnostics              !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics              !< gets the errors
     logical, intent(out) :: reported                                  !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept             !< gets the rows as well, for a look at them after the run
     type(row_source_type) :: source

@@ -14,7 +14,7 @@ contains
   subroutine check_times_of_laws(model, with_loads, diagnostics)
     type(model_type), intent(in) :: model                 !< the model
     logical, intent(in) :: with_loads                     !< the loads act in this run, too
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: i
 
     do i = 1, size(model%problem%drives)

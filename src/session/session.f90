@@ -169,7 +169,7 @@ contains
     type(command_line_type), intent(in) :: options         !< the command line
     type(model_type), intent(in) :: model                  !< the model
     type(diagnostics_type), intent(in) :: choice           !< judgement of the choice of independent coordinates
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
     integer, intent(inout) :: code                         !< exit code of the program; of the first error
     type(error_type), allocatable :: err
 

@@ -62,7 +62,7 @@ module mech9_task
       type(command_line_type), intent(in) :: options          !< the command line
       type(model_type), intent(in), target :: model           !< the model
       class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
-      type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
+      type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
       logical, intent(out) :: reported                        !< a report was asked for, and it is written: there was a run
       type(kept_rows_type), intent(inout), optional :: kept   !< the rows of a run, for who looks at them after it
     end subroutine work_interface
@@ -86,7 +86,7 @@ contains
     type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
     type(requested_type), intent(in) :: requested          !< the requested part of the motion
     type(state_type), intent(in) :: start                  !< assembled position
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
     type(mobility_report_type) :: report
     type(error_type), allocatable :: err
 
@@ -154,7 +154,7 @@ contains
     type(command_line_type), intent(in) :: options         !< the command line
     type(model_type), intent(in) :: model              !< the model
     type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
     type(error_type), allocatable :: err
     character(len=:), allocatable :: said
     logical :: drawn
@@ -176,7 +176,7 @@ contains
     type(requested_type), intent(in) :: requested          !< the requested part of the motion
     type(row_source_type), intent(inout) :: source         !< computes the rows; gets a film where pictures are wanted
     type(results_type), intent(out), target :: results     !< opened
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
     logical, intent(out) :: ready                          !< the run can begin
     type(error_type), allocatable :: err
     type(hdf5_sink_type), pointer :: hdf5
@@ -213,7 +213,7 @@ contains
     type(model_type), intent(in) :: model              !< the model
     type(row_source_type), intent(in) :: source            !< of the rows that were written
     type(results_type), intent(inout), target :: results   !< closed on return
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
     type(error_type), allocatable :: err
     type(hdf5_sink_type), pointer :: hdf5
 
@@ -234,7 +234,7 @@ contains
   subroutine write_quantities(hdf5, quantities, again)
     type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file
     type(quantity_record_type), intent(in) :: quantities   !< of the run
-    logical, intent(in) :: again                           !< they stand there already
+    logical, intent(in) :: again                           !< the file has them already, and they are written over
     type(facts_type) :: facts
 
     call quantities%find_facts(facts)
@@ -263,7 +263,7 @@ contains
     type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
     type(model_type), intent(in) :: model              !< the model
     type(film_type), intent(in) :: film                    !< poses and columns at some outputs
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
     type(error_type), allocatable :: err
 
     call pictures%save(model, film, err)

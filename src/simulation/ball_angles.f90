@@ -63,8 +63,8 @@ contains
     call self%restart(model, model%problem%partition, requested, plan, state, err)
   end subroutine begin
 
-  !> Find the ball joints of a plan, replace the angles of those that are near gimbal lock, and hold other angles of rods where these
-  !> serve clearly better.
+  !> Find the ball joints of a plan, replace the angles of those that are near gimbal lock, and hold other angles of rods where
+  !> these serve clearly better.
   subroutine restart(self, model, partition, requested, plan, state, err)
     class(ball_angles_type), intent(inout) :: self      !< the angles; gets the partition of the motion
     type(model_type), intent(in) :: model               !< the model
@@ -134,7 +134,7 @@ contains
   !> Whether the same angles move the joints, and the same are held, as with others of the same mechanism.
   pure logical function move_as(self, other)
     class(ball_angles_type), intent(in) :: self   !< the angles
-    class(ball_angles_type), intent(in) :: other  !< the others
+    class(ball_angles_type), intent(in) :: other  !< angles of the other motion
     integer :: i
 
     move_as = size(self%replaced) == size(other%replaced)

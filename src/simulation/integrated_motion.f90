@@ -180,7 +180,7 @@ contains
   subroutine take_angles(self, requested, angles, other, failure)
     class(integrated_motion_type), intent(in) :: self       !< the motion
     type(requested_type), intent(in) :: requested           !< the part of the motion that is worked out
-    type(ball_angles_type), intent(inout) :: angles         !< those of the motion; then those of the system
+    type(ball_angles_type), intent(inout) :: angles         !< ball joints of the motion; then of the system
     type(motion_system_type), intent(inout) :: other        !< gets the system
     type(error_type), allocatable, intent(out) :: failure   !< allocated if these angles cannot serve
 

@@ -18,7 +18,7 @@ module mech9_idle_rods
 
   !> The joints as the user knows them.
   type :: edges_type
-    integer :: n = 0                         !< how many they are
+    integer :: n = 0                         !< number of joints
     integer, allocatable :: links(:, :)      !< (2,n) the links that they join
     integer, allocatable :: first(:)         !< (n) their first coordinates
     integer, allocatable :: joint(:)         !< (n) numbers among the joints with several freedoms; 0 for other pairs

@@ -109,8 +109,8 @@ contains
     class(procedure_coupling_type), intent(in) :: self   !< the coupling
     real(wp), intent(in) :: q                            !< the first coordinate [rad, m]
     integer, intent(in) :: form                          !< of_value or of_second
-    real(wp), intent(out) :: curve(0:curve_order)        !< it and its derivatives
-    logical, intent(out) :: ok                           !< whether there are finite values
+    real(wp), intent(out) :: curve(0:curve_order)        !< value of the function and its derivatives
+    logical, intent(out) :: ok                           !< all values are finite
     real(wp) :: values(-half_width:half_width), h, first, second, error, best
     integer :: number, i
 

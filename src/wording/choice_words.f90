@@ -51,7 +51,8 @@ contains
     call explain_holding(failure, text)
   end subroutine explain_choice
 
-  !> Append "; 1 more of the coordinates 2, 3 must be independent (cq)", or "; coordinate 2 must be independent, too (cq)", or nothing.
+  !> Append "; 1 more of the coordinates 2, 3 must be independent (cq)", or "; coordinate 2 must be independent, too (cq)", or
+  !> nothing.
   pure subroutine explain_needed(failure, wanted, text)
     type(failure_type), intent(in) :: failure             !< of the kind failure_wrong_choice
     logical, intent(in) :: wanted(:)                      !< (M) the independent coordinates of the data file
@@ -77,7 +78,7 @@ contains
     end if
   end subroutine explain_needed
 
-  !> Append "; take 1 of the coordinates 1, 2 off the independent ones (cq)", or the same of one coordinate, or nothing.
+  !> Append "; take 1 of the coordinates 1, 2 off the independent ones (cq)", or the same sentence about one coordinate, or nothing.
   pure subroutine explain_surplus(failure, wanted, chosen, text)
     type(failure_type), intent(in) :: failure             !< of the kind failure_wrong_choice
     logical, intent(in) :: wanted(:)                      !< (M) the independent coordinates of the data file

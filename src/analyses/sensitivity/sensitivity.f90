@@ -45,8 +45,8 @@ module mech9_sensitivity
 
 contains
 
-  !> Prepare the derivatives by all parameters of a model. Fails where the model does not exist beside the present values, and where a
-  !> parameter sets numbers whose derivatives are not known.
+  !> Prepare the derivatives by all parameters of a model. Fails where the model does not exist beside the present values, and where
+  !> a parameter sets numbers whose derivatives are not known.
   subroutine new_sensitivity(variable, model, plan, highest, sensitivity, err)
     class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the present model
@@ -194,7 +194,7 @@ contains
   subroutine vary_frames(order, first, last, self)
     integer, intent(in) :: order                    !< of the derivative in time
     integer, intent(in) :: first                    !< frames from this one
-    integer, intent(in) :: last                     !< to this one
+    integer, intent(in) :: last                     !< last one of these
     type(sensitivity_type), intent(inout) :: self   !< with the coordinates; gets the frames
     real(wp) :: amount
     integer :: s, j, p

@@ -257,7 +257,7 @@ contains
   subroutine read_laws(model, change, tangent)
     type(model_type), intent(in) :: model           !< the present model
     real(wp), intent(in) :: change(:)               !< the part of the row that belongs to them
-    type(tangent_type), intent(inout) :: tangent    !< gets them
+    type(tangent_type), intent(inout) :: tangent    !< gets these derivatives
     real(wp), allocatable :: values(:)
     integer :: at, i, n
 
@@ -279,8 +279,8 @@ contains
   pure subroutine take_part(values, change, at, part)
     real(wp), allocatable, intent(in) :: values(:)   !< its numbers; not allocated where they are not known
     real(wp), intent(in) :: change(:)                !< derivatives of the numbers of all
-    integer, intent(inout) :: at                     !< how many were taken; grows
-    type(law_tangent_type), intent(out) :: part      !< gets those of this one
+    integer, intent(inout) :: at                     !< number of constants taken so far; grows
+    type(law_tangent_type), intent(out) :: part      !< gets the derivatives of this law
 
     if (.not. allocated(values)) return
     part%change = change(at + 1:at + size(values))

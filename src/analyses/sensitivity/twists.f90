@@ -9,7 +9,7 @@ module mech9_twists
   private
   public :: bracket, carried, frame_twists_type, new_frame_twists, find_frame_twists, shift_at
 
-  !> The twists of a motion: velocities and accelerations of all frames, and what each step gives per unit rate with its first two
+  !> The twists of a motion: velocities and accelerations of all frames, and the twist of each step per unit rate with its first two
   !> derivatives in time. Rotation first, then shift, in the axes of frame 0.
   type :: frame_twists_type
     real(wp), allocatable :: velocity(:, :)      !< (6,0:M) of each frame [rad/s, m/s]

@@ -35,7 +35,7 @@ contains
     logical, intent(in) :: needs_drives                 !< the program needs a drive for each independent coordinate
     type(model_type), intent(out) :: model              !< the model
     type(draft_text_type), intent(out) :: written       !< text of the draft, with the place of each entry
-    type(diagnostics_type), intent(out) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(out) :: diagnostics  !< gets the errors
     type(document_type) :: document
 
     call write_draft(draft, '', written)
@@ -66,7 +66,7 @@ contains
     type(structure_type), intent(out) :: structure         !< links of the pairs
     type(partition_type), intent(out) :: partition         !< kinds of the coordinates, and their order of computation
     type(draft_text_type), intent(out) :: written          !< text of the draft, with the place of each entry
-    type(diagnostics_type), intent(out) :: diagnostics     !< gets what is wrong
+    type(diagnostics_type), intent(out) :: diagnostics     !< gets the errors
     type(document_type) :: document
 
     call write_draft(part, '', written)
@@ -156,7 +156,7 @@ contains
 
   !> The errors with the entries of the draft that they concern, in the order in which they were found.
   pure subroutine find_faults(diagnostics, written, faults)
-    type(diagnostics_type), intent(in) :: diagnostics        !< gets what is wrong
+    type(diagnostics_type), intent(in) :: diagnostics        !< gets the errors
     type(draft_text_type), intent(in) :: written             !< text of the draft, with the place of each entry
     type(fault_type), allocatable, intent(out) :: faults(:)  !< errors, each with its entry in the draft
     type(span_type) :: span
@@ -171,7 +171,7 @@ contains
 
   !> The errors of a draft that was read by read_draft.
   pure subroutine faults_of(diagnostics, written, faults)
-    type(diagnostics_type), intent(in) :: diagnostics        !< gets what is wrong
+    type(diagnostics_type), intent(in) :: diagnostics        !< gets the errors
     type(draft_text_type), intent(in) :: written             !< text of the draft, with the place of each entry
     type(fault_type), allocatable, intent(out) :: faults(:)  !< errors, each with its entry in the draft
 

@@ -44,7 +44,7 @@ contains
     integer, intent(in) :: most_parts                       !< largest number of links or coordinates in a conversation
     type(draft_type), intent(out) :: draft                  !< groups and names with their values as text
     character(len=:), allocatable, intent(out) :: bookmark  !< the place where the conversation goes on; empty: none
-    type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     type(document_type) :: document
     integer :: first, last
 

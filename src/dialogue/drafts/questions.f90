@@ -29,7 +29,7 @@ module mech9_questions
     integer :: row = 0             !< row of the name in item_table
     integer :: line = 0            !< row of the coincidence matrix; 0: none
     logical :: is_new = .false.    !< the answer begins a new group, or none
-    logical :: on_request = .false.   !< it is passed over unless the user asks for it
+    logical :: on_request = .false.   !< the question is asked only where the user begins such a group by add
   end type question_type
 
   !> Names that give the place of a pair instead of the Denavit-Hartenberg parameters.

@@ -185,7 +185,7 @@ contains
 
   !> The places of columns among those of their cluster.
   pure subroutine find_local(places, first, last, dynamics)
-    integer, intent(in) :: places(:)                      !< those of the cluster's coordinates, ascending
+    integer, intent(in) :: places(:)                      !< places of the cluster's coordinates, ascending
     integer, intent(in) :: first                          !< first entry
     integer, intent(in) :: last                           !< last entry
     type(dynamics_plan_type), intent(inout) :: dynamics   !< with the entries; gets `local`

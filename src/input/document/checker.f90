@@ -25,7 +25,7 @@ contains
   !> mark `sound` where nothing is wrong with it.
   pure subroutine check_document(document, diagnostics)
     type(document_type), intent(inout) :: document        !< the data file as groups and items
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: i, found
 
     do i = 1, size(document%groups)
@@ -67,7 +67,7 @@ contains
   !> Report a group that is not in the grammar, with the nearest known name.
   pure subroutine report_unknown_group(group, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=:), allocatable :: hint
 
     if (group%name == '') return          ! this error was reported when the file was read
@@ -91,7 +91,7 @@ contains
   !> Check the names and values of one group.
   pure subroutine check_group(group, diagnostics)
     type(group_type), intent(inout) :: group              !< the group of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=kind_length) :: kind
 
     call merge_group(group, diagnostics)
@@ -103,7 +103,7 @@ contains
   !> Make one item of each name. The coincidence matrix keeps its rows and columns apart.
   pure subroutine merge_group(group, diagnostics)
     type(group_type), intent(inout) :: group              !< the group of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(item_type), allocatable :: merged(:)
     type(item_type) :: one
     integer :: firsts(size(group%items)), i, j, count, names
@@ -170,7 +170,7 @@ contains
   pure subroutine check_items(group, kind, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     character(len=*), intent(in) :: kind                  !< the kind of the group; empty where it has none
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: rows(:)
     integer :: i, row
 
@@ -216,7 +216,7 @@ contains
   pure subroutine report_unknown_name(group, item, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(item_type), intent(in) :: item                   !< the item whose name is unknown
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=:), allocatable :: hint
     integer :: i
 
@@ -237,7 +237,7 @@ contains
   pure subroutine check_missing(group, kind, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     character(len=*), intent(in) :: kind                  !< the kind of the group; empty where it has none
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: rows(:)
     integer :: i
 
@@ -267,7 +267,7 @@ contains
   pure subroutine check_repeated(document, row, diagnostics)
     type(document_type), intent(inout) :: document        !< the data file as groups and items
     integer, intent(in) :: row                            !< row of the groups in group_table
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: members(:)
     integer :: i
 
@@ -287,7 +287,7 @@ contains
     type(document_type), intent(inout) :: document        !< the data file as groups and items
     integer, intent(in) :: members(:)                     !< numbers of all groups of a kind
     character(len=*), intent(in) :: key                   !< name of the key
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(value_type), allocatable :: values(:)
     integer, allocatable :: numbers(:), owners(:)
     integer :: i, j, k, n, found
@@ -370,7 +370,7 @@ contains
     type(group_type), intent(in) :: first                 !< the group before
     character(len=*), intent(in) :: key                   !< name of the key
     type(span_type), intent(in) :: span                   !< place of the key in the later group
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     call diagnostics%add(span, 'a second &'//group%name//' for '//key//' '//diagnostics%text_of(span)// &
                          trim(line_of_first(first, diagnostics)))
@@ -380,7 +380,7 @@ contains
   pure subroutine report_repeated(group, first, diagnostics)
     type(group_type), intent(in) :: group                 !< the group that stands there again
     type(group_type), intent(in) :: first                 !< the group that stands there first
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     call diagnostics%add(group%span, '&'//group%name//' may stand only once'//trim(line_of_first(first, diagnostics)))
   end subroutine report_repeated

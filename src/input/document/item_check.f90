@@ -17,7 +17,7 @@ contains
   pure subroutine check_item(item, row, diagnostics)
     type(item_type), intent(in) :: item                   !< the item whose values are checked
     type(item_row_type), intent(in) :: row                !< the name, as a row of item_table
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: i, found
 
     found = diagnostics%count
@@ -51,7 +51,7 @@ contains
     integer, intent(in) :: number                         !< position of the value in its list
     character(len=*), intent(in) :: name                  !< name of the item, for the message
     type(item_row_type), intent(in) :: row                !< the name, as a row of item_table
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=:), allocatable :: written
 
     if (value%kind == value_bad) return
@@ -96,7 +96,7 @@ contains
   pure subroutine check_count(item, row, diagnostics)
     type(item_type), intent(in) :: item                   !< the item whose values are checked
     type(item_row_type), intent(in) :: row                !< the name, as a row of item_table
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=:), allocatable :: message
     integer :: n
 
@@ -131,7 +131,7 @@ contains
   !> Whether all values are whole numbers in pairs joined by a comma without a blank: 1,5.
   pure logical function decimal_commas(item, diagnostics)
     type(item_type), intent(in) :: item                !< the item whose values are checked
-    type(diagnostics_type), intent(in) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(in) :: diagnostics  !< gets the errors
     integer :: i
 
     decimal_commas = .false.
@@ -159,7 +159,7 @@ contains
     type(value_type), intent(in) :: value                 !< the value that is checked
     character(len=*), intent(in) :: name                  !< name of the item, for the message
     type(item_row_type), intent(in) :: row                !< the name, as a row of item_table
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     if (.not. is_in_range(value%number, row)) &
       call diagnostics%add(value%span, ''''//name//''' must be '//trim(row%range)//', not '//diagnostics%text_of(value%span))
@@ -189,7 +189,7 @@ contains
     type(value_type), intent(in) :: value                 !< the value that is checked
     character(len=*), intent(in) :: name                  !< name of the item, for the message
     type(item_row_type), intent(in) :: row                !< the name, as a row of item_table
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=:), allocatable :: hint, word
 
     if (known_word(value%text, row)) return

@@ -19,7 +19,7 @@ contains
     type(item_type), intent(in) :: items(:)               !< items of a group, of which at least one has the name
     character(len=*), intent(in) :: name                  !< name of the items that are merged
     type(item_type), intent(out) :: merged                !< one item with all values of the name and no subscripts
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(value_type), allocatable :: values(:)
     logical, allocatable :: filled(:)
     integer :: i, first, number, count
@@ -66,7 +66,7 @@ contains
     type(span_type), intent(in) :: before                 !< place of the name where it is given before this item
     integer, intent(in) :: number                         !< position of the item among those of its name
     integer, intent(out) :: first                         !< position of the item's first value; 0 where the subscripts are wrong
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     first = 0
     select case (size(item%subscripts))
@@ -88,7 +88,7 @@ contains
   !> The line of an earlier item, in words; empty where it does not stand in the data file.
   pure function line_of(span, diagnostics) result(text)
     type(span_type), intent(in) :: span                !< place of the earlier item
-    type(diagnostics_type), intent(in) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(in) :: diagnostics  !< gets the errors
     character(len=60) :: text
 
     text = ''
@@ -106,7 +106,7 @@ contains
     type(value_type), allocatable, intent(inout) :: values(:)  !< values of the items before; the first `count` are in use
     logical, allocatable, intent(inout) :: filled(:)           !< whether each position has its value; of the same size
     integer, intent(inout) :: count                            !< how many elements of these arrays are in use
-    type(diagnostics_type), intent(inout) :: diagnostics       !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics       !< gets the errors
     integer :: i, last
 
     last = first + size(new) - 1
@@ -155,7 +155,7 @@ contains
   pure subroutine expand_repeats(item, values, diagnostics)
     type(item_type), intent(in) :: item                      !< the item as it is written
     type(value_type), allocatable, intent(out) :: values(:)  !< its values, each repeated one written out
-    type(diagnostics_type), intent(inout) :: diagnostics     !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics     !< gets the errors
     integer :: i, n, times
 
     n = 0

@@ -36,7 +36,7 @@ contains
   pure subroutine read_name(text, name, ok)
     character(len=*), intent(in) :: text           !< the name as the user wrote it
     type(number_name_type), intent(out) :: name    !< its parts
-    logical, intent(out) :: ok                     !< whether it has the form of a name
+    logical, intent(out) :: ok                     !< the text has the form of a name
     integer :: at, first
 
     at = max(verify(text, ' '), 1)
@@ -60,7 +60,7 @@ contains
     character(len=*), intent(in) :: text    !< the name as the user wrote it
     integer, intent(inout) :: at            !< number of a byte: where to begin, then the first byte not taken
     integer, intent(out) :: position        !< from 1; 0 where none is given
-    logical, intent(out) :: ok              !< whether parentheses that stand here hold one position
+    logical, intent(out) :: ok              !< parentheses, if there are any, hold one position
     type(subscript_type), allocatable :: subscripts(:)
 
     position = 0
@@ -82,7 +82,7 @@ contains
     logical, intent(in) :: alone                          !< the only number of a name is added where it has no default
     type(number_place_type), intent(out) :: place         !< of the number
     type(number_name_type), intent(out) :: name           !< its parts, complete
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: found, group, row
     logical :: ok
 
@@ -108,7 +108,7 @@ contains
   pure subroutine check_names(name, span, diagnostics)
     type(number_name_type), intent(in) :: name            !< parts of the name
     type(span_type), intent(in) :: span                   !< its place
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=80) :: hint
 
     hint = ''
@@ -131,7 +131,7 @@ contains
     type(number_name_type), intent(inout) :: name         !< parts of the name; gets the place of the only group
     type(span_type), intent(in) :: span                   !< its place
     integer, intent(out) :: group                         !< position of the group in the document
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=14) :: position
     integer :: i, count
 
@@ -159,11 +159,11 @@ contains
 
   !> Row of the grammar for a name in its group; 0, with a report, where it does not belong there or takes no real numbers.
   pure subroutine find_row(group, name, span, row, diagnostics)
-    type(group_type), intent(in) :: group                 !< sound
+    type(group_type), intent(in) :: group                 !< without errors
     type(number_name_type), intent(in) :: name            !< parts of the name
     type(span_type), intent(in) :: span                   !< its place
     integer, intent(out) :: row                           !< row of item_table
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=60) :: reason
 
     row = row_of(group, trim(name%item))
@@ -186,12 +186,12 @@ contains
 
   !> Give a group the default of a name that it does not give.
   pure subroutine give_default(group, name, row, alone, span, diagnostics)
-    type(group_type), intent(inout) :: group              !< sound; gets the item
+    type(group_type), intent(inout) :: group              !< without errors; gets the item
     type(number_name_type), intent(in) :: name            !< parts of the name
     integer, intent(in) :: row                            !< row of item_table
     logical, intent(in) :: alone                          !< a number without default may be added where it is the only one
     type(span_type), intent(in) :: span                   !< place of the name
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(item_type) :: item
     integer :: i, count
 
@@ -218,8 +218,8 @@ contains
   !> Append an item to all items of a group.
   pure subroutine append(items, count, item)
     type(item_type), allocatable, intent(inout) :: items(:)  !< all items of the group
-    integer, intent(inout) :: count                          !< how many there are
-    type(item_type), intent(inout) :: item                   !< to append; its values are moved
+    integer, intent(inout) :: count                          !< number of items
+    type(item_type), intent(inout) :: item                   !< the item to append; its values are moved
     type(item_type), allocatable :: cut(:)
 
     call add_item(items, count, item)
@@ -230,11 +230,11 @@ contains
 
   !> Report a position that is missing or does not exist; the only number of a name needs none.
   pure subroutine find_position(group, name, row, span, diagnostics)
-    type(group_type), intent(in) :: group                 !< sound, with the item
+    type(group_type), intent(in) :: group                 !< without errors, with the item
     type(number_name_type), intent(inout) :: name         !< parts of the name; gets the position of the only number
     integer, intent(in) :: row                            !< row of item_table
     type(span_type), intent(in) :: span                   !< place of the name
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: count
 
     count = size(group%items(find_item(group, trim(name%item)))%values)

@@ -17,7 +17,7 @@ contains
   subroutine read_document(path, document, diagnostics)
     character(len=*), intent(in) :: path                  !< path of the data file
     type(document_type), intent(out) :: document          !< the data file as groups and items
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(source_type) :: source
     type(error_type), allocatable :: err
 
@@ -29,7 +29,7 @@ contains
   pure subroutine parse_document(source, document, diagnostics, failure)
     type(source_type), intent(in) :: source                         !< the text of the data file
     type(document_type), intent(out) :: document                    !< the data file as groups and items
-    type(diagnostics_type), intent(inout) :: diagnostics            !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics            !< gets the errors
     type(error_type), allocatable, intent(in), optional :: failure  !< the error of reading the source, if there was one
     type(group_type) :: group
     integer :: number, at, count, found
@@ -63,7 +63,7 @@ contains
     character(len=*), intent(in) :: text                  !< the whole text of the source
     integer, intent(inout) :: at                          !< number of a byte: where to begin, then the first byte not taken
     integer, intent(in) :: source                         !< number of the source, for spans
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: first, line_end
     logical :: reported
 
@@ -106,7 +106,7 @@ contains
     integer, intent(inout) :: at                          !< number of a byte: where to begin, then the first byte not taken
     integer, intent(in) :: source                         !< number of the source, for spans
     type(group_type), intent(out) :: group                !< the group of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: first, count
     type(item_type) :: item
     logical :: ended
@@ -138,7 +138,7 @@ contains
     integer, intent(inout) :: at                          !< number of a byte: where to begin, then the first byte not taken
     integer, intent(in) :: source                         !< number of the source, for spans
     type(group_type), intent(in) :: group                 !< the group of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     logical, intent(out) :: ended                         !< whether the group ends here
     integer :: first
 
@@ -166,7 +166,7 @@ contains
     character(len=*), intent(in) :: text                  !< the whole text of the source
     integer, intent(inout) :: at                          !< number of a byte: where to begin, then the first byte not taken
     integer, intent(in) :: source                         !< number of the source, for spans
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(span_type) :: span
     type(value_type) :: value
     integer :: first, found
@@ -200,7 +200,7 @@ contains
     integer, intent(inout) :: at                          !< number of a byte: where the name begins, then the first byte not taken
     integer, intent(in) :: source                         !< number of the source, for spans
     type(item_type), intent(out) :: item                  !< the name with its subscripts and values
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: first
     logical :: ok
 
@@ -231,7 +231,7 @@ contains
     integer, intent(inout) :: at                             !< number of a byte: where to begin, then the first byte not taken
     integer, intent(in) :: source                            !< number of the source, for spans
     type(value_type), allocatable, intent(out) :: values(:)  !< the values, repeats not yet written out
-    type(diagnostics_type), intent(inout) :: diagnostics     !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics     !< gets the errors
     type(value_type) :: value
     logical :: after_comma
     integer :: count

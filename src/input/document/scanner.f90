@@ -152,7 +152,7 @@ contains
     integer, intent(inout) :: at                          !< number of a byte: where to begin, then the first byte not taken
     integer, intent(in) :: source                         !< number of the source, for spans
     type(value_type), intent(out) :: value                !< the value with its kind and place
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: first, star
 
     first = at
@@ -224,7 +224,7 @@ contains
   pure subroutine classify(word, value, diagnostics)
     character(len=*), intent(in) :: word                  !< the value as it is written
     type(value_type), intent(inout) :: value              !< the value with its kind and place
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(numeral_type) :: numeral
 
     select case (lower(word))
@@ -257,7 +257,7 @@ contains
     integer, intent(inout) :: at                          !< number of a byte: where to begin, then the first byte not taken
     integer, intent(in) :: source                         !< number of the source, for spans
     type(value_type), intent(inout) :: value              !< the value with its kind and place
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: first
     logical :: closed
 

@@ -21,7 +21,7 @@ contains
   pure subroutine apply_setting(document, setting, diagnostics)
     type(document_type), intent(inout) :: document        !< the data file as groups and items
     character(len=*), intent(in) :: setting               !< the argument of --set, such as time.intervals=200
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(source_type) :: source
     type(span_type) :: group_span
     type(item_type) :: item
@@ -45,7 +45,7 @@ contains
     integer, intent(in) :: source                         !< number of the setting as a source, for spans
     type(span_type), intent(out) :: span                  !< place of the name of the group in the setting
     integer, intent(out) :: occurrence                    !< place among the groups of that name, from 1; 0: not given
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(subscript_type), allocatable :: subscripts(:)
     logical :: ok
 
@@ -78,7 +78,7 @@ contains
     integer, intent(in) :: source                         !< number of the setting as a source, for spans
     character(len=*), intent(in) :: group                 !< name of the group, in lower case
     type(item_type), intent(out) :: item                  !< the name with its values
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: at, equals
 
     at = start
@@ -129,7 +129,7 @@ contains
     type(span_type), intent(in) :: span                   !< place of the name of the group in the setting
     integer, intent(in) :: occurrence                     !< place among the groups of that name, from 1; 0: not given
     integer, intent(out) :: number                        !< position of the group in the document; 0 where an error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=:), allocatable :: name
     type(group_type) :: group
     integer, allocatable :: same(:)

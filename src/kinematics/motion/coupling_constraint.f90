@@ -137,7 +137,7 @@ contains
   subroutine find_curves(plan, first, last, state, err)
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
     integer, intent(in) :: first                        !< closures from this one
-    integer, intent(in) :: last                         !< to this one
+    integer, intent(in) :: last                         !< last one of these
     type(state_type), intent(inout) :: state            !< coordinates in; functions out
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: c, number

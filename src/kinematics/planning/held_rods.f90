@@ -2,7 +2,8 @@
 !>
 !> The other five angles are determined as long as the held one changes when the rod turns about itself. Its share in such a turn is
 !> its rate times the sine of the angle between the first and the third axis of its joint: finite in gimbal lock, too. Where
-!> the share becomes zero, the angle holds the rod in a position that the mechanism itself does not have, and another one must be held.
+!> the share becomes zero, the angle holds the rod in a position that the mechanism itself does not have, and another one must be
+!> held.
 module mech9_held_rods
   use mech9_kinds, only: wp
   use mech9_tolerances, only: lesser_share, lesser_share_near
@@ -79,7 +80,7 @@ contains
   !> Find the steps that make the angles of rods in a plan, and those that are independent in it.
   pure subroutine find_steps(plan, rods)
     type(plan_type), intent(in) :: plan              !< the plan
-    type(held_rod_type), intent(inout) :: rods(:)    !< get them
+    type(held_rod_type), intent(inout) :: rods(:)    !< get their steps
     integer :: i, j, step_of(plan%n_coordinates)
 
     if (size(rods) == 0) return

@@ -31,7 +31,7 @@ contains
 
   !> The words for a setting of &output.
   pure function set_in_output(setting) result(words)
-    character(len=*), intent(in) :: setting   !< as it is written there
+    character(len=*), intent(in) :: setting   !< the setting, as it stands in a data file
     character(len=:), allocatable :: words
 
     words = '; set '//setting//' in &output'

@@ -25,7 +25,7 @@ contains
   subroutine run_design(program_name, model, source, numbers, err)
     character(len=*), intent(in) :: program_name          !< mech9k or mech9d
     type(model_type), intent(inout), target :: model      !< gets the tolerances where an accuracy is requested
-    type(row_source_type), intent(inout) :: source        !< is made anew
+    type(row_source_type), intent(inout) :: source        !< rows of the run; made anew
     real(wp), intent(out) :: numbers(:)                   !< (quantities)
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(driven_simulation_type), target :: driven
@@ -74,7 +74,7 @@ contains
   subroutine begin_design(program_name, simulation, source, err)
     character(len=*), intent(in) :: program_name                   !< mech9k or mech9d
     class(simulation_type), intent(inout), target :: simulation    !< about to start
-    type(row_source_type), intent(inout) :: source                 !< is made anew
+    type(row_source_type), intent(inout) :: source                 !< rows of the run; made anew
     type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
 
     call new_row_source(program_name, simulation, source)
@@ -86,7 +86,7 @@ contains
     character(len=*), intent(in) :: program_name                   !< mech9k or mech9d
     type(model_type), intent(in) :: model                          !< the model
     class(simulation_type), intent(inout), target :: simulation    !< about to start
-    type(row_source_type), intent(inout) :: source                 !< is made anew
+    type(row_source_type), intent(inout) :: source                 !< rows of the run; made anew
     real(wp), intent(out) :: numbers(:)                            !< (quantities)
     type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
     real(wp), allocatable :: row(:)

@@ -16,7 +16,7 @@ module mech9_study_sums
     real(wp), allocatable, private :: third(:)       !< (quantities) sum of their third powers
     real(wp), allocatable, private :: fourth(:)      !< (quantities) sum of their fourth powers
     integer :: n_codes = 0                           !< exit codes of failed runs so far
-    integer :: codes(most_codes) = 0                 !< these codes
+    integer :: codes(most_codes) = 0                 !< different exit codes of failed runs, in the order in which they came
     integer :: failed(most_codes) = 0                !< how many runs ended with each of them
     integer :: first_failed(most_codes) = 0          !< number of the first of these runs
   contains

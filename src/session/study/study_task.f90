@@ -34,7 +34,7 @@ contains
     type(command_line_type), intent(in) :: options          !< the command line
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< a report was asked for, and it is written
     type(result_paths_type) :: paths
     type(quantity_record_type) :: quantities
@@ -116,7 +116,7 @@ contains
     type(quantity_record_type), intent(in) :: quantities    !< with their columns
     type(table_type), intent(inout) :: table                !< open, if there is one; closed on return
     character(len=*), intent(in) :: path                    !< of the table; '-' is standard output; empty: no table
-    type(diagnostics_type), intent(inout) :: diagnostics    !< gets what is wrong
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(inout) :: reported                      !< the report is written
     type(study_sums_type) :: values, sums
     type(error_type), allocatable :: err, first, at_close
@@ -167,7 +167,7 @@ contains
     logical, intent(in) :: has_table                           !< there is a table
     type(study_sums_type), intent(inout) :: values             !< gets the sums of the parameters over all runs
     type(study_sums_type), intent(inout) :: sums               !< gets the sums of the quantities over the runs
-    type(error_type), allocatable, intent(out) :: first        !< why the first failed run failed, with its number
+    type(error_type), allocatable, intent(out) :: first        !< error of the first run that failed, with the number of the run
     type(error_type), allocatable, intent(out) :: err          !< allocated where rows cannot be written, or the user interrupts
     type(progress_type) :: progress
     type(error_type), allocatable :: failure
@@ -208,7 +208,7 @@ contains
   subroutine keep_first(run, failure, first)
     integer, intent(in) :: run                                   !< its number
     type(error_type), allocatable, intent(inout) :: failure      !< of the run; moved
-    type(error_type), allocatable, intent(out) :: first          !< gets it
+    type(error_type), allocatable, intent(out) :: first          !< gets this error
 
     call move_alloc(failure, first)
     call explain(first)

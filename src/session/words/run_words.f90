@@ -98,7 +98,7 @@ contains
   !> Add each error: its message, and its place where it has one.
   subroutine add_errors(json, diagnostics)
     type(json_type), intent(inout) :: json             !< the report, which is being composed
-    type(diagnostics_type), intent(in) :: diagnostics  !< gets what is wrong
+    type(diagnostics_type), intent(in) :: diagnostics  !< gets the errors
     character(len=:), allocatable :: message
     type(span_type) :: span
     type(place_type) :: place

@@ -121,7 +121,7 @@ contains
   subroutine print_repetition(unit, coupling, chains)
     integer, intent(in) :: unit                         !< Fortran unit to write to
     integer, intent(in) :: coupling                     !< its number, negative
-    integer, allocatable, intent(in) :: chains(:)       !< those that repeat each other, with it; not allocated: not known
+    integer, allocatable, intent(in) :: chains(:)       !< the closures that repeat each other, with it; not allocated: unknown
 
     if (.not. allocated(chains)) then
       write (unit, '(a)') chain_names([coupling])//': redundant, it follows from others'
