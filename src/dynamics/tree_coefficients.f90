@@ -88,11 +88,7 @@ contains
 
     values = 0.0_wp
     if (reach(1) > reach(2)) return
-    s = support(reach(1))
-    do while (s > 0)
-      wrench(:, s) = 0.0_wp
-      s = support(s)
-    end do
+    call clear_below(reach(1), m, support, wrench)
     ! the frames within reach, then those on which they stand
     s = reach(2)
     do while (s > 0)
@@ -156,11 +152,7 @@ contains
 
     values = 0.0_wp
     if (reach(1) > reach(2)) return
-    s = support(reach(1))
-    do while (s > 0)
-      wrench(:, s) = 0.0_wp
-      s = support(s)
-    end do
+    call clear_below(reach(1), m, support, wrench)
     ! the frames within reach, then those on which they stand
     s = reach(2)
     do while (s > 0)
@@ -173,4 +165,19 @@ contains
       s = merge(s - 1, support(s), s > reach(1))
     end do
   end subroutine collect_in_plane
+
+  !> Set the wrenches to zero on the frames on which a frame stands. Link 1 keeps its wrench, which nothing reads.
+  pure subroutine clear_below(frame, m, support, wrench)
+    integer, intent(in) :: frame                              !< number of the frame
+    integer, intent(in) :: m                                  !< number of steps
+    integer, intent(in) :: support(m)                         !< frame on which the cluster of each step stands
+    real(wp), contiguous, intent(inout) :: wrench(:, 0:)      !< on each frame [N m, N]
+    integer :: s
+
+    s = support(frame)
+    do while (s > 0)
+      wrench(:, s) = 0.0_wp
+      s = support(s)
+    end do
+  end subroutine clear_below
 end module mech9_tree_coefficients
