@@ -98,24 +98,30 @@ def nearest_branch(rssr, theta, rocker):
     return min(errors)
 
 
+def follow_equation(checks, rssr, program, folder, text, name):
+    """The rocker's angle is that of the distance equation at each angle of the crank; what the program said and its table, if it ran."""
+    path = os.path.join(folder, 'case.nml')
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(text)
+    done = run(program, path, '--no-write')
+    if not checks.equal(done.returncode, 0, f'{name} turns'):
+        print(done.stderr)
+        return done, None
+    table = table_of(program, path)
+    error = nearest_branch(rssr, table['q1'], table['q8'])
+    margin = float(np.min(rssr.solve(table['q1'])[0]))
+    # round-off times the conditioning of the chain, which is worst next to a dead point
+    checks.true(error < 1e-12 / margin, f'{name}: the rocker follows the distance equation ({error:.2g})')
+    return done, table
+
+
 def check_cranks(checks, mech9k, folder, seeds, turns=3):
     """Cranks that turn on and on: each position of the rocker is that of the distance equation."""
     for seed in seeds:
         rssr = Rssr(seed)
         text = rssr.pairs(seed % 3 > 0) + f"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /\n" \
             f'&time end={2 * math.pi * turns!r}, intervals={60 * turns} /\n'
-        path = os.path.join(folder, f'crank{seed}.nml')
-        with open(path, 'w', encoding='utf-8') as file:
-            file.write(text)
-        done = run(mech9k, path, '--no-write')
-        if not checks.equal(done.returncode, 0, f'crank {seed} turns'):
-            print(done.stderr)
-            continue
-        table = table_of(mech9k, path)
-        error = nearest_branch(rssr, table['q1'], table['q8'])
-        margin = float(np.min(rssr.solve(table['q1'])[0]))
-        # round-off times the conditioning of the chain, which is worst next to a dead point
-        checks.true(error < 1e-12 / margin, f'crank {seed}: the rocker follows the distance equation ({error:.2g})')
+        follow_equation(checks, rssr, mech9k, folder, text, f'crank {seed}')
 
 
 def check_free_cranks(checks, mech9d, folder, seeds):
@@ -133,20 +139,12 @@ def check_free_cranks(checks, mech9d, folder, seeds):
             inertia = 2e-4 * (np.eye(3) - line) + (1e-10 if seed % 4 == 1 else 0.0) * line
             text += f'&body link=3, mass=0.05, centre={triple(0.4 * rssr.in_rod)}, inertia={triple(np.diag(inertia))},' \
                 f'{triple((inertia[0, 1], inertia[0, 2], inertia[1, 2]))} /\n'
-        path = os.path.join(folder, f'free{seed}.nml')
-        with open(path, 'w', encoding='utf-8') as file:
-            file.write(text)
-        done = run(mech9d, path, '--no-write')
-        if not checks.equal(done.returncode, 0, f'crank {seed} moves freely'):
-            print(done.stderr)
+        done, table = follow_equation(checks, rssr, mech9d, folder, text, f'free crank {seed}')
+        if table is None:
             continue
         checks.equal('negligible moment of inertia' in done.stderr, seed % 2 == 1, f'free crank {seed}: the note')
         steps = int(re.search(r'(\d+) steps', done.stderr + done.stdout).group(1))
         checks.true(steps < 1000, f'free crank {seed}: {steps} steps')
-        table = table_of(mech9d, path)
-        error = nearest_branch(rssr, table['q1'], table['q8'])
-        margin = float(np.min(rssr.solve(table['q1'])[0]))
-        checks.true(error < 1e-12 / margin, f'free crank {seed}: the rocker follows the distance equation ({error:.2g})')
         spread = float(np.ptp(table['E.total']))
         # some hundred times the tolerance of the integration
         checks.true(spread < 1e-8 * float(np.max(np.abs(table['E.kinetic']))), f'free crank {seed}: its energy keeps ({spread:.2g})')
