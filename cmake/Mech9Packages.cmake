@@ -83,6 +83,18 @@ if(MECH9_IMPORT)
   endif()
 endif()
 
+# OpenMP makes the runs of a study in threads; without it a study takes one core. The run-time check of recursion takes two threads
+# in one procedure for one, and the sanitizers know nothing of the OpenMP library: builds with these go without.
+if(MECH9_THREADS AND NOT CMAKE_BUILD_TYPE MATCHES "^(Debug|Sanitize|Threads)$")
+  find_package(OpenMP COMPONENTS Fortran)
+  if(OpenMP_Fortran_FOUND)
+    set(MECH9_OPENMP_FLAGS ${OpenMP_Fortran_FLAGS})
+    set(MECH9_OPENMP_LIBRARIES ${OpenMP_Fortran_LIBRARIES})
+  else()
+    message(STATUS "OpenMP was not found: the runs of a study take one core")
+  endif()
+endif()
+
 # The same libraries as files or linker options, for mech9-link, which works without CMake.
 set(MECH9_LINK_LIBRARIES ${MECH9_HDF5_LIBRARIES} ${MECH9_SUNDIALS_LIBRARIES} ${LAPACK_LIBRARIES} ${LAPACK_LINKER_FLAGS}
-  ${MECH9_LINE_EDITING_LIBRARIES} ${MECH9_XML_LIBRARY})
+  ${MECH9_LINE_EDITING_LIBRARIES} ${MECH9_XML_LIBRARY} ${MECH9_OPENMP_LIBRARIES})

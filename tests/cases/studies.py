@@ -142,6 +142,25 @@ def parts(cases, mech9k):
                           f'part {wrong} is refused', done.stderr)
 
 
+def threads(cases, mech9k, mech9d):
+    """The same bytes from 1, 2, 3 and 8 threads: more than the cores, and more than waiting runs in their turn."""
+    text = SLIDER_CRANK + parameters(', low=0.2, high=0.8, count=20', ', low=0.5, high=1.1, count=15') + "&study kind='grid' /\n"
+    for program, text in ((mech9k, text), (mech9d, PENDULUM + "&study kind='random', runs=40 /\n")):
+        tables = []
+        for n in ('1', '2', '3', '8'):
+            _, printed = cases.study(program, text, '--threads', n, why=f'{n} threads')
+            tables.append(text_of(os.path.join(cases.folder, 'study.dat')))
+            summary = [line for line in printed.splitlines() if 'note: ' not in line and not re.match(r'\d+ runs?: ', line)]
+            if n == '1':
+                alone = summary
+            cases.checks.true(tables[-1] == tables[0] and summary == alone, f'{n} threads: the same bytes', (summary, alone))
+    for words, message in ((('--threads', '2'), '--threads N is the number of threads of --study'),
+                           (('--study', '--threads', '0'), '--threads needs a whole number from 1 on'),
+                           (('--study', '--threads', '1025'), '--threads takes at most 1024')):
+        done = run(mech9d, cases.write(text), *words)
+        cases.checks.true(done.returncode == USAGE and message in done.stderr, f'{words}: refused', done.stderr)
+
+
 def mistakes(cases, mech9k):
     check = cases.checks
     table = cases.write('kept', 'kept.dat')
@@ -245,6 +264,7 @@ def main():
         lists(cases, mech9k)
         draws(cases, mech9d)
         parts(cases, mech9k)
+        threads(cases, mech9k, mech9d)
         mistakes(cases, mech9k)
         failures(cases, mech9k, mech9d)
         reports(cases, mech9k)

@@ -13,6 +13,8 @@ module many_runs
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation, assemble_free
   use mech9_simulation, only: simulation_type
   use mech9_row_source, only: row_source_type, new_row_source
+  use mech9_varied_document, only: varied_document_type, new_varied_document
+  use mech9_run_maker, only: run_maker_type, made_run_type
   implicit none
   private
   public :: run_type, list_runs, carry_out, same
@@ -37,7 +39,7 @@ contains
       'reference/dynamics_fig1', 'cases/malformed/errors_together', 'reference/kinematics_general_7r', &
       'reference/dynamics_fivebar', 'reference/kinematics_bennett', 'reference/dynamics_open_chain', &
       'reference/kinematics_fig1_driven_at_q1', 'cases/malformed/links_apart', &
-      'reference/dynamics_spatial_slider_crank', 'reference/kinematics_slider_crank']
+      'reference/dynamics_spatial_slider_crank', 'reference/kinematics_slider_crank', 'threads/study']
     integer :: i, which
 
     allocate (runs(count))
@@ -63,6 +65,11 @@ contains
       run%done = index(run%file, 'malformed') > 0
       return
     end if
+    if (model%request%study%kind /= '') then
+      call make_study(document, diagnostics, model, run%rows)
+      run%done = .true.
+      return
+    end if
     ! short, so that the threads begin and end often
     model%request%time%intervals = 20
     if (run%dynamic) then
@@ -72,6 +79,28 @@ contains
     end if
     run%done = .not. allocated(err)
   end subroutine carry_out
+
+  !> Make the runs of a study, some of which fail.
+  subroutine make_study(document, diagnostics, model, rows)
+    type(document_type), intent(in) :: document          !< the data file
+    type(diagnostics_type), intent(in) :: diagnostics    !< of its reading
+    type(model_type), intent(in) :: model                !< with the values of the data file
+    real(wp), allocatable, intent(out) :: rows(:, :)     !< a column for each run: exit code, values, quantities
+    type(varied_document_type) :: varied
+    type(run_maker_type) :: maker
+    type(made_run_type) :: made
+    integer :: i
+
+    call new_varied_document(document, diagnostics%sources, .true., varied)
+    call maker%begin('mech9k', model, varied)
+    allocate (rows(1 + size(model%parameters) + size(model%request%quantities), model%request%study%runs))
+    do i = 1, size(rows, 2)
+      call maker%make(i, made)
+      rows(1, i) = made%exit_code
+      rows(2:1 + size(made%values), i) = made%values
+      rows(2 + size(made%values):, i) = made%quantities
+    end do
+  end subroutine make_study
 
   subroutine follow(model, rows, err)
     type(model_type), intent(in), target :: model       !< the model

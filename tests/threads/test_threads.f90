@@ -17,7 +17,7 @@ contains
     integer :: i
 
     call get_command_argument(1, folder)
-    call list_runs(trim(folder), 44, alone)
+    call list_runs(trim(folder), 48, alone)
     do i = 1, size(alone)
       call carry_out(alone(i))
       call tester%is_true(alone(i)%done, alone(i)%file//' runs')

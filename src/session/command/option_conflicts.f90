@@ -59,6 +59,8 @@ contains
       call judge_import(given, has_file, err)
     else if (has('part') .and. .not. has('study')) then
       call raise(err, exit_usage, '--part K/N is a part of --study; give both')
+    else if (has('threads') .and. .not. has('study')) then
+      call raise(err, exit_usage, '--threads N is the number of threads of --study; give both')
     else if (has('quiet') .and. has('verbose')) then
       call raise(err, exit_usage, '--quiet and --verbose contradict each other')
     else if (has('no-write') .and. (has('table') .or. has('hdf5') .or. has('plot') .or. has('linear'))) then

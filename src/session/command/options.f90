@@ -68,6 +68,8 @@ module mech9_options
                 'make the runs of the group &study; the table has a row for each'), &
     option_type('part', needed_argument, 'K/N', part_of_whole, .false., both, &
                 'make part K of N parts of a study, for N jobs'), &
+    option_type('threads', needed_argument, 'N', whole_number, .false., both, &
+                'make the runs of a study in N threads; without it one for each core'), &
     option_type('set', needed_argument, 'GROUP.NAME=VALUE', assignment, .true., both, &
                 'replace a value of the data file; may be repeated'), &
     option_type('dialogue', no_argument, '', any_text, .false., both, &

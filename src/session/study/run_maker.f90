@@ -1,0 +1,72 @@
+!> One run of a study, made from its number. A maker shares nothing with others: each thread and each process has its own.
+module mech9_run_maker
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, exit_done
+  use mech9_model, only: model_type
+  use mech9_parameter, only: parameter_type
+  use mech9_study, only: study_type
+  use mech9_variable_model, only: variable_model_type
+  use mech9_study_values, only: values_of_run
+  use mech9_row_source, only: row_source_type
+  use mech9_design_run, only: run_design
+  implicit none
+  private
+  public :: made_run_type, run_maker_type
+
+  !> A run that is made.
+  type :: made_run_type
+    integer :: number = 0                           !< in the whole study, from 1
+    real(wp), allocatable :: values(:)              !< (parameters) in the units of the file
+    real(wp), allocatable :: quantities(:)          !< (quantities) NaN where the run failed
+    integer :: exit_code = exit_done                !< with which a single run of these values ends
+    type(error_type), allocatable :: failure        !< of a run that failed; not explained yet
+  end type made_run_type
+
+  type :: run_maker_type
+    private
+    character(len=6) :: program_name = ''                        !< mech9k or mech9d
+    type(study_type) :: study
+    type(parameter_type), allocatable :: parameters(:)
+    class(variable_model_type), allocatable :: varied            !< the model as a function of its parameters
+    integer :: n_quantities = 0
+  contains
+    procedure :: begin
+    procedure :: make
+  end type run_maker_type
+
+contains
+
+  !> Prepare a maker for the runs of a study.
+  subroutine begin(self, program_name, model, varied)
+    class(run_maker_type), intent(out) :: self              !< the maker
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+    type(model_type), intent(in) :: model                   !< the model with the values of the data file
+    class(variable_model_type), intent(in) :: varied        !< the model as a function of its parameters; copied
+
+    self%program_name = program_name
+    self%study = model%request%study
+    self%parameters = model%parameters
+    self%n_quantities = size(model%request%quantities)
+    allocate (self%varied, source=varied)
+  end subroutine begin
+
+  !> Make a run. Its numbers depend on the number of the run alone, not on the runs that were made before.
+  subroutine make(self, number, run)
+    class(run_maker_type), intent(inout) :: self   !< the maker
+    integer, intent(in) :: number                  !< of the run in the whole study, from 1
+    type(made_run_type), intent(out) :: run        !< the run, which may have failed
+    type(model_type), target :: model
+    type(row_source_type) :: source
+
+    run%number = number
+    allocate (run%values(size(self%parameters)))
+    allocate (run%quantities(self%n_quantities), source=ieee_value(1.0_wp, ieee_quiet_nan))
+    call values_of_run(self%study, self%parameters, number, run%values)
+    call self%varied%at(run%values, model, run%failure)
+    if (.not. allocated(run%failure)) call run_design(self%program_name, model, source, run%quantities, run%failure)
+    if (.not. allocated(run%failure)) return
+    run%exit_code = run%failure%code
+    run%quantities = ieee_value(1.0_wp, ieee_quiet_nan)
+  end subroutine make
+end module mech9_run_maker

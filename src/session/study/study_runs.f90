@@ -1,0 +1,142 @@
+!> The runs of a study, or of a part of it: which one is made next, and what becomes of those that are made.
+!>
+!> Whoever makes runs asks for a number (`hand_out`) and gives the run back when it is made (`take`); it does not matter how many
+!> do so at a time, in which order runs come back, or whether they are threads or processes, as long as the calls come one after
+!> the other. Results are written and added up in the order of the numbers, hence with the same bits in any case. Runs that are
+!> made before their turn wait; so few numbers are handed out ahead that memory stays bounded.
+module mech9_study_runs
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, add_place, raise, exit_done, exit_interrupted
+  use mech9_text, only: to_text
+  use mech9_counted, only: counted
+  use mech9_system, only: interrupted
+  use mech9_explanation, only: explain
+  use mech9_model, only: model_type
+  use mech9_progress, only: progress_type
+  use mech9_run_maker, only: made_run_type
+  use mech9_study_results, only: study_results_type
+  use mech9_study_sums, only: study_sums_type
+  implicit none
+  private
+  public :: study_runs_type, all_handed_out, wait_for_others
+
+  !> Answers in place of the number of a run: there are no more runs, or so many are handed out ahead that others must be taken first.
+  integer, parameter :: all_handed_out = 0, wait_for_others = -1
+
+  type :: study_runs_type
+    type(study_results_type) :: results                    !< the open files
+    type(study_sums_type) :: values                        !< sums of the parameters over all runs
+    type(study_sums_type) :: sums                          !< sums of the quantities over the runs that went to their end
+    type(error_type), allocatable :: first_failure         !< of the first run that failed, with the number of the run
+    type(error_type), allocatable :: stopped               !< allocated where rows cannot be written, or the user interrupts
+    type(progress_type), private :: progress
+    integer, private :: first = 1                          !< number of the first run of the part
+    integer, private :: step = 1                           !< from one run of the part to the next
+    integer, private :: total = 0                          !< runs of the part
+    integer, private :: handed_out = 0                     !< runs of the part that were handed out, the first ones
+    integer, private :: written = 0                        !< runs of the part that are written, the first ones
+    type(made_run_type), allocatable, private :: made(:)   !< runs that wait for their turn, each at its place in a ring
+  contains
+    procedure :: begin
+    procedure :: hand_out
+    procedure :: take
+    procedure :: finish
+  end type study_runs_type
+
+contains
+
+  !> Begin the runs of part K of N parts: K, K + N, K + 2 N and so on, so that each part has its share of long ones. The files
+  !> are open.
+  subroutine begin(self, program_name, model, part, ahead, quiet)
+    class(study_runs_type), intent(inout) :: self     !< the runs; its results are open
+    character(len=*), intent(in) :: program_name      !< mech9k or mech9d
+    type(model_type), intent(in) :: model             !< the model with the values of the data file
+    integer, intent(in) :: part(2)                    !< K and N
+    integer, intent(in) :: ahead                      !< most runs that are handed out before the first of them is written
+    logical, intent(in) :: quiet                      !< no progress is shown
+
+    call self%values%begin(size(model%parameters))
+    call self%sums%begin(size(model%request%quantities))
+    self%first = part(1)
+    self%step = part(2)
+    if (part(1) <= model%request%study%runs) self%total = 1 + (model%request%study%runs - part(1))/part(2)
+    allocate (self%made(0:ahead - 1))
+    call self%progress%start(program_name, quiet)
+  end subroutine begin
+
+  !> The number of a run to be made next; or all_handed_out, or wait_for_others: ask again when another run was taken.
+  integer function hand_out(self) result(number)
+    class(study_runs_type), intent(inout) :: self   !< the runs
+
+    if (interrupted()) call stop_here(self)
+    if (allocated(self%stopped) .or. self%handed_out == self%total) then
+      number = all_handed_out
+    else if (self%handed_out == self%written + size(self%made)) then
+      number = wait_for_others
+    else
+      number = self%first + self%handed_out*self%step
+      self%handed_out = self%handed_out + 1
+    end if
+  end function hand_out
+
+  !> Take a run that is made, and write all runs whose turn has come.
+  subroutine take(self, run)
+    class(study_runs_type), intent(inout) :: self   !< the runs
+    type(made_run_type), intent(in) :: run          !< the run
+
+    if (allocated(self%stopped)) return
+    if (run%exit_code == exit_interrupted) then
+      call stop_here(self)
+      return
+    end if
+    self%made(modulo((run%number - self%first)/self%step, size(self%made))) = run
+    do
+      associate (next => self%made(modulo(self%written, size(self%made))))
+        if (next%number /= self%first + self%written*self%step) exit
+        call add_up(self, next)
+        call self%results%write_run(next, self%stopped)
+      end associate
+      self%written = self%written + 1
+      if (allocated(self%stopped) .or. self%written == self%total) exit
+    end do
+    call self%progress%update(real(self%written, wp)/self%total)
+  end subroutine take
+
+  !> Stop at the user's request.
+  subroutine stop_here(self)
+    type(study_runs_type), intent(inout) :: self   !< the runs
+
+    if (allocated(self%stopped)) return
+    call raise(self%stopped, exit_interrupted, 'interrupted: '//to_text(self%written)//' of '//counted(self%total, 'run')// &
+               ' are finished')
+  end subroutine stop_here
+
+  !> Add a run to the sums.
+  subroutine add_up(self, run)
+    class(study_runs_type), intent(inout) :: self   !< the runs
+    type(made_run_type), intent(in) :: run          !< the run
+
+    call self%values%add(run%values)
+    if (run%exit_code == exit_done) then
+      call self%sums%add(run%quantities)
+      return
+    end if
+    call self%sums%add_failure(run%number, run%exit_code)
+    if (allocated(self%first_failure)) return
+    self%first_failure = run%failure
+    call explain(self%first_failure)
+    call add_place(self%first_failure, 'run '//to_text(run%number))
+  end subroutine add_up
+
+  !> End, and close the files.
+  subroutine finish(self, err)
+    class(study_runs_type), intent(inout) :: self        !< the runs
+    type(error_type), allocatable, intent(out) :: err    !< allocated if the study was stopped, or the files cannot be written
+    type(error_type), allocatable :: at_close
+
+    call self%progress%finish()
+    call self%results%close(at_close)
+    if (.not. allocated(self%stopped)) call move_alloc(at_close, self%stopped)
+    if (allocated(self%stopped)) err = self%stopped
+  end subroutine finish
+end module mech9_study_runs
