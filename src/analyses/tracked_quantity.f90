@@ -1,12 +1,14 @@
 !> A quantity while a motion goes on: its column is followed between the outputs by polynomials.
 !>
 !> A column that comes with its rate and acceleration, or is one of these, is a polynomial through four neighbouring outputs with
-!> two derivatives each. Others are polynomials through values at further times, which the motion must visit.
+!> two derivatives each. Others are polynomials through values at further times, which the motion must visit. The derivatives of the
+!> column by parameters are followed by polynomials of the same kind, so that they are those of the number that is found.
 module mech9_tracked_quantity
   use mech9_kinds, only: wp
   use mech9_chebyshev, only: chebyshev_type
   use mech9_hermite, only: hermite_type, build_hermite
   use mech9_quantity_sums, only: quantity_sums_type
+  use mech9_quantity_gradient, only: quantity_gradient_type
   implicit none
   private
   public :: tracked_quantity_type
@@ -23,13 +25,19 @@ module mech9_tracked_quantity
     integer :: family(0:2) = 0              !< columns of a position, its rate and its acceleration; 0 where they are not known
     integer :: order = 0                    !< of its column: 0 position, 1 rate, 2 acceleration
     type(quantity_sums_type) :: sums
+    integer, allocatable :: changes(:, :)   !< (P,0:2) columns of the derivatives of the family by parameters, or (P,0:0) of the
+                                            !< column alone; not allocated where they are not followed
+    type(quantity_gradient_type) :: gradient              !< of the number, where derivatives are followed
     real(wp), private :: value_at = 0.0_wp  !< value at the time `at`
     integer, private :: seen = 0            !< outputs so far
     integer, private :: count = 0           !< outputs kept
     integer, private :: done = 0            !< intervals between these that were taken into account
     real(wp), private :: t(most_outputs) = 0.0_wp
     real(wp), private :: y(0:2, most_outputs) = 0.0_wp    !< position, rate and acceleration at the kept outputs
+    real(wp), allocatable, private :: dy(:, :, :)         !< (P,most_outputs,0:2) their derivatives by parameters
   contains
+    procedure :: follow_changes
+    procedure :: changes_of
     procedure :: needs_piece
     procedure :: is_at_start
     procedure :: take_output
@@ -37,9 +45,28 @@ module mech9_tracked_quantity
     procedure :: take_piece
     procedure :: finish
     procedure :: number
+    procedure :: find_gradient
   end type tracked_quantity_type
 
 contains
+
+  !> Follow the derivatives of the column by parameters, too.
+  pure subroutine follow_changes(self, columns)
+    class(tracked_quantity_type), intent(inout) :: self   !< the quantity, with its columns
+    integer, intent(in) :: columns(:, 0:)                 !< (P,0:2) of the derivatives of the family; (P,0:0) of the column alone
+
+    allocate (self%changes(size(columns, 1), 0:ubound(columns, 2)), source=columns)
+    if (self%family(0) > 0) allocate (self%dy(size(columns, 1), most_outputs, 0:2), source=0.0_wp)
+  end subroutine follow_changes
+
+  !> The derivatives of the column by the parameters in a row.
+  pure function changes_of(self, row) result(changes)
+    class(tracked_quantity_type), intent(in) :: self   !< the quantity, whose derivatives are followed
+    real(wp), intent(in) :: row(:)                     !< numbers of the row
+    real(wp) :: changes(size(self%changes, 1))
+
+    changes = row(self%changes(:, self%order))
+  end function changes_of
 
   !> Whether values at the rule's points between outputs are needed.
   pure logical function needs_piece(self)
@@ -69,39 +96,77 @@ contains
     real(wp), intent(in) :: row(:)                        !< numbers of the output, time first
 
     if (self%seen == 0) call self%sums%begin(row(1), row(self%column))
+    if (allocated(self%changes)) then
+      if (self%seen == 0) call self%gradient%begin(self%changes_of(row))
+      self%gradient%last = self%changes_of(row)
+    end if
     self%seen = self%seen + 1
     self%sums%last = row(self%column)
     if (.not. follows(self) .or. self%family(0) == 0) return
     if (self%count == most_outputs) then
       self%t = eoshift(self%t, 1)
       self%y = eoshift(self%y, 1, dim=2)
+      if (allocated(self%changes)) self%dy = eoshift(self%dy, 1, dim=2)
       self%count = self%count - 1
       self%done = self%done - 1
     end if
     self%count = self%count + 1
     self%t(self%count) = row(1)
     self%y(:, self%count) = row(self%family)
+    if (allocated(self%changes)) call keep_changes(self, row)
     ! an interval between others is known best
     if (self%count > 2) call add_intervals(self, rule, self%count - 2)
   end subroutine take_output
 
-  !> Take the value at the time `at`.
-  pure subroutine take_at(self, value)
-    class(tracked_quantity_type), intent(inout) :: self   !< the quantity
-    real(wp), intent(in) :: value                         !< of its column
+  !> Keep the derivatives by parameters of the latest output.
+  pure subroutine keep_changes(self, row)
+    type(tracked_quantity_type), intent(inout) :: self   !< the quantity
+    real(wp), intent(in) :: row(:)                       !< numbers of the output
+    integer :: order
 
-    self%value_at = value
+    do order = 0, 2
+      self%dy(:, self%count, order) = row(self%changes(:, order))
+    end do
+  end subroutine keep_changes
+
+  !> Take the row at the time `at`.
+  pure subroutine take_at(self, row)
+    class(tracked_quantity_type), intent(inout) :: self   !< the quantity
+    real(wp), intent(in) :: row(:)                        !< numbers of the row
+
+    self%value_at = row(self%column)
+    if (allocated(self%changes)) self%gradient%at = self%changes_of(row)
   end subroutine take_at
 
   !> Take the values at the points between two outputs into account.
-  pure subroutine take_piece(self, rule, from, to, values)
+  pure subroutine take_piece(self, rule, from, to, values, changes)
     class(tracked_quantity_type), intent(inout) :: self   !< the quantity
     type(chebyshev_type), intent(in) :: rule              !< points in an interval
     real(wp), intent(in) :: from                          !< time of the first output [s]
     real(wp), intent(in) :: to                            !< time of the second one [s]
     real(wp), intent(in) :: values(:)                     !< (rule%n) of its column, those at the outputs included
+    real(wp), intent(in) :: changes(:, :)                 !< (P,rule%n) its derivatives by parameters, where they are followed
+    type(quantity_sums_type) :: before
 
+    before = self%sums
     call self%sums%add_piece(rule, from, to, values)
+    if (.not. allocated(self%changes)) return
+    call self%gradient%add_piece(rule, from, to, values, changes)
+    if (self%sums%low < before%low) self%gradient%low = between(self%sums%time_low)
+    if (self%sums%high > before%high) self%gradient%high = between(self%sums%time_high)
+
+  contains
+
+    !> The derivatives at a time between the outputs.
+    pure function between(t)
+      real(wp), intent(in) :: t   !< the time [s]
+      real(wp) :: between(size(changes, 1))
+      integer :: p
+
+      do p = 1, size(between)
+        between(p) = rule%value_at(changes(p, :), 2.0_wp*(t - from)/(to - from) - 1.0_wp)
+      end do
+    end function between
   end subroutine take_piece
 
   !> End with the last output.
@@ -117,29 +182,62 @@ contains
     type(tracked_quantity_type), intent(inout) :: self    !< the quantity
     type(chebyshev_type), intent(in) :: rule              !< points in an interval
     integer, intent(in) :: last                           !< number of the last one
+    type(quantity_sums_type) :: before
     type(hermite_type) :: local, wide
     real(wp), dimension(rule%n) :: values, wider
-    integer :: j
+    integer :: j, outputs(2)
 
     do j = self%done + 1, last
+      outputs = [j, j + 1]
+      before = self%sums
+      values = 0.0_wp
       if (has_extremes_at_ends(self, j)) then
         call self%sums%add_value(self%t(j), self%y(0, j))
         call self%sums%add_value(self%t(j + 1), self%y(0, j + 1))
-        cycle
+      else
+        associate (a => self%t(j), b => self%t(j + 1))
+          call polynomial(self%t(j:j + 1), self%y(:, j:j + 1), local)
+          call values_between(local, a, b, rule, self%order, values)
+          if (self%count > 2) then
+            call polynomial(self%t(:self%count), self%y(:, :self%count), wide)
+            call values_between(wide, a, b, rule, self%order, wider)
+            if (maxval(abs(wider - values)) <= smooth_difference*(maxval(values) - minval(values))) then
+              values = wider
+              outputs = [1, self%count]
+            end if
+          end if
+          call self%sums%add_piece(rule, a, b, values)
+        end associate
       end if
-      associate (a => self%t(j), b => self%t(j + 1))
-        call polynomial(self%t(j:j + 1), self%y(:, j:j + 1), local)
-        call values_between(local, a, b, rule, self%order, values)
-        if (self%count > 2) then
-          call polynomial(self%t(:self%count), self%y(:, :self%count), wide)
-          call values_between(wide, a, b, rule, self%order, wider)
-          if (maxval(abs(wider - values)) <= smooth_difference*(maxval(values) - minval(values))) values = wider
-        end if
-        call self%sums%add_piece(rule, a, b, values)
-      end associate
+      if (allocated(self%changes)) call add_changes(self, rule, j, outputs, before, values)
     end do
     self%done = last
   end subroutine add_intervals
+
+  !> Take the derivatives by parameters in an interval into account, by polynomials through the same outputs as that of the column.
+  pure subroutine add_changes(self, rule, j, outputs, before, values)
+    type(tracked_quantity_type), intent(inout) :: self   !< the quantity
+    type(chebyshev_type), intent(in) :: rule             !< points in an interval
+    integer, intent(in) :: j                             !< number of the interval
+    integer, intent(in) :: outputs(2)                    !< first and last kept output of the polynomial
+    type(quantity_sums_type), intent(in) :: before       !< the sums before this interval
+    real(wp), intent(in) :: values(:)                    !< (rule%n) of the column at the points, where integrals are asked for
+    type(hermite_type) :: hermite
+    real(wp) :: changes(size(self%changes, 1), rule%n)
+    logical :: summed
+
+    summed = any(self%take == [character(len=8) :: 'mean', 'rms', 'integral'])
+    if (.not. (summed .or. self%sums%low < before%low .or. self%sums%high > before%high)) return
+    associate (a => outputs(1), b => outputs(2), dy => self%dy)
+      call build_hermite(self%t(a:b), dy(:, a:b, 0), dy(:, a:b, 1), dy(:, a:b, 2), hermite)
+    end associate
+    if (summed) then
+      call changes_between(hermite, self%t(j), self%t(j + 1), rule, self%order, changes)
+      call self%gradient%add_piece(rule, self%t(j), self%t(j + 1), values, changes)
+    end if
+    if (self%sums%low < before%low) call changes_at(hermite, self%sums%time_low, self%order, self%gradient%low)
+    if (self%sums%high > before%high) call changes_at(hermite, self%sums%time_high, self%order, self%gradient%high)
+  end subroutine add_changes
 
   !> Whether only the ends of an interval count: an extreme of a position is sought, and its rate keeps its sign in between. It
   !> does so where the coefficients of the rate in Bernstein's form, which follow from rates and accelerations, have one sign.
@@ -172,21 +270,45 @@ contains
     type(chebyshev_type), intent(in) :: rule    !< its points
     integer, intent(in) :: order                !< 0 to 2: order of the derivative
     real(wp), intent(out) :: values(:)          !< (rule%n) at the points
-    real(wp) :: y(1), dy(1), ddy(1)
+    real(wp) :: changes(1, rule%n)
+
+    call changes_between(hermite, from, to, rule, order, changes)
+    values = changes(1, :)
+  end subroutine values_between
+
+  !> Values of several polynomials, or of derivatives of them in time, at the points of an interval.
+  pure subroutine changes_between(hermite, from, to, rule, order, changes)
+    type(hermite_type), intent(in) :: hermite   !< the polynomials
+    real(wp), intent(in) :: from                !< beginning of the interval [s]
+    real(wp), intent(in) :: to                  !< end of the interval [s]
+    type(chebyshev_type), intent(in) :: rule    !< its points
+    integer, intent(in) :: order                !< 0 to 2: order of the derivative
+    real(wp), intent(out) :: changes(:, :)      !< (polynomials,rule%n) at the points
     integer :: i
 
     do i = 1, rule%n
-      call hermite%evaluate(from + 0.5_wp*(to - from)*(1.0_wp + rule%points(i)), y, dy, ddy)
-      select case (order)
-      case (0)
-        values(i) = y(1)
-      case (1)
-        values(i) = dy(1)
-      case default
-        values(i) = ddy(1)
-      end select
+      call changes_at(hermite, from + 0.5_wp*(to - from)*(1.0_wp + rule%points(i)), order, changes(:, i))
     end do
-  end subroutine values_between
+  end subroutine changes_between
+
+  !> Values of several polynomials, or of derivatives of them in time, at a time.
+  pure subroutine changes_at(hermite, t, order, changes)
+    type(hermite_type), intent(in) :: hermite   !< the polynomials
+    real(wp), intent(in) :: t                   !< the time [s]
+    integer, intent(in) :: order                !< 0 to 2: order of the derivative
+    real(wp), intent(out) :: changes(:)         !< (polynomials) at this time
+    real(wp), dimension(size(changes)) :: y, dy, ddy
+
+    call hermite%evaluate(t, y, dy, ddy)
+    select case (order)
+    case (0)
+      changes = y
+    case (1)
+      changes = dy
+    case default
+      changes = ddy
+    end select
+  end subroutine changes_at
 
   !> The number itself, after the last output.
   pure real(wp) function number(self)
@@ -195,4 +317,12 @@ contains
     number = self%sums%result_of(self%take)
     if (self%take == 'at') number = self%value_at
   end function number
+
+  !> The derivatives of the number by the parameters, after the last output.
+  pure subroutine find_gradient(self, gradient)
+    class(tracked_quantity_type), intent(in) :: self   !< the quantity, whose derivatives are followed
+    real(wp), intent(out) :: gradient(:)               !< (P); NaN where the number has no derivative
+
+    call self%gradient%result_of(self%take, self%sums, gradient)
+  end subroutine find_gradient
 end module mech9_tracked_quantity

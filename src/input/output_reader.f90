@@ -4,7 +4,7 @@ module mech9_output_reader
   use mech9_structure, only: structure_type
   use mech9_request, only: output_settings_type
   use mech9_document, only: document_type, group_type
-  use mech9_lookup, only: group_or_empty, get_integer, get_integers, get_logical, get_text, has_name, span_of
+  use mech9_lookup, only: group_or_empty, groups_named, get_integer, get_integers, get_logical, get_text, has_name, span_of
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
@@ -41,6 +41,8 @@ contains
     output%drive_forces = get_logical(group, 'drive_forces')
     output%force_arrows = get_logical(group, 'force_arrows')
     output%sensitivities = get_logical(group, 'sensitivities')
+    output%gradients = get_logical(group, 'gradients')
+    if (output%gradients) output%sensitivities_place = diagnostics%place(span_of(group, 'gradients', 1))
     if (output%sensitivities) output%sensitivities_place = diagnostics%place(span_of(group, 'sensitivities', 1))
     if (output%compression > 9) &
       call diagnostics%add(span_of(group, 'compression', 1), 'compression goes from 0 (none) to 9 (the smallest file)')
@@ -59,24 +61,48 @@ contains
     end do
   end subroutine read_output
 
-  !> Report sensitivities that are not computed, and those without a parameter.
+  !> Report sensitivities and gradients that are not computed, and those without a parameter or without a quantity.
   pure subroutine check_sensitivities(document, needs_drives, n_parameters, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
     integer, intent(in) :: n_parameters                   !< how many parameters the data file has
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
-    character(len=14), parameter :: forces(3) = ['reactions     ', 'reaction_pairs', 'drive_forces  ']
+    character(len=13), parameter :: requests(2) = ['sensitivities', 'gradients    ']
     type(group_type) :: group
+    integer, allocatable :: quantities(:)
     integer :: i
 
     group = group_or_empty(document, 'output')
-    if (.not. get_logical(group, 'sensitivities')) return
-    if (.not. needs_drives) then
-      call diagnostics%add(span_of(group, 'sensitivities', 1), 'sensitivities are computed by mech9k only; leave them out here')
-      return
-    end if
-    if (n_parameters == 0) call diagnostics%add(span_of(group, 'sensitivities', 1), 'sensitivities are derivatives by the '// &
-                                                'parameters, and there are none; give a group &parameter for each')
+    quantities = groups_named(document, 'quantity')
+    do i = 1, size(requests)
+      if (.not. get_logical(group, trim(requests(i)))) cycle
+      if (.not. needs_drives) then
+        call diagnostics%add(span_of(group, trim(requests(i)), 1), &
+                             trim(requests(i))//' are computed by mech9k only; leave them out here')
+      else if (n_parameters == 0) then
+        call diagnostics%add(span_of(group, trim(requests(i)), 1), trim(requests(i))//' are derivatives by the parameters, '// &
+                             'and there are none; give a group &parameter for each')
+      else if (i == 2 .and. size(quantities) == 0) then
+        call diagnostics%add(span_of(group, trim(requests(i)), 1), 'gradients are derivatives of the quantities, '// &
+                             'and there are none; give a group &quantity for each')
+      end if
+    end do
+    if (needs_drives .and. get_logical(group, 'sensitivities')) call check_forces(group, diagnostics)
+    if (.not. (get_logical(group, 'sensitivities') .or. get_logical(group, 'gradients'))) return
+    do i = 1, size(quantities)
+      if (get_text(document%groups(quantities(i)), 'name') == 'gradient') &
+        call diagnostics%add(span_of(document%groups(quantities(i)), 'name', 1), 'the derivatives of quantities have the '// &
+                             'name ''gradient'' in the HDF5 file; choose another name')
+    end do
+  end subroutine check_sensitivities
+
+  !> Report forces that are recorded beside sensitivities.
+  pure subroutine check_forces(group, diagnostics)
+    type(group_type), intent(in) :: group                 !< of the output settings
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    character(len=14), parameter :: forces(3) = ['reactions     ', 'reaction_pairs', 'drive_forces  ']
+    integer :: i
+
     do i = 1, size(forces)
       if (.not. has_name(group, trim(forces(i)))) cycle
       if (i /= 2) then
@@ -85,7 +111,7 @@ contains
       call diagnostics%add(span_of(group, trim(forces(i))), 'derivatives of forces are not computed; leave out '// &
                            trim(forces(i))//', or sensitivities')
     end do
-  end subroutine check_sensitivities
+  end subroutine check_forces
 
   !> Report recorded coordinates, or pairs, that do not exist or are named twice.
   pure subroutine check_coordinates(group, name, counted, n_coordinates, coordinates, diagnostics)

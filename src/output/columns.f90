@@ -38,6 +38,7 @@ module mech9_columns
     integer :: sensitivities = 0            !< how many columns, the last ones, are derivatives by parameters
     type(string_type), allocatable :: parameters(:)   !< names of these parameters
     type(poses_type) :: poses               !< columns after the others, if they were requested
+    integer :: unrecorded = 0               !< how many derivatives by parameters stand after the poses, for quantities alone
   contains
     procedure :: append
     procedure :: append_forces
@@ -47,6 +48,7 @@ module mech9_columns
     procedure :: fill_motors
     procedure :: append_sensitivities
     procedure :: fill_sensitivities
+    procedure :: derivatives_of
     procedure :: width
     procedure :: family_of
     procedure :: fill
@@ -199,14 +201,20 @@ contains
     end do
   end subroutine fill_motors
 
-  !> Append the derivatives of all columns of the motion but time, by each parameter.
-  pure subroutine append_sensitivities(self, parameters)
+  !> Append the derivatives of all columns of the motion but time, by each parameter. Those that are not recorded stand after the
+  !> poses, without names.
+  pure subroutine append_sensitivities(self, parameters, recorded)
     class(columns_type), intent(inout) :: self       !< the columns
     type(string_type), intent(in) :: parameters(:)   !< names of the parameters
+    logical, intent(in) :: recorded                  !< they are in the results
     character(len=:), allocatable :: name, unit
     integer :: p, i
 
     self%parameters = parameters
+    if (.not. recorded) then
+      self%unrecorded = size(parameters)*(self%motion - 1)
+      return
+    end if
     self%sensitivities = size(parameters)*(self%motion - 1)
     do p = 1, size(parameters)
       do i = 2, self%motion
@@ -218,6 +226,26 @@ contains
     end do
   end subroutine append_sensitivities
 
+  !> The place in a row before the derivatives by parameters.
+  pure integer function before_sensitivities(self) result(before)
+    type(columns_type), intent(in) :: self   !< the columns
+
+    before = self%count - self%sensitivities
+    if (self%unrecorded > 0) before = self%count + self%poses%width()
+  end function before_sensitivities
+
+  !> The columns of the derivatives of a column by each parameter; 0 where it has none.
+  pure function derivatives_of(self, column) result(columns)
+    class(columns_type), intent(in) :: self   !< the columns, with derivatives
+    integer, intent(in) :: column             !< number of a column
+    integer :: columns(size(self%parameters))
+    integer :: p
+
+    columns = 0
+    if (column < 2 .or. column > self%motion) return
+    columns = [(before_sensitivities(self) + (p - 1)*(self%motion - 1) + column - 1, p=1, size(columns))]
+  end function derivatives_of
+
   !> Fill the columns of the derivatives by parameters in a row.
   pure subroutine fill_sensitivities(self, sensitivity, row)
     class(columns_type), intent(in) :: self               !< the columns
@@ -225,7 +253,7 @@ contains
     real(wp), intent(inout) :: row(:)                     !< numbers of one row, one for each column
     integer :: at, p, order, i, k
 
-    at = self%count - self%sensitivities
+    at = before_sensitivities(self)
     do p = 1, size(self%parameters)
       do order = 0, self%derivatives
         do i = 1, size(self%coordinates)
@@ -276,11 +304,11 @@ contains
     call move_alloc(grown, texts)
   end subroutine grow
 
-  !> The number of columns, poses included.
+  !> The number of columns, poses and derivatives that are not recorded included.
   pure integer function width(self)
     class(columns_type), intent(in) :: self  !< the columns
 
-    width = self%count + self%poses%width()
+    width = self%count + self%poses%width() + self%unrecorded
   end function width
 
   !> The columns of the position, the rate and the acceleration to which a column belongs, where all three are recorded.

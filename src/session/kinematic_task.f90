@@ -125,7 +125,7 @@ contains
 
     call new_driven_simulation(model, plan, start, simulation)
     call new_row_source('mech9k', simulation, source)
-    if (model%request%output%sensitivities) call source%add_sensitivities(variable, simulation%plan, err)
+    if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, simulation%plan, err)
     if (.not. allocated(err)) call source%begin_quantities(err)
     if (allocated(err)) return
     allocate (row(source%columns%width()))
@@ -155,7 +155,7 @@ contains
     call new_row_source(program_name, simulation, source)
     call source%forces%judge(model, plan, simulation%assembled)
     reported = .false.
-    if (model%request%output%sensitivities) call source%add_sensitivities(variable, simulation%plan, err)
+    if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, simulation%plan, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
       return

@@ -128,7 +128,7 @@ contains
         call refuse_overwriting(options, inputs, err, model%request%output)
         reported = allocated(err)
         if (allocated(err)) call diagnostics%add_error(err)
-        if (options%has('study') .or. model%request%output%sensitivities) &
+        if (options%has('study') .or. model%request%output%with_derivatives()) &
           call new_varied_document(document, diagnostics%sources, task%needs_drives, variable)
         if (.not. allocated(err) .and. options%has('study')) then
           call work_on_study(task%program_name, options, variable, model, diagnostics, reported)

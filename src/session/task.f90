@@ -29,8 +29,6 @@ module mech9_task
   use mech9_force_record, only: force_record_type, reacting_pairs
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_hdf5_record, only: write_uniqueness
-  use mech9_quantity_record, only: quantity_record_type
-  use mech9_facts, only: facts_type
   use mech9_system, only: asked_to_end
   implicit none
   private
@@ -203,7 +201,7 @@ contains
     hdf5 => results%hdf5()
     if (.not. (ready .and. associated(hdf5))) return
     call write_uniqueness(hdf5%file, source%columns, source%forces)
-    call write_quantities(hdf5, source%quantities, again=.false.)
+    if (.not. source%quantities%is_empty()) call source%quantities%to_hdf5(hdf5%file, again=.false.)
   end subroutine begin_run
 
   !> Close the results of a run, draw the mechanism, and print which files were written.
@@ -218,7 +216,8 @@ contains
     type(hdf5_sink_type), pointer :: hdf5
 
     hdf5 => results%hdf5()
-    if (associated(hdf5)) call write_quantities(hdf5, source%quantities, again=.true.)
+    if (associated(hdf5) .and. .not. source%quantities%is_empty()) &
+      call source%quantities%to_hdf5(hdf5%file, again=.true.)
     call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('quiet')) call source%quantities%print(error_unit)
@@ -229,17 +228,6 @@ contains
     if (asked_to_end()) return
     if (allocated(source%film)) call draw(options, pictures, model, source%film, diagnostics)
   end subroutine end_run
-
-  !> Write the quantities to the HDF5 file: before the run, when they are NaN, and again after it.
-  subroutine write_quantities(hdf5, quantities, again)
-    type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file
-    type(quantity_record_type), intent(in) :: quantities   !< of the run
-    logical, intent(in) :: again                           !< the file has them already, and they are written over
-    type(facts_type) :: facts
-
-    call quantities%find_facts(facts)
-    call facts%to_hdf5(hdf5%file, 'quantities', again)
-  end subroutine write_quantities
 
   !> Print the title, and with --verbose the structure and the plan.
   subroutine announce(options, model, plan, requested)

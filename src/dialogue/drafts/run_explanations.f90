@@ -141,6 +141,8 @@ module mech9_run_explanations
                   'Drawing and film then show the forces in the pairs as arrows; the longest arrow is the largest force.', 'yes'), &
     explanation_type('output', 'sensitivities', '', &
                   'The results then hold how each recorded number changes with each &parameter, as derivatives.', 'yes'), &
+    explanation_type('output', 'gradients', '', &
+                  'The report then tells how each &quantity changes with each &parameter, as derivatives.', 'yes'), &
     explanation_type('user', 'parameters', '', &
                   'Every user procedure of yours receives these numbers, so that they can be changed without linking it '// &
                   'again.', '0.1, 2.0')]

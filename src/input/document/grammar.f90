@@ -492,6 +492,9 @@ module mech9_grammar
     item_row_type('output', 'sensitivities', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'derivatives of all recorded coordinates and points by each parameter', '.true.', seldom=.true., &
                   program='mech9k'), &
+    item_row_type('output', 'gradients', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
+                  'derivatives of the quantities by each parameter, without columns of their own', '.true.', seldom=.true., &
+                  program='mech9k'), &
     item_row_type('output', 'force_arrows', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'arrows of the forces in the pairs in both pictures, the longest for the largest force', '.true.', &
                   seldom=.true.), &

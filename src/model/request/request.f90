@@ -44,12 +44,14 @@ module mech9_request
     integer, allocatable :: reaction_pairs(:)    !< coordinates of these pairs; none listed: all
     logical :: drive_forces = .false.            !< the forces of drives have columns
     logical :: sensitivities = .false.           !< the derivatives by all parameters have columns
-    type(place_type) :: sensitivities_place      !< place of this request in the data file
+    logical :: gradients = .false.               !< the quantities have derivatives by all parameters, whose columns are not recorded
+    type(place_type) :: sensitivities_place      !< place of either request in the data file
     logical :: force_arrows = .false.            !< pictures show the forces in pairs as arrows
   contains
     procedure :: recorded
     procedure :: reacting
     procedure :: with_forces
+    procedure :: with_derivatives
     procedure :: drawn_forces
   end type output_settings_type
 
@@ -112,6 +114,13 @@ contains
 
     with_forces = self%reactions .or. self%drive_forces .or. self%force_arrows
   end function with_forces
+
+  !> Whether derivatives by the parameters are computed: as columns of the results, or of quantities alone.
+  pure logical function with_derivatives(self)
+    class(output_settings_type), intent(in) :: self   !< the output settings
+
+    with_derivatives = self%sensitivities .or. self%gradients
+  end function with_derivatives
 
   !> Whether the force in each pair is drawn.
   pure function drawn_forces(self, n_coordinates)

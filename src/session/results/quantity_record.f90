@@ -1,8 +1,8 @@
 !> The quantities of a run: their columns, the times between outputs that they need, and their numbers at its end.
 module mech9_quantity_record
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
+  use mech9_text, only: to_text, string_type
   use mech9_error, only: error_type, raise, exit_data
   use mech9_quantity, only: quantity_type
   use mech9_model, only: model_type
@@ -12,6 +12,7 @@ module mech9_quantity_record
   use mech9_missing_column, only: remedy_of_missing
   use mech9_facts, only: facts_type
   use mech9_json, only: json_type
+  use mech9_hdf5_file, only: hdf5_file_type
   implicit none
   private
   public :: quantity_record_type
@@ -23,15 +24,19 @@ module mech9_quantity_record
     type(quantity_type), allocatable :: quantities(:)
     type(tracked_quantity_type), allocatable :: tracked(:)
     real(wp), allocatable :: numbers(:)                      !< NaN before the end of the run
+    real(wp), allocatable :: gradient(:, :)                  !< (P,quantities) derivatives of the numbers by the parameters, if the
+                                                             !< run has them; NaN before its end and where there is none
     logical, private :: is_finished = .false.                !< the numbers are known
     type(columns_type), private :: columns
     type(chebyshev_type), private :: rule
     real(wp), allocatable, private :: piece(:, :)            !< (points_between,quantities) values between two outputs
+    real(wp), allocatable, private :: changes(:, :, :)       !< (P,points_between,quantities) derivatives of these values
     real(wp), private :: times(points_between) = 0.0_wp      !< of the points between two outputs [s]
     real(wp), private :: previous = 0.0_wp                   !< time of the output before [s]
   contains
     procedure :: begin
     procedure :: is_empty
+    procedure :: has_gradient
     procedure :: times_before
     procedure :: take_between
     procedure :: take_output
@@ -40,6 +45,7 @@ module mech9_quantity_record
     procedure :: find_facts
     procedure :: print => print_quantities
     procedure :: to_json
+    procedure :: to_hdf5
   end type quantity_record_type
 
 contains
@@ -68,7 +74,32 @@ contains
         call columns%family_of(tracked%column, tracked%family, tracked%order)
       end associate
     end do
+    n = 0
+    if (allocated(columns%parameters)) n = size(columns%parameters)
+    allocate (self%gradient(n, size(self%quantities)), source=ieee_value(1.0_wp, ieee_quiet_nan))
+    allocate (self%changes(n, points_between, size(self%quantities)), source=0.0_wp)
+    if (.not. self%has_gradient()) return
+    do i = 1, size(self%tracked)
+      call follow_changes(columns, self%tracked(i))
+    end do
   end subroutine begin
+
+  !> Let a quantity follow the derivatives of its column by the parameters, where there are any.
+  subroutine follow_changes(columns, tracked)
+    type(columns_type), intent(in) :: columns              !< of the run
+    type(tracked_quantity_type), intent(inout) :: tracked  !< the quantity
+    integer :: family(size(columns%parameters), 0:2), order
+
+    if (tracked%family(0) == 0) then
+      family(:, 0) = columns%derivatives_of(tracked%column)
+      if (all(family(:, 0) > 0)) call tracked%follow_changes(family(:, 0:0))
+    else
+      do order = 0, 2
+        family(:, order) = columns%derivatives_of(tracked%family(order))
+      end do
+      if (all(family > 0)) call tracked%follow_changes(family)
+    end if
+  end subroutine follow_changes
 
   !> Find the column of a quantity.
   subroutine find_column(quantity, model, columns, column, err)
@@ -92,6 +123,14 @@ contains
     is_empty = .true.
     if (allocated(self%tracked)) is_empty = size(self%tracked) == 0
   end function is_empty
+
+  !> Whether the run has derivatives by parameters, and quantities.
+  pure logical function has_gradient(self)
+    class(quantity_record_type), intent(in) :: self   !< the record
+
+    has_gradient = .false.
+    if (allocated(self%gradient)) has_gradient = size(self%gradient) > 0
+  end function has_gradient
 
   !> The times between the output before and the next one at which rows are needed, in their order.
   subroutine times_before(self, t, times)
@@ -134,9 +173,11 @@ contains
 
     do i = 1, size(self%tracked)
       associate (tracked => self%tracked(i))
-        if (tracked%take == 'at' .and. .not. abs(row(1) - tracked%at) > 0.0_wp) call tracked%take_at(row(tracked%column))
+        if (tracked%take == 'at' .and. .not. abs(row(1) - tracked%at) > 0.0_wp) call tracked%take_at(row)
         do k = 2, self%rule%n - 1
-          if (.not. abs(row(1) - self%times(k)) > 0.0_wp) self%piece(k, i) = row(tracked%column)
+          if (abs(row(1) - self%times(k)) > 0.0_wp) cycle
+          self%piece(k, i) = row(tracked%column)
+          if (allocated(tracked%changes)) self%changes(:, k, i) = tracked%changes_of(row)
         end do
       end associate
     end do
@@ -154,11 +195,13 @@ contains
       associate (tracked => self%tracked(i))
         is_first = tracked%is_at_start()
         call tracked%take_output(self%rule, row)
-        if (tracked%take == 'at' .and. .not. abs(row(1) - tracked%at) > 0.0_wp) call tracked%take_at(row(tracked%column))
+        if (tracked%take == 'at' .and. .not. abs(row(1) - tracked%at) > 0.0_wp) call tracked%take_at(row)
         self%piece(n, i) = row(tracked%column)
+        if (allocated(tracked%changes)) self%changes(:, n, i) = tracked%changes_of(row)
         if (tracked%needs_piece() .and. .not. is_first) &
-          call tracked%take_piece(self%rule, self%previous, row(1), self%piece(:, i))
-        self%piece(1, i) = row(tracked%column)
+          call tracked%take_piece(self%rule, self%previous, row(1), self%piece(:, i), self%changes(:, :, i))
+        self%piece(1, i) = self%piece(n, i)
+        self%changes(:, 1, i) = self%changes(:, n, i)
       end associate
     end do
     self%previous = row(1)
@@ -172,6 +215,7 @@ contains
     do i = 1, size(self%tracked)
       call self%tracked(i)%finish(self%rule)
       self%numbers(i) = self%tracked(i)%number()
+      if (allocated(self%tracked(i)%changes)) call self%tracked(i)%find_gradient(self%gradient(:, i))
     end do
     self%is_finished = .true.
   end subroutine finish
@@ -204,23 +248,63 @@ contains
     end do
   end subroutine find_facts
 
-  !> Print a line for each quantity, after a run that went to its end.
+  !> Write the quantities to the HDF5 file, with their derivatives by the parameters: before the run, when they are NaN, and again
+  !> after it.
+  subroutine to_hdf5(self, file, again)
+    class(quantity_record_type), intent(in) :: self   !< the record
+    type(hdf5_file_type), intent(inout) :: file       !< the open file
+    logical, intent(in) :: again                      !< the file has them already, and they are written over
+    type(facts_type) :: facts
+    type(string_type) :: names(size(self%quantities))
+    integer :: i
+
+    call self%find_facts(facts)
+    call facts%to_hdf5(file, 'quantities', again)
+    if (.not. self%has_gradient()) return
+    if (.not. again) then
+      do i = 1, size(names)
+        names(i)%text = self%quantities(i)%name
+      end do
+      call file%put('quantity', names, 'name of the quantity')
+      call file%make_scale('quantity')
+      if (self%columns%sensitivities == 0) then
+        call file%put('parameter', self%columns%parameters, 'name of the parameter')
+        call file%make_scale('parameter')
+      end if
+    end if
+    call file%put('quantities/gradient', self%gradient, 'derivatives of the quantities by the parameters', &
+                  'unit of the quantity per unit of the parameter in the data file')
+    if (.not. again) call file%attach_scales('quantities/gradient', ['/quantity ', '/parameter'])
+  end subroutine to_hdf5
+
+  !> Print a line for each quantity, and for each of its derivatives, after a run that went to its end.
   subroutine print_quantities(self, unit)
     class(quantity_record_type), intent(in) :: self   !< the record
     integer, intent(in) :: unit                       !< Fortran unit to write to
-    integer :: i
+    integer :: i, p
 
-    if (self%is_empty()) return
+    if (self%is_empty() .or. .not. self%is_finished) return
     do i = 1, size(self%tracked)
-      if (self%is_finished) write (unit, '(a)') self%quantities(i)%name//' = '//to_text(self%numbers(i), 12)//' '//self%unit_of(i)
+      associate (name => self%quantities(i)%name)
+        write (unit, '(a)') name//' = '//to_text(self%numbers(i), 12)//' '//self%unit_of(i)
+        do p = 1, size(self%gradient, 1)
+          if (ieee_is_nan(self%gradient(p, i))) then
+            write (unit, '(a)') '  d('//name//')/d('//self%columns%parameters(p)%text//') is not known'
+          else
+            write (unit, '(a)') '  d('//name//')/d('//self%columns%parameters(p)%text//') = '//to_text(self%gradient(p, i), 12)// &
+              ' '//self%unit_of(i)//'/'//self%columns%parameters(p)%text
+          end if
+        end do
+      end associate
     end do
   end subroutine print_quantities
 
-  !> The quantities as a list in a report: [{"name": "stroke", "value": 0.6, "unit": "m"}, ...]
+  !> The quantities as a list in a report:
+  !> [{"name": "stroke", "value": 0.6, "unit": "m", "gradient": [{"parameter": "crank", "value": 2.0}]}, ...]
   subroutine to_json(self, json)
     class(quantity_record_type), intent(in) :: self   !< the record
     type(json_type), intent(inout) :: json            !< the report, inside its object
-    integer :: i
+    integer :: i, p
 
     if (self%is_empty()) return
     call json%begin_array('quantities')
@@ -229,6 +313,14 @@ contains
       call json%add('name', self%quantities(i)%name)
       call json%add('value', self%numbers(i))
       call json%add('unit', self%unit_of(i))
+      if (self%has_gradient()) call json%begin_array('gradient')
+      do p = 1, size(self%gradient, 1)
+        call json%begin_object()
+        call json%add('parameter', self%columns%parameters(p)%text)
+        call json%add('value', self%gradient(p, i))
+        call json%end_object()
+      end do
+      if (self%has_gradient()) call json%end_array()
       call json%end_object()
     end do
     call json%end_array()

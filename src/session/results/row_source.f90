@@ -73,7 +73,8 @@ contains
     if (with_error) call columns%append('error', 'rad,m', 'estimated error of the coordinates and points')
   end subroutine find_columns
 
-  !> Add the derivatives of the motion by the parameters of the model, after all other columns. Fails where they do not exist.
+  !> Add the derivatives of the motion by the parameters of the model, after all other columns: those of the results, or, where the
+  !> gradients of quantities alone are requested, those that no file gets. Fails where they do not exist.
   subroutine add_sensitivities(self, variable, plan, err)
     class(row_source_type), intent(inout) :: self           !< the row source
     class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
@@ -87,7 +88,8 @@ contains
     end do
     allocate (self%sensitivity)
     call new_sensitivity(variable, self%simulation%model, plan, self%columns%derivatives, self%sensitivity, err)
-    if (.not. allocated(err)) call self%columns%append_sensitivities(names)
+    if (.not. allocated(err)) &
+      call self%columns%append_sensitivities(names, self%simulation%model%request%output%sensitivities)
   end subroutine add_sensitivities
 
   !> Find the columns of the quantities that the model requests. Fails with exit_data where one is not recorded.

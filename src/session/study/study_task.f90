@@ -69,8 +69,10 @@ contains
       call raise(err, exit_usage, '--threads takes at most '//to_text(most_threads))
     else if (model%request%study%kind == '') then
       call raise(err, exit_usage, '--study carries out the study of a group &study, and this file has none')
-    else if (model%request%output%sensitivities) then
-      call raise(err, exit_data, 'a study records no sensitivities: leave out sensitivities in &output', &
+    else if (model%request%output%with_derivatives()) then
+      call raise(err, exit_data, 'a study records no '//trim(merge('sensitivities', 'gradients    ', &
+                                                                   model%request%output%sensitivities))// &
+                 ': leave out '//trim(merge('sensitivities', 'gradients    ', model%request%output%sensitivities))//' in &output', &
                  model%request%output%sensitivities_place)
     else
       call find_quantities(program_name, model, quantities, err)
