@@ -23,7 +23,7 @@ module mech9_sensitivity
   use mech9_tangent, only: tangent_type, find_tangent
   implicit none
   private
-  public :: sensitivity_type, new_sensitivity, find_sensitivities
+  public :: sensitivity_type, new_sensitivity, find_sensitivities, find_twists_of_frame
 
   !> The derivatives of a motion by all parameters, and what finds them. Each parameter counts in its unit in the data file.
   type :: sensitivity_type
@@ -113,6 +113,22 @@ contains
       call vary_point(model, i, self)
     end do
   end subroutine find_sensitivities
+
+  !> The twists of a frame by all parameters, after `find_sensitivities`: rotation, then shift of the point that coincides with the
+  !> origin of frame 0, in its axes, with the derivatives of these numbers in time. A link moves with its first frame and, in
+  !> addition, with the constant twist of its own system in that frame.
+  subroutine find_twists_of_frame(self, frame, twists)
+    type(sensitivity_type), intent(in) :: self   !< with the derivatives of the present motion
+    integer, intent(in) :: frame                 !< number of the frame
+    real(wp), intent(out) :: twists(:, :, 0:)    !< (P,6,0:2) up to the order `highest` [rad, m per unit of the parameter]
+    integer :: p, order
+
+    do order = 0, self%highest
+      do p = 1, self%n_parameters
+        twists(p, :, order) = self%frames(:, p, order, frame)
+      end do
+    end do
+  end subroutine find_twists_of_frame
 
   !> Place the frames of the present motion in space.
   subroutine place_motion(present, self, err)
