@@ -4,26 +4,40 @@
 !> it, of their coordinates and of their constants alike. A closed chain stays closed if the twist of its closing frame is that of
 !> its target, in all orders of derivatives in time. The unknown derivatives of dependent coordinates follow from the factors of
 !> the block, with one right-hand side for each parameter.
+!>
+!> The columns of these sums are the same for all parameters: they are found once for each position, from the motion of the frames,
+!> and the innermost loops run over the parameters. In a planar mechanism whose parameters leave its plane alone, a twist has three
+!> numbers; else it has six.
 module mech9_sensitivity
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: singular_conditioning, opened_by_parameter, inexact_dimensions
+  use mech9_tolerances, only: singular_conditioning
   use mech9_error, only: error_type, raise, exit_data, exit_singular
   use mech9_failure, only: failure_singular_sensitivity, failure_opening_parameter
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
-  use mech9_rotation, only: turn, cross
+  use mech9_pose, only: transformed
   use mech9_plan, only: plan_type, block_type, new_state
   use mech9_state, only: state_type
   use mech9_arithmetics, only: set_in_space
   use mech9_frame_motion, only: place_all, spread_all_velocities, spread_all_accelerations
-  use mech9_block_solver, only: block_work_type, new_block_work, factorize_block
-  use mech9_coupling_constraint, only: varied_coupling
   use mech9_frame_variation, only: third_derivatives_type, new_third_derivatives, find_third_derivatives
-  use mech9_twists, only: frame_twists_type, new_frame_twists, find_frame_twists, carried, shift_at
+  use mech9_twists, only: frame_twists_type, new_frame_twists, find_frame_twists, find_step_twists
   use mech9_tangent, only: tangent_type, find_tangent
+  use mech9_parameter_support, only: support_type, find_support, point_form
+  use mech9_linear_form, only: linear_form_type, find_values, add_motion
+  use mech9_planar_forms, only: carry_in_plane, fill_planar_closure, fill_planar_point, planar_step_series
+  use mech9_spatial_forms, only: carry_in_space, fill_spatial_closure, fill_whole_closure, fill_coupling, fill_spatial_point
+  use mech9_planar_support, only: put_in_plane
+  use mech9_varied_block, only: varied_block_type, new_varied_block, factorize, solve_block
   implicit none
   private
   public :: sensitivity_type, new_sensitivity, find_sensitivities, find_twists_of_frame
+
+  !> A drive whose numbers a parameter changes.
+  type :: varied_drive_type
+    integer :: parameter = 0   !< number of the parameter
+    integer :: drive = 0       !< number of the drive
+  end type varied_drive_type
 
   !> The derivatives of a motion by all parameters, and what finds them. Each parameter counts in its unit in the data file.
   type :: sensitivity_type
@@ -31,17 +45,22 @@ module mech9_sensitivity
     integer :: highest = 2                          !< order of the highest derivative in time that is found
     real(wp), allocatable :: q(:, :, :)             !< (P,0:2,M) of the coordinates and their derivatives in time [rad, m]
     real(wp), allocatable :: points(:, :, :, :)     !< (P,3,0:2,points) of the points of the mechanism [m]
+    logical, private :: in_plane = .false.          !< twists have three numbers
+    logical, private :: own_frames = .false.        !< the frames are placed here, because others do not place them all in space
     type(tangent_type), allocatable, private :: tangents(:)    !< (P) of the constants
-    type(plan_type), private :: plan                           !< in space
-    type(state_type), private :: state                         !< the motion, in space
-    type(frame_twists_type), private :: motion                 !< twists of this motion
+    type(support_type), private :: support                     !< all that the parameters change
+    type(varied_drive_type), allocatable, private :: drives(:) !< drives that they change
+    type(varied_block_type), allocatable, private :: blocks(:) !< chains that they change
+    type(linear_form_type), allocatable, private :: points_shift(:)   !< of all points
+    real(wp), allocatable, private :: places(:, :)             !< (3,points) of the points in the first frames of their links [m]
+    real(wp), allocatable, private :: series(:, :, :)          !< (3 or 6,0:2,constants) twists of constants
+    integer, allocatable, private :: steps(:)                  !< steps whose twists are found
+    integer, allocatable, private :: frames(:)                 !< frames whose motion is found as twists
+    type(plan_type), private :: plan                           !< in the arithmetic of the derivatives
+    type(state_type), private :: state                         !< the motion, where the frames are placed here
+    type(frame_twists_type), private :: motion                 !< twists of the motion in space
     type(third_derivatives_type), private :: third             !< of pairs without a fixed axis
-    type(block_work_type), allocatable, private :: blocks(:)   !< scratch of the blocks
-    real(wp), allocatable, private :: frames(:, :, :, :)       !< (6,P,0:2,0:M) twists of the frames by the parameters
   end type sensitivity_type
-
-  !> Binomial coefficients of derivatives of a product: (part, order).
-  integer, parameter :: binomial(0:2, 0:2) = reshape([1, 0, 0, 1, 1, 0, 1, 2, 1], [3, 3])
 
 contains
 
@@ -54,83 +73,122 @@ contains
     integer, intent(in) :: highest                          !< order of the highest derivative in time
     type(sensitivity_type), intent(out) :: sensitivity      !< prepared
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    integer :: i, b, n, m
+    integer :: i
 
-    n = size(model%parameters)
-    m = plan%n_coordinates
-    sensitivity%n_parameters = n
+    sensitivity%n_parameters = size(model%parameters)
     sensitivity%highest = highest
-    allocate (sensitivity%tangents(n))
-    do i = 1, n
+    allocate (sensitivity%tangents(sensitivity%n_parameters))
+    do i = 1, sensitivity%n_parameters
       call find_tangent(variable, model, plan, i, sensitivity%tangents(i), err)
       if (allocated(err)) return
     end do
-    sensitivity%plan = plan
-    sensitivity%plan%blocks%arithmetic = 1
-    sensitivity%plan%blocks%is_shown = .false.
-    call set_in_space(sensitivity%plan)
-    sensitivity%state = new_state(sensitivity%plan)
-    sensitivity%motion = new_frame_twists(m)
-    sensitivity%third = new_third_derivatives(plan)
-    allocate (sensitivity%blocks(size(plan%blocks)))
-    do b = 1, size(plan%blocks)
-      sensitivity%blocks(b) = new_block_work(sensitivity%plan%blocks(b))
-    end do
-    allocate (sensitivity%q(n, 0:2, m), sensitivity%frames(6, n, 0:2, 0:m), &
-              sensitivity%points(n, 3, 0:2, size(model%mechanism%points)), source=0.0_wp)
+    call find_support(model, plan, sensitivity%tangents, sensitivity%support)
+    call choose_arithmetic(model, plan, sensitivity)
+    call make_forms(model, sensitivity)
   end subroutine new_sensitivity
+
+  !> Choose planar arithmetic where neither the mechanism nor a parameter leaves the plane, and decide who places the frames.
+  subroutine choose_arithmetic(model, plan, self)
+    type(model_type), intent(in) :: model           !< the present model
+    type(plan_type), intent(in) :: plan             !< its plan
+    type(sensitivity_type), intent(inout) :: self   !< with the support; gets the plan and its arithmetic
+    integer :: n, m
+
+    n = self%n_parameters
+    m = plan%n_coordinates
+    allocate (self%q(n, 0:2, m), self%points(n, 3, 0:2, size(model%mechanism%points)), source=0.0_wp)
+    self%plan = plan
+    if (plan%planar%used) call put_in_plane(plan, model%problem%initial%position, self%support, self%in_plane)
+    if (self%in_plane) then
+      self%own_frames = self%highest > 0 .and. any(plan%blocks%last_moved < plan%blocks%last_step)
+    else
+      self%own_frames = plan%planar%used .or. self%highest > 0 .and. any(plan%blocks%last_moved < plan%blocks%last_step)
+      if (allocated(plan%planar%planes)) self%own_frames = self%own_frames .or. any(plan%planar%plane_of > 0 .and. &
+                                                                                    .not. plan%planar%shown)
+      self%plan%blocks%arithmetic = 1
+      self%plan%blocks%is_shown = .false.
+      call set_in_space(self%plan)
+      self%motion = new_frame_twists(m)
+      self%third = new_third_derivatives(plan)
+    end if
+    if (self%own_frames) self%state = new_state(self%plan)
+    allocate (self%series(merge(3, 6, self%in_plane), 0:2, self%support%count), source=0.0_wp)
+  end subroutine choose_arithmetic
+
+  !> Make the forms of chains and points, and the lists of all that a position needs.
+  subroutine make_forms(model, self)
+    type(model_type), intent(in) :: model           !< the present model
+    type(sensitivity_type), intent(inout) :: self   !< with support and plan; gets forms and lists
+    logical :: steps(self%plan%n_coordinates), frames(0:self%plan%n_coordinates)
+    integer :: b, i, p, n
+
+    allocate (self%blocks(0), self%drives(0), self%points_shift(size(model%mechanism%points)))
+    n = self%n_parameters
+    do b = 1, size(self%plan%blocks)
+      if (size(self%plan%blocks(b)%coordinates) == 0) cycle
+      if (.not. all(self%support%touched(self%plan%blocks(b)%coordinates))) cycle
+      self%blocks = [self%blocks, new_varied_block(self%plan, self%support, b, n, self%in_plane, self%highest)]
+    end do
+    do p = 1, n
+      do i = 1, size(model%problem%drives)
+        if (self%tangents(p)%drives(i)%varies) self%drives = [self%drives, varied_drive_type(p, i)]
+      end do
+    end do
+    allocate (self%places(3, size(model%mechanism%points)))
+    do i = 1, size(model%mechanism%points)
+      call make_point(model, i, self)
+    end do
+    steps = self%support%touched(self%plan%steps%coordinate)
+    self%steps = pack([(i, i=1, size(steps))], steps)
+    frames = .false.
+    frames(self%plan%steps(self%steps)%parent) = .true.
+    frames(self%support%constants(:self%support%count)%frame) = .true.
+    self%frames = pack([(i, i=0, size(steps))], frames)
+  end subroutine make_forms
+
+  !> Make the form of a point. The part of its shift that is normal to a plane never changes.
+  subroutine make_point(model, number, self)
+    type(model_type), intent(in) :: model           !< the present model
+    integer, intent(in) :: number                   !< of the point
+    type(sensitivity_type), intent(inout) :: self   !< with support and plan; gets the form
+    integer :: rows, i
+
+    rows = 3
+    if (self%in_plane .and. self%plan%planar%in_xy_plane) rows = 2
+    associate (point => model%mechanism%points(number), form => self%points_shift(number), planar => self%plan%planar)
+      form = point_form(self%plan, self%support, number, self%plan%frame_of(point%link), self%n_parameters, rows)
+      if (.not. self%in_plane) then
+        self%places(:, number) = transformed(self%plan%link_in_frame(point%link), point%position)
+        return
+      end if
+      self%places(:, number) = transformed(planar%link_in_frame(point%link), point%position)
+      do i = 1, self%support%count
+        associate (constant => self%support%constants(i))
+          if (constant%point /= number) cycle
+          if (rows == 2) self%points(constant%parameter, 3, 0, number) = constant%twist(4)
+          if (rows == 3) form%fixed(constant%parameter, :) = constant%twist(4)*planar%axes(:, 3)
+        end associate
+      end do
+    end associate
+  end subroutine make_point
 
   !> Find the derivatives of the present motion. Fails with exit_singular where closed chains are in a singular position, and with
   !> exit_data where a change of a parameter would open a closed chain.
   subroutine find_sensitivities(model, present, self, err)
     type(model_type), intent(in) :: model                 !< the present model
-    type(state_type), intent(in) :: present               !< coordinates with as many derivatives in time as are asked for
+    type(state_type), intent(in) :: present               !< the motion in the plan for which this was prepared, frames included
     type(sensitivity_type), intent(inout) :: self         !< gets the derivatives
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
-    integer :: b, order, i
 
-    call place_motion(present, self, err)
-    if (allocated(err)) return
-    do b = 1, size(self%plan%blocks)
-      associate (block => self%plan%blocks(b), work => self%blocks(b))
-        call find_frame_twists(self%plan, self%state, self%third, block%first_step, block%last_step, self%motion)
-        if (block%equations == 0) cycle
-        call factorize_block(self%plan, block, self%state, work)
-        if (work%equations%conditioning() >= singular_conditioning) cycle
-        call fail_with(failure_singular_sensitivity, exit_singular, block, self%state%t, err)
-        return
-      end associate
-    end do
-    self%q = 0.0_wp
-    call vary_drives(model, self)
-    do order = 0, self%highest
-      do b = 1, size(self%plan%blocks)
-        call vary_block(model, order, b, self, err)
-        if (allocated(err)) return
-      end do
-    end do
-    do i = 1, size(model%mechanism%points)
-      call vary_point(model, i, self)
-    end do
+    if (self%own_frames) then
+      call place_motion(present, self, err)
+      if (.not. allocated(err)) call find_from_frames(model, self%state, self, err)
+    else
+      call find_from_frames(model, present, self, err)
+    end if
   end subroutine find_sensitivities
 
-  !> The twists of a frame by all parameters, after `find_sensitivities`: rotation, then shift of the point that coincides with the
-  !> origin of frame 0, in its axes, with the derivatives of these numbers in time. A link moves with its first frame and, in
-  !> addition, with the constant twist of its own system in that frame.
-  subroutine find_twists_of_frame(self, frame, twists)
-    type(sensitivity_type), intent(in) :: self   !< with the derivatives of the present motion
-    integer, intent(in) :: frame                 !< number of the frame
-    real(wp), intent(out) :: twists(:, :, 0:)    !< (P,6,0:2) up to the order `highest` [rad, m per unit of the parameter]
-    integer :: p, order
-
-    do order = 0, self%highest
-      do p = 1, self%n_parameters
-        twists(p, :, order) = self%frames(:, p, order, frame)
-      end do
-    end do
-  end subroutine find_twists_of_frame
-
-  !> Place the frames of the present motion in space.
+  !> Place the frames of the present motion.
   subroutine place_motion(present, self, err)
     type(state_type), intent(in) :: present               !< the present motion
     type(sensitivity_type), intent(inout) :: self         !< gets its frames
@@ -142,10 +200,62 @@ contains
     if (self%highest > 1) self%state%ddq = present%ddq
     call place_all(self%plan, self%state, err)
     if (allocated(err)) return
-    call spread_all_velocities(self%plan, self%state)
-    call spread_all_accelerations(self%plan, self%state)
-    call find_third_derivatives(self%plan, self%state, self%third, err)
+    if (self%highest > 0) call spread_all_velocities(self%plan, self%state)
+    if (self%highest > 1) call spread_all_accelerations(self%plan, self%state)
   end subroutine place_motion
+
+  !> Find the derivatives of a motion whose frames are in place.
+  subroutine find_from_frames(model, state, self, err)
+    type(model_type), intent(in) :: model                 !< the present model
+    type(state_type), intent(in) :: state                 !< the motion
+    type(sensitivity_type), intent(inout) :: self         !< gets the derivatives
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    integer :: b, i, parameter
+
+    call find_series(state, self, err)
+    if (allocated(err)) return
+    call vary_drives(model, state%t, self)
+    do b = 1, size(self%blocks)
+      associate (block => self%blocks(b))
+        call fill_block(state, block, self)
+        call factorize(block)
+        if (.not. block%equations%conditioning() >= singular_conditioning) then
+          call fail_with(failure_singular_sensitivity, exit_singular, self%plan%blocks(block%number), state%t, err)
+          return
+        end if
+        call solve_block(model, self%plan, state, self%tangents, self%highest, self%n_parameters, &
+                         self%plan%n_coordinates, block, self%q, parameter)
+        if (parameter == 0) cycle
+        call fail_with(failure_opening_parameter, exit_data, self%plan%blocks(block%number), state%t, err)
+        err%failure%number = parameter
+        err%failure%name = model%parameters(parameter)%name
+        err%place = model%parameters(parameter)%place
+        return
+      end associate
+    end do
+    do i = 1, size(self%points_shift)
+      call vary_point(model, i, state, self)
+    end do
+  end subroutine find_from_frames
+
+  !> Find the twists of steps and constants with their derivatives in time.
+  subroutine find_series(state, self, err)
+    type(state_type), intent(in) :: state                 !< the motion
+    type(sensitivity_type), intent(inout) :: self         !< gets the twists
+    type(error_type), allocatable, intent(out) :: err     !< allocated if a pair has no pose beside the present one
+
+    associate (n => self%support%count)
+      if (self%in_plane) then
+        call carry_in_plane(n, self%support%constants(:n), state%planar, self%highest, self%series)
+        return
+      end if
+      if (self%highest > 1) call find_third_derivatives(self%plan, state, self%third, err)
+      if (allocated(err)) return
+      call find_frame_twists(state, self%frames, self%highest, self%motion)
+      call find_step_twists(self%plan, state, self%third, self%steps, self%highest, self%motion)
+      call carry_in_space(self%plan, n, self%support%constants(:n), state, self%motion, self%highest, self%series)
+    end associate
+  end subroutine find_series
 
   !> Fail because of the chains of a block.
   pure subroutine fail_with(kind, code, block, t, err)
@@ -162,249 +272,120 @@ contains
   end subroutine fail_with
 
   !> The derivatives of the driven coordinates, which their laws give.
-  subroutine vary_drives(model, self)
+  subroutine vary_drives(model, t, self)
     type(model_type), intent(in) :: model           !< the present model
+    real(wp), intent(in) :: t                       !< time [s]
     type(sensitivity_type), intent(inout) :: self   !< gets the derivatives
     real(wp) :: change(0:2)
-    integer :: i, p
+    integer :: i
 
-    do p = 1, self%n_parameters
-      do i = 1, size(model%problem%drives)
-        associate (part => self%tangents(p)%drives(i), drive => model%problem%drives(i)%drive)
-          if (.not. part%varies) cycle
-          call drive%vary(part%change, self%state%t, change(0), change(1), change(2))
-          self%q(p, :, drive%coordinate) = change
-        end associate
-      end do
+    do i = 1, size(self%drives)
+      associate (varied => self%drives(i), drive => model%problem%drives(self%drives(i)%drive)%drive)
+        call drive%vary(self%tangents(varied%parameter)%drives(varied%drive)%change, t, change(0), change(1), change(2))
+        self%q(varied%parameter, :, drive%coordinate) = change
+      end associate
     end do
   end subroutine vary_drives
 
-  !> The derivatives of one order in time of one block: first those that its unknowns do not give, then the unknowns that keep the
-  !> chains closed.
-  subroutine vary_block(model, order, b, self, err)
-    type(model_type), intent(in) :: model                 !< the present model
-    integer, intent(in) :: order                          !< of the derivative in time
-    integer, intent(in) :: b                              !< number of the block
-    type(sensitivity_type), intent(inout) :: self         !< with lower orders, and earlier blocks; gets the block
-    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
-    real(wp) :: openings(self%plan%blocks(b)%equations, self%n_parameters)
-    integer :: p, i
+  !> Fill the forms of a block for the present position.
+  subroutine fill_block(state, block, self)
+    type(state_type), intent(in) :: state              !< the motion
+    type(varied_block_type), intent(inout) :: block    !< gets its columns
+    type(sensitivity_type), intent(inout) :: self      !< with the twists of steps and constants
+    integer :: i, c, number
 
-    associate (block => self%plan%blocks(b), work => self%blocks(b))
-      call vary_frames(order, block%first_step, block%last_step, self)
-      if (size(block%unknowns) == 0) return
-      call find_openings(model, order, block, self, openings)
-      do p = 1, self%n_parameters
-        work%right = -openings(:, p)
-        call work%equations%solve(work%right, work%change)
-        do i = 1, size(block%unknowns)
-          self%q(p, order, block%coordinates(i)) = work%change(i)*self%plan%unit_of(block%coordinates(i))
-        end do
-      end do
-      call vary_frames(order, block%first_step, block%last_step, self)
-      if (order == 0) call check_closed(model, block, self, err)
-    end associate
-  end subroutine vary_block
-
-  !> The twists of some frames, in one order of derivatives in time.
-  subroutine vary_frames(order, first, last, self)
-    integer, intent(in) :: order                    !< of the derivative in time
-    integer, intent(in) :: first                    !< frames from this one
-    integer, intent(in) :: last                     !< last one of these
-    type(sensitivity_type), intent(inout) :: self   !< with the coordinates; gets the frames
-    real(wp) :: amount
-    integer :: s, j, p
-
-    do s = first, last
-      associate (step => self%plan%steps(s), frames => self%frames)
-        frames(:, :, order, s) = frames(:, :, order, step%parent)
-        do j = 0, order
-          do p = 1, self%n_parameters
-            amount = self%q(p, j, step%coordinate)
-            if (j == 0) amount = amount + self%tangents(p)%offset(step%coordinate)
-            frames(:, p, order, s) = frames(:, p, order, s) + binomial(j, order)*amount*self%motion%step(:, order - j, s)
-          end do
-        end do
-        do p = 1, self%n_parameters
-          call add_constants(self%tangents(p), self%plan, self%state, self%motion, s, order, frames(:, p, order, s))
-        end do
-      end associate
+    do i = 1, size(block%forms)
+      c = block%first_closure + i - 1
+      number = self%plan%closures(c)%coupling
+      if (self%in_plane) then
+        call fill_planar_closure(self%plan%planar, c, state%planar, self%highest, self%series, block%forms(i))
+      else if (number > 0) then
+        call fill_coupling(self%plan, c, state, self%third%couplings(number), block%forms(i))
+      else
+        call fill_spatial_closure(self%plan, c, state, self%motion, self%highest, self%series, block%forms(i))
+        if (block%has_whole) call fill_whole_closure(self%plan, c, state, self%motion, self%series, block%whole(i))
+      end if
     end do
-  end subroutine vary_frames
+  end subroutine fill_block
 
-  !> Add the twist that the constants of a step give to its frame.
-  pure subroutine add_constants(tangent, plan, state, motion, s, order, twist)
-    type(tangent_type), intent(in) :: tangent       !< derivatives of the constants
-    type(plan_type), intent(in) :: plan             !< the plan of the mechanism, in space
-    type(state_type), intent(in) :: state           !< the motion
-    type(frame_twists_type), intent(in) :: motion   !< its twists
-    integer, intent(in) :: s                        !< the step
-    integer, intent(in) :: order                    !< of the derivative in time
-    real(wp), intent(inout) :: twist(6)             !< of the frame
-    real(wp) :: series(6, 0:2), length(0:2), along(6)
-    integer :: k, j
-
-    k = plan%steps(s)%coordinate
-    if (tangent%moves(k)) then
-      series = carried(state, motion, plan%steps(s)%parent, tangent%before(:, k))
-      twist = twist + series(:, order)
-    end if
-    if (.not. abs(tangent%slide(k)) > 0.0_wp) return
-    along(1:3) = 0.0_wp
-    along(4:6) = plan%steps(s)%before%r(:, 3)
-    series = carried(state, motion, plan%steps(s)%parent, along)
-    length = tangent%slide(k)*[state%q(k) + plan%steps(s)%offset, state%dq(k), state%ddq(k)]
-    do j = 0, order
-      twist = twist + binomial(j, order)*length(j)*series(:, order - j)
-    end do
-  end subroutine add_constants
-
-  !> The twists by which the closed chains of a block open, as values of its equations.
-  subroutine find_openings(model, order, block, self, openings)
-    type(model_type), intent(in) :: model           !< the present model
-    integer, intent(in) :: order                    !< of the derivative in time
-    type(block_type), intent(in) :: block           !< the block
-    type(sensitivity_type), intent(in) :: self      !< with the frames
-    real(wp), intent(out) :: openings(:, :)         !< (equations,P) [rad, lengths of the mechanism]
-    real(wp) :: opening(6), shift(3)
-    integer :: c, p, row
-
-    do p = 1, self%n_parameters
-      row = 0
-      do c = block%first_closure, block%last_closure
-        associate (constraint => self%plan%constraints(c)%item, closing => self%plan%closures(c)%closing)
-          if (self%plan%closures(c)%coupling > 0) then
-            openings(row + 1, p) = coupling_opening(model, order, c, p, self)
-          else
-            call find_opening(order, c, p, self, opening)
-            shift = shift_at(opening, self%state%p(:, closing))
-            call constraint%opening(self%plan, self%state, opening(1:3), shift, openings(row + 1:row + constraint%equations, p))
-          end if
-          row = row + constraint%equations
-        end associate
-      end do
-    end do
-  end subroutine find_openings
-
-  !> The twist of a closing frame relative to its target, by one parameter.
-  pure subroutine find_opening(order, c, p, self, opening)
-    integer, intent(in) :: order                    !< of the derivative in time
-    integer, intent(in) :: c                        !< number of the closure
-    integer, intent(in) :: p                        !< number of the parameter
-    type(sensitivity_type), intent(in) :: self      !< with the frames
-    real(wp), intent(out) :: opening(6)             !< the twist [rad, m]
-    real(wp) :: series(6, 0:2)
-    integer :: k
-
-    associate (closure => self%plan%closures(c))
-      k = self%plan%steps(closure%closing)%coordinate
-      opening = self%frames(:, p, order, closure%closing) - self%frames(:, p, order, closure%target)
-      if (.not. any(abs(self%tangents(p)%in_target(:, k)) > 0.0_wp)) return
-      series = carried(self%state, self%motion, closure%target, self%tangents(p)%in_target(:, k))
-      opening = opening - series(:, order)
-    end associate
-  end subroutine find_opening
-
-  !> The size of a twist.
-  pure real(wp) function size_of(twist, length)
-    real(wp), intent(in) :: twist(6)   !< rotation [rad], and shift at the origin of frame 0 [m]
-    real(wp), intent(in) :: length     !< the mechanism's size [m]
-
-    size_of = max(maxval(abs(twist(1:3))), maxval(abs(twist(4:6)))/length)
-  end function size_of
-
-  !> The derivative of a coupling's equation by one parameter, or of its derivatives in time.
-  real(wp) function coupling_opening(model, order, c, p, self) result(opening)
-    type(model_type), intent(in) :: model           !< the present model
-    integer, intent(in) :: order                    !< of the derivative in time
-    integer, intent(in) :: c                        !< number of the closure that is the coupling
-    integer, intent(in) :: p                        !< number of the parameter
-    type(sensitivity_type), intent(in) :: self      !< with the coordinates
-    real(wp) :: own
-    integer :: i, k
-
-    opening = varied_coupling(self%plan, c, self%state, self%third%couplings(self%plan%closures(c)%coupling), order, &
-                              self%q(p, 0, :), self%q(p, 1, :), self%q(p, 2, :))
-    associate (part => self%tangents(p)%couplings(self%plan%closures(c)%coupling), state => self%state, &
-               coupling => model%mechanism%couplings(self%plan%closures(c)%coupling)%coupling)
-      if (.not. part%varies) return
-      own = 0.0_wp
-      do i = 1, size(coupling%coordinates)
-        k = coupling%coordinates(i)
-        select case (order)
-        case (0)
-          own = own + coupling%varied_term(part%change, i, state%q(k), 0)
-        case (1)
-          own = own + coupling%varied_term(part%change, i, state%q(k), 1)*state%dq(k)
-        case default
-          own = own + coupling%varied_term(part%change, i, state%q(k), 1)*state%ddq(k) &
-                + coupling%varied_term(part%change, i, state%q(k), 2)*state%dq(k)**2
-        end select
-      end do
-      opening = opening + self%plan%closures(c)%weight*own
-    end associate
-  end function coupling_opening
-
-  !> Fail where no change of the dependent coordinates keeps a chain closed: the equations of the block left it out because they do
-  !> not change in any motion of the mechanism, but they change with the parameter.
-  subroutine check_closed(model, block, self, err)
-    type(model_type), intent(in) :: model                 !< the present model
-    type(block_type), intent(in) :: block                 !< the block
-    type(sensitivity_type), intent(in) :: self            !< with the frames
-    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
-    real(wp) :: opening(6), place(6), largest, gap
-    integer :: c, p, i
-
-    do p = 1, self%n_parameters
-      do c = block%first_closure, block%last_closure
-        largest = maxval(abs(self%q(p, 0, block%coordinates)/self%plan%unit_of(block%coordinates)))
-        if (self%plan%closures(c)%coupling > 0) then
-          gap = abs(coupling_opening(model, 0, c, p, self))
-        else
-          do i = 1, size(self%plan%closures(c)%loop%steps)
-            largest = max(largest, size_of(self%frames(:, p, 0, self%plan%closures(c)%loop%steps(i)), self%plan%length))
-          end do
-          call find_opening(0, c, p, self, opening)
-          place(1:3) = opening(1:3)
-          place(4:6) = shift_at(opening, self%state%p(:, self%plan%closures(c)%closing))
-          gap = size_of(place, self%plan%length)
-        end if
-        if (gap <= max(opened_by_parameter, inexact_dimensions*self%plan%data_tolerance)*largest) cycle
-        call fail_with(failure_opening_parameter, exit_data, block, self%state%t, err)
-        err%failure%number = p
-        err%failure%name = model%parameters(p)%name
-        err%place = model%parameters(p)%place
-        return
-      end do
-    end do
-  end subroutine check_closed
-
-  !> The derivatives of a point, which moves with its frame and with the constants of its link.
-  subroutine vary_point(model, number, self)
+  !> The derivatives of a point.
+  subroutine vary_point(model, number, state, self)
     type(model_type), intent(in) :: model           !< the present model
     integer, intent(in) :: number                   !< of the point
-    type(sensitivity_type), intent(inout) :: self   !< with the frames; gets the derivatives
-    real(wp) :: place(3), twist(6, 0:2), constant(6), velocity(3), acceleration(3), change(3, 0:2)
-    integer :: f, p, order
+    type(state_type), intent(in) :: state           !< the motion
+    type(sensitivity_type), intent(inout) :: self   !< with the coordinates; gets the derivatives
+    integer :: f, order
 
-    associate (point => model%mechanism%points(number), state => self%state)
-      f = self%plan%frame_of(point%link)
-      place = state%p(:, f) + turn(state%r(:, :, f), self%plan%link_in_frame(point%link)%p &
-                                   + turn(self%plan%link_in_frame(point%link)%r, point%position))
-      velocity = shift_at(self%motion%velocity(:, f), place)
-      acceleration = shift_at(self%motion%acceleration(:, f), place) + cross(self%motion%velocity(1:3, f), velocity)
-      do p = 1, self%n_parameters
-        constant = self%tangents(p)%link(:, point%link)
-        constant(4:6) = constant(4:6) + turn(self%plan%link_in_frame(point%link)%r, self%tangents(p)%points(:, number))
-        twist = self%frames(:, p, :, f)
-        if (any(abs(constant) > 0.0_wp)) twist = twist + carried(state, self%motion, f, constant)
-        change(:, 0) = shift_at(twist(:, 0), place)
-        change(:, 1) = shift_at(twist(:, 1), place) + cross(twist(1:3, 0), velocity)
-        change(:, 2) = shift_at(twist(:, 2), place) + 2.0_wp*cross(twist(1:3, 1), velocity) + cross(twist(1:3, 0), acceleration)
-        do order = 0, self%highest
-          self%points(p, :, order, number) = change(:, order)
-        end do
+    f = self%plan%frame_of(model%mechanism%points(number)%link)
+    associate (form => self%points_shift(number))
+      if (self%in_plane) then
+        call fill_planar_point(self%plan%planar, f, self%places(1:2, number), state%planar, self%highest, self%series, form)
+      else
+        call fill_spatial_point(f, self%places(:, number), state, self%motion, self%highest, self%series, form)
+      end if
+      do order = 0, self%highest
+        call find_values(form, self%n_parameters, self%plan%n_coordinates, order, .true., self%q, &
+                         self%points(1, 1, order, number))
       end do
     end associate
   end subroutine vary_point
+
+  !> The twists of a frame by all parameters, after `find_sensitivities`: rotation, then shift of the point that coincides with the
+  !> origin of frame 0, in its axes, with the derivatives of these numbers in time. A link moves with its first frame and, in
+  !> addition, with the constant twist of its own system in that frame.
+  subroutine find_twists_of_frame(self, present, frame, twists)
+    type(sensitivity_type), intent(inout) :: self        !< with the derivatives of the present motion
+    type(state_type), intent(in) :: present              !< this motion
+    integer, intent(in) :: frame                         !< number of the frame
+    real(wp), intent(out), contiguous :: twists(:, :, 0:)   !< (P,6,0:2) up to the order `highest` [rad, m per unit of parameter]
+    real(wp) :: series(6, 0:2), planar_series(3, 0:2)
+    integer :: s, i, order
+
+    twists = 0.0_wp
+    s = frame
+    do while (s > 0)
+      if (self%support%touched(self%plan%steps(s)%coordinate)) then
+        if (.not. self%in_plane) then
+          series = self%motion%step(:, :, s)
+        else
+          if (self%own_frames) then
+            call planar_step_series(self%plan%planar, s, self%state%planar, self%highest, planar_series)
+          else
+            call planar_step_series(self%plan%planar, s, present%planar, self%highest, planar_series)
+          end if
+          series = in_space(self, planar_series)
+        end if
+        call add_motion(self%n_parameters, self%highest, series, self%q(:, :, self%plan%steps(s)%coordinate), twists)
+      end if
+      do i = 1, self%support%count
+        associate (constant => self%support%constants(i))
+          if (constant%step /= s) cycle
+          if (self%in_plane) then
+            series = in_space(self, self%series(:, :, i))
+          else
+            series = self%series(:, :, i)
+          end if
+          do order = 0, self%highest
+            twists(constant%parameter, :, order) = twists(constant%parameter, :, order) + series(:, order)
+          end do
+        end associate
+      end do
+      s = self%plan%steps(s)%parent
+    end do
+  end subroutine find_twists_of_frame
+
+  !> A twist in the plane as a twist in space.
+  pure function in_space(self, twist) result(series)
+    type(sensitivity_type), intent(in) :: self   !< with the plane
+    real(wp), intent(in) :: twist(3, 0:2)        !< rotation about the normal, shift in the plane
+    real(wp) :: series(6, 0:2)
+    integer :: order
+
+    associate (axes => self%plan%planar%axes)
+      do order = 0, 2
+        series(1:3, order) = axes(:, 3)*twist(1, order)
+        series(4:6, order) = axes(:, 1)*twist(2, order) + axes(:, 2)*twist(3, order)
+      end do
+    end associate
+  end function in_space
 end module mech9_sensitivity

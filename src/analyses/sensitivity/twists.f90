@@ -7,9 +7,9 @@ module mech9_twists
   use mech9_frame_variation, only: third_derivatives_type
   implicit none
   private
-  public :: bracket, carried, frame_twists_type, new_frame_twists, find_frame_twists, shift_at
+  public :: carried, frame_twists_type, new_frame_twists, find_frame_twists, find_step_twists, shift_at
 
-  !> The twists of a motion: velocities and accelerations of all frames, and the twist of each step per unit rate with its first two
+  !> The twists of a motion: velocities and accelerations of frames, and the twist of each step per unit rate with its first two
   !> derivatives in time. Rotation first, then shift, in the axes of frame 0.
   type :: frame_twists_type
     real(wp), allocatable :: velocity(:, :)      !< (6,0:M) of each frame [rad/s, m/s]
@@ -37,19 +37,22 @@ contains
     c(4:6) = cross(a(1:3), b(4:6)) + cross(a(4:6), b(1:3))
   end function bracket
 
-  !> A twist that is constant in a frame, seen in frame 0, and its first two derivatives in time.
-  pure function carried(state, twists, f, twist) result(series)
+  !> A twist that is constant in a frame, seen in frame 0, and its first derivatives in time.
+  pure subroutine carried(state, twists, f, twist, highest, series)
     type(state_type), intent(in) :: state           !< with the poses of the frames
     type(frame_twists_type), intent(in) :: twists   !< of the frames
     integer, intent(in) :: f                        !< the frame
     real(wp), intent(in) :: twist(6)                !< in the frame [rad, m]
-    real(wp) :: series(6, 0:2)
+    integer, intent(in) :: highest                  !< order of the highest derivative
+    real(wp), intent(out) :: series(6, 0:2)         !< up to this derivative, then zero
 
     series(1:3, 0) = turn(state%r(:, :, f), twist(1:3))
     series(4:6, 0) = turn(state%r(:, :, f), twist(4:6)) + cross(state%p(:, f), series(1:3, 0))
-    series(:, 1) = bracket(twists%velocity(:, f), series(:, 0))
-    series(:, 2) = bracket(twists%acceleration(:, f), series(:, 0)) + bracket(twists%velocity(:, f), series(:, 1))
-  end function carried
+    series(:, 1:2) = 0.0_wp
+    if (f == 0) return
+    if (highest > 0) series(:, 1) = bracket(twists%velocity(:, f), series(:, 0))
+    if (highest > 1) series(:, 2) = bracket(twists%acceleration(:, f), series(:, 0)) + bracket(twists%velocity(:, f), series(:, 1))
+  end subroutine carried
 
   !> The shift of a point by a twist.
   pure function shift_at(twist, place) result(shift)
@@ -60,35 +63,57 @@ contains
     shift = twist(4:6) + cross(twist(1:3), place)
   end function shift_at
 
-  !> The twists of a motion whose frames have their poses, velocities and accelerations.
-  pure subroutine find_frame_twists(plan, state, third, first, last, twists)
-    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism, in space
+  !> Velocities and accelerations of some frames as twists.
+  pure subroutine find_frame_twists(state, frames, highest, twists)
     type(state_type), intent(in) :: state               !< the motion
-    type(third_derivatives_type), intent(in) :: third   !< of the pairs without a fixed axis
-    integer, intent(in) :: first                        !< frames from this one
-    integer, intent(in) :: last                         !< to this one
-    type(frame_twists_type), intent(inout) :: twists    !< gets the twists
-    real(wp) :: own(6, 2)
-    integer :: s, i, k
+    integer, intent(in) :: frames(:)                    !< the frames
+    integer, intent(in) :: highest                      !< order of the highest derivative
+    type(frame_twists_type), intent(inout) :: twists    !< gets the twists of these frames
+    integer :: i, s
 
-    do s = first, last
-      i = plan%steps(s)%parent
-      k = plan%steps(s)%coordinate
-      associate (p => state%p(:, s), v => state%v(:, s), omega => state%omega(:, s), alpha => state%alpha(:, s), &
-                 axis => twists%step, frame => twists%velocity(:, i))
-        twists%velocity(:, s) = [omega, v - cross(omega, p)]
-        twists%acceleration(:, s) = [alpha, state%a(:, s) - cross(alpha, p) - cross(omega, v)]
-        axis(:, 0, s) = [state%axis_w(:, s), state%axis_v(:, s) - cross(state%axis_w(:, s), p)]
-        axis(:, 1, s) = bracket(frame, axis(:, 0, s))
-        axis(:, 2, s) = bracket(twists%acceleration(:, i), axis(:, 0, s)) + bracket(frame, axis(:, 1, s))
-        if (plan%steps(s)%is_screw) cycle
-        call own_derivatives(state, third, s, own)
-        axis(:, 2, s) = axis(:, 2, s) + 2.0_wp*state%dq(k)*bracket(frame, own(:, 1)) + state%ddq(k)*own(:, 1) &
-                     + state%dq(k)**2*own(:, 2)
-        axis(:, 1, s) = axis(:, 1, s) + state%dq(k)*own(:, 1)
+    if (highest == 0) return
+    do i = 1, size(frames)
+      s = frames(i)
+      associate (p => state%p(:, s), v => state%v(:, s), omega => state%omega(:, s), alpha => state%alpha(:, s))
+        twists%velocity(1:3, s) = omega
+        twists%velocity(4:6, s) = v - cross(omega, p)
+        if (highest == 1) cycle
+        twists%acceleration(1:3, s) = alpha
+        twists%acceleration(4:6, s) = state%a(:, s) - cross(alpha, p) - cross(omega, v)
       end associate
     end do
   end subroutine find_frame_twists
+
+  !> Twists of some steps per unit rate with their derivatives in time. Those of the frames from which they lead must be known.
+  pure subroutine find_step_twists(plan, state, third, steps, highest, twists)
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism, in space
+    type(state_type), intent(in) :: state               !< the motion
+    type(third_derivatives_type), intent(in) :: third   !< of the pairs without a fixed axis
+    integer, intent(in) :: steps(:)                     !< the steps
+    integer, intent(in) :: highest                      !< order of the highest derivative
+    type(frame_twists_type), intent(inout) :: twists    !< gets the twists of these steps
+    real(wp) :: own(6, 2)
+    integer :: j, s, i, k
+
+    do j = 1, size(steps)
+      s = steps(j)
+      i = plan%steps(s)%parent
+      associate (axis => twists%step(:, :, s), frame => twists%velocity(:, i))
+        axis(1:3, 1) = state%axis_w(:, s)
+        axis(4:6, 1) = state%axis_v(:, s) - cross(state%axis_w(:, s), state%p(:, s))
+        if (highest == 0) cycle
+        if (i > 0) axis(:, 2) = bracket(frame, axis(:, 1))
+        if (i > 0 .and. highest > 1) axis(:, 3) = bracket(twists%acceleration(:, i), axis(:, 1)) + bracket(frame, axis(:, 2))
+        if (plan%steps(s)%is_screw) cycle
+        k = plan%steps(s)%coordinate
+        call own_derivatives(state, third, s, own)
+        if (i == 0) axis(:, 2:3) = 0.0_wp
+        axis(:, 3) = axis(:, 3) + 2.0_wp*state%dq(k)*bracket(frame, own(:, 1)) + state%ddq(k)*own(:, 1) &
+                     + state%dq(k)**2*own(:, 2)
+        axis(:, 2) = axis(:, 2) + state%dq(k)*own(:, 1)
+      end associate
+    end do
+  end subroutine find_step_twists
 
   !> First and second derivative in its coordinate of the twist of a step without a fixed axis, with the parent frame fixed.
   pure subroutine own_derivatives(state, third, s, own)

@@ -7,7 +7,7 @@ module mech9_coupling_constraint
   use mech9_state, only: state_type
   implicit none
   private
-  public :: coupling_constraint_type, find_curves, varied_coupling, bent_force
+  public :: coupling_constraint_type, find_curves, varied_coupling, coupling_factors, bent_force
 
   !> The constraint of one coupling.
   type, extends(constraint_type) :: coupling_constraint_type
@@ -179,30 +179,47 @@ contains
     real(wp), intent(in) :: q(:)            !< (M) variations of the coordinates
     real(wp), intent(in) :: dq(:)           !< (M) variations of the rates
     real(wp), intent(in) :: ddq(:)          !< (M) variations of the accelerations
-    real(wp) :: curve(0:curve_order), slope, bend
+    real(wp) :: factors(0:2)
     integer :: i, k
 
     change = 0.0_wp
-    curve = curve_of(plan, c, state)
     associate (coupling => plan%couplings(plan%closures(c)%coupling)%coupling)
       do i = 1, size(coupling%coordinates)
         k = coupling%coordinates(i)
-        slope = coupling%term(i, state%q(k), curve, 1)
-        bend = coupling%term(i, state%q(k), curve, 2)
+        factors = coupling_factors(plan, c, state, third, i)
         select case (order)
         case (0)
-          change = change + slope*q(k)
+          change = change + factors(0)*q(k)
         case (1)
-          change = change + slope*dq(k) + bend*state%dq(k)*q(k)
+          change = change + factors(0)*dq(k) + factors(1)*q(k)
         case default
-          change = change + slope*ddq(k) + bend*(2.0_wp*state%dq(k)*dq(k) + state%ddq(k)*q(k))
-          ! the function is subtracted
-          if (i == 1) change = change - third*state%dq(k)**2*q(k)
+          change = change + factors(0)*ddq(k) + 2.0_wp*factors(1)*dq(k) + factors(2)*q(k)
         end select
       end do
     end associate
-    change = plan%closures(c)%weight*change
   end function varied_coupling
+
+  !> The derivative of the equation by one of its coordinates, and the first two derivatives of this number in time.
+  pure function coupling_factors(plan, c, state, third, i) result(factors)
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    integer, intent(in) :: c                !< number of the closure that is the coupling
+    type(state_type), intent(in) :: state   !< coordinates, rates and accelerations
+    real(wp), intent(in) :: third           !< third derivative of the coupling's function
+    integer, intent(in) :: i                !< place of the coordinate in the coupling
+    real(wp) :: factors(0:2)
+    real(wp) :: curve(0:curve_order), bend
+    integer :: k
+
+    curve = curve_of(plan, c, state)
+    associate (coupling => plan%couplings(plan%closures(c)%coupling)%coupling)
+      k = coupling%coordinates(i)
+      bend = coupling%term(i, state%q(k), curve, 2)
+      factors = [coupling%term(i, state%q(k), curve, 1), bend*state%dq(k), bend*state%ddq(k)]
+      ! the function is subtracted
+      if (i == 1) factors(2) = factors(2) - third*state%dq(k)**2
+    end associate
+    factors = plan%closures(c)%weight*factors
+  end function coupling_factors
 
   !> Add to forces on coordinates the change of those of a coupling whose multiplier is held while coordinates vary.
   pure subroutine bent_force(plan, c, state, multiplier, q, forces)

@@ -14,6 +14,7 @@ module mech9_requested
     logical, allocatable :: links(:)         !< (N) links whose motion is requested
     integer :: derivatives = 2               !< order of the highest derivative in time that is requested
     logical :: frames = .false.              !< all frames are read in space
+    logical :: motions = .false.             !< the motion of all frames is read, up to the same order
   end type requested_type
 
 contains
@@ -33,6 +34,9 @@ contains
     allocate (requested%links(mechanism%structure%n_links), source=whole .or. output%poses)
     requested%links(mechanism%points%link) = .true.
     requested%derivatives = merge(2, output%derivatives, whole)
+    ! derivatives by parameters follow from the motion of all frames
+    requested%motions = output%sensitivities
+    requested%frames = output%sensitivities
     if (output%with_forces()) call request_all(requested)
   end function requested_by_results
 
@@ -106,6 +110,7 @@ contains
     end do
     call move_alloc(blocks, plan%blocks)
     call mark_links(plan, requested%links .and. requested%derivatives > 0, frames)
+    if (requested%motions) frames = requested%derivatives > 0
     do b = size(plan%blocks), 1, -1
       associate (block => plan%blocks(b))
         block%last_moved = block%last_step
