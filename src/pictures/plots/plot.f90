@@ -1,22 +1,18 @@
 !> A plot of results is requested before the run, receives its rows, and is drawn at its end by gnuplot.
 module mech9_plot
-  use, intrinsic :: iso_fortran_env, only: output_unit
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, add_place, exit_file
+  use mech9_error, only: error_type
   use mech9_text, only: string_type, to_text
   use mech9_path, only: folder_of, name_of, ending_of, with_ending
-  use mech9_text_file, only: save_text
   use mech9_result_sink, only: result_sink_type
-  use mech9_gnuplot, only: run_gnuplot, gnuplot_package
+  use mech9_plot_drawing, only: draw_picture, draw_in_terminal, script_of_plot
   use mech9_terminal_size, only: find_terminal_size
   use mech9_plot_request, only: plot_request_type, read_plot_request, target_of_plot
   use mech9_plot_data, only: plot_data_type, new_plot_data
   use mech9_plot_script, only: picture_script, terminal_script
   implicit none
   private
-  public :: plot_type, plot_columns, picture_of_plot, script_of_plot
-
-  character(len=*), parameter :: script_ending = 'gp'
+  public :: plot_type, plot_columns, picture_of_plot
 
   !> A sink that keeps the rows that the plot needs, and draws when it is closed. The table of results, if there is one,
   !> must be closed before.
@@ -81,9 +77,9 @@ contains
 
     if (self%is_open .and. self%data%count > 0) then
       if (self%request%in_terminal) then
-        call draw_in_terminal(self, err)
+        call draw_letters(self, err)
       else
-        call draw_picture(self, err)
+        call draw_curves(self, err)
       end if
     end if
     self%is_open = .false.
@@ -99,49 +95,26 @@ contains
   end function words
 
   !> The plot is drawn in the terminal.
-  subroutine draw_in_terminal(self, err)
+  subroutine draw_letters(self, err)
     class(plot_type), intent(in) :: self               !< request and rows of the plot
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: columns, rows
-    logical :: found
 
     call find_terminal_size(columns, rows)
-    ! gnuplot writes to the same standard output, so that earlier output must come before
-    flush (output_unit)
-    call run_gnuplot(terminal_script(self%request%curves, self%data, columns, rows), found, err)
-    if (.not. allocated(err) .and. .not. found) &
-      call raise(err, exit_file, 'the terminal plot is drawn by gnuplot, which is not here; install '//gnuplot_package)
-    call add_place(err, 'no plot in the terminal')
-  end subroutine draw_in_terminal
+    call draw_in_terminal(terminal_script(self%request%curves, self%data, columns, rows), err)
+  end subroutine draw_letters
 
-  !> The script of a picture is written, and gnuplot draws the picture.
-  subroutine draw_picture(self, err)
+  !> The plot is drawn as a picture. Its script reads the table where that is in the same folder.
+  subroutine draw_curves(self, err)
     class(plot_type), intent(inout) :: self            !< request and rows of the plot
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
-    character(len=:), allocatable :: script_path, script, source, folder
-    logical :: found
+    character(len=:), allocatable :: source
 
-    script_path = script_of_plot(self%picture)
-    folder = folder_of(self%picture)
     source = ''
-    if (can_be_read(self%table) .and. folder_of(self%table) == folder) source = name_of(self%table)
-    script = picture_script(self%title, self%request%curves, self%data, name_of(self%picture), name_of(script_path), &
-                            source)
-    call save_text(script_path, script, err)
-    call add_place(err, 'no plot '//self%picture//', and no whole script of it')
-    if (allocated(err)) return
-    if (folder == '') folder = '.'
-    call run_gnuplot(script, found, err, folder, self%picture)
-    call add_place(err, 'no plot '//self%picture)
-    if (allocated(err)) return
-    if (found) then
-      self%said = 'plot: '//self%picture//', drawn by '//script_path
-    else
-      self%is_lacking = .true.
-      self%said = 'plot: gnuplot is not here; install '//gnuplot_package//' and run: gnuplot '//name_of(script_path)
-      if (folder /= '.') self%said = self%said//' in '//folder
-    end if
-  end subroutine draw_picture
+    if (can_be_read(self%table) .and. folder_of(self%table) == folder_of(self%picture)) source = name_of(self%table)
+    call draw_picture(self%picture, picture_script(self%title, self%request%curves, self%data, name_of(self%picture), &
+                      name_of(script_of_plot(self%picture)), source), self%said, self%is_lacking, err)
+  end subroutine draw_curves
 
   !> Whether gnuplot can read a table with this name as it is: a file of columns with blanks between.
   pure logical function can_be_read(table)
@@ -169,14 +142,6 @@ contains
     if (i > 1) picture = picture//'-'//to_text(i)
     picture = picture//'.svg'
   end subroutine picture_of_plot
-
-  !> The file of the script that draws a picture; it stands beside the picture.
-  pure function script_of_plot(picture) result(script)
-    character(len=*), intent(in) :: picture  !< file of the picture
-    character(len=:), allocatable :: script
-
-    script = with_ending(picture, script_ending)
-  end function script_of_plot
 
   !> Rows in memory are plotted.
   subroutine plot_columns(text, title, names, units, rows, picture, said, err)

@@ -10,7 +10,7 @@ module mech9_plot_request
   use mech9_path, only: ending_of
   implicit none
   private
-  public :: plot_request_type, curve_type, read_plot_request, target_of_plot, is_picture
+  public :: plot_request_type, curve_type, read_plot_request, target_of_plot, is_picture, take_target, take_name
 
   !> One curve: the numbers of its two columns.
   type :: curve_type

@@ -2,11 +2,10 @@
 module mech9_plot_script
   use mech9_kinds, only: wp
   use mech9_text, only: string_type, to_text
-  use mech9_path, only: ending_of
   use mech9_number_format, only: number_format_type, number_width
   use mech9_printable, only: printable, column_name
   use mech9_gnuplot, only: quoted, quoted_lines, quoted_path
-  use mech9_title_lines, only: title_lines
+  use mech9_plot_style, only: plot_style, picture_terminal, picture_title, axis_format, digits_needed
   use mech9_plot_request, only: curve_type
   use mech9_plot_data, only: plot_data_type
   use mech9_plot_panels, only: panels_of, axis_label, over_time
@@ -16,16 +15,10 @@ module mech9_plot_script
 
   character, parameter :: line_end = achar(10)
   character(len=*), parameter :: data_block = '$data', data_end = 'end_of_data'
-  !> Colours that people with any kind of colour vision tell apart (Okabe and Ito), the dark ones first;
-  !> they differ in grey as well.
-  character(len=7), parameter :: colours(7) = &
-    ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#000000']
   !> Each row is marked if there are at most this many.
   integer, parameter :: few_rows = 30
   !> The least ratio of the sides of a panel with equal scales.
   real(wp), parameter :: flattest = 0.2_wp
-  !> A space without width in UTF-8.
-  character(len=*), parameter :: thin_space = char(226)//char(128)//char(139)
 
 contains
 
@@ -39,15 +32,16 @@ contains
     character(len=*), intent(in) :: table      !< file with the results, without its folder; empty: the script holds the data
     character(len=:), allocatable :: text, source
     type(string_type), allocatable :: lines(:)
-    integer :: panels(size(curves)), i
+    integer :: panels(size(curves)), i, width, height
 
     panels = panels_of(curves, data%names, data%units)
-    lines = drawn_title(title, picture, curves, panels, data)
+    call find_size(curves, panels, data, width, height)
+    lines = picture_title(title, picture, width)
     source = data_block
     text = '# gnuplot '//printable(script)//' draws '//printable(picture)//line_end// &
            'set encoding utf8'//line_end// &
-           terminal_of(picture, curves, panels, data)//line_end// &
-           'set output '//quoted_path(picture)//line_end//style()
+           picture_terminal(picture, width, height)//line_end// &
+           'set output '//quoted_path(picture)//line_end//plot_style()
     if (table == '') then
       text = text//inline_data(data)
     else
@@ -85,52 +79,6 @@ contains
              axes(own, data, '')//curve_commands(own, data, data_block, with='lines')
     end do
   end function terminal_script
-
-  !> The title in lines that fit above the plot. gnuplot copies `]]>` into an SVG, where it must not stand; a space
-  !> without width is therefore put into it.
-  pure function drawn_title(title, picture, curves, panels, data) result(lines)
-    character(len=*), intent(in) :: title      !< title of the mechanism
-    character(len=*), intent(in) :: picture    !< name of the file of the picture
-    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
-    integer, intent(in) :: panels(:)           !< number of the panel of each curve
-    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
-    type(string_type), allocatable :: lines(:)
-    integer, parameter :: letter = 10, most = 3
-    integer :: width, height, i, at
-
-    call find_size(curves, panels, data, width, height)
-    lines = title_lines(title, width/letter, most)
-    if (ending_of(picture) /= 'svg') return
-    do i = 1, size(lines)
-      do
-        at = index(lines(i)%text, ']]>')
-        if (at == 0) exit
-        lines(i)%text = lines(i)%text(:at + 1)//thin_space//lines(i)%text(at + 2:)
-      end do
-    end do
-  end function drawn_title
-
-  !> The terminal of gnuplot for the ending of a picture, with the size of the picture.
-  pure function terminal_of(picture, curves, panels, data) result(text)
-    character(len=*), intent(in) :: picture    !< name of the file of the picture
-    type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
-    integer, intent(in) :: panels(:)           !< number of the panel of each curve
-    type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
-    character(len=:), allocatable :: text
-    integer :: width, height
-
-    call find_size(curves, panels, data, width, height)
-    select case (ending_of(picture))
-    case ('png')
-      text = 'set terminal pngcairo noenhanced font ''Sans,12'' size '//to_text(width)//','//to_text(height)
-    case ('pdf')
-      text = 'set terminal pdfcairo noenhanced font ''Sans,12'' size '//to_text(width/96.0_wp, 4)//'in,'// &
-             to_text(height/96.0_wp, 4)//'in'
-    case default
-      text = 'set terminal svg noenhanced font ''sans-serif,15'' background ''#ffffff'' size '//to_text(width)//','// &
-             to_text(height)
-    end select
-  end function terminal_of
 
   !> The size of a picture, from the number of its panels or from the shape of its ranges.
   pure subroutine find_size(curves, panels, data, width, height)
@@ -178,20 +126,6 @@ contains
     sides(2) = ends(2) - ends(1)
     sides = max(sides, flattest*maxval(sides))
   end function spans
-
-  !> The commands that all pictures have in common.
-  pure function style() result(text)
-    character(len=:), allocatable :: text
-    integer :: i
-
-    text = 'set border 3 lc rgb ''#606060'''//line_end//'set tics nomirror out'//line_end// &
-           'set grid lc rgb ''#cccccc'' lw 0.8 dt 1'//line_end// &
-           'set key outside right top Left reverse samplen 1.5'//line_end
-    do i = 1, size(colours)
-      text = text//'set linetype '//to_text(i)//' lw 2 pt 7 ps 0.4 lc rgb '''//colours(i)//''''//line_end
-    end do
-    text = text//'set linetype cycle '//to_text(size(colours))//line_end
-  end function style
 
   !> The rows as a block of data within the script: names first, then numbers.
   pure function inline_data(data) result(text)
@@ -281,7 +215,7 @@ contains
     y = data%extent(curves%y)
     text = 'set xlabel '//quoted(axis_label(curves%x, data%names, data%units))//line_end// &
            'set ylabel '//quoted(label)//line_end// &
-           'set format x '//format_for(x)//line_end//'set format y '//format_for(y)//line_end
+           'set format x '//axis_format(x)//line_end//'set format y '//axis_format(y)//line_end
     if (equal_scales(curves, data)) then
       sides = spans(curves, data)
       text = text//'set size ratio -1'//line_end// &
@@ -313,14 +247,6 @@ contains
     text = '['//to_text(middle - half, 9)//':'//to_text(middle + half, 9)//']'
   end function axis_range
 
-  !> The format in which gnuplot writes the numbers of an axis.
-  pure function format_for(ends) result(text)
-    real(wp), intent(in) :: ends(2)  !< least and greatest value on the axis
-    character(len=:), allocatable :: text
-
-    text = quoted('%.'//to_text(digits_needed(ends))//'g')
-  end function format_for
-
   !> The number of letters that the numbers of an axis take: their digits, and more for numbers like -3.5e-13 or -0.00035.
   pure integer function letters_needed(ends)
     real(wp), intent(in) :: ends(2)  !< least and greatest value on the axis
@@ -332,17 +258,6 @@ contains
     letters_needed = digits_needed(ends)
     if ((size > 0.0_wp .and. size < smallest_short) .or. size >= largest_short) letters_needed = letters_needed + exponent
   end function letters_needed
-
-  !> The number of digits by which neighbouring marks of an axis differ, at least six.
-  pure integer function digits_needed(ends)
-    real(wp), intent(in) :: ends(2)  !< least and greatest value on the axis
-    real(wp) :: size, span
-
-    digits_needed = 6
-    size = maxval(abs(ends))
-    span = ends(2) - ends(1)
-    if (span > epsilon(span)*size) digits_needed = max(6, min(15, 2 + ceiling(log10(size/span))))
-  end function digits_needed
 
   !> The plot command.
   pure function curve_commands(curves, data, source, with) result(text)

@@ -3,7 +3,8 @@ module mech9_written_files
   use mech9_text, only: string_type
   use mech9_request, only: output_settings_type
   use mech9_replacement, only: path_of_part
-  use mech9_plot, only: picture_of_plot, script_of_plot
+  use mech9_plot, only: picture_of_plot
+  use mech9_plot_drawing, only: script_of_plot
   use mech9_structure_graph, only: text_of_graph
   use mech9_xdmf, only: xdmf_path
   use mech9_command_line, only: command_line_type
