@@ -191,7 +191,7 @@ def mistakes(cases, mech9k):
              "a second &quantity for name 'late'"),
             ("&study kind='grid' /", (), DATA, 'a study needs at least one &parameter'),
             (parameters(), (), USAGE, '--study carries out the study of a group &study, and this file has none'),
-            (parameters(given, given) + "&study kind='grid' /", ('--plot', 'q1'), USAGE, 'leave --plot out'),
+            (parameters(given, given) + "&study kind='grid' /", ('--plot', 'q1'), USAGE, "no column of the results is named 'q1'; the columns are crank rod stroke late"),
             (parameters(given, given) + "&study kind='grid' /", ('--check',), USAGE, 'leave --check out')):
         done = run(mech9k, cases.write(SLIDER_CRANK + text + '\n'), '--study', '--table', table, *options)
         check.true(done.returncode == code and message in done.stderr, f'{text} {options}: {message}', f'{done.returncode}: {done.stderr}')

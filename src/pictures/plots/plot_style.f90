@@ -1,4 +1,4 @@
-!> What all plots have in common: colours and lines, the size and the title of a picture, the numbers of axes.
+!> The style of all plots: colours and lines, the size and the title of a picture, the numbers of axes.
 module mech9_plot_style
   use mech9_kinds, only: wp
   use mech9_text, only: string_type, to_text

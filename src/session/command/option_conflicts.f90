@@ -114,7 +114,7 @@ contains
     type(error_type), allocatable, intent(out) :: err  !< allocated if there is one
     character(len=:), allocatable :: other
 
-    other = first_of([answers, [character(len=11) :: 'plot', 'sketch', 'animate', 'view', 'hdf5', 'verbose']], given)
+    other = first_of([answers, [character(len=11) :: 'sketch', 'animate', 'view', 'hdf5', 'verbose']], given)
     if (other /= '') call raise(err, exit_usage, '--study makes many runs and writes a table with a row for each; leave --'// &
                                 other//' out')
   end subroutine judge_study

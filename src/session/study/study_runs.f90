@@ -16,17 +16,20 @@ module mech9_study_runs
   use mech9_run_maker, only: made_run_type
   use mech9_study_results, only: study_results_type
   use mech9_study_sums, only: study_sums_type
+  use mech9_study_statistics, only: study_statistics_type
   implicit none
   private
   public :: study_runs_type, all_handed_out, wait_for_others
 
-  !> Answers in place of the number of a run: there are no more runs, or so many are handed out ahead that others must be taken first.
+  !> Answers in place of the number of a run: there are no more runs, or so many are handed out ahead that others must be taken
+  !> first.
   integer, parameter :: all_handed_out = 0, wait_for_others = -1
 
   type :: study_runs_type
     type(study_results_type) :: results                    !< the open files
     type(study_sums_type) :: values                        !< sums of the parameters over all runs
     type(study_sums_type) :: sums                          !< sums of the quantities over the runs that went to their end
+    type(study_statistics_type) :: statistics              !< how their quantities scatter, with a sample of them
     type(error_type), allocatable :: first_failure         !< of the first run that failed, with the number of the run
     type(error_type), allocatable :: stopped               !< allocated where rows cannot be written, or the user interrupts
     type(progress_type), private :: progress
@@ -47,12 +50,13 @@ contains
 
   !> Begin the runs of part K of N parts: K, K + N, K + 2 N and so on, so that each part has its share of long ones. The files
   !> are open.
-  subroutine begin(self, program_name, model, part, ahead, quiet)
+  subroutine begin(self, program_name, model, part, ahead, with_sample, quiet)
     class(study_runs_type), intent(inout) :: self     !< the runs; its results are open
     character(len=*), intent(in) :: program_name      !< mech9k or mech9d
     type(model_type), intent(in) :: model             !< the model with the values of the data file
     integer, intent(in) :: part(2)                    !< K and N
     integer, intent(in) :: ahead                      !< most runs that are handed out before the first of them is written
+    logical, intent(in) :: with_sample                !< a sample of the runs is kept for plots
     logical, intent(in) :: quiet                      !< no progress is shown
 
     call self%values%begin(size(model%parameters))
@@ -60,6 +64,7 @@ contains
     self%first = part(1)
     self%step = part(2)
     if (part(1) <= model%request%study%runs) self%total = 1 + (model%request%study%runs - part(1))/part(2)
+    call self%statistics%begin(model, self%total, with_sample)
     allocate (self%made(0:ahead - 1))
     call self%progress%start(program_name, quiet)
   end subroutine begin
@@ -119,6 +124,7 @@ contains
     call self%values%add(run%values)
     if (run%exit_code == exit_done) then
       call self%sums%add(run%quantities)
+      call self%statistics%add(run%values, run%quantities)
       return
     end if
     call self%sums%add_failure(run%number, run%exit_code)

@@ -5,6 +5,7 @@ module mech9_study_task
   use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_interrupted
   use mech9_text, only: to_text
   use mech9_clock, only: seconds
+  use mech9_system, only: asked_to_end
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
@@ -13,6 +14,7 @@ module mech9_study_task
   use mech9_quantity_record, only: quantity_record_type
   use mech9_design_run, only: find_quantities
   use mech9_study_runs, only: study_runs_type
+  use mech9_study_plots, only: study_plots_type
   use mech9_user_calls, only: calls_user_procedures
   use mech9_study_threads, only: make_in_threads, threads_of_machine, has_threads
   use mech9_study_words, only: print_study, save_study_report
@@ -38,6 +40,7 @@ contains
     type(result_paths_type) :: paths
     type(quantity_record_type) :: quantities
     type(study_runs_type) :: runs
+    type(study_plots_type) :: plots
     type(error_type), allocatable :: err
 
     reported = .false.
@@ -47,14 +50,19 @@ contains
       return
     end if
     call find_result_paths(options, model%request%output, paths)
-    if (paths%table == '' .and. .not. options%has('no-write')) paths%table = standard_output_path
+    if (paths%table == '' .and. .not. (options%has('no-write') .or. options%has('plot'))) paths%table = standard_output_path
+    call plots%open(options, model, quantities, paths%table, err)
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+      return
+    end if
     if (.not. options%has('quiet')) call print_notes(options, model)
     call runs%results%open(program_name, model, quantities, paths, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
       return
     end if
-    call carry_out(program_name, options, varied, model, quantities, runs, diagnostics, reported)
+    call carry_out(program_name, options, varied, model, quantities, runs, plots, diagnostics, reported)
   end subroutine work_on_study
 
   !> Report a study that cannot be carried out, and find the columns of its quantities.
@@ -112,13 +120,14 @@ contains
   end subroutine print_notes
 
   !> Make the runs, close the files, and tell how the study went. Where every run failed, the first failure is that of the study.
-  subroutine carry_out(program_name, options, varied, model, quantities, runs, diagnostics, reported)
+  subroutine carry_out(program_name, options, varied, model, quantities, runs, plots, diagnostics, reported)
     character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     type(command_line_type), intent(in) :: options          !< the command line
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(quantity_record_type), intent(in) :: quantities    !< with their columns
     type(study_runs_type), intent(inout) :: runs            !< of the study; its files are open, and closed on return
+    type(study_plots_type), intent(inout) :: plots          !< the plots that are requested
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(inout) :: reported                      !< the report is written
     type(error_type), allocatable :: err
@@ -129,12 +138,12 @@ contains
     quiet = options%has('quiet')
     clock = seconds()
     threads = threads_of_study(options, model)
-    call runs%begin(program_name, model, options%part(), runs_ahead*threads, quiet)
+    call runs%begin(program_name, model, options%part(), runs_ahead*threads, options%has('plot'), quiet)
     call make_in_threads(program_name, model, varied, threads, runs)
     call runs%finish(err)
     kept = .true.
     if (allocated(err)) kept = err%code == exit_interrupted
-    if (.not. quiet) call print_study(error_unit, model, quantities, runs%sums, seconds() - clock)
+    if (.not. quiet) call print_study(error_unit, model, quantities, runs%sums, runs%statistics, seconds() - clock)
     if (.not. quiet .and. kept) call runs%results%print_paths(error_unit)
     if (allocated(err)) then
       call diagnostics%add_error(err)
@@ -143,9 +152,14 @@ contains
     else if (allocated(runs%first_failure) .and. .not. quiet) then
       call print_failure(runs%first_failure, diagnostics)
     end if
+    ! an interrupted program makes no pictures, which would take too long
+    if (.not. asked_to_end()) then
+      call plots%draw(runs%statistics, error_unit, quiet, err)
+      if (allocated(err)) call diagnostics%add_error(err)
+    end if
     if (.not. options%has('report')) return
     call save_study_report(options%argument('report'), program_name, model, quantities, runs%values, runs%sums, &
-                           runs%results%paths%table, diagnostics, err)
+                           runs%statistics, runs%results%paths%table, diagnostics, err)
     reported = .true.
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out

@@ -1,0 +1,74 @@
+!> The plots that --plot requests of a study.
+module mech9_study_plots
+  use mech9_error, only: error_type
+  use mech9_text, only: string_type
+  use mech9_command_line, only: command_line_type
+  use mech9_model, only: model_type
+  use mech9_plot, only: picture_of_plot
+  use mech9_study_plot, only: study_plot_type
+  use mech9_quantity_record, only: quantity_record_type
+  use mech9_study_statistics, only: study_statistics_type
+  implicit none
+  private
+  public :: study_plots_type
+
+  type :: study_plots_type
+    private
+    type(study_plot_type), allocatable :: plots(:)
+  contains
+    procedure :: open => open_plots
+    procedure :: draw => draw_plots
+  end type study_plots_type
+
+contains
+
+  !> Read the requests before the runs. A wrong one is an error of the command line.
+  subroutine open_plots(self, options, model, quantities, table, err)
+    class(study_plots_type), intent(inout) :: self         !< the plots
+    type(command_line_type), intent(in) :: options         !< the command line
+    type(model_type), intent(in) :: model                  !< with its parameters and quantities
+    type(quantity_record_type), intent(in) :: quantities   !< with their columns
+    character(len=*), intent(in) :: table                  !< file of the table; empty or '-': none
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(string_type), allocatable :: requests(:), names(:), units(:)
+    character(len=:), allocatable :: picture
+    integer :: i, n
+
+    n = size(model%parameters)
+    allocate (names(n + size(model%request%quantities)), units(n + size(model%request%quantities)))
+    do i = 1, n
+      names(i)%text = model%parameters(i)%name
+      units(i)%text = ''
+    end do
+    do i = 1, size(model%request%quantities)
+      names(n + i)%text = model%request%quantities(i)%name
+      units(n + i)%text = quantities%unit_of(i)
+    end do
+    call options%arguments('plot', requests)
+    allocate (self%plots(size(requests)))
+    do i = 1, size(requests)
+      call picture_of_plot(requests(i)%text, table, options%file, i, picture)
+      call self%plots(i)%open(requests(i)%text, model%mechanism%title, names, units, n, picture, err)
+      if (allocated(err)) return
+    end do
+  end subroutine open_plots
+
+  !> Draw all plots, and print a line about each. The first failure is told; the other plots are drawn all the same.
+  subroutine draw_plots(self, statistics, unit, quiet, err)
+    class(study_plots_type), intent(inout) :: self          !< the plots
+    type(study_statistics_type), intent(in) :: statistics   !< with a sample of the runs
+    integer, intent(in) :: unit                             !< Fortran unit to write to
+    logical, intent(in) :: quiet                            !< only a picture that could not be made is told
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(error_type), allocatable :: own
+    integer :: i
+
+    do i = 1, size(self%plots)
+      associate (plot => self%plots(i), rows => statistics%sample%rows(:, :statistics%sample%kept))
+        call plot%draw(rows, own)
+        if (.not. allocated(err)) call move_alloc(own, err)
+        if (plot%said /= '' .and. (plot%is_lacking .or. .not. quiet)) write (unit, '(a)') plot%said
+      end associate
+    end do
+  end subroutine draw_plots
+end module mech9_study_plots

@@ -1,0 +1,179 @@
+"""Summaries and plots of studies: quantiles and moments are those of the table, shares of variance those of linear propagation where
+the quantity is linear, all of them the same for parts of one; the numbers in the scripts of plots are those of the table, and gnuplot
+draws them; requests that cannot be drawn.
+
+usage: study_statistics.py MECH9K
+"""
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as xml
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import Checks, read_table, run, text_of
+
+DONE, USAGE = 0, 2
+# Two slides in a row: the place of the last link is the sum of the two, and its height is a parameter.
+SLIDES = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=1,0,0, point=0.5,0,0, moving_point=0,0,0 /
+&drive coordinate=1, kind='polynomial', coefficients=0.3, 0.1 /
+&drive coordinate=2, kind='polynomial', coefficients=0.2, 0.3 /
+&point name='B', link=3, position=0,0.7,0 /
+&time end=1, intervals=10 /
+&quantity name='place', of='B.x', take='end' /
+&quantity name='height', of='B.y', take='end' /
+&quantity name='level', of='B.z', take='end' /
+&parameter name='far', sets='pair(2).point(1)', spread=0.02 /
+&parameter name='start', sets='drive(1).coefficients(1)', spread=0.06, distribution='uniform' /
+&parameter name='speed', sets='drive(2).coefficients(2)', low=0.2, high=0.5 /
+&parameter name='high', sets='point(1).position(2)', low=0.6, high=0.8 /
+"""
+RUNS = 400
+
+
+class Cases:
+    def __init__(self, checks, folder, mech9k):
+        self.checks, self.folder, self.mech9k = checks, folder, mech9k
+
+    def write(self, text, name='case.nml'):
+        path = os.path.join(self.folder, name)
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        return path
+
+    def study(self, text, *more):
+        """Table, report and words of a study."""
+        done = run(self.mech9k, self.write(text), '--study', '--table', 'study.dat', '--report', 'study.json', *more, folder=self.folder)
+        self.checks.true(done.returncode == DONE, f'{more}: the study goes through', done.stderr)
+        return (read_table(text_of(os.path.join(self.folder, 'study.dat'))),
+                json.loads(text_of(os.path.join(self.folder, 'study.json'))), done.stderr)
+
+    def blocks(self, script):
+        """The blocks of data of a script, by name."""
+        found = {}
+        for name, lines in re.findall(r'^(\$\w+) << end_of_data\n(.*?)^end_of_data$', text_of(os.path.join(self.folder, script)), re.M | re.S):
+            found[name] = np.array([line.split() for line in lines.splitlines()], float)
+        return found
+
+
+def told_quantiles(one):
+    return np.array([level['value'] for level in one['quantiles']])
+
+
+def summaries(cases):
+    """place = far + start + 0.3 + speed + 0.2: its shares are the variances of the parameters over their sum."""
+    variances = np.array([0.02**2, 0.06**2 / 3, 0.3**2 / 12, 0])
+    for kind in ('random', 'latin', 'sobol'):
+        text = SLIDES + f"&study kind='{kind}', runs={RUNS}, seed=3 /\n"
+        rows, told, printed = cases.study(text)
+        check = cases.checks
+        place, height, level = told['quantities']
+        check.near(told_quantiles(place), np.quantile(rows['place'], [0.05, 0.5, 0.95]), 1e-14, f'{kind}: quantiles')
+        check.near([place['deviation'], place['mean_error']], np.std(rows['place'], ddof=1) * np.array([1, RUNS**-0.5]), 1e-12, f'{kind}: deviation')
+        check.equal([one['parameter'] for one in place['first_order_shares']], ['far', 'start', 'speed', 'high'], f'{kind}: parameters')
+        check.near([one['share'] for one in place['first_order_shares']], variances / sum(variances), 1e-10, f'{kind}: shares')
+        check.near(place['share_of_rest'], 0, 1e-10, f'{kind}: the rest of the variance')
+        check.near([one['share'] for one in height['first_order_shares']], [0, 0, 0, 1], 1e-10, f'{kind}: shares of one cause')
+        check.true('first_order_shares' not in level, f'{kind}: what does not vary has no shares', level)
+        for name, one in (('place', place), ('level', level)):
+            lines = re.findall(rf'^{name}: (.*)$', printed, re.M)
+            check.true(lines[2].startswith(f'quantiles 5 % {one["quantiles"][0]["value"]:.6g} m') if name == 'place' else 'shares' not in ''.join(lines),
+                       f'{kind}: {name} in words', lines)
+    ten, told, printed = cases.study(SLIDES + "&study kind='random', runs=10 /\n")
+    check.near(told_quantiles(told['quantities'][0]), np.quantile(ten['place'], [0.05, 0.5, 0.95]), 1e-14, 'ten runs: quantiles')
+    check.true('error' not in told['quantities'][0]['quantiles'][0] and 'first_order_shares' not in told['quantities'][0],
+               'ten runs: what they do not tell', told)
+    cases.write('0.5 0.3 0.3 0.7\n0.6 0.3 0.3 0.7\n', 'designs.dat')
+    _, told, printed = cases.study(SLIDES + "&study kind='list', file='designs.dat' /\n")
+    check.true('deviation' not in told['quantities'][0] and 'quantiles' not in printed, 'a list does not scatter', told)
+
+
+def plots(cases):
+    """Histograms, effects and maps of drawn values and of a grid against those of numpy."""
+    check = cases.checks
+    rows, _, printed = cases.study(SLIDES + f"&study kind='random', runs={RUNS} /\n", '--plot', 'place,speed:place,far:speed:place',
+                                   '--plot', 'one.svg:height')
+    check.true(all(os.path.exists(os.path.join(cases.folder, name)) for name in ('study.svg', 'study.gp', 'one.svg', 'one.gp'))
+               and 'plot: study.svg, drawn by study.gp' in printed, 'the pictures are there', printed)
+    words = {' '.join(''.join(element.itertext()).split()) for element in xml.parse(os.path.join(cases.folder, 'study.svg')).getroot().iter()}
+    check.true({'place [m]', 'runs', 'speed', 'far'} <= words, 'the picture names its axes', words)
+    blocks = cases.blocks('study.gp')
+    bars = blocks['$figure1']
+    edges = np.append(bars[:, 0] - bars[:, 2] / 2, bars[-1, 0] + bars[-1, 2] / 2)
+    check.near(edges[[0, -1]], [rows['place'].min(), rows['place'].max()], 1e-12, 'the histogram reaches from the least to the greatest number')
+    inner = np.searchsorted(edges[1:-1], rows['place'], side='left')
+    check.true(np.array_equal(bars[:, 1], np.bincount(inner, minlength=len(bars))) and bars[:, 1].sum() == RUNS, 'the bars count the runs', bars)
+    order = np.argsort(rows['speed'])
+    groups = np.array_split(order, 20)
+    check.near(blocks['$figure2'], [[rows['speed'][one].mean(), rows['place'][one].mean(), rows['place'][one].std(ddof=1)] for one in groups], 1e-12,
+               'means over a parameter')
+    check.near(blocks['$figure2_runs'], np.column_stack([rows['speed'], rows['place']]), 1e-15, 'the runs behind them')
+    for x0, x1, y0, y1, mean in blocks['$figure3']:
+        inside = (rows['far'] > x0 - 1e-12) & (rows['far'] <= x1) & (rows['speed'] > y0 - 1e-12) & (rows['speed'] <= y1)
+        check.near(mean, rows['place'][inside].mean(), 1e-12, 'the mean in a cell of a map')
+    grid = re.sub(r"spread=0.02", "low=0.4, high=0.6, count=3", re.sub(r"spread=0.06, distribution='uniform'", "low=0.1, high=0.3, count=2", SLIDES))
+    grid = grid.replace('high=0.5 /', 'high=0.5, count=4 /').replace('high=0.8 /', 'high=0.8, count=2 /')
+    rows, _, _ = cases.study(grid + "&study kind='grid' /\n", '--plot', 'grid.svg:far:speed:place,far:place,start')
+    blocks = cases.blocks('grid.gp')
+    check.equal(len(blocks['$figure1']), 12, 'a grid has a cell for each pair of values')
+    for x0, x1, y0, y1, mean in blocks['$figure1']:
+        inside = np.isclose(rows['far'], (x0 + x1) / 2) & np.isclose(rows['speed'], (y0 + y1) / 2)
+        check.true(inside.sum() == 4, 'a cell holds the runs of its values', inside.sum())
+        check.near(mean, rows['place'][inside].mean(), 1e-12, 'the mean of a cell of a grid')
+    check.near(blocks['$figure2'][:, 0], [0.4, 0.5, 0.6], 1e-12, 'the values of a grid stand one by one')
+    check.equal(list(blocks['$figure3'][:, 1]), [24, 24], 'a bar for each value of a grid')
+    for script in ('study.gp', 'one.gp', 'grid.gp'):
+        done = subprocess.run(['gnuplot', script], cwd=cases.folder, text=True, capture_output=True, timeout=60)
+        check.true(done.returncode == 0 and done.stderr == '', f'{script}: gnuplot has nothing to say', done.stderr)
+
+
+def letters(cases):
+    """In the terminal, where no table is written; nothing is drawn where all runs fail."""
+    check = cases.checks
+    path = cases.write(SLIDES + "&study kind='random', runs=40 /\n")
+    done = run(cases.mech9k, path, '--study', '--plot', 'term:place,far:place', '--quiet', folder=cases.folder)
+    check.true(done.returncode == DONE and 'place [m]' in done.stdout and '# ' not in done.stdout and 'runs' in done.stdout, 'plots in letters', done.stdout)
+    done = run(cases.mech9k, path, '--study', '--plot', 'term', folder=cases.folder)
+    check.true(done.returncode == DONE and 'height [m]' in done.stdout, 'without names all quantities are drawn', done.stdout)
+
+
+def refusals(cases):
+    check = cases.checks
+    path = cases.write(SLIDES + "&study kind='random', runs=4 /\n")
+    kept = cases.write('kept', 'kept.dat')
+    for request, message in (('plase', "no column of the results is named 'plase'; did you mean 'place'?"),
+                             ('run', "no column of the results is named 'run'"),
+                             ('far:speed:start:place', "here are more: ':place'"),
+                             ('far,', 'a name of a column is missing'),
+                             ('far speed', "a comma is missing before 'speed'"),
+                             ('term:far:speed:place', 'a terminal cannot show a map'),
+                             (','.join(['far'] * 13), 'at most 12 plots')):
+        done = run(cases.mech9k, path, '--study', '--table', kept, '--plot', request, folder=cases.folder)
+        check.true(done.returncode == USAGE and message in done.stderr, f'{request}: {message}', f'{done.returncode}: {done.stderr}')
+        check.true(text_of(kept) == 'kept', f'{request}: nothing is written over')
+    without = re.sub(r'&quantity.*\n', '', SLIDES) + "&study kind='random', runs=4 /\n"
+    done = run(cases.mech9k, cases.write(without), '--study', '--plot', 'term', folder=cases.folder)
+    check.true(done.returncode == USAGE and 'this study has no quantities' in done.stderr, 'nothing to draw', done.stderr)
+    done = run(cases.mech9k, path, '--study', '--plot', 'case.svg:far', '--table', 'case.svg', folder=cases.folder)
+    check.true(done.returncode == USAGE and "cannot both be 'case.svg'" in done.stderr, 'a picture over the table', done.stderr)
+
+
+def main():
+    checks = Checks()
+    with tempfile.TemporaryDirectory() as folder:
+        cases = Cases(checks, folder, os.path.abspath(sys.argv[1]))
+        summaries(cases)
+        if checks.has('gnuplot', 'gnuplot-nox'):
+            plots(cases)
+            letters(cases)
+        refusals(cases)
+    checks.finish()
+
+
+main()
