@@ -4,9 +4,10 @@
 !> at the failure. Names are paths; missing groups of a path are made.
 module mech9_hdf5_file
   use, intrinsic :: iso_c_binding, only: c_ptr, c_loc, c_null_char, c_char
-  use hdf5, only: hid_t, hsize_t, h5open_f, h5dont_atexit_f, h5eset_auto_f, h5get_libversion_f, &
+  use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5dont_atexit_f, h5eset_auto_f, h5get_libversion_f, &
                   h5fcreate_f, h5fflush_f, h5fclose_f, h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_local_f, &
-                  h5pcreate_f, h5pclose_f, h5pset_fclose_degree_f, h5pset_meta_block_size_f, h5pset_create_inter_group_f, &
+                  h5pcreate_f, h5pclose_f, h5pset_fclose_degree_f, h5pset_meta_block_size_f, h5pset_sieve_buf_size_f, &
+                  h5pset_create_inter_group_f, &
                   h5p_file_access_f, h5p_link_create_f, &
                   h5screate_f, h5screate_simple_f, h5sclose_f, h5s_scalar_f, &
                   h5tcopy_f, h5tset_cset_f, h5tclose_f, h5t_string, h5t_cset_utf8_f, &
@@ -43,6 +44,7 @@ module mech9_hdf5_file
     procedure :: is_open
     procedure :: link_properties
     procedure :: check
+    procedure :: fail
     !> A data set with its values: put(name, values, long_name [, unit]). One that exists already gets the new values.
     generic :: put => put_text, put_texts, put_real, put_reals, put_matrix, put_block, put_integer, put_integers, &
       put_integer_matrix, put_long
@@ -88,6 +90,8 @@ contains
     call h5pcreate_f(h5p_file_access_f, access, status)
     call h5pset_fclose_degree_f(access, h5f_close_strong_f, status)
     call h5pset_meta_block_size_f(access, metadata_block, status)
+    ! numbers go to the file when they are written, in this order
+    call h5pset_sieve_buf_size_f(access, 0_size_t, status)
     call h5fcreate_f(self%replacement%path, h5f_acc_trunc_f, self%id, status, access_prp=access)
     if (status < 0) then
       self%id = -1
@@ -123,6 +127,14 @@ contains
     if (status >= 0 .or. allocated(self%failure)) return
     call raise(self%failure, exit_file, "cannot write to '"//self%path//"': "//last_reason())
   end subroutine check
+
+  !> Keep a failure that is not one of a call, unless there was one before.
+  subroutine fail(self, message)
+    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
+    character(len=*), intent(in) :: message       !< error in words
+
+    if (.not. allocated(self%failure)) call raise(self%failure, exit_file, "cannot use '"//self%path//"': "//message)
+  end subroutine fail
 
   !> Write everything to the file: a run that is killed later leaves at least the present state.
   subroutine flush_file(self)

@@ -1,16 +1,22 @@
-!> Quantities over time in an HDF5 file: data sets that grow by blocks of rows.
+!> Quantities over time, or over the runs of a study, in an HDF5 file: data sets that are written by blocks of rows.
 !>
-!> The data sets grow together. Rows are gathered in memory, each quantity by itself, and written to the file in
+!> Data sets over time grow. They grow together. Rows are gathered in memory, each quantity by itself, and written to the file in
 !> blocks; readers see them only after a flush has written the new lengths. A run may be killed in the middle
 !> of a flush: hence the lengths of all data sets stand side by side, in one piece of metadata that is written
 !> at once, and chunks are so large that their index seldom changes, for most runs never.
+!>
+!> Data sets over runs have all their rows from the beginning, which are NaN (-1 for whole numbers) until they are written. Then no
+!> metadata change, and rows go to the file in the order in which they are written, the last quantity last.
 module mech9_hdf5_series
-  use, intrinsic :: iso_c_binding, only: c_loc
+  use, intrinsic :: iso_c_binding, only: c_ptr, c_loc
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use hdf5, only: hid_t, hsize_t, size_t, h5pcreate_f, h5pclose_f, h5pset_chunk_f, h5pset_fill_time_f, h5pset_deflate_f, &
                   h5pset_shuffle_f, h5pset_chunk_cache_f, h5p_dataset_create_f, h5p_dataset_access_f, &
-                  h5d_fill_time_never_f, h5screate_simple_f, h5sclose_f, h5s_unlimited_f, &
+                  h5d_fill_time_never_f, h5pset_alloc_time_f, h5d_alloc_time_early_f, h5pset_fill_value_f, &
+                  h5screate_simple_f, h5sclose_f, h5s_unlimited_f, &
                   h5sselect_hyperslab_f, h5s_select_set_f, h5dcreate_anon_f, h5olink_f, h5dset_extent_f, h5dget_space_f, &
-                  h5dwrite_f, h5dclose_f, h5t_ieee_f64le, h5t_std_i32le, h5t_native_double
+                  h5dopen_f, h5dwrite_f, h5dread_f, h5dclose_f, h5sget_simple_extent_ndims_f, h5sget_simple_extent_dims_f, &
+                  h5t_ieee_f64le, h5t_std_i32le, h5t_native_double, h5t_native_integer
   use mech9_kinds, only: wp, long
   use mech9_hdf5_file, only: hdf5_file_type
   implicit none
@@ -44,13 +50,19 @@ module mech9_hdf5_series
     integer :: chunk_rows = 0
     integer :: capacity = 0          !< how many rows a buffer holds
     integer :: waiting = 0           !< how many rows wait in the buffers
-    integer(hsize_t) :: written = 0  !< how many rows are in the file
+    integer(hsize_t) :: written = 0  !< how many rows are in the file; of a fixed number of rows, those before the next one
+    logical :: fixed = .false.       !< the data sets have all their rows from the beginning
+    integer(hsize_t) :: rows = 0     !< how many these are
   contains
     procedure :: start
+    procedure :: start_fixed
     procedure :: add
     procedure :: create
+    procedure :: open => open_series
     procedure :: attach
     procedure :: append_rows
+    procedure :: write_row_at
+    procedure :: read_rows
     procedure :: hand_over
     procedure :: close => close_series
   end type hdf5_series_type
@@ -77,6 +89,19 @@ contains
     ! compressed rows are written only once, in whole chunks
     if (compression > 0) self%capacity = self%chunk_rows
   end subroutine start
+
+  !> Set the number of rows and the size of buffers, in place of `start`, for data sets with all their rows from the beginning.
+  subroutine start_fixed(self, n_quantities, n_columns, rows)
+    class(hdf5_series_type), intent(inout) :: self  !< the quantities over runs
+    integer, intent(in) :: n_quantities             !< most quantities
+    integer, intent(in) :: n_columns                !< most columns of the rows
+    integer, intent(in) :: rows                     !< number of rows
+
+    allocate (self%quantities(n_quantities))
+    self%fixed = .true.
+    self%rows = rows
+    self%capacity = min(most_buffered, rows_within(buffer_size, n_columns))
+  end subroutine start_fixed
 
   !> The number of rows that fit into a memory of the given size; at least one.
   pure integer function rows_within(bytes, n_columns) result(rows)
@@ -131,6 +156,41 @@ contains
     end do
   end subroutine create
 
+  !> Open the data sets of a file that is there, in place of `create`. It is a failure of the file where they have another form.
+  subroutine open_series(self, file)
+    class(hdf5_series_type), intent(inout) :: self  !< the quantities over runs, of a fixed number of rows
+    type(hdf5_file_type), intent(inout) :: file     !< the open file
+    integer(hid_t) :: space
+    integer(hsize_t), allocatable :: extents(:), most(:)
+    integer :: i, status, rank
+
+    do i = 1, self%count
+      if (allocated(file%failure)) return
+      associate (quantity => self%quantities(i))
+        call h5dopen_f(file%id, quantity%name, quantity%data_set, status)
+        call file%check(status)
+        if (allocated(file%failure)) return
+        call h5dget_space_f(quantity%data_set, space, status)
+        call h5sget_simple_extent_ndims_f(space, rank, status)
+        allocate (extents(rank), most(rank))
+        call h5sget_simple_extent_dims_f(space, extents, most, status)
+        call h5sclose_f(space, status)
+        if (.not. has_extents(extents, [quantity%extents, self%rows])) &
+          call file%fail("data set '"//quantity%name//"' has other dimensions than this study gives it")
+        deallocate (extents, most)
+      end associate
+    end do
+  end subroutine open_series
+
+  !> Whether extents are those that are expected.
+  pure logical function has_extents(extents, expected)
+    integer(hsize_t), intent(in) :: extents(:)   !< of a data set, in Fortran order
+    integer(hsize_t), intent(in) :: expected(:)  !< those that it should have
+
+    has_extents = size(extents) == size(expected)
+    if (has_extents) has_extents = all(extents == expected)
+  end function has_extents
+
   !> Make an empty data set without a name.
   subroutine create_data_set(self, quantity, file)
     class(hdf5_series_type), intent(in) :: self     !< the quantities over time
@@ -141,6 +201,10 @@ contains
     integer :: status, rank
 
     if (allocated(file%failure)) return
+    if (self%fixed) then
+      call create_fixed(self, quantity, file)
+      return
+    end if
     rank = size(none)
     none = [quantity%extents, 0_hsize_t]
     most = [quantity%extents, h5s_unlimited_f]
@@ -163,6 +227,30 @@ contains
     call h5pclose_f(access, status)
     call h5pclose_f(creation, status)
   end subroutine create_data_set
+
+  !> Make a data set with all its rows, without a name. Its space is taken and filled at once: nothing but numbers changes later.
+  subroutine create_fixed(self, quantity, file)
+    class(hdf5_series_type), intent(in) :: self     !< the quantities over runs
+    type(quantity_type), intent(inout) :: quantity  !< the quantity, which gets its data set
+    type(hdf5_file_type), intent(inout) :: file     !< the open file
+    integer(hid_t) :: creation, space
+    integer :: status
+
+    call h5pcreate_f(h5p_dataset_create_f, creation, status)
+    if (quantity%whole) then
+      call h5pset_fill_value_f(creation, h5t_native_integer, -1, status)
+    else
+      call h5pset_fill_value_f(creation, h5t_native_double, ieee_value(1.0_wp, ieee_quiet_nan), status)
+    end if
+    call h5pset_alloc_time_f(creation, h5d_alloc_time_early_f, status)
+    call file%check(status)
+    call h5screate_simple_f(size(quantity%extents) + 1, [quantity%extents, self%rows], space, status)
+    call h5dcreate_anon_f(file%id, merge(h5t_std_i32le, h5t_ieee_f64le, quantity%whole), space, quantity%data_set, &
+                          status, dcpl_id=creation)
+    call file%check(status)
+    call h5sclose_f(space, status)
+    call h5pclose_f(creation, status)
+  end subroutine create_fixed
 
   !> Attach the scales, which are in the file by now.
   subroutine attach(self, file)
@@ -191,6 +279,60 @@ contains
       if (self%waiting == self%capacity) call self%hand_over(file)
     end do
   end subroutine append_rows
+
+  !> Write a row at its place among a fixed number of rows. Rows that follow each other are written together.
+  subroutine write_row_at(self, file, place, row)
+    class(hdf5_series_type), intent(inout) :: self  !< the quantities over runs
+    type(hdf5_file_type), intent(inout) :: file     !< the open file
+    integer, intent(in) :: place                    !< of the row, from 1
+    real(wp), intent(in) :: row(:)                  !< (columns) its numbers
+
+    if (place /= self%written + self%waiting + 1) then
+      call self%hand_over(file)
+      self%written = place - 1
+    end if
+    call self%append_rows(file, reshape(row, [size(row), 1]))
+  end subroutine write_row_at
+
+  !> Read rows of a fixed number of rows that follow each other.
+  subroutine read_rows(self, file, first, rows)
+    class(hdf5_series_type), intent(in) :: self    !< the quantities over runs
+    type(hdf5_file_type), intent(inout) :: file    !< the open file
+    integer, intent(in) :: first                   !< place of the first row, from 1
+    real(wp), intent(inout) :: rows(:, :)          !< (columns, rows) numbers of all rows
+    integer :: i
+
+    do i = 1, self%count
+      if (allocated(file%failure)) return
+      call read_block(self%quantities(i), file, first, rows)
+    end do
+  end subroutine read_rows
+
+  !> Read the rows of one quantity.
+  subroutine read_block(quantity, file, first, rows)
+    type(quantity_type), intent(in) :: quantity    !< the quantity
+    type(hdf5_file_type), intent(inout) :: file    !< the open file
+    integer, intent(in) :: first                   !< place of the first row, from 1
+    real(wp), intent(inout) :: rows(:, :)          !< (columns, rows) gets the columns of the quantity
+    real(wp), target :: block(size(quantity%columns), size(rows, 2))
+    type(c_ptr) :: place
+    integer(hsize_t), dimension(size(quantity%extents) + 1) :: offset, extents
+    integer(hid_t) :: in_file, in_memory
+    integer :: status
+
+    offset = 0
+    offset(size(offset)) = first - 1
+    extents = [quantity%extents, size(rows, 2, kind=hsize_t)]
+    call h5dget_space_f(quantity%data_set, in_file, status)
+    call h5sselect_hyperslab_f(in_file, h5s_select_set_f, offset, extents, status)
+    call h5screate_simple_f(size(extents), extents, in_memory, status)
+    place = c_loc(block)
+    call h5dread_f(quantity%data_set, h5t_native_double, place, status, mem_space_id=in_memory, file_space_id=in_file)
+    call file%check(status)
+    call h5sclose_f(in_memory, status)
+    call h5sclose_f(in_file, status)
+    rows(quantity%columns, :) = block
+  end subroutine read_block
 
   !> Copy rows to the buffers of the quantities.
   pure subroutine take(self, rows)
@@ -236,12 +378,13 @@ contains
     integer :: status, rank
 
     if (allocated(file%failure)) return
+    status = 0
     rank = size(quantity%extents) + 1
     whole = [quantity%extents, self%written + self%waiting]
     first = 0
     first(rank) = self%written
     block = [quantity%extents, int(self%waiting, hsize_t)]
-    call h5dset_extent_f(quantity%data_set, whole, status)
+    if (.not. self%fixed) call h5dset_extent_f(quantity%data_set, whole, status)
     call file%check(status)
     call h5dget_space_f(quantity%data_set, in_file, status)
     call h5sselect_hyperslab_f(in_file, h5s_select_set_f, first, block, status)

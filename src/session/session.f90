@@ -131,7 +131,7 @@ contains
         if (options%has('study') .or. model%request%output%with_derivatives()) &
           call new_varied_document(document, diagnostics%sources, task%needs_drives, variable)
         if (.not. allocated(err) .and. options%has('study')) then
-          call work_on_study(task%program_name, options, variable, model, diagnostics, reported)
+          call work_on_study(task%program_name, options, document, variable, model, diagnostics, reported)
         else if (.not. allocated(err)) then
           call task%work(options, model, variable, diagnostics, reported, kept)
         end if

@@ -61,6 +61,10 @@ contains
       call raise(err, exit_usage, '--part K/N is a part of --study; give both')
     else if (has('threads') .and. .not. has('study')) then
       call raise(err, exit_usage, '--threads N is the number of threads of --study; give both')
+    else if (has('continue') .and. .not. has('study')) then
+      call raise(err, exit_usage, '--continue FILE.h5 makes the runs of --study that the file does not have yet; give both')
+    else if (has('continue') .and. (has('hdf5') .or. has('no-write'))) then
+      call raise(err, exit_usage, '--continue FILE.h5 writes to its own file; leave --hdf5 and --no-write out')
     else if (has('quiet') .and. has('verbose')) then
       call raise(err, exit_usage, '--quiet and --verbose contradict each other')
     else if (has('no-write') .and. (has('table') .or. has('hdf5') .or. has('plot') .or. has('linear'))) then
@@ -114,7 +118,7 @@ contains
     type(error_type), allocatable, intent(out) :: err  !< allocated if there is one
     character(len=:), allocatable :: other
 
-    other = first_of([answers, [character(len=11) :: 'sketch', 'animate', 'view', 'hdf5', 'verbose']], given)
+    other = first_of([answers, [character(len=11) :: 'sketch', 'animate', 'view', 'verbose']], given)
     if (other /= '') call raise(err, exit_usage, '--study makes many runs and writes a table with a row for each; leave --'// &
                                 other//' out')
   end subroutine judge_study

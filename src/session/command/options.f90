@@ -70,6 +70,8 @@ module mech9_options
                 'make part K of N parts of a study, for N jobs'), &
     option_type('threads', needed_argument, 'N', whole_number, .false., both, &
                 'make the runs of a study in N threads; without it one for each core'), &
+    option_type('continue', needed_argument, 'FILE.h5', any_text, .false., both, &
+                'make the runs of a study that its HDF5 file does not have yet'), &
     option_type('set', needed_argument, 'GROUP.NAME=VALUE', assignment, .true., both, &
                 'replace a value of the data file; may be repeated'), &
     option_type('dialogue', no_argument, '', any_text, .false., both, &

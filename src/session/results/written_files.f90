@@ -41,8 +41,14 @@ contains
 
     call choose(options, 'table', output%table, paths%table)
     call choose(options, 'hdf5', output%hdf5, paths%hdf5)
+    if (options%has('continue')) paths%hdf5 = options%argument('continue')
     call choose(options, 'sketch', output%sketch, paths%sketch)
     call choose(options, 'animate', output%animation, paths%animation)
+    if (options%has('study')) then
+      ! a study draws no pictures
+      paths%sketch = ''
+      paths%animation = ''
+    end if
     if (options%has('no-write')) then
       paths%table = ''
       paths%hdf5 = ''
@@ -90,7 +96,11 @@ contains
     else
       call append(files, name_of(options, 'table', 'table'), paths%table)
     end if
-    call append(files, name_of(options, 'hdf5', 'hdf5'), paths%hdf5)
+    if (options%has('continue')) then
+      call append(files, '--continue', paths%hdf5)
+    else
+      call append(files, name_of(options, 'hdf5', 'hdf5'), paths%hdf5)
+    end if
     if (paths%hdf5 /= '') call append(files, 'the beginning of the HDF5 file', path_of_part(paths%hdf5))
     if (paths%hdf5 /= '' .and. output%poses) &
       call append(files, 'the description for ParaView beside the HDF5 file', xdmf_path(paths%hdf5))

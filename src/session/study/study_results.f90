@@ -1,46 +1,73 @@
-!> The files of a study: a table with a row for each run.
+!> The files of a study: a table with a row for each run, and an HDF5 file with a place for each.
 module mech9_study_results
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_version, only: version
+  use mech9_command_line, only: command_line_type
+  use mech9_document, only: document_type
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type
   use mech9_table, only: table_type
-  use mech9_written_files, only: result_paths_type, standard_output_path
+  use mech9_written_files, only: result_paths_type, find_result_paths, standard_output_path
   use mech9_quantity_record, only: quantity_record_type
   use mech9_run_maker, only: made_run_type
+  use mech9_study_definition, only: define_study
+  use mech9_study_file, only: study_file_type, not_made
   implicit none
   private
   public :: study_results_type
 
   type :: study_results_type
     type(result_paths_type) :: paths                !< of the files; empty where there is none
+    integer :: part(2) = 1                          !< number of the part of the study that is made, and how many parts there are
     type(table_type), private :: table
+    type(study_file_type), private :: file          !< of HDF5
     real(wp), allocatable, private :: row(:)        !< of the table
   contains
     procedure :: open => open_results
+    procedure :: is_made
+    procedure :: read_run
     procedure :: write_run
+    procedure :: show_run
     procedure :: close => close_results
     procedure :: print_paths
   end type study_results_type
 
 contains
 
-  !> Open the files that are asked for. After an error none is open.
-  subroutine open_results(self, program_name, model, quantities, paths, err)
+  !> Open the files that are asked for. After an error none is open, and none has changed where the other one cannot be opened.
+  subroutine open_results(self, program_name, options, document, model, quantities, err)
     class(study_results_type), intent(out) :: self            !< the files
     character(len=*), intent(in) :: program_name              !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options            !< the command line
+    type(document_type), intent(in) :: document               !< the data file as groups and items, with the changes by --set
     type(model_type), intent(in) :: model                     !< the model with the values of the data file
     type(quantity_record_type), intent(in) :: quantities      !< with their columns
-    type(result_paths_type), intent(in) :: paths              !< of the files
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(columns_type) :: columns
+    type(error_type), allocatable :: at_close
+    character(len=:), allocatable :: definition
 
-    self%paths = paths
+    call find_result_paths(options, model%request%output, self%paths)
+    self%part = options%part()
+    if (self%paths%hdf5 /= '') then
+      call define_study(program_name, document, definition, err)
+      if (allocated(err)) return
+      if (options%has('continue')) then
+        call self%file%open(self%paths%hdf5, options, model, quantities, definition, err)
+        self%part = self%file%part
+      else
+        call self%file%create(self%paths%hdf5, program_name, options, model, quantities, definition, document%source%text, err)
+      end if
+      if (allocated(err)) return
+    end if
     columns = columns_of_study(model, quantities)
     allocate (self%row(columns%count), source=0.0_wp)
-    if (paths%table /= '') call self%table%open(paths%table, model%mechanism%title, program_name//' '//version, &
-                                                columns%names(:columns%count), columns%units(:columns%count), err)
+    if (self%paths%table /= '') &
+      call self%table%open(self%paths%table, model%mechanism%title, program_name//' '//version, columns%names(:columns%count), &
+                           columns%units(:columns%count), err)
+    if (.not. allocated(err) .and. self%paths%hdf5 /= '' .and. .not. options%has('continue')) call self%file%publish(err)
+    if (allocated(err)) call self%close(at_close)
   end subroutine open_results
 
   !> The columns of the table of a study.
@@ -61,8 +88,36 @@ contains
     call columns%append('exit_code', '')
   end function columns_of_study
 
-  !> Write a run. Runs come in the order of their numbers.
-  subroutine write_run(self, run, err)
+  !> Whether a run was made before, and is in the file that is continued.
+  logical function is_made(self, place)
+    class(study_results_type), intent(inout) :: self       !< the files
+    integer, intent(in) :: place                           !< of the run in the part, from 1
+
+    is_made = .false.
+    if (self%file%is_open()) is_made = self%file%code_of(place) /= not_made
+  end function is_made
+
+  !> Read a run that was made before.
+  subroutine read_run(self, place, run)
+    class(study_results_type), intent(inout) :: self       !< the files
+    integer, intent(in) :: place                           !< of the run in the part, from 1
+    type(made_run_type), intent(inout) :: run              !< gets its numbers; its arrays are allocated
+
+    call self%file%read_run(place, run)
+  end subroutine read_run
+
+  !> Keep a run that is made now, in the HDF5 file.
+  subroutine write_run(self, place, run, err)
+    class(study_results_type), intent(inout) :: self       !< the files
+    integer, intent(in) :: place                           !< of the run in the part, from 1
+    type(made_run_type), intent(in) :: run                 !< the run
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    if (self%file%is_open()) call self%file%write_run(place, run, err)
+  end subroutine write_run
+
+  !> Write the row of a run in the table. Runs come in the order of their numbers.
+  subroutine show_run(self, run, err)
     class(study_results_type), intent(inout) :: self       !< the files
     type(made_run_type), intent(in) :: run                 !< the run
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
@@ -75,14 +130,17 @@ contains
     self%row(n + 1:n + size(run%quantities)) = run%quantities
     self%row(size(self%row)) = run%exit_code
     call self%table%write_row(self%row, err)
-  end subroutine write_run
+  end subroutine show_run
 
   !> Close the files.
   subroutine close_results(self, err)
     class(study_results_type), intent(inout) :: self     !< the files
     type(error_type), allocatable, intent(out) :: err    !< allocated if rows could not be written
+    type(error_type), allocatable :: of_table
 
-    if (self%paths%table /= '') call self%table%close(err)
+    call self%file%close(err)
+    call self%table%close(of_table)
+    if (.not. allocated(err)) call move_alloc(of_table, err)
   end subroutine close_results
 
   !> Print where the results are.
@@ -91,5 +149,6 @@ contains
     integer, intent(in) :: unit                     !< Fortran unit to write to
 
     if (self%paths%table /= '' .and. self%paths%table /= standard_output_path) write (unit, '(2a)') 'table: ', self%paths%table
+    if (self%paths%hdf5 /= '') write (unit, '(2a)') 'HDF5 file: ', self%paths%hdf5
   end subroutine print_paths
 end module mech9_study_results

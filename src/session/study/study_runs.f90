@@ -39,6 +39,7 @@ module mech9_study_runs
     integer, private :: handed_out = 0                     !< runs of the part that were handed out, the first ones
     integer, private :: written = 0                        !< runs of the part that are written, the first ones
     type(made_run_type), allocatable, private :: made(:)   !< runs that wait for their turn, each at its place in a ring
+    logical, allocatable, private :: before(:)             !< such a run was made before, and is still to be read from the file
   contains
     procedure :: begin
     procedure :: hand_out
@@ -48,64 +49,81 @@ module mech9_study_runs
 
 contains
 
-  !> Begin the runs of part K of N parts: K, K + N, K + 2 N and so on, so that each part has its share of long ones. The files
-  !> are open.
-  subroutine begin(self, program_name, model, part, ahead, with_sample, quiet)
-    class(study_runs_type), intent(inout) :: self     !< the runs; its results are open
+  !> Begin the runs of part K of N parts: K, K + N, K + 2 N and so on, so that each part has its share of long ones.
+  subroutine begin(self, program_name, model, ahead, with_sample, quiet)
+    class(study_runs_type), intent(inout) :: self     !< the runs; its results are open, and know the part
     character(len=*), intent(in) :: program_name      !< mech9k or mech9d
     type(model_type), intent(in) :: model             !< the model with the values of the data file
-    integer, intent(in) :: part(2)                    !< K and N
     integer, intent(in) :: ahead                      !< most runs that are handed out before the first of them is written
     logical, intent(in) :: with_sample                !< a sample of the runs is kept for plots
     logical, intent(in) :: quiet                      !< no progress is shown
+    integer :: i
 
     call self%values%begin(size(model%parameters))
     call self%sums%begin(size(model%request%quantities))
-    self%first = part(1)
-    self%step = part(2)
-    if (part(1) <= model%request%study%runs) self%total = 1 + (model%request%study%runs - part(1))/part(2)
+    self%first = self%results%part(1)
+    self%step = self%results%part(2)
+    if (self%first <= model%request%study%runs) self%total = 1 + (model%request%study%runs - self%first)/self%step
     call self%statistics%begin(model, self%total, with_sample)
     allocate (self%made(0:ahead - 1))
+    do i = 0, ahead - 1
+      allocate (self%made(i)%values(size(model%parameters)), self%made(i)%quantities(size(model%request%quantities)))
+    end do
+    allocate (self%before(0:ahead - 1), source=.false.)
     call self%progress%start(program_name, quiet)
   end subroutine begin
 
-  !> The number of a run to be made next; or all_handed_out, or wait_for_others: ask again when another run was taken.
+  !> The number of a run to be made next; or all_handed_out, or wait_for_others: ask again when another run was taken. Runs that
+  !> were made before are not handed out.
   integer function hand_out(self) result(number)
     class(study_runs_type), intent(inout) :: self   !< the runs
 
-    if (interrupted()) call stop_here(self)
-    if (allocated(self%stopped) .or. self%handed_out == self%total) then
+    do
+      call write_ready(self)
+      if (interrupted()) call stop_here(self)
       number = all_handed_out
-    else if (self%handed_out == self%written + size(self%made)) then
+      if (allocated(self%stopped) .or. self%handed_out == self%total) return
       number = wait_for_others
-    else
-      number = self%first + self%handed_out*self%step
+      if (self%handed_out == self%written + size(self%made)) return
       self%handed_out = self%handed_out + 1
-    end if
+      number = self%first + (self%handed_out - 1)*self%step
+      associate (before => self%before(modulo(self%handed_out, size(self%made))))
+        before = self%results%is_made(self%handed_out)
+        if (.not. before) return
+      end associate
+    end do
   end function hand_out
 
-  !> Take a run that is made, and write all runs whose turn has come.
+  !> Take a run that is made.
   subroutine take(self, run)
     class(study_runs_type), intent(inout) :: self   !< the runs
     type(made_run_type), intent(in) :: run          !< the run
+    integer :: place
 
+    if (run%exit_code == exit_interrupted) call stop_here(self)
     if (allocated(self%stopped)) return
-    if (run%exit_code == exit_interrupted) then
-      call stop_here(self)
-      return
-    end if
-    self%made(modulo((run%number - self%first)/self%step, size(self%made))) = run
-    do
-      associate (next => self%made(modulo(self%written, size(self%made))))
-        if (next%number /= self%first + self%written*self%step) exit
-        call add_up(self, next)
-        call self%results%write_run(next, self%stopped)
-      end associate
-      self%written = self%written + 1
-      if (allocated(self%stopped) .or. self%written == self%total) exit
-    end do
-    call self%progress%update(real(self%written, wp)/self%total)
+    place = 1 + (run%number - self%first)/self%step
+    self%made(modulo(place, size(self%made))) = run
+    call self%results%write_run(place, run, self%stopped)
+    call write_ready(self)
   end subroutine take
+
+  !> Show and add up the runs whose turn has come.
+  subroutine write_ready(self)
+    class(study_runs_type), intent(inout) :: self   !< the runs
+    integer :: i
+
+    do while (self%written < self%handed_out .and. .not. allocated(self%stopped))
+      i = modulo(self%written + 1, size(self%made))
+      if (self%before(i)) call self%results%read_run(self%written + 1, self%made(i))
+      if (self%made(i)%number /= self%first + self%written*self%step) exit
+      call add_up(self, self%made(i))
+      call self%results%show_run(self%made(i), self%stopped)
+      self%before(i) = .false.
+      self%written = self%written + 1
+      call self%progress%update(real(self%written, wp)/self%total)
+    end do
+  end subroutine write_ready
 
   !> Stop at the user's request.
   subroutine stop_here(self)
@@ -129,8 +147,12 @@ contains
     end if
     call self%sums%add_failure(run%number, run%exit_code)
     if (allocated(self%first_failure)) return
-    self%first_failure = run%failure
-    call explain(self%first_failure)
+    if (allocated(run%failure)) then
+      self%first_failure = run%failure
+      call explain(self%first_failure)
+    else
+      call raise(self%first_failure, run%exit_code, 'failed when the file was begun; a single run with its values tells why')
+    end if
     call add_place(self%first_failure, 'run '//to_text(run%number))
   end subroutine add_up
 
@@ -140,6 +162,7 @@ contains
     type(error_type), allocatable, intent(out) :: err    !< allocated if the study was stopped, or the files cannot be written
     type(error_type), allocatable :: at_close
 
+    call write_ready(self)
     call self%progress%finish()
     call self%results%close(at_close)
     if (.not. allocated(self%stopped)) call move_alloc(at_close, self%stopped)

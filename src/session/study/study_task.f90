@@ -8,9 +8,10 @@ module mech9_study_task
   use mech9_system, only: asked_to_end
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
+  use mech9_document, only: document_type
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
-  use mech9_written_files, only: result_paths_type, find_result_paths, standard_output_path
+  use mech9_written_files, only: result_paths_type, find_result_paths
   use mech9_quantity_record, only: quantity_record_type
   use mech9_design_run, only: find_quantities
   use mech9_study_runs, only: study_runs_type
@@ -30,9 +31,10 @@ module mech9_study_task
 contains
 
   !> Carry out the study that a data file describes.
-  subroutine work_on_study(program_name, options, varied, model, diagnostics, reported)
+  subroutine work_on_study(program_name, options, document, varied, model, diagnostics, reported)
     character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     type(command_line_type), intent(in) :: options          !< the command line
+    type(document_type), intent(in) :: document             !< the data file as groups and items, with the changes by --set
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
@@ -50,14 +52,13 @@ contains
       return
     end if
     call find_result_paths(options, model%request%output, paths)
-    if (paths%table == '' .and. .not. (options%has('no-write') .or. options%has('plot'))) paths%table = standard_output_path
     call plots%open(options, model, quantities, paths%table, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
       return
     end if
     if (.not. options%has('quiet')) call print_notes(options, model)
-    call runs%results%open(program_name, model, quantities, paths, err)
+    call runs%results%open(program_name, options, document, model, quantities, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
       return
@@ -107,8 +108,8 @@ contains
     integer :: part(2), cores
 
     part = options%part()
-    if (model%request%output%hdf5 /= '') &
-      write (error_unit, '(a)') 'note: a study writes no HDF5 file; its results are in the table'
+    if (model%request%output%compression > 0) &
+      write (error_unit, '(a)') 'note: the HDF5 file of a study is not compressed'
     if (part(1) > model%request%study%runs) &
       write (error_unit, '(a)') 'note: this part has no runs: the study has '//to_text(model%request%study%runs)
     if (options%number('threads', 1) > 1 .and. .not. has_threads()) &
@@ -138,7 +139,7 @@ contains
     quiet = options%has('quiet')
     clock = seconds()
     threads = threads_of_study(options, model)
-    call runs%begin(program_name, model, options%part(), runs_ahead*threads, options%has('plot'), quiet)
+    call runs%begin(program_name, model, runs_ahead*threads, options%has('plot'), quiet)
     call make_in_threads(program_name, model, varied, threads, runs)
     call runs%finish(err)
     kept = .true.

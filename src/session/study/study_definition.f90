@@ -1,0 +1,164 @@
+!> A text that determines the numbers of a study, by which two studies are compared.
+module mech9_study_definition
+  use mech9_kinds, only: wp, long
+  use mech9_text, only: string_type, to_text
+  use mech9_error, only: error_type
+  use mech9_file_bytes, only: read_bytes
+  use mech9_document, only: document_type, group_type, value_type, value_integer, value_real, value_logical, &
+                            value_text, value_word
+  use mech9_drive_reader, only: files_of_groups
+  implicit none
+  private
+  public :: define_study, tell_difference, digest_of
+
+  character, parameter :: line_end = achar(10)
+  !> Names of &output that tell where and how results are kept, and change none of them.
+  character(len=*), parameter :: places(*) = [character(len=12) :: 'table', 'hdf5', 'sketch', 'animation', 'view', 'compression', &
+                                              'poses', 'force_arrows']
+  !> The polynomial of the cyclic redundancy check of 64 bits (ECMA-182), its bits in reverse order, in two halves.
+  integer(long), parameter :: polynomial = ior(shiftl(int(z'C96C5795', long), 32), int(z'D7870F42', long))
+
+contains
+
+  !> The program, the groups of the data file with the changes by --set, and a digest of each file that the groups name: one line
+  !> for each. Blanks, comments and the files of the results do not matter. Fails with exit_file where a file cannot be read.
+  subroutine define_study(program_name, document, text, err)
+    character(len=*), intent(in) :: program_name             !< mech9k or mech9d
+    type(document_type), intent(in) :: document              !< the data file as groups and items, with the changes by --set
+    character(len=:), allocatable, intent(out) :: text       !< the definition
+    type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
+    type(string_type), allocatable :: files(:)
+    character(len=:), allocatable :: bytes, line
+    integer :: i
+
+    text = 'program '//program_name//line_end
+    do i = 1, size(document%groups)
+      call write_group(document%groups(i), line)
+      text = text//line
+    end do
+    call files_of_groups(document, files)
+    do i = 1, size(files)
+      call read_bytes(files(i)%text, bytes, err)
+      if (allocated(err)) return
+      text = text//'file '//to_text(i)//' '//digest_of(bytes)//line_end
+    end do
+  end subroutine define_study
+
+  !> A group as a line; empty where nothing in it changes numbers.
+  subroutine write_group(group, line)
+    type(group_type), intent(in) :: group                    !< the group
+    character(len=:), allocatable, intent(out) :: line       !< the line with its end
+    integer :: i, j
+
+    line = ''
+    if (allocated(group%items)) then
+      do i = 1, size(group%items)
+        associate (item => group%items(i))
+          if (group%name == 'output' .and. any(places == item%name)) cycle
+          line = line//' '//item%name
+          do j = 1, size(item%subscripts)
+            line = line//'('//to_text(item%subscripts(j)%first)//':'//to_text(item%subscripts(j)%last)//')'
+          end do
+          line = line//'='
+          do j = 1, size(item%values)
+            call append_value(item%values(j), line)
+          end do
+        end associate
+      end do
+    end if
+    if (line /= '' .or. group%name /= 'output') line = '&'//group%name//line//line_end
+  end subroutine write_group
+
+  !> Append a value to a line.
+  subroutine append_value(value, line)
+    type(value_type), intent(in) :: value                        !< the value
+    character(len=:), allocatable, intent(inout) :: line         !< gets it, with a comma
+
+    if (value%times > 1) line = line//to_text(value%times)//'*'
+    select case (value%kind)
+    case (value_integer)
+      line = line//to_text(value%whole)
+    case (value_real)
+      line = line//exact(value%number)
+    case (value_logical)
+      line = line//merge('T', 'F', value%truth)
+    case (value_text)
+      line = line//''''//value%text//''''
+    case (value_word)
+      line = line//value%text
+    end select
+    line = line//','
+  end subroutine append_value
+
+  !> A number with as few digits as give it back.
+  function exact(number) result(text)
+    real(wp), intent(in) :: number   !< the number
+    character(len=:), allocatable :: text
+    real(wp) :: again
+    integer :: digits
+
+    do digits = 15, 17
+      text = to_text(number, digits)
+      read (text, *) again
+      if (.not. abs(again - number) > 0.0_wp) return
+    end do
+  end function exact
+
+  !> Tell where two definitions differ: the first line of each that the other one does not have at its place; empty where they are
+  !> equal.
+  subroutine tell_difference(there, here, words)
+    character(len=*), intent(in) :: there                    !< the definition of a file
+    character(len=*), intent(in) :: here                     !< the definition of this study
+    character(len=:), allocatable, intent(out) :: words      !< a sentence, or empty
+    integer :: first, i
+
+    words = ''
+    if (len(there) == len(here) .and. there == here) return
+    first = 1
+    do i = 1, min(len(there), len(here))
+      if (there(i:i) /= here(i:i)) exit
+      if (there(i:i) == line_end) first = i + 1
+    end do
+    words = 'there '//line_from(there, first)//', here '//line_from(here, first)
+  end subroutine tell_difference
+
+  !> The line of a text that begins at a place, shortened, in quotes.
+  function line_from(text, first) result(line)
+    character(len=*), intent(in) :: text                     !< of several lines
+    integer, intent(in) :: first                             !< place of the first letter of the line
+    character(len=:), allocatable :: line
+    integer, parameter :: longest = 100
+    integer :: last
+
+    line = 'nothing'
+    if (first > len(text)) return
+    last = first + index(text(first:)//line_end, line_end) - 2
+    line = "'"//text(first:last)//"'"
+    if (last - first + 1 > longest) line = "'"//text(first:first + longest - 1)//" ...'"
+  end function line_from
+
+  !> A digest of a text, of 16 hexadecimal digits.
+  pure function digest_of(text) result(digest)
+    character(len=*), intent(in) :: text   !< any bytes
+    character(len=16) :: digest
+    integer(long) :: table(0:255), check
+    integer :: i, j
+
+    do i = 0, 255
+      check = i
+      do j = 1, 8
+        if (btest(check, 0)) then
+          check = ieor(shiftr(check, 1), polynomial)
+        else
+          check = shiftr(check, 1)
+        end if
+      end do
+      table(i) = check
+    end do
+    check = not(0_long)
+    do i = 1, len(text)
+      check = ieor(shiftr(check, 8), table(int(iand(ieor(check, int(ichar(text(i:i)), long)), 255_long))))
+    end do
+    write (digest, '(z16.16)') not(check)
+  end function digest_of
+end module mech9_study_definition

@@ -1,0 +1,286 @@
+"""The HDF5 file of a study: its data sets and dimensions; a study that is killed, interrupted or made in parts is continued with the
+same bits; files of other studies, and files that are no files of studies, are refused and stay as they are.
+
+usage: study_files.py MECH9K MECH9D
+"""
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+import numpy as np
+
+from mech9_cases import Checks, read_table, run, skip, text_of
+
+try:
+    import h5py
+except ImportError:
+    skip('h5py is not installed (Debian: python3-h5py): nothing is tested')
+
+DONE, USAGE, FILE, INTERRUPTED = 0, 2, 8, 130
+RUNS = 400
+# some cranks are longer than their rods: these runs fail
+SLIDER_CRANK = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1.1,0,0, moving_point=0,0,0 /
+&pair coordinate=4, links=1,4, kind='prismatic', axis=1,0,0, zero=0,1,0, moving_point=0,0,0 /
+&initial coordinate=4, position=1.2 /
+&drive coordinate=1, kind='polynomial', coefficients=0.4, 10 /
+&point name='B', link=4 /
+&time end=0.7, intervals=40 /
+&quantity name='stroke', of='B.x', take='range' /
+&quantity name='way', of='B.x', take='integral' /
+&parameter name='crank', sets='pair(2).point(1)', low=0.2, high=0.8 /
+&parameter name='rod', sets='pair(3).point(1)', low=0.7, high=1.1 /
+"""
+PENDULUM = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&initial coordinate=1, position=0.4 /
+&body link=2, mass=1, centre=0,-0.5,0, inertia=0,0,0.1,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&time end=1, intervals=20 /
+&parameter name='mass', sets='body.mass' , spread=0.1 /
+&quantity name='swing', of='q1', take='range' /
+&study kind='sobol', runs=20 /
+"""
+
+
+def random_study(runs=RUNS):
+    return SLIDER_CRANK + f"&study kind='random', runs={runs}, seed=3 /\n"
+
+
+class Cases:
+    def __init__(self, checks, folder):
+        self.checks, self.folder = checks, folder
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, text, name='case.nml'):
+        with open(self.path(name), 'w', encoding='utf-8') as file:
+            file.write(text)
+        return self.path(name)
+
+    def study(self, program, text, *more, why, code=DONE):
+        done = run(program, self.write(text), '--study', *more)
+        self.checks.true(done.returncode == code, f'{why}: ends with {code}', f'{done.returncode}: {done.stderr}')
+        return done.stderr
+
+
+def numbers_of(path):
+    """All data sets over the runs, by name."""
+    numbers = {}
+    with h5py.File(path) as file:
+        runs = len(file['run'])
+
+        def take(name, item):
+            if isinstance(item, h5py.Dataset) and item.shape[:1] == (runs,) and [dim.keys() for dim in item.dims][0] == ['run'] or name == 'run':
+                numbers[name] = item[...]
+        file.visititems(take)
+    return numbers
+
+
+def same_bits(a, b):
+    return a.keys() == b.keys() and all(a[name].tobytes() == b[name].tobytes() for name in a)
+
+
+def contents(cases, program, text, names):
+    """The data sets are the columns of the table, with the run as their named dimension, and units."""
+    check = cases.checks
+    cases.study(program, text, '--hdf5', cases.path('all.h5'), '--table', cases.path('all.dat'), why='file')
+    rows = read_table(text_of(cases.path('all.dat')))
+    with h5py.File(cases.path('all.h5')) as file:
+        for name, group, unit in names:
+            item = file[group + name]
+            check.true(np.array_equal(item[...], rows[name], equal_nan=True), f'{name}: the column of the table')
+            check.true([dim.keys() for dim in item.dims] == [['run']] if name != 'run' else item.attrs['CLASS'] == b'DIMENSION_SCALE', f'{name}: over the runs')
+            check.true(item.attrs['units'] == unit and item.attrs['long_name'], f'{name}: its unit', item.attrs['units'])
+        check.equal(file['provenance/data'].asstr()[()], text, 'the data file is kept')
+        check.equal((file['study/runs'][()], file['study/part'][()], file['study/parts'][()]), (len(rows['run']), 1, 1), 'runs and parts')
+    try:
+        import xarray
+        import h5netcdf  # noqa: F401
+    except ImportError:
+        check.left_out('xarray or h5netcdf is not installed: the file is not opened by it')
+        return
+    with xarray.open_dataset(cases.path('all.h5'), engine='h5netcdf', group='quantities') as opened:
+        check.true(all(opened[name].dims == ('run',) for name, group, _ in names if group == 'quantities/'), 'xarray knows the dimension')
+
+
+def killed(cases, mech9k):
+    """Killed at random moments, several times one after the other, then continued: the bits of an undisturbed study. At each moment
+    a run is whole in the file, or not made."""
+    check = cases.checks
+    text = random_study()
+    start = time.monotonic()
+    cases.study(mech9k, text, '--hdf5', cases.path('whole.h5'), '--table', cases.path('whole.dat'), '--threads', '1', why='whole')
+    length = time.monotonic() - start
+    whole = numbers_of(cases.path('whole.h5'))
+    random.seed(7)
+    partly = 0
+    for i in range(4):
+        path = cases.path(f'killed{i}.h5')
+        words = [mech9k, cases.path('case.nml'), '--study', '--quiet', '--threads', str(1 + i % 2)]
+        for target in (['--hdf5', path], ['--continue', path]):
+            process = subprocess.Popen(words + target)
+            time.sleep(random.uniform(0.1, 0.9) * length)
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+            if not os.path.exists(path):
+                break
+            left = numbers_of(path)
+            made = left['exit_code'] >= 0
+            partly += 0 < np.sum(made) < RUNS
+            check.true(all(left[name][made].tobytes() == whole[name][made].tobytes() for name in whole), f'killed, {i}: runs are whole')
+        else:
+            printed = cases.study(mech9k, text, '--continue', path, '--table', cases.path('again.dat'), why=f'continued, {i}')
+            check.true(f'{RUNS} runs: ' in printed, f'continued, {i}: all runs are told', printed)
+            check.true(same_bits(numbers_of(path), whole), f'continued, {i}: the same bits')
+            check.equal(text_of(cases.path('again.dat')), text_of(cases.path('whole.dat')), f'continued, {i}: the same table')
+    check.true(partly > 0, 'studies were killed in the middle', partly)
+
+
+def only_what_is_missing(cases, mech9k):
+    """Runs that the file has are not made again: numbers that were changed in the file stay as they are; failed ones count as made."""
+    path = cases.path('gap.h5')
+    text = random_study(30)
+    cases.study(mech9k, text, '--hdf5', path, why='gap')
+    whole = numbers_of(path)
+    with h5py.File(path, 'r+') as file:
+        file['quantities/stroke'][3] = 7.0
+        for name in ('exit_code', 'quantities/stroke', 'quantities/way', 'parameters/crank', 'parameters/rod'):
+            file[name][10:20] = -1
+    cases.study(mech9k, text, '--continue', path, why='gap')
+    again = numbers_of(path)
+    cases.checks.true(again['quantities/stroke'][3] == 7.0, 'a run that was made is not made again')
+    again['quantities/stroke'][3] = whole['quantities/stroke'][3]
+    cases.checks.true(same_bits(again, whole), 'the others are')
+    cases.checks.true(np.any(whole['exit_code'] != DONE), 'some of the runs fail')
+
+
+def interrupted(cases, mech9k):
+    text = random_study(1000000)
+    path, table = cases.path('interrupted.h5'), cases.path('interrupted.dat')
+    process = subprocess.Popen([mech9k, cases.write(text, 'long.nml'), '--study', '--hdf5', path, '--table', table],
+                               stderr=subprocess.PIPE, text=True)
+    patience = time.monotonic() + 30.0
+    while not os.path.exists(path) and time.monotonic() < patience:
+        time.sleep(0.05)
+    time.sleep(0.7)
+    process.send_signal(signal.SIGINT)
+    _, printed = process.communicate(timeout=60)
+    cases.checks.true(process.returncode == INTERRUPTED and 'of 1000000 runs are finished' in printed, 'Ctrl-C ends a study', printed)
+    numbers = numbers_of(path)
+    rows = read_table(text_of(table))
+    n = len(rows['run'])
+    cases.checks.true(0 < n <= np.sum(numbers['exit_code'] >= 0) and np.array_equal(rows['run'], np.arange(1, n + 1)),
+                      'Ctrl-C: finished runs are in both files', n)
+    cases.checks.true(all(np.all(np.isnan(numbers[name][numbers['exit_code'] < 0])) for name in numbers if '/' in name),
+                      'Ctrl-C: runs that are not made are NaN')
+    cases.checks.true(np.array_equal(numbers['quantities/way'][:n], rows['way'], equal_nan=True), 'Ctrl-C: the same runs')
+
+
+def parts(cases, mech9k):
+    """A part has its own runs, and is continued as that part, which the file knows."""
+    text = random_study(30)
+    path = cases.path('part.h5')
+    cases.study(mech9k, text, '--hdf5', cases.path('whole.h5'), why='whole')
+    whole = numbers_of(cases.path('whole.h5'))
+    cases.study(mech9k, text, '--part', '2/4', '--hdf5', path, why='part')
+    part = numbers_of(path)
+    cases.checks.true(list(part['run']) == list(range(2, 31, 4)), 'part: its runs', part['run'])
+    cases.checks.true(all(part[name].tobytes() == whole[name][1::4].tobytes() for name in whole), 'part: the bits of the whole study')
+    for more in ((), ('--part', '2/4')):
+        cases.study(mech9k, text, '--continue', path, *more, why='part continued')
+    printed = cases.study(mech9k, text, '--continue', path, '--part', '1/4', why='another part', code=FILE)
+    cases.checks.true('it is of part 2/4, and --part 1/4 is another one' in printed, 'another part is refused', printed)
+    cases.study(mech9k, text, '--part', '31/40', '--hdf5', path, why='no runs')
+    cases.checks.true(all(len(values) == 0 for values in numbers_of(path).values()), 'a part without runs')
+    cases.study(mech9k, text, '--continue', path, why='no runs')
+
+
+def refused(cases, mech9k):
+    """Other studies, and files that are no files of studies; nothing is changed in them."""
+    check = cases.checks
+    cases.write('0.3 1\n0.2 1\n', 'designs.dat')
+    listed = SLIDER_CRANK + "&study kind='list', file='designs.dat' /\n"
+    text = random_study(30)
+    cases.study(mech9k, text, '--hdf5', cases.path('file.h5'), why='file')
+    cases.study(mech9k, listed, '--hdf5', cases.path('list.h5'), why='file')
+    cases.write('0.3 1\n0.2 1.01\n', 'designs.dat')
+    whole = open(cases.path('file.h5'), 'rb').read()
+    with open(cases.path('short.h5'), 'wb') as file:
+        file.write(whole[:3000])
+    run(mech9k, cases.write(text), '--hdf5', cases.path('run.h5'))
+    with h5py.File(cases.path('other.h5'), 'w') as file:
+        file['x'] = [1, 2]
+    with h5py.File(cases.path('shape.h5'), 'w') as file, h5py.File(cases.path('file.h5')) as good:
+        for name in good:
+            good.copy(name, file)
+        del file['quantities/way']
+        file['quantities/way'] = [1.0, 2.0]
+    for name, text, more, message in (
+            ('file.h5', text.replace('seed=3', 'seed=4'), (), "it is of another study: there '&study kind='random', runs=30, seed=3,', here '&study"),
+            ('file.h5', text.replace('runs=30', 'runs=31'), (), 'it is of another study'),
+            ('file.h5', text.replace('0.4, 10', '0.4, 10.5'), (), "here '&drive coordinate=1, kind='polynomial', coefficients=0.4,10.5,'"),
+            ('file.h5', text, ('--set', 'parameter(1).low=0.21'), 'it is of another study'),
+            ('file.h5', text.replace("'way'", "'path'"), (), 'it is of another study'),
+            ('list.h5', listed, (), "it is of another study: there 'file 1"),
+            ('short.h5', text, (), 'truncated file'),
+            ('run.h5', text, (), "it has no data set 'study/definition'"),
+            ('other.h5', text, (), "it has no data set 'study/definition'"),
+            ('shape.h5', text, (), "data set 'quantities/way' has other dimensions than this study gives it"),
+            ('none.h5', text, (), 'there is no such file'),
+            ('designs.dat', text, (), 'file signature not found')):
+        path = cases.path(name)
+        before = open(path, 'rb').read() if os.path.exists(path) else None
+        cases.write('kept', 'kept.dat')
+        done = run(mech9k, cases.write(text), '--study', '--continue', path, '--table', cases.path('kept.dat'), *more)
+        check.true(done.returncode == FILE and message in done.stderr, f'{name}: {message}', f'{done.returncode}: {done.stderr}')
+        check.true(before == (open(path, 'rb').read() if os.path.exists(path) else None), f'{name}: not changed')
+        check.equal(text_of(cases.path('kept.dat')), 'kept', f'{name}: the table is not changed')
+    text = random_study(30)
+    # blanks, comments and the names of results do not make another study
+    same = '! a comment\n' + text.replace('runs=30', ' runs = 30') + "&output table='kept.dat', compression=3 /\n"
+    cases.study(mech9k, same, '--continue', cases.path('file.h5'), '--table', cases.path('kept.dat'), why='the same study')
+    for words, code, message in ((('--continue', 'file.h5'), USAGE, 'of --study that the file does not have yet; give both'),
+                                 (('--study', '--continue', 'file.h5', '--hdf5', 'x.h5'), USAGE, 'leave --hdf5 and --no-write out'),
+                                 (('--study', '--continue', 'file.h5', '--no-write'), USAGE, 'leave --hdf5 and --no-write out'),
+                                 (('--study', '--hdf5', 'full.h5', '--table', 'full.h5'), USAGE, 'cannot both be'),
+                                 (('--study', '--hdf5', '/dev/full'), FILE, 'No space left on device'),
+                                 (('--study', '--hdf5', 'fine.h5', '--table', '/dev/full'), FILE, 'No space left on device'),
+                                 (('--study', '--hdf5', 'none/fine.h5'), FILE, "cannot open 'none/fine.h5'"),
+                                 (('--study', '--continue', '/dev/full'), FILE, 'is not a file of HDF5')):
+        done = run(mech9k, cases.write(text), *words, folder=cases.folder)
+        check.true(done.returncode == code and message in done.stderr, f'{words}: {message}', f'{done.returncode}: {done.stderr}')
+    check.true(not os.path.exists(cases.path('none')) and not os.path.exists(cases.path('.full.h5.part')), 'nothing is left behind')
+    if os.geteuid() != 0:
+        shutil.copy(cases.path('file.h5'), cases.path('locked.h5'))
+        os.chmod(cases.path('locked.h5'), 0o444)
+        done = run(mech9k, cases.write(text), '--study', '--continue', cases.path('locked.h5'))
+        check.true(done.returncode == FILE and 'ermission denied' in done.stderr, 'a file that may not be written', done.stderr)
+
+
+def main():
+    checks = Checks()
+    mech9k, mech9d = map(os.path.abspath, sys.argv[1:3])
+    with tempfile.TemporaryDirectory() as folder:
+        cases = Cases(checks, folder)
+        contents(cases, mech9k, random_study(30), (('run', '', '1'), ('crank', 'parameters/', ''), ('rod', 'parameters/', ''), ('stroke', 'quantities/', 'm'),
+                                                   ('way', 'quantities/', 'm s'), ('exit_code', '', '1')))
+        contents(cases, mech9d, PENDULUM, (('run', '', '1'), ('mass', 'parameters/', ''), ('swing', 'quantities/', 'rad'), ('exit_code', '', '1')))
+        killed(cases, mech9k)
+        only_what_is_missing(cases, mech9k)
+        interrupted(cases, mech9k)
+        parts(cases, mech9k)
+        refused(cases, mech9k)
+    checks.finish()
+
+
+main()
