@@ -250,27 +250,48 @@ contains
   pure subroutine fill_sensitivities(self, sensitivity, row)
     class(columns_type), intent(in) :: self               !< the columns
     type(sensitivity_type), intent(in) :: sensitivity     !< the derivatives
-    real(wp), intent(inout) :: row(:)                     !< numbers of one row, one for each column
-    integer :: at, p, order, i, k
+    real(wp), intent(inout), contiguous :: row(:)         !< numbers of one row, one for each column
 
-    at = before_sensitivities(self)
-    do p = 1, size(self%parameters)
-      do order = 0, self%derivatives
-        do i = 1, size(self%coordinates)
-          at = at + 1
-          row(at) = sensitivity%q(p, order, self%coordinates(i))*self%factors(i)
-        end do
-      end do
-      do i = 1, size(sensitivity%points, 4)
-        do order = 0, self%derivatives
-          do k = 1, 3
-            at = at + 1
-            row(at) = sensitivity%points(p, k, order, i)
-          end do
+    call put_derivatives(size(self%parameters), size(self%coordinates), self%coordinates, self%factors, self%derivatives, &
+                         size(sensitivity%q, 3), sensitivity%q, size(sensitivity%points, 4), sensitivity%points, &
+                         row(self%count - self%sensitivities + 1:self%count))
+  end subroutine fill_sensitivities
+
+  !> Put derivatives by parameters in the order of columns: all by the first parameter first. The arrays have known shapes, so that
+  !> the compiler keeps their addresses in registers.
+  pure subroutine put_derivatives(n, n_coordinates, coordinates, factors, highest, m, q, n_points, points, row)
+    integer, intent(in) :: n                            !< number of parameters
+    integer, intent(in) :: n_coordinates                !< number of recorded coordinates
+    integer, intent(in) :: coordinates(n_coordinates)   !< their numbers
+    real(wp), intent(in) :: factors(n_coordinates)      !< from internal units to those of the results
+    integer, intent(in) :: highest                      !< order of the highest derivative in time
+    integer, intent(in) :: m                            !< number of all coordinates
+    real(wp), intent(in) :: q(n, 0:2, m)                !< derivatives of coordinates
+    integer, intent(in) :: n_points                     !< number of points
+    real(wp), intent(in) :: points(n, 3, 0:2, n_points) !< derivatives of points
+    real(wp), intent(inout) :: row((highest + 1)*(n_coordinates + 3*n_points), n)   !< gets the derivatives
+    integer :: at, p, order, i
+
+    at = 0
+    do order = 0, highest
+      do i = 1, n_coordinates
+        at = at + 1
+        do p = 1, n
+          row(at, p) = q(p, order, coordinates(i))*factors(i)
         end do
       end do
     end do
-  end subroutine fill_sensitivities
+    do i = 1, n_points
+      do order = 0, highest
+        do p = 1, n
+          row(at + 1, p) = points(p, 1, order, i)
+          row(at + 2, p) = points(p, 2, order, i)
+          row(at + 3, p) = points(p, 3, order, i)
+        end do
+        at = at + 3
+      end do
+    end do
+  end subroutine put_derivatives
 
   !> Append a column.
   pure subroutine append(self, name, unit, long_name)

@@ -268,7 +268,7 @@ contains
   subroutine append_rows(self, file, rows)
     class(hdf5_series_type), intent(inout) :: self  !< the quantities over time
     type(hdf5_file_type), intent(inout) :: file     !< the open file
-    real(wp), intent(in) :: rows(:, :)              !< (columns, rows) numbers of all rows
+    real(wp), intent(in), contiguous :: rows(:, :)  !< (columns, rows) numbers of all rows
     integer :: next, together
 
     next = 1
@@ -336,21 +336,35 @@ contains
 
   !> Copy rows to the buffers of the quantities.
   pure subroutine take(self, rows)
-    class(hdf5_series_type), intent(inout) :: self  !< the quantities over time
-    real(wp), intent(in) :: rows(:, :)              !< (columns, rows) the rows to keep
-    integer :: i, j, k
+    class(hdf5_series_type), intent(inout) :: self       !< the quantities over time
+    real(wp), intent(in), contiguous :: rows(:, :)       !< (columns, rows) the rows to keep
+    integer :: i
 
     do i = 1, self%count
       associate (quantity => self%quantities(i))
-        do j = 1, size(rows, 2)
-          do k = 1, size(quantity%columns)
-            quantity%buffer(k, self%waiting + j) = rows(quantity%columns(k), j)
-          end do
-        end do
+        call pick(size(rows, 1), size(rows, 2), rows, size(quantity%columns), quantity%columns, &
+                  quantity%buffer(1, self%waiting + 1))
       end associate
     end do
     self%waiting = self%waiting + size(rows, 2)
   end subroutine take
+
+  !> Copy some columns of rows. The arrays have known shapes, so that the compiler keeps their addresses in registers.
+  pure subroutine pick(width, n, rows, count, columns, picked)
+    integer, intent(in) :: width                    !< number of all columns
+    integer, intent(in) :: n                        !< number of rows
+    real(wp), intent(in) :: rows(width, n)          !< the rows
+    integer, intent(in) :: count                    !< number of columns to be copied
+    integer, intent(in) :: columns(count)           !< their numbers
+    real(wp), intent(inout) :: picked(count, n)     !< gets them
+    integer :: j, k
+
+    do j = 1, n
+      do k = 1, count
+        picked(k, j) = rows(columns(k), j)
+      end do
+    end do
+  end subroutine pick
 
   !> Write the rows in the buffers. Compressed rows are written only as whole chunks, except at the end.
   subroutine hand_over(self, file, at_end)

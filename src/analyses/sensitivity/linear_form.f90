@@ -7,10 +7,9 @@ module mech9_linear_form
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: linear_form_type, new_linear_form, find_values, add_sizes, solve_for, add_motion
+  public :: linear_form_type, new_linear_form, put_constant, find_values, add_sizes, solve_for, add_motion
 
-  !> value(p,r) = fixed(p,r) + shares(r,i) of the constants of parameter p + the sum over the steps of columns(r,s)*q(p,s), and the
-  !> derivatives of this sum in time.
+  !> value(p,r) = of_constants(p,r) + the sum over the steps of columns(r,s)*q(p,s), and the derivatives of this sum in time.
   type :: linear_form_type
     integer :: rows = 0                                !< how many numbers
     integer :: n_given = 0                             !< steps, the first ones, whose coordinates other blocks or drives determine
@@ -23,8 +22,11 @@ module mech9_linear_form
     integer, allocatable :: constants(:)               !< twists by which constants change with a parameter
     real(wp), allocatable :: constant_signs(:)         !< of these twists
     integer, allocatable :: parameters(:)              !< of these twists
-    real(wp), allocatable :: shares(:, :, :)           !< (rows,0:2,constants) of these twists, with their signs
-    real(wp), allocatable :: fixed(:, :)               !< (P,rows) the part that does not change in time
+    real(wp), allocatable :: constant_sizes(:)         !< (P) sums of the sizes of these twists, by their parameters
+    logical, allocatable :: is_first(:)                !< the twist is the first one of its parameter
+    logical, allocatable :: keeps(:)                   !< the share of the twist and of its parameter's others never changes
+    logical :: is_filled = .false.                     !< the shares have been found once
+    real(wp), allocatable :: of_constants(:, :, :)     !< (P,rows,0:2) sums of these twists by their parameters, with their signs
   end type linear_form_type
 
   !> Binomial coefficients of derivatives of a product: (part, order).
@@ -44,6 +46,7 @@ contains
     real(wp), intent(in) :: constant_signs(:)       !< their signs
     integer, intent(in) :: parameters(:)            !< their parameters
     type(linear_form_type) :: form
+    integer :: i
 
     form%rows = rows
     form%steps = steps
@@ -52,88 +55,216 @@ contains
     form%constants = constants
     form%constant_signs = constant_signs
     form%parameters = parameters
+    form%is_first = [(all(parameters(:i - 1) /= parameters(i)), i=1, size(parameters))]
     allocate (form%unknowns(size(steps)), source=0)
-    allocate (form%columns(rows, 0:2, size(steps)), form%shares(rows, 0:2, size(constants)), form%fixed(n, rows), source=0.0_wp)
+    allocate (form%keeps(size(constants)), source=.false.)
+    allocate (form%columns(rows, 0:2, size(steps)), form%of_constants(n, rows, 0:2), form%constant_sizes(n), &
+              source=0.0_wp)
   end function new_linear_form
 
-  !> The values of a form, or of its derivatives in time.
+  !> Put the share of a constant in its place, or add it to that of an earlier constant of the same parameter.
+  pure subroutine put_constant(form, i, order, share)
+    type(linear_form_type), intent(inout) :: form   !< gets the share
+    integer, intent(in) :: i                        !< number of the constant in the form; in ascending order
+    integer, intent(in) :: order                    !< of the derivative in time
+    real(wp), intent(in) :: share(form%rows)        !< addition of the constant to the values
+    integer :: r, p
+
+    p = form%parameters(i)
+    if (form%is_first(i)) then
+      do r = 1, form%rows
+        form%of_constants(p, r, order) = share(r)
+      end do
+    else
+      do r = 1, form%rows
+        form%of_constants(p, r, order) = form%of_constants(p, r, order) + share(r)
+      end do
+    end if
+  end subroutine put_constant
+
+  !> The values of a form, or of its derivatives in time. Products are added three at a time to three rows at a time, so that numbers
+  !> are read and written seldom.
   pure subroutine find_values(form, n, m, order, whole, q, values)
-    type(linear_form_type), intent(in) :: form        !< with its columns and shares
+    type(linear_form_type), intent(in) :: form        !< with its columns and its part of constants
     integer, intent(in) :: n                          !< number of parameters
     integer, intent(in) :: m                          !< number of coordinates
     integer, intent(in) :: order                      !< of the derivative in time
     logical, intent(in) :: whole                      !< with the unknowns in this order, not only with those that are given
-    real(wp), intent(in) :: q(n, 0:2, m)              !< derivatives of the coordinates by all parameters
+    real(wp), intent(in) :: q(n, 3*m)                 !< derivatives of the coordinates, each with two derivatives in time
     real(wp), intent(inout) :: values(n, form%rows)   !< the values
-    integer :: i, j, r, p, count
+    real(wp) :: factors(3, 3)
+    integer :: columns(3), first, row, terms, i, j, count
 
-    if (order == 0) then
-      do r = 1, form%rows
-        do p = 1, n
-          values(p, r) = form%fixed(p, r)
+    call copy(n*form%rows, form%of_constants(1, 1, order), values)
+    first = 1
+    if (order > 0 .and. form%n_given == 0 .and. .not. whole) first = form%first_moving
+    do row = first, form%rows, 3
+      terms = 0
+      do j = 0, order
+        count = size(form%steps)
+        if (j == order .and. .not. whole) count = form%n_given
+        do i = 1, count
+          terms = terms + 1
+          call take_term(form, row, order - j, i, binomial(j, order), terms, factors)
+          columns(terms) = 3*form%coordinates(i) - 2 + j
+          if (terms < 3) cycle
+          call add_terms(n, m, form%rows, row, factors, columns, q, values)
+          terms = 0
         end do
       end do
-    else
-      do r = 1, form%rows
-        do p = 1, n
-          values(p, r) = 0.0_wp
-        end do
-      end do
-    end if
-    do i = 1, size(form%constants)
-      p = form%parameters(i)
-      do r = 1, form%rows
-        values(p, r) = values(p, r) + form%shares(r, order, i)
-      end do
-    end do
-    do j = 0, order
-      count = size(form%steps)
-      if (j == order .and. .not. whole) count = form%n_given
-      if (count == 0) cycle
-      call add_products(n, m, j, order - j, count, form%coordinates, form%rows, merge(form%first_moving, 1, j < order), &
-                        binomial(j, order), form%columns, q, values)
+      if (terms == 0) cycle
+      factors(terms + 1:, :) = 0.0_wp
+      columns(terms + 1:) = columns(1)
+      call add_terms(n, m, form%rows, row, factors, columns, q, values)
     end do
   end subroutine find_values
 
-  !> Add the products of columns in one order and derivatives of coordinates in another. Terms are added three at a time, so that the sums are
-  !> read and written seldom.
-  pure subroutine add_products(n, m, order, other, count, coordinates, rows, first, weight, columns, q, values)
-    integer, intent(in) :: n                        !< number of parameters
-    integer, intent(in) :: m                        !< number of coordinates
-    integer, intent(in) :: order                    !< of the derivatives of coordinates
-    integer, intent(in) :: other                    !< of the columns
-    integer, intent(in) :: count                    !< number of terms
-    integer, intent(in) :: coordinates(count)       !< of the terms
-    integer, intent(in) :: rows                     !< how many numbers
-    integer, intent(in) :: first                    !< the first of them that is not left out
-    real(wp), intent(in) :: weight                  !< of all products
-    real(wp), intent(in) :: columns(rows, 0:2, count)   !< factors of the coordinates
-    real(wp), intent(in) :: q(n, 0:2, m)            !< derivatives of the coordinates
-    real(wp), intent(inout) :: values(n, rows)      !< the sums
-    real(wp) :: a, b, c
-    integer :: r, t, p, i, j, k
+  !> The factors of a coordinate in up to three rows.
+  pure subroutine take_term(form, row, order, i, weight, term, factors)
+    type(linear_form_type), intent(in) :: form   !< with its columns
+    integer, intent(in) :: row                   !< the first of the rows
+    integer, intent(in) :: order                 !< of the derivative of columns in time
+    integer, intent(in) :: i                     !< number of the step in the form
+    real(wp), intent(in) :: weight               !< of the factors
+    integer, intent(in) :: term                  !< number of the term that gets the factors
+    real(wp), intent(inout) :: factors(3, 3)     !< (terms,rows); those of rows that do not exist stay
+    integer :: r
 
-    do r = first, rows
-      do t = 1, count - 2, 3
-        a = weight*columns(r, other, t)
-        b = weight*columns(r, other, t + 1)
-        c = weight*columns(r, other, t + 2)
-        i = coordinates(t)
-        j = coordinates(t + 1)
-        k = coordinates(t + 2)
-        do p = 1, n
-          values(p, r) = values(p, r) + a*q(p, order, i) + b*q(p, order, j) + c*q(p, order, k)
-        end do
+    do r = 1, min(3, form%rows - row + 1)
+      factors(term, r) = weight*form%columns(row + r - 1, order, i)
+    end do
+  end subroutine take_term
+
+  !> Add three products to each of up to three rows.
+  pure subroutine add_terms(n, m, rows, row, factors, columns, q, values)
+    integer, intent(in) :: n                      !< number of parameters
+    integer, intent(in) :: m                      !< number of coordinates
+    integer, intent(in) :: rows                   !< number of all rows
+    integer, intent(in) :: row                    !< the first of the rows
+    real(wp), intent(in) :: factors(3, 3)         !< (terms,rows)
+    integer, intent(in) :: columns(3)             !< columns of `q` that are multiplied
+    real(wp), intent(in) :: q(n, 3*m)             !< derivatives of the coordinates
+    real(wp), intent(inout) :: values(n, rows)    !< the sums
+
+    associate (a => columns(1), b => columns(2), c => columns(3))
+      select case (rows - row)
+      case (0)
+        call add_to_one(n, factors, q(1, a), q(1, b), q(1, c), values(1, row))
+      case (1)
+        call add_to_two(n, factors, q(1, a), q(1, b), q(1, c), values(1, row))
+      case default
+        call add_to_three(n, factors, q(1, a), q(1, b), q(1, c), values(1, row), values(1, row + 1), values(1, row + 2))
+      end select
+    end associate
+  end subroutine add_terms
+
+  !> Copy numbers.
+  pure subroutine copy(n, from, to)
+    integer, intent(in) :: n            !< how many
+    real(wp), intent(in) :: from(n)     !< the numbers
+    real(wp), intent(inout) :: to(n)    !< gets them
+    integer :: i
+
+    do i = 1, n
+      to(i) = from(i)
+    end do
+  end subroutine copy
+
+  !> x = x + three products.
+  pure subroutine add_to_one(n, f, a, b, c, x)
+    integer, intent(in) :: n               !< number of parameters
+    real(wp), intent(in) :: f(3)           !< factors
+    real(wp), intent(in) :: a(n)           !< first numbers
+    real(wp), intent(in) :: b(n)           !< second numbers
+    real(wp), intent(in) :: c(n)           !< third numbers
+    real(wp), intent(inout) :: x(n)        !< the sum
+    integer :: p
+
+    do p = 1, n
+      x(p) = x(p) + f(1)*a(p) + f(2)*b(p) + f(3)*c(p)
+    end do
+  end subroutine add_to_one
+
+  !> The same in two rows.
+  pure subroutine add_to_two(n, f, a, b, c, x)
+    integer, intent(in) :: n               !< number of parameters
+    real(wp), intent(in) :: f(3, 3)        !< factors, two columns of three
+    real(wp), intent(in) :: a(n)           !< first numbers
+    real(wp), intent(in) :: b(n)           !< second numbers
+    real(wp), intent(in) :: c(n)           !< third numbers
+    real(wp), intent(inout) :: x(n, 2)     !< the sums
+    integer :: p
+
+    do p = 1, n
+      x(p, 1) = x(p, 1) + f(1, 1)*a(p) + f(2, 1)*b(p) + f(3, 1)*c(p)
+      x(p, 2) = x(p, 2) + f(1, 2)*a(p) + f(2, 2)*b(p) + f(3, 2)*c(p)
+    end do
+  end subroutine add_to_two
+
+  !> The same in three rows.
+  pure subroutine add_to_three(n, f, a, b, c, x, y, z)
+    integer, intent(in) :: n               !< number of parameters
+    real(wp), intent(in) :: f(3, 3)        !< factors, a column for each sum
+    real(wp), intent(in) :: a(n)           !< first numbers
+    real(wp), intent(in) :: b(n)           !< second numbers
+    real(wp), intent(in) :: c(n)           !< third numbers
+    real(wp), intent(inout) :: x(n)        !< first sum
+    real(wp), intent(inout) :: y(n)        !< second sum
+    real(wp), intent(inout) :: z(n)        !< third sum
+    integer :: p
+
+    do p = 1, n
+      x(p) = x(p) + f(1, 1)*a(p) + f(2, 1)*b(p) + f(3, 1)*c(p)
+      y(p) = y(p) + f(1, 2)*a(p) + f(2, 2)*b(p) + f(3, 2)*c(p)
+      z(p) = z(p) + f(1, 3)*a(p) + f(2, 3)*b(p) + f(3, 3)*c(p)
+    end do
+  end subroutine add_to_three
+
+  !> Three products instead of sums, in three rows.
+  pure subroutine set_three(n, f, a, b, c, x, y, z)
+    integer, intent(in) :: n               !< number of parameters
+    real(wp), intent(in) :: f(3, 3)        !< factors, a column for each sum
+    real(wp), intent(in) :: a(n)           !< first numbers
+    real(wp), intent(in) :: b(n)           !< second numbers
+    real(wp), intent(in) :: c(n)           !< third numbers
+    real(wp), intent(inout) :: x(n)        !< first sum of products
+    real(wp), intent(inout) :: y(n)        !< second sum of products
+    real(wp), intent(inout) :: z(n)        !< third sum of products
+    integer :: p
+
+    do p = 1, n
+      x(p) = f(1, 1)*a(p) + f(2, 1)*b(p) + f(3, 1)*c(p)
+      y(p) = f(1, 2)*a(p) + f(2, 2)*b(p) + f(3, 2)*c(p)
+      z(p) = f(1, 3)*a(p) + f(2, 3)*b(p) + f(3, 3)*c(p)
+    end do
+  end subroutine set_three
+
+  !> The derivatives of unknowns in one order, combinations of openings.
+  pure subroutine solve_for(n, m, unknowns, rows, solver, openings, columns, q)
+    integer, intent(in) :: n                          !< number of parameters
+    integer, intent(in) :: m                          !< number of coordinates
+    integer, intent(in) :: unknowns                   !< number of unknowns
+    integer, intent(in) :: rows                       !< number of openings, a multiple of three
+    real(wp), intent(in) :: solver(rows, unknowns)    !< factors of the openings
+    real(wp), intent(in) :: openings(n, rows)         !< of the block, by all parameters
+    integer, intent(in) :: columns(unknowns)          !< columns of `q` that are solved for
+    real(wp), intent(inout) :: q(n, 3*m)              !< derivatives of the coordinates
+    integer :: u, r, p
+
+    if (unknowns == 3 .and. rows == 3) then
+      call set_three(n, solver, openings(1, 1), openings(1, 2), openings(1, 3), q(1, columns(1)), q(1, columns(2)), &
+                     q(1, columns(3)))
+      return
+    end if
+    do u = 1, unknowns
+      do p = 1, n
+        q(p, columns(u)) = 0.0_wp
       end do
-      do t = count - mod(count, 3) + 1, count
-        a = weight*columns(r, other, t)
-        i = coordinates(t)
-        do p = 1, n
-          values(p, r) = values(p, r) + a*q(p, order, i)
-        end do
+      do r = 1, rows, 3
+        call add_to_one(n, solver(r, u), openings(1, r), openings(1, r + 1), openings(1, r + 2), q(1, columns(u)))
       end do
     end do
-  end subroutine add_products
+  end subroutine solve_for
 
   !> Add the sizes of all parts of a form's values, each counted by its largest row.
   pure subroutine add_sizes(form, n, m, q, sizes)
@@ -151,55 +282,10 @@ contains
         sizes(p) = sizes(p) + largest*abs(q(p, 0, form%coordinates(i)))
       end do
     end do
-    do i = 1, size(form%constants)
-      p = form%parameters(i)
-      sizes(p) = sizes(p) + maxval(abs(form%shares(:, 0, i)))
-    end do
     do p = 1, n
-      sizes(p) = sizes(p) + maxval(abs(form%fixed(p, :)))
+      sizes(p) = sizes(p) + form%constant_sizes(p)
     end do
   end subroutine add_sizes
-
-  !> The derivatives of one coordinate in one order, a combination of openings.
-  pure subroutine solve_for(n, rows, solver, openings, q)
-    integer, intent(in) :: n                        !< number of parameters
-    integer, intent(in) :: rows                     !< number of openings
-    real(wp), intent(in) :: solver(rows)            !< factors of the openings
-    real(wp), intent(in) :: openings(n, rows)       !< of the block, by all parameters
-    real(wp), intent(out) :: q(n)                   !< the derivatives
-    real(wp) :: a, b, c
-    integer :: r, p, start
-
-    start = mod(rows, 3)
-    if (start == 0) then
-      a = solver(1)
-      b = solver(2)
-      c = solver(3)
-      do p = 1, n
-        q(p) = a*openings(p, 1) + b*openings(p, 2) + c*openings(p, 3)
-      end do
-      start = 3
-    else if (start == 1) then
-      a = solver(1)
-      do p = 1, n
-        q(p) = a*openings(p, 1)
-      end do
-    else
-      a = solver(1)
-      b = solver(2)
-      do p = 1, n
-        q(p) = a*openings(p, 1) + b*openings(p, 2)
-      end do
-    end if
-    do r = start + 1, rows, 3
-      a = solver(r)
-      b = solver(r + 1)
-      c = solver(r + 2)
-      do p = 1, n
-        q(p) = q(p) + a*openings(p, r) + b*openings(p, r + 1) + c*openings(p, r + 2)
-      end do
-    end do
-  end subroutine solve_for
 
   !> Add the motion that one coordinate gives to a twist.
   pure subroutine add_motion(n, highest, series, q, twists)

@@ -9,7 +9,7 @@ module mech9_parameter_support
   use mech9_linear_form, only: linear_form_type, new_linear_form
   implicit none
   private
-  public :: support_type, varied_constant_type, find_support, is_touched, closure_form, point_form
+  public :: support_type, varied_constant_type, find_support, is_touched, closure_form, point_form, keep_static
 
   !> A twist by which a constant of the mechanism changes with one parameter.
   type :: varied_constant_type
@@ -20,6 +20,7 @@ module mech9_parameter_support
     integer :: point = 0                !< point of the mechanism that moves by the twist; 0: none
     integer :: stretched_by = 0         !< coordinate whose value, with its offset, multiplies the twist; 0: none
     real(wp) :: twist(6) = 0.0_wp       !< rotation, and shift of the point at the frame's origin, in its axes [rad, m]
+    real(wp) :: size = 0.0_wp           !< its largest number [rad, lengths of the mechanism]
   end type varied_constant_type
 
   !> All that the parameters of a mechanism change.
@@ -55,13 +56,15 @@ contains
   end subroutine find_support
 
   !> Append a twist, if it is not zero.
-  pure subroutine append(constant, support)
+  pure subroutine append(constant, length, support)
     type(varied_constant_type), intent(in) :: constant   !< the twist
+    real(wp), intent(in) :: length                       !< the mechanism's size [m]
     type(support_type), intent(inout) :: support         !< gets the twist
 
     if (.not. any(abs(constant%twist) > 0.0_wp)) return
     support%count = support%count + 1
     support%constants(support%count) = constant
+    support%constants(support%count)%size = max(maxval(abs(constant%twist(1:3))), maxval(abs(constant%twist(4:6)))/length)
   end subroutine append
 
   !> Add the twists of steps: of the pose of the axis, of the offset of the coordinate, of the advance.
@@ -76,14 +79,16 @@ contains
     do s = 1, plan%n_coordinates
       associate (step => plan%steps(s))
         k = step%coordinate
-        call append(varied_constant_type(parameter=p, frame=step%parent, step=s, twist=tangent%before(:, k)), support)
+        call append(varied_constant_type(parameter=p, frame=step%parent, step=s, twist=tangent%before(:, k)), &
+                    plan%length, support)
         along = 0.0_wp
         along(3) = step%turn*tangent%offset(k)
         along(6) = step%slide*tangent%offset(k)
-        call append(varied_constant_type(parameter=p, frame=s, step=s, twist=along), support)
+        call append(varied_constant_type(parameter=p, frame=s, step=s, twist=along), plan%length, support)
         along = 0.0_wp
         along(4:6) = tangent%slide(k)*step%before%r(:, 3)
-        call append(varied_constant_type(parameter=p, frame=step%parent, step=s, stretched_by=k, twist=along), support)
+        call append(varied_constant_type(parameter=p, frame=step%parent, step=s, stretched_by=k, twist=along), plan%length, &
+                    support)
       end associate
     end do
   end subroutine add_steps
@@ -100,7 +105,7 @@ contains
       associate (closure => plan%closures(c))
         if (closure%coupling > 0) cycle
         call append(varied_constant_type(parameter=p, frame=closure%target, closure=c, &
-                                         twist=tangent%in_target(:, plan%steps(closure%closing)%coordinate)), support)
+                                         twist=tangent%in_target(:, plan%steps(closure%closing)%coordinate)), plan%length, support)
       end associate
     end do
   end subroutine add_targets
@@ -120,7 +125,8 @@ contains
         shift(1:3) = 0.0_wp
         shift(4:6) = turn(in_frame%r, tangent%points(:, i)) + tangent%link(4:6, point%link) &
                      + cross(tangent%link(1:3, point%link), transformed(in_frame, point%position))
-        call append(varied_constant_type(parameter=p, frame=plan%frame_of(point%link), point=i, twist=shift), support)
+        call append(varied_constant_type(parameter=p, frame=plan%frame_of(point%link), point=i, twist=shift), &
+                    plan%length, support)
       end associate
     end do
   end subroutine add_points
@@ -196,6 +202,11 @@ contains
       form = new_linear_form(n, rows, loop%steps(order), coordinates(order), loop%signs(order), used, signs, &
                              support%constants(used)%parameter)
       form%n_given = count(support%touched(coordinates) .and. .not. unknown)
+      do i = 1, size(used)
+        associate (constant => support%constants(used(i)))
+          form%constant_sizes(constant%parameter) = form%constant_sizes(constant%parameter) + constant%size
+        end associate
+      end do
       do i = form%n_given + 1, size(order)
         form%unknowns(i) = findloc(block%coordinates, form%coordinates(i), dim=1)
       end do
@@ -231,4 +242,23 @@ contains
                            [(1.0_wp, i=1, size(used))], support%constants(used)%parameter)
     form%n_given = size(path)
   end function point_form
+
+  !> Mark the twists of a form in planar arithmetic whose shares never change: those in frame 0, and only if they are pure shifts where
+  !> the form is written at a place that moves.
+  pure subroutine keep_static(support, at_rest, form)
+    type(support_type), intent(in) :: support        !< the support of the parameters, in the plane
+    logical, intent(in) :: at_rest                   !< the form is written at a place that does not move
+    type(linear_form_type), intent(inout) :: form    !< the form
+    logical :: static(size(form%constants))
+    integer :: i
+
+    do i = 1, size(form%constants)
+      associate (constant => support%constants(form%constants(i)))
+        static(i) = constant%frame == 0 .and. (at_rest .or. .not. abs(constant%twist(1)) > 0.0_wp)
+      end associate
+    end do
+    do i = 1, size(form%constants)
+      form%keeps(i) = all(static .or. form%parameters /= form%parameters(i))
+    end do
+  end subroutine keep_static
 end module mech9_parameter_support

@@ -7,7 +7,7 @@ module mech9_planar_forms
   use mech9_state, only: planar_motion_type
   use mech9_planar_formulas, only: turn_in_plane, point_velocity, point_acceleration
   use mech9_parameter_support, only: varied_constant_type
-  use mech9_linear_form, only: linear_form_type
+  use mech9_linear_form, only: linear_form_type, put_constant
   implicit none
   private
   public :: carry_in_plane, fill_planar_closure, fill_planar_point, planar_step_series
@@ -21,25 +21,8 @@ contains
     type(planar_motion_type), intent(in) :: motion          !< the motion of the frames
     integer, intent(in) :: highest                          !< order of the highest derivative
     real(wp), intent(inout) :: series(3, 0:2, n)            !< gets the twists up to this derivative
-    real(wp) :: shift(2), w, turning
-    integer :: i
 
-    do i = 1, n
-      associate (twist => constants(i)%twist, pose => motion%pose(:, constants(i)%frame), &
-                 v => motion%velocity(:, constants(i)%frame), a => motion%acceleration(:, constants(i)%frame))
-        turning = twist(1)
-        call turn_in_plane(pose, twist(2:3), shift)
-        series(1, 0, i) = turning
-        series(2, 0, i) = shift(1) + turning*pose(4)
-        series(3, 0, i) = shift(2) - turning*pose(3)
-        if (highest == 0) cycle
-        w = v(1)
-        series(2, 1, i) = turning*v(3) - w*shift(2)
-        series(3, 1, i) = w*shift(1) - turning*v(2)
-        series(2, 2, i) = turning*a(3) - a(1)*shift(2) - w**2*shift(1)
-        series(3, 2, i) = a(1)*shift(1) - w**2*shift(2) - turning*a(2)
-      end associate
-    end do
+    call carry(n, constants, ubound(motion%pose, 2), motion%pose, motion%velocity, motion%acceleration, highest, series)
   end subroutine carry_in_plane
 
   !> Fill the form of a closed chain: its rotation, and its shift at the origin of its base frame in lengths of the mechanism.
@@ -50,87 +33,133 @@ contains
     integer, intent(in) :: highest                       !< order of the highest derivative
     real(wp), intent(in) :: series(:, 0:, :)             !< (3,0:2,constants) twists of constants
     type(linear_form_type), intent(inout) :: form        !< gets its columns and shares
-    real(wp) :: base(2), per_length, factor
-    integer :: i
+    real(wp) :: base(2), per_length, factor, share(3)
+    integer :: i, order
 
     per_length = 1.0_wp/planar%length
     base = motion%pose(3:4, planar%closures(c)%base)
-    do i = 1, size(form%steps)
-      call step_columns(planar%steps(form%steps(i)), form%signs(i), per_length, form%steps(i), base, motion, highest, &
-                        form%columns(:, :, i))
-    end do
+    call fill_columns(size(form%steps), form%steps, form%signs, size(planar%steps), planar%steps, per_length, base, motion%pose, &
+                      motion%slide, motion%velocity, motion%acceleration, highest, form%columns)
     do i = 1, size(form%constants)
-      associate (twist => series(:, :, form%constants(i)), share => form%shares(:, :, i))
+      if (form%keeps(i) .and. form%is_filled) cycle
+      associate (twist => series(:, :, form%constants(i)))
         factor = form%constant_signs(i)*per_length
-        share(1, 1) = form%constant_signs(i)*twist(1, 1)
-        share(2, 1) = factor*(twist(2, 1) - twist(1, 1)*base(2))
-        share(3, 1) = factor*(twist(3, 1) + twist(1, 1)*base(1))
-        if (highest == 0) cycle
-        share(2:3, 2) = factor*twist(2:3, 2)
-        share(2:3, 3) = factor*twist(2:3, 3)
+        share(1) = form%constant_signs(i)*twist(1, 1)
+        share(2) = factor*(twist(2, 1) - twist(1, 1)*base(2))
+        share(3) = factor*(twist(3, 1) + twist(1, 1)*base(1))
+        call put_constant(form, i, 0, share)
+        share(1) = 0.0_wp
+        do order = 1, highest
+          share(2) = factor*twist(2, order + 1)
+          share(3) = factor*twist(3, order + 1)
+          call put_constant(form, i, order, share)
+        end do
       end associate
     end do
+    form%is_filled = .true.
   end subroutine fill_planar_closure
 
-  !> The columns of one step in the opening of a chain.
-  pure subroutine step_columns(step, sign, per_length, s, base, motion, highest, columns)
-    type(planar_step_type), intent(in) :: step           !< the step
-    real(wp), intent(in) :: sign                         !< of the step in the loop
-    real(wp), intent(in) :: per_length                   !< one over the length of the mechanism [1/m]
-    integer, intent(in) :: s                             !< number of the step
-    real(wp), intent(in) :: base(2)                      !< origin of the frame at which the opening is written [m]
-    type(planar_motion_type), intent(in) :: motion       !< the motion of the frames
-    integer, intent(in) :: highest                       !< order of the highest derivative
-    real(wp), intent(inout) :: columns(3, 0:2)           !< gets the columns
-    real(wp) :: w, turning, slide(2, 0:2)
+  ! The next three procedures take arrays of known shape, so that the compiler keeps their addresses in registers.
 
-    if (step%turns) then
-      turning = sign*step%turn
-      w = turning*per_length
-      columns(1, 0) = turning
-      columns(2, 0) = w*(motion%pose(4, s) - base(2))
-      columns(3, 0) = w*(base(1) - motion%pose(3, s))
-      if (highest == 0) return
-      columns(2, 1) = w*motion%velocity(3, s)
-      columns(3, 1) = -w*motion%velocity(2, s)
-      columns(2, 2) = w*motion%acceleration(3, s)
-      columns(3, 2) = -w*motion%acceleration(2, s)
-    else
-      call slide_series(step, s, motion, highest, slide)
-      columns(2:3, :) = sign*per_length*slide
-    end if
-  end subroutine step_columns
+  !> Twists of constants, seen from frame 0, from plain arrays.
+  pure subroutine carry(n, constants, m, f, v, a, highest, series)
+    integer, intent(in) :: n                                !< number of twists
+    type(varied_constant_type), intent(in) :: constants(n)  !< rotation and shifts in twist(1:3), in the axes of the planar frames
+    integer, intent(in) :: m                                !< number of steps of the plan
+    real(wp), intent(in) :: f(4, 0:m)                       !< poses of the frames [m]
+    real(wp), intent(in) :: v(3, 0:m)                       !< velocities of the frames [rad/s, m/s]
+    real(wp), intent(in) :: a(3, 0:m)                       !< accelerations of the frames [rad/s^2, m/s^2]
+    integer, intent(in) :: highest                          !< order of the highest derivative
+    real(wp), intent(inout) :: series(3, 0:2, n)            !< gets the twists up to this derivative
+    real(wp) :: x, y, w, square, turning
+    integer :: i, k
+
+    do i = 1, n
+      k = constants(i)%frame
+      turning = constants(i)%twist(1)
+      x = f(1, k)*constants(i)%twist(2) - f(2, k)*constants(i)%twist(3)
+      y = f(2, k)*constants(i)%twist(2) + f(1, k)*constants(i)%twist(3)
+      series(1, 0, i) = turning
+      series(2, 0, i) = x + turning*f(4, k)
+      series(3, 0, i) = y - turning*f(3, k)
+      if (highest == 0) cycle
+      w = v(1, k)
+      square = w**2
+      series(2, 1, i) = turning*v(3, k) - w*y
+      series(3, 1, i) = w*x - turning*v(2, k)
+      series(2, 2, i) = turning*a(3, k) - a(1, k)*y - square*x
+      series(3, 2, i) = a(1, k)*x - square*y - turning*a(2, k)
+    end do
+  end subroutine carry
+
+  !> The columns of steps in the opening of a chain.
+  pure subroutine fill_columns(n, numbers, signs, m, steps, per_length, base, f, slide, v, a, highest, columns)
+    integer, intent(in) :: n                             !< number of these steps
+    integer, intent(in) :: numbers(n)                    !< numbers of the steps
+    real(wp), intent(in) :: signs(n)                     !< of the steps in the loop
+    integer, intent(in) :: m                             !< number of steps of the plan
+    type(planar_step_type), intent(in) :: steps(m)       !< steps of the plan
+    real(wp), intent(in) :: per_length                   !< one over the length of the mechanism [1/m]
+    real(wp), intent(in) :: base(2)                      !< origin of the frame at which the opening is written [m]
+    real(wp), intent(in) :: f(4, 0:m)                    !< poses of the frames [m]
+    real(wp), intent(in) :: slide(2, m)                  !< velocity of each frame's origin per unit rate
+    real(wp), intent(in) :: v(3, 0:m)                    !< velocities of the frames [rad/s, m/s]
+    real(wp), intent(in) :: a(3, 0:m)                    !< accelerations of the frames [rad/s^2, m/s^2]
+    integer, intent(in) :: highest                       !< order of the highest derivative
+    real(wp), intent(inout) :: columns(3, 0:2, n)        !< gets the columns
+    real(wp) :: w, turning
+    integer :: i, k
+
+    do i = 1, n
+      k = numbers(i)
+      if (steps(k)%turns) then
+        turning = signs(i)*steps(k)%turn
+        w = turning*per_length
+        columns(1, 0, i) = turning
+        columns(2, 0, i) = w*(f(4, k) - base(2))
+        columns(3, 0, i) = w*(base(1) - f(3, k))
+        if (highest == 0) cycle
+        columns(2, 1, i) = w*v(3, k)
+        columns(3, 1, i) = -w*v(2, k)
+        columns(2, 2, i) = w*a(3, k)
+        columns(3, 2, i) = -w*a(2, k)
+      else
+        w = signs(i)*per_length
+        call slide_series(slide(:, k), v(1, steps(k)%parent), a(1, steps(k)%parent), columns(2:3, 0, i), columns(2:3, 1, i), &
+                          columns(2:3, 2, i))
+        columns(2:3, :, i) = w*columns(2:3, :, i)
+      end if
+    end do
+  end subroutine fill_columns
 
   !> The direction in which a step slides, and its derivatives in time.
-  pure subroutine slide_series(step, s, motion, highest, series)
-    type(planar_step_type), intent(in) :: step           !< the step
-    integer, intent(in) :: s                             !< number of the step
-    type(planar_motion_type), intent(in) :: motion       !< the motion of the frames
-    integer, intent(in) :: highest                       !< order of the highest derivative
-    real(wp), intent(out) :: series(2, 0:2)              !< shift per unit of the coordinate
+  pure subroutine slide_series(slide, w, alpha, shift, first, second)
+    real(wp), intent(in) :: slide(2)      !< shift per unit of the coordinate
+    real(wp), intent(in) :: w             !< angular velocity of the frame [rad/s]
+    real(wp), intent(in) :: alpha         !< its angular acceleration [rad/s^2]
+    real(wp), intent(out) :: shift(2)     !< shift per unit of the coordinate
+    real(wp), intent(out) :: first(2)     !< its first derivative
+    real(wp), intent(out) :: second(2)    !< its second derivative
 
-    associate (slide => motion%slide(:, s), v => motion%velocity(:, step%parent), a => motion%acceleration(:, step%parent))
-      series = 0.0_wp
-      series(:, 0) = slide
-      if (highest == 0) return
-      series(1, 1) = -v(1)*slide(2)
-      series(2, 1) = v(1)*slide(1)
-      series(1, 2) = -a(1)*slide(2) - v(1)**2*slide(1)
-      series(2, 2) = a(1)*slide(1) - v(1)**2*slide(2)
-    end associate
+    shift = slide
+    first(1) = -w*slide(2)
+    first(2) = w*slide(1)
+    second(1) = -alpha*slide(2) - w**2*slide(1)
+    second(2) = alpha*slide(1) - w**2*slide(2)
   end subroutine slide_series
 
   !> Fill the form of a point: its shift in space, or in the plane where the plane's axes are those of frame 0.
-  pure subroutine fill_planar_point(planar, frame, place, motion, highest, series, form)
+  pure subroutine fill_planar_point(planar, frame, place, motion, highest, constants, series, form)
     type(planar_plan_type), intent(in) :: planar         !< the plan in planar arithmetic
     integer, intent(in) :: frame                         !< frame with which the point moves
     real(wp), intent(in) :: place(2)                     !< the point in the planar frame [m]
     type(planar_motion_type), intent(in) :: motion       !< the motion of the frames
     integer, intent(in) :: highest                       !< order of the highest derivative
+    type(varied_constant_type), intent(in) :: constants(:)   !< the constants
     real(wp), intent(in) :: series(:, 0:, :)             !< (3,0:2,constants) twists of constants
     type(linear_form_type), intent(inout) :: form        !< gets its columns and shares
-    real(wp) :: arm(2), p(2, 0:2), shift(2, 0:2)
-    integer :: i, s, order
+    real(wp) :: arm(2), p(2, 0:2), shift(2, 0:2), share(3)
+    integer :: i, s, k, order
 
     p = 0.0_wp
     associate (f => motion%pose(:, frame), v => motion%velocity(:, frame), a => motion%acceleration(:, frame))
@@ -146,21 +175,29 @@ contains
         call turn_about(planar%steps(s)%turn, p(:, 1), motion%velocity(2:3, s), shift(:, 1))
         call turn_about(planar%steps(s)%turn, p(:, 2), motion%acceleration(2:3, s), shift(:, 2))
       else
-        call slide_series(planar%steps(s), s, motion, highest, shift)
+        k = planar%steps(s)%parent
+        call slide_series(motion%slide(:, s), motion%velocity(1, k), motion%acceleration(1, k), shift(:, 0), shift(:, 1), &
+                          shift(:, 2))
       end if
       do order = 0, highest
         call put(planar, shift(:, order), form%columns(:, order, i))
       end do
     end do
     do i = 1, size(form%constants)
+      if (form%keeps(i) .and. form%is_filled) cycle
       associate (twist => series(:, :, form%constants(i)))
         do order = 0, highest
           shift(1, order) = twist(2, order + 1) - twist(1, 1)*p(2, order)
           shift(2, order) = twist(3, order + 1) + twist(1, 1)*p(1, order)
-          call put(planar, shift(:, order), form%shares(:, order, i))
+          call put(planar, shift(:, order), share(:form%rows))
+          ! points alone may be shifted along the normal
+          if (order == 0 .and. form%rows == 3 .and. constants(form%constants(i))%point > 0) &
+            share = share + constants(form%constants(i))%twist(4)*planar%axes(:, 3)
+          call put_constant(form, i, order, share)
         end do
       end associate
     end do
+    form%is_filled = .true.
   end subroutine fill_planar_point
 
   !> The shift of a place by a turn about another one.
@@ -197,6 +234,7 @@ contains
     real(wp), intent(out) :: series(3, 0:2)              !< rotation, and shift at the origin of frame 0
 
     series = 0.0_wp
-    call step_columns(planar%steps(s), 1.0_wp, 1.0_wp, s, [0.0_wp, 0.0_wp], motion, highest, series)
+    call fill_columns(1, [s], [1.0_wp], size(planar%steps), planar%steps, 1.0_wp, [0.0_wp, 0.0_wp], motion%pose, motion%slide, &
+                      motion%velocity, motion%acceleration, highest, series)
   end subroutine planar_step_series
 end module mech9_planar_forms

@@ -28,7 +28,7 @@ contains
     type(plan_type) :: in_space
     type(state_type) :: space, plane
     type(error_type), allocatable :: err
-    real(wp) :: flat(4, support%count), tilt, largest
+    real(wp) :: flat(4, support%count), tilt
     integer :: i
 
     in_space = plan
@@ -46,9 +46,8 @@ contains
       associate (constant => support%constants(i))
         call flatten(plan%planar%axes, space%r(:, :, constant%frame), plane%planar%pose(:, constant%frame), constant%twist, &
                      flat(:, i), tilt)
-        largest = max(maxval(abs(constant%twist(1:3))), maxval(abs(constant%twist(4:6)))/plan%length)
         if (constant%point > 0) cycle
-        fits = max(tilt, abs(flat(4, i))/plan%length) <= negligible_part*largest
+        fits = max(tilt, abs(flat(4, i))/plan%length) <= negligible_part*constant%size
         if (.not. fits) return
       end associate
     end do

@@ -23,7 +23,7 @@ module mech9_sensitivity
   use mech9_frame_variation, only: third_derivatives_type, new_third_derivatives, find_third_derivatives
   use mech9_twists, only: frame_twists_type, new_frame_twists, find_frame_twists, find_step_twists
   use mech9_tangent, only: tangent_type, find_tangent
-  use mech9_parameter_support, only: support_type, find_support, point_form
+  use mech9_parameter_support, only: support_type, find_support, point_form, keep_static
   use mech9_linear_form, only: linear_form_type, find_values, add_motion
   use mech9_planar_forms, only: carry_in_plane, fill_planar_closure, fill_planar_point, planar_step_series
   use mech9_spatial_forms, only: carry_in_space, fill_spatial_closure, fill_whole_closure, fill_coupling, fill_spatial_point
@@ -161,12 +161,12 @@ contains
         self%places(:, number) = transformed(self%plan%link_in_frame(point%link), point%position)
         return
       end if
+      call keep_static(self%support, .false., form)
       self%places(:, number) = transformed(planar%link_in_frame(point%link), point%position)
+      ! beside a plane of the first two axes, the third row of the shift never changes
       do i = 1, self%support%count
         associate (constant => self%support%constants(i))
-          if (constant%point /= number) cycle
-          if (rows == 2) self%points(constant%parameter, 3, 0, number) = constant%twist(4)
-          if (rows == 3) form%fixed(constant%parameter, :) = constant%twist(4)*planar%axes(:, 3)
+          if (constant%point == number) self%points(constant%parameter, 3, 0, number) = constant%twist(4)
         end associate
       end do
     end associate
@@ -318,8 +318,10 @@ contains
 
     f = self%plan%frame_of(model%mechanism%points(number)%link)
     associate (form => self%points_shift(number))
+      if (size(form%steps) == 0 .and. (form%is_filled .or. size(form%constants) == 0) .and. all(form%keeps)) return
       if (self%in_plane) then
-        call fill_planar_point(self%plan%planar, f, self%places(1:2, number), state%planar, self%highest, self%series, form)
+        call fill_planar_point(self%plan%planar, f, self%places(1:2, number), state%planar, self%highest, &
+                               self%support%constants, self%series, form)
       else
         call fill_spatial_point(f, self%places(:, number), state, self%motion, self%highest, self%series, form)
       end if

@@ -8,7 +8,7 @@ module mech9_spatial_forms
   use mech9_coupling_constraint, only: coupling_factors
   use mech9_twists, only: frame_twists_type, carried, shift_at
   use mech9_parameter_support, only: varied_constant_type
-  use mech9_linear_form, only: linear_form_type
+  use mech9_linear_form, only: linear_form_type, put_constant
   implicit none
   private
   public :: carry_in_space, fill_spatial_closure, fill_whole_closure, fill_coupling, fill_spatial_point
@@ -50,6 +50,7 @@ contains
     integer, intent(in) :: highest                       !< order of the highest derivative
     real(wp), intent(in) :: series(:, 0:, :)             !< (6,0:2,constants) twists of constants
     type(linear_form_type), intent(inout) :: form        !< gets its columns and shares
+    real(wp) :: share(6)
     integer :: i, order
 
     do i = 1, size(form%steps)
@@ -60,7 +61,8 @@ contains
     do i = 1, size(form%constants)
       do order = 0, highest
         call reduce(plan, plan%closures(c), state, form%constant_signs(i), series(:, order, form%constants(i)), &
-                    form%shares(:, order, i))
+                    share(:form%rows))
+        call put_constant(form, i, order, share)
       end do
     end do
   end subroutine fill_spatial_closure
@@ -115,14 +117,15 @@ contains
     type(frame_twists_type), intent(in) :: twists        !< of the steps
     real(wp), intent(in) :: series(:, 0:, :)             !< (6,0:2,constants) twists of constants
     type(linear_form_type), intent(inout) :: form        !< six rows; gets its columns and shares
+    real(wp) :: share(6)
     integer :: i
 
     do i = 1, size(form%steps)
       call shift_to_closing(plan, plan%closures(c), state, form%signs(i), twists%step(:, 0, form%steps(i)), form%columns(:, 0, i))
     end do
     do i = 1, size(form%constants)
-      call shift_to_closing(plan, plan%closures(c), state, form%constant_signs(i), series(:, 0, form%constants(i)), &
-                            form%shares(:, 0, i))
+      call shift_to_closing(plan, plan%closures(c), state, form%constant_signs(i), series(:, 0, form%constants(i)), share)
+      call put_constant(form, i, 0, share)
     end do
   end subroutine fill_whole_closure
 
@@ -151,8 +154,8 @@ contains
     integer, intent(in) :: highest                       !< order of the highest derivative
     real(wp), intent(in) :: series(:, 0:, :)             !< (6,0:2,constants) twists of constants
     type(linear_form_type), intent(inout) :: form        !< gets its columns and shares
-    real(wp) :: arm(3), slip(3), p(3, 0:2)
-    integer :: i
+    real(wp) :: arm(3), slip(3), p(3, 0:2), share(3, 0:2)
+    integer :: i, order
 
     p = 0.0_wp
     arm = turn(state%r(:, :, frame), place)
@@ -166,7 +169,10 @@ contains
       call shift_point(p, twists%step(:, :, form%steps(i)), highest, form%columns(:, :, i))
     end do
     do i = 1, size(form%constants)
-      call shift_point(p, series(:, :, form%constants(i)), highest, form%shares(:, :, i))
+      call shift_point(p, series(:, :, form%constants(i)), highest, share)
+      do order = 0, highest
+        call put_constant(form, i, order, share(:, order))
+      end do
     end do
   end subroutine fill_spatial_point
 

@@ -7,7 +7,7 @@ module mech9_varied_block
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_tangent, only: tangent_type
-  use mech9_parameter_support, only: support_type, closure_form
+  use mech9_parameter_support, only: support_type, closure_form, keep_static
   use mech9_linear_form, only: linear_form_type, find_values, add_sizes, solve_for
   implicit none
   private
@@ -22,12 +22,13 @@ module mech9_varied_block
     logical :: has_whole = .false.                     !< the equations leave some out
     logical :: is_checked = .false.                    !< chains may stay open although the equations are solved
     integer, allocatable :: coordinates(:)             !< unknowns
+    integer, allocatable, private :: columns(:, :)     !< (unknowns,0:2) of their derivatives among those of all coordinates
     real(wp), allocatable :: units(:)                  !< of the unknowns: 1 rad, or the length of the mechanism [m]
     type(least_squares_type) :: equations              !< factors of the Jacobian
     logical :: by_solver = .false.                     !< `solver` serves for all right-hand sides
     real(wp), allocatable :: jacobian(:, :)            !< (equations,unknowns) in units of the unknowns
-    real(wp), allocatable :: solver(:, :)              !< (equations,unknowns) share of each opening in each unknown
-    real(wp), allocatable, private :: openings(:, :)   !< (P,equations)
+    real(wp), allocatable :: solver(:, :)              !< (equations,unknowns) share of each opening in each unknown; rows to a multiple of three
+    real(wp), allocatable, private :: openings(:, :)   !< (P,equations) and up to two columns of zeros
     real(wp), allocatable, private :: parts(:, :)      !< (P,6) the whole opening of a closure
     real(wp), allocatable, private :: sizes(:)         !< (P) of what adds up to it
     real(wp), allocatable, private :: right(:), change(:)   !< (equations), (unknowns) scratch
@@ -44,7 +45,7 @@ contains
     logical, intent(in) :: in_plane                !< the arithmetic is planar
     integer, intent(in) :: highest                 !< order of the highest derivative
     type(varied_block_type) :: block
-    integer :: c, i, rows, unknowns
+    integer :: c, i, rows, unknowns, padded
 
     block%number = number
     associate (planned => plan%blocks(number))
@@ -56,7 +57,10 @@ contains
       do i = 1, size(block%forms)
         c = planned%first_closure + i - 1
         block%forms(i) = closure_form(plan, support, planned, c, n, plan%constraints(c)%item%equations)
-        if (in_plane) block%forms(i)%first_moving = 2
+        if (in_plane) then
+          block%forms(i)%first_moving = 2
+          call keep_static(support, plan%closures(c)%base == 0, block%forms(i))
+        end if
         rows = rows + block%forms(i)%rows
         if (plan%closures(c)%coupling == 0 .and. .not. in_plane) &
           block%has_whole = block%has_whole .or. plan%constraints(c)%item%equations < 6
@@ -69,11 +73,17 @@ contains
         if (plan%closures(planned%first_closure + i - 1)%coupling == 0) &
           block%whole(i) = closure_form(plan, support, planned, planned%first_closure + i - 1, n, 6)
       end do
+      allocate (block%columns(unknowns, 0:2))
+      do i = 0, 2
+        block%columns(:, i) = 3*planned%coordinates - 2 + i
+      end do
       call block%equations%create(rows, unknowns)
       block%equations%regular_pivot = planned%regular_pivot
     end associate
     block%by_solver = rows == 3 .and. unknowns == 3 .or. rows <= (highest + 1)*n
-    allocate (block%jacobian(rows, unknowns), block%solver(rows, unknowns), block%openings(n, rows), block%parts(n, 6), &
+    ! openings are combined three at a time
+    padded = 3*((rows + 2)/3)
+    allocate (block%jacobian(rows, unknowns), block%solver(padded, unknowns), block%openings(n, padded), block%parts(n, 6), &
               block%sizes(n), block%right(rows), block%change(unknowns), source=0.0_wp)
   end function new_varied_block
 
@@ -133,7 +143,7 @@ contains
     type(varied_block_type), intent(inout) :: block     !< with its factors
     real(wp), intent(inout) :: q(n, 0:2, m)             !< derivatives of the coordinates; gets the unknowns
     integer, intent(out) :: opened_by                   !< parameter that opens a chain; 0: none
-    integer :: order, i, row, u
+    integer :: order, i, row
 
     opened_by = 0
     do order = 0, highest
@@ -145,9 +155,8 @@ contains
         row = row + block%forms(i)%rows
       end do
       if (block%by_solver) then
-        do u = 1, size(block%units)
-          call solve_for(n, size(block%right), block%solver(1, u), block%openings, q(1, order, block%coordinates(u)))
-        end do
+        call solve_for(n, m, size(block%units), size(block%solver, 1), block%solver, block%openings, &
+                       block%columns(:, order), q)
       else
         call solve_one_by_one(block, order, n, m, q)
       end if
@@ -166,7 +175,7 @@ contains
     integer :: p, u
 
     do p = 1, n
-      block%right = -block%openings(p, :)
+      block%right = -block%openings(p, :size(block%right))
       call block%equations%solve(block%right, block%change)
       do u = 1, size(block%units)
         q(p, order, block%coordinates(u)) = block%units(u)*block%change(u)
