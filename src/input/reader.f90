@@ -24,6 +24,7 @@ module mech9_reader
   use mech9_output_reader, only: read_output, check_sensitivities
   use mech9_study_reader, only: read_study
   use mech9_quantity_reader, only: read_quantities
+  use mech9_objective_reader, only: read_objectives
   use mech9_cam_reader, only: read_cams
   use mech9_diagnostics, only: diagnostics_type
   implicit none
@@ -66,6 +67,7 @@ contains
     call read_parameters(checked, model%parameters, diagnostics)
     call read_checked(checked, needs_drives, model, diagnostics)
     call read_study(checked, model%parameters, model%request%study, diagnostics)
+    call read_objectives(checked, model, diagnostics)
   end subroutine read_model
 
   !> The model of a document that is checked and in which the parameters have set their numbers; see read_model. Motors are left

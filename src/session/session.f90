@@ -24,6 +24,7 @@ module mech9_session
   use mech9_task, only: task_type, answers_only
   use mech9_run_words, only: save_short_report
   use mech9_study_task, only: work_on_study
+  use mech9_optimum_task, only: work_on_optimum
   use mech9_choice_check, only: judge_choice_of
   use mech9_unused_options, only: print_unused_options
   use mech9_overwriting, only: refuse_overwriting
@@ -89,7 +90,7 @@ contains
     type(structure_type) :: structure
     type(partition_type) :: partition
     type(model_type), target :: model
-    type(varied_document_type) :: variable
+    type(varied_document_type), target :: variable
     type(string_type), allocatable :: settings(:), inputs(:)
     type(error_type), allocatable :: err
     logical :: legible, reported
@@ -128,10 +129,12 @@ contains
         call refuse_overwriting(options, inputs, err, model%request%output)
         reported = allocated(err)
         if (allocated(err)) call diagnostics%add_error(err)
-        if (options%has('study') .or. model%request%output%with_derivatives()) &
+        if (options%has('study') .or. options%has('optimize') .or. model%request%output%with_derivatives()) &
           call new_varied_document(document, diagnostics%sources, task%needs_drives, variable)
         if (.not. allocated(err) .and. options%has('study')) then
           call work_on_study(task%program_name, options, document, variable, model, diagnostics, reported)
+        else if (.not. allocated(err) .and. options%has('optimize')) then
+          call work_on_optimum(task%program_name, options, document, variable, model, diagnostics, reported)
         else if (.not. allocated(err)) then
           call task%work(options, model, variable, diagnostics, reported, kept)
         end if

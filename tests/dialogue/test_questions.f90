@@ -125,6 +125,10 @@ contains
     call draft%give('body', 1, 'link', '2')
     call draft%give('parameter', 1, 'name', '''crank''')
     call draft%give('quantity', 1, 'name', '''stroke''')
+    if (program_name == 'mech9k') then
+      call draft%give('objective', 1, 'kind', trim(merge('''path''    ', '''function''', drive == 'table')))
+      call draft%give('optimum', 1, 'starts', '10')
+    end if
     call draft%give('study', 1, 'kind', trim(merge('''list''  ', '''random''', drive == 'table')))
     call interview%start(program_name, draft)
     interview%outline%asked = .true.

@@ -29,12 +29,12 @@ module published_problems
 contains
 
   subroutine evaluate(self, x, y, with_derivatives, values, has_value)
-    class(problem_type), intent(inout) :: self
-    real(wp), intent(in) :: x(:)
-    real(wp), intent(in) :: y(:, :)
-    logical, intent(in) :: with_derivatives
-    type(residual_values_type), intent(inout) :: values
-    logical, intent(out) :: has_value
+    class(problem_type), intent(inout) :: self                      !< the problem
+    real(wp), intent(in) :: x(:)                                   !< (n) shared unknowns
+    real(wp), intent(in) :: y(:, :)                                !< (own,groups) unknowns of each group
+    logical, intent(in) :: with_derivatives                        !< derivatives are asked for
+    type(residual_values_type), intent(inout) :: values            !< gets the residuals
+    logical, intent(out) :: has_value                              !< the residuals have a value here
     real(wp), parameter :: measured(15) = [0.14_wp, 0.18_wp, 0.22_wp, 0.25_wp, 0.29_wp, 0.32_wp, 0.35_wp, 0.39_wp, 0.37_wp, &
                                            0.58_wp, 0.73_wp, 0.96_wp, 1.34_wp, 2.10_wp, 4.39_wp]
     real(wp) :: bottom
@@ -97,12 +97,12 @@ contains
   end subroutine evaluate
 
   subroutine evaluate_circle(self, x, y, with_derivatives, values, has_value)
-    class(circle_type), intent(inout) :: self
-    real(wp), intent(in) :: x(:)
-    real(wp), intent(in) :: y(:, :)
-    logical, intent(in) :: with_derivatives
-    type(residual_values_type), intent(inout) :: values
-    logical, intent(out) :: has_value
+    class(circle_type), intent(inout) :: self                       !< the points
+    real(wp), intent(in) :: x(:)                                   !< (n) shared unknowns
+    real(wp), intent(in) :: y(:, :)                                !< (own,groups) unknowns of each group
+    logical, intent(in) :: with_derivatives                        !< derivatives are asked for
+    type(residual_values_type), intent(inout) :: values            !< gets the residuals
+    logical, intent(out) :: has_value                              !< the residuals have a value here
     real(wp) :: angle, along(2)
     integer :: i, g, row
 
@@ -153,13 +153,13 @@ contains
 
   !> Solve a problem between bounds.
   subroutine solve(name, rows, x, low, high, outcome, most_steps)
-    integer, intent(in) :: name
-    integer, intent(in) :: rows
-    real(wp), intent(inout) :: x(:)
-    real(wp), intent(in) :: low(:)
-    real(wp), intent(in) :: high(:)
-    type(least_squares_outcome_type), intent(out) :: outcome
-    integer, intent(in) :: most_steps
+    integer, intent(in) :: name                              !< of the problem
+    integer, intent(in) :: rows                              !< its number of residuals
+    real(wp), intent(inout) :: x(:)                          !< start, then the minimum
+    real(wp), intent(in) :: low(:)                           !< least x
+    real(wp), intent(in) :: high(:)                          !< largest x
+    type(least_squares_outcome_type), intent(out) :: outcome !< how the search ended
+    integer, intent(in) :: most_steps                        !< number of steps that are allowed
     type(problem_type) :: problem
     type(least_squares_settings_type) :: settings
     real(wp) :: y(0, 1), bounds(0, 1)

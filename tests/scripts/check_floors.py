@@ -10,11 +10,11 @@ import sys
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from mech9_cases import TREE, Checks, text_of
 
-FLOORS = ['base', 'system', 'numerics', 'numerics/minimisation', 'spatial', 'structure', 'model/couplings', 'model/laws', 'model/request', 'model',
+FLOORS = ['base', 'system', 'numerics', 'numerics/minima', 'spatial', 'structure', 'model/couplings', 'model/laws', 'model/request', 'model',
           'sampling', 'user', 'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
           'ode', 'dynamics', 'dynamics/planning', 'dynamics/variations', 'simulation', 'analyses/reactions', 'analyses/equilibrium',
-          'analyses/sensitivity', 'analyses', 'wording', 'input/document', 'input', 'output', 'pictures/plots', 'pictures/scene',
-          'pictures/films', 'terminal', 'session/command', 'session/words', 'facade', 'session/results', 'session/study', 'session',
+          'analyses/sensitivity', 'analyses/synthesis', 'analyses', 'wording', 'input/document', 'input', 'output', 'pictures/plots', 'pictures/scene',
+          'pictures/films', 'terminal', 'session/command', 'session/words', 'facade', 'session/results', 'session/study', 'session/synthesis', 'session',
           'dialogue/drafts',
           'interchange/xml', 'interchange', 'dialogue',
           'programs']

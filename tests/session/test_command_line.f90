@@ -117,7 +117,7 @@ contains
         call parse(trim(word), options, err)       ! it makes the data file
       else if (name == 'out') then
         call parse('--import|a.urdf|'//trim(word), options, err)
-      else if (name == 'part') then
+      else if (any(name == [character(len=8) :: 'part', 'threads', 'continue'])) then
         call parse('a.nml|--study|'//trim(word), options, err)
       else if (name == 'mode') then
         call parse('a.nml|--modes|--animate|a.svg|'//trim(word), options, err, program_name)

@@ -110,7 +110,7 @@ contains
       call ask_about_structure(draft, outline, topic, group_row, questions, count)
       return
     end if
-    if (group == 'study' .and. draft%count_of('study') == 0) return
+    if (any(group == ['study  ', 'optimum']) .and. draft%count_of(group) == 0) return
     if (group == 'user' .and. .not. has_procedures(draft)) return
     if (group == 'cam' .and. .not. may_have_cams(draft)) return
     if (group == 'coupling' .and. draft%number('mechanism', 1, 'coordinates') == 1) return
@@ -118,7 +118,8 @@ contains
       if (outline%program_name == 'mech9k' .or. .not. all(outline%independent)) &
         call append(questions, count, question_type(kind=ask_guesses, topic=topic, group_row=group_row))
     else if (any(item_table(rows)%seldom) .and. group /= 'mechanism' .and. &
-             (all(group /= ['load     ', 'motor    ', 'cam      ', 'coupling ', 'parameter', 'quantity ']) .or. &
+             (all(group /= ['load     ', 'motor    ', 'cam      ', 'coupling ', 'parameter', 'quantity ', &
+                           'objective']) .or. &
               draft%count_of(group) > 0)) then
       ! a conversation does not begin with rarely used names; those of the mechanism can be changed by their names, and
       ! those of loads, motors, cams, couplings, parameters and quantities are for the ones that are there

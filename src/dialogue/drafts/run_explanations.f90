@@ -74,7 +74,28 @@ module mech9_run_explanations
     explanation_type('study', 'seed', 'random latin sobol', &
                   'The same seed draws the same values, on any machine and in any order. Another one draws others.', '2'), &
     explanation_type('study', 'file', 'list', &
-                  'Each line of this file has the values of all parameters, in the order of the parameters.', 'designs.dat')]
+                  'Each line of this file has the values of all parameters, in the order of the parameters.', 'designs.dat'), &
+    explanation_type('objective', 'kind', '', &
+                  'With the option --optimize the program finds the values of the parameters, between their low and high, with '// &
+                  'which a point follows a path, or a coordinate a function, as well as possible.', 'path'), &
+    explanation_type('objective', 'point', 'path', &
+                  'The point must be one of the groups &point. Its distances from the targets are made small.', 'P'), &
+    explanation_type('objective', 'of', 'function', &
+                  'The coordinate follows the function: q6 is coordinate 6.', 'q6'), &
+    explanation_type('objective', 'over', 'function', &
+                  'The function is one of time, t, or of a coordinate with a drive, such as q5.', 'q5'), &
+    explanation_type('objective', 'file', '', &
+                  'Each line of this file is a target. For a path it holds x and y, or x, y and z, in m; with given times '// &
+                  'the time stands before them. For a function it holds the variable and the value.', 'path.dat'), &
+    explanation_type('objective', 'timing', 'path', &
+                  'With free the point meets the targets one after the other at times that the search finds; with given it '// &
+                  'meets each target at the time in its line.', 'free'), &
+    explanation_type('objective', 'weight', '', &
+                  'Where there are several objectives, their sums of squares are added with these factors.', '10'), &
+    explanation_type('optimum', 'starts', '', &
+                  'Each start leads to the best design near it. More starts find the best one of all more surely.', '1000'), &
+    explanation_type('optimum', 'seed', '', &
+                  'The same seed gives the same starts. Another one gives others.', '2')]
 
   type(explanation_type), parameter :: run_texts(*) = [ &
     explanation_type('time', 'start', '', &

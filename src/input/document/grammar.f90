@@ -4,46 +4,14 @@
 !> Each field of a row is longer than its longest text, since longer ones would be cut without a warning; a test looks at all rows.
 module mech9_grammar
   use mech9_text, only: lower
+  use mech9_grammar_rows, only: group_row_type, item_row_type, unlimited, for_forces, needed, optional
+  use mech9_study_grammar, only: study_items
   implicit none
   private
   public :: group_row_type, item_row_type, group_table, item_table, unlimited, for_forces
   public :: find_group_row, rows_of_group, find_item_rows, item_row_for_kind, takes_kind, words_of
   public :: names_of_groups, names_in_group
 
-  !> One kind of group.
-  type :: group_row_type
-    character(len=10) :: name
-    logical :: repeats           !< may stand more than once
-    character(len=11) :: key     !< the name whose value tells its groups apart; empty: none does
-    !> Program that uses it: both, mech9k, mech9d, or for_forces: mech9d, and mech9k where forces are asked for.
-    character(len=7) :: program
-    character(len=120) :: help
-  end type group_row_type
-
-  !> One name of a group. Several rows may share a name where its meaning depends on the kind.
-  type :: item_row_type
-    character(len=10) :: group
-    character(len=19) :: name
-    character(len=8) :: type  !< integer, real, text or logical
-    integer :: low            !< fewest values
-    integer :: high           !< most values; more than one makes a list
-    !> Empty for pure numbers. `angle` is rad or degrees, as angle_unit says; `q` is the unit of
-    !> the coordinate: an angle, a length, or that of a user's pair.
-    character(len=13) :: unit
-    logical :: needed             !< must be given wherever its kind allows it
-    character(len=22) :: default  !< the default as it would be written; in parentheses where it is a rule
-    character(len=10) :: range    !< the range of values: empty, >0, >=0, >=1, or >0 and <1
-    character(len=108) :: words   !< the texts allowed, with blanks between; empty: any
-    character(len=72) :: kinds    !< the kinds of the group it belongs to, or the laws of time, as in law:harmonic; empty: all
-    character(len=120) :: help
-    character(len=44) :: example  !< a value as it would be written
-    logical :: seldom = .false.   !< the conversation asks for it only on request
-    character(len=7) :: program = 'both'  !< program that uses it; the conversation of the other one does not ask for it
-  end type item_row_type
-
-  integer, parameter :: unlimited = huge(1)
-  character(len=*), parameter :: for_forces = 'forces'
-  logical, parameter :: needed = .true., optional = .false.
   character(len=*), parameter :: screws = 'revolute prismatic helical'
   character(len=*), parameter :: joints = 'spherical universal cylindrical planar free'
   character(len=*), parameter :: motion_laws = 'dwell constant-velocity harmonic cycloidal polynomial345 polynomial4567 '// &
@@ -75,6 +43,10 @@ module mech9_grammar
                    'a number from a whole run: an extreme, a mean or an integral of a column of the results'), &
     group_row_type('study', .false., '', 'both', &
                    'the sets of parameter values for which --study makes runs'), &
+    group_row_type('objective', .true., '', 'mech9k', &
+                   'a path or a function that the mechanism should follow, for --optimize'), &
+    group_row_type('optimum', .false., '', 'mech9k', &
+                   'the search of --optimize for the values of the parameters that meet the objectives best'), &
     group_row_type('time', .false., '', 'both', &
                    'the times of the results: start + (end - start) i/intervals, i = 0 .. intervals'), &
     group_row_type('solver', .false., '', 'mech9d', 'method and tolerances of the integration'), &
@@ -390,51 +362,6 @@ module mech9_grammar
     item_row_type('cam', 'guide', 'integer', 1, 1, '', optional, '(found)', '>=1', '', '', &
                   'coordinate of the pair that guides the follower, for the pressure angle; by default its pair with link 1', '2', &
                   seldom=.true.)]
-
-  type(item_row_type), parameter :: study_items(*) = [ &
-    item_row_type('parameter', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
-                  'its name in results; letters, digits and _', '''crank'''), &
-    item_row_type('parameter', 'sets', 'text', 1, unlimited, '', needed, '', '', '', '', &
-                  'the numbers that it sets, named as in --set: number 1 of point in the second &pair, for instance', &
-                  '''pair(2).point(1)'''), &
-    item_row_type('parameter', 'factors', 'real', 1, unlimited, '', optional, '1', '', '', '', &
-                  'each number is its factor times the value, plus its term: a factor for each number, or one for all', '1, 0.5', &
-                  seldom=.true.), &
-    item_row_type('parameter', 'terms', 'real', 1, unlimited, '', optional, '0', '', '', '', &
-                  'the part of each number that does not depend on the value: a term for each number, or one for all', '0, 0.1', &
-                  seldom=.true.), &
-    item_row_type('parameter', 'value', 'real', 1, 1, '', optional, '(from the number)', '', '', '', &
-                  'its value; by default the one with which the only number that it sets stays as it is written', '0.3'), &
-    item_row_type('parameter', 'low', 'real', 1, 1, '', optional, '(none)', '', '', '', &
-                  'its least value in studies and optimisations', '0.2', seldom=.true.), &
-    item_row_type('parameter', 'high', 'real', 1, 1, '', optional, '(none)', '', '', '', &
-                  'its largest value in studies and optimisations', '0.4', seldom=.true.), &
-    item_row_type('parameter', 'count', 'integer', 1, 1, '', optional, '(none)', '>=1', '', '', &
-                  'how many values from low to high a grid has', '11', seldom=.true.), &
-    item_row_type('parameter', 'spread', 'real', 1, 1, '', optional, '(none)', '>0', '', '', &
-                  'how far it scatters about its value: standard deviation, or half the width of a uniform distribution', '0.001', &
-                  seldom=.true.), &
-    item_row_type('parameter', 'distribution', 'text', 1, 1, '', optional, '''normal''', '', 'normal uniform', '', &
-                  'the distribution of which spread is the measure', '''uniform''', seldom=.true.), &
-    item_row_type('quantity', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
-                  'its name in results; letters, digits and _', '''stroke'''), &
-    item_row_type('quantity', 'of', 'text', 1, 1, '', needed, '', '', '', '', &
-                  'the column of the results from which it is taken', '''P.x'''), &
-    item_row_type('quantity', 'take', 'text', 1, 1, '', needed, '', '', 'start end min max peak range mean rms integral at', '', &
-                  'which number: peak is the largest magnitude, range max - min; mean, rms and integral are over time', &
-                  '''range'''), &
-    item_row_type('quantity', 'at', 'real', 1, 1, 's', optional, '(none)', '', '', '', &
-                  'the time of the value, for take=''at''', '0.5', seldom=.true.), &
-    item_row_type('study', 'kind', 'text', 1, 1, '', needed, '', '', 'grid list random latin sobol', '', &
-                  'all combinations on a grid, a list in a file, or values that are drawn: at random, latin hypercube or Sobol', &
-                  '''grid'''), &
-    item_row_type('study', 'runs', 'integer', 1, 1, '', needed, '', '>=1', '', 'random latin sobol', &
-                  'how many sets of values are drawn', '1000'), &
-    item_row_type('study', 'seed', 'integer', 1, 1, '', optional, '1', '>=0', '', 'random latin sobol', &
-                  'another seed draws other values', '2', seldom=.true.), &
-    item_row_type('study', 'file', 'text', 1, 1, '', needed, '', '', '', 'list', &
-                  'a text file with the values of all parameters in each line, in their order, beside the data file', &
-                  '''designs.dat''')]
 
   type(item_row_type), parameter :: run_items(*) = [ &
     item_row_type('time', 'start', 'real', 1, 1, 's', optional, '0', '', '', '', 'time of the first result', '0'), &

@@ -12,7 +12,7 @@ module mech9_option_conflicts
   character(len=*), parameter :: of_rest(*) = [character(len=11) :: 'equilibrium', 'modes', 'linear']
   !> Options that a conversation does not take.
   character(len=*), parameter :: of_files(*) = [character(len=11) :: 'check', 'structure', 'plan', 'branches', 'range', 'cam', &
-                                                'equilibrium', 'modes', 'linear', 'study', 'set']
+                                                'equilibrium', 'modes', 'linear', 'study', 'optimize', 'set']
 
 contains
 
@@ -55,12 +55,12 @@ contains
     type(error_type), allocatable, intent(out) :: err  !< allocated if they do
 
     if (has('help') .or. has('version') .or. has('help-data')) return
-    if (has('import') .or. has('out')) then
+    if (has('import') .or. (has('out') .and. .not. has('optimize'))) then
       call judge_import(given, has_file, err)
     else if (has('part') .and. .not. has('study')) then
       call raise(err, exit_usage, '--part K/N is a part of --study; give both')
-    else if (has('threads') .and. .not. has('study')) then
-      call raise(err, exit_usage, '--threads N is the number of threads of --study; give both')
+    else if (has('threads') .and. .not. (has('study') .or. has('optimize'))) then
+      call raise(err, exit_usage, '--threads N is the number of threads of --study or --optimize; give one of them, too')
     else if (has('continue') .and. .not. has('study')) then
       call raise(err, exit_usage, '--continue FILE.h5 makes the runs of --study that the file does not have yet; give both')
     else if (has('continue') .and. (has('hdf5') .or. has('no-write'))) then
@@ -76,8 +76,12 @@ contains
                  'equilibrium, too')
     else if (converses) then
       call judge_conversation(program_name, given, has_file, err)
+    else if (has('study') .and. has('optimize')) then
+      call raise(err, exit_usage, '--study and --optimize are different tasks; give one of them')
     else if (has('study')) then
       call judge_study(given, err)
+    else if (has('optimize')) then
+      call judge_optimum(given, err)
     else if (rest_of(given) /= '') then
       call judge_rest(given, err)
     else if (has('animate') .and. answer_of(given) /= '') then
@@ -100,7 +104,7 @@ contains
     integer :: i
 
     if (.not. any(given == 'import')) then
-      call raise(err, exit_usage, '--out names the data file that --import FILE writes; give both')
+      call raise(err, exit_usage, '--out names the data file that --import FILE or --optimize writes; give one of them, too')
     else if (has_file) then
       call raise(err, exit_usage, 'a data file is given beside --import, which makes one; leave it out, or write the file of '// &
                  'loops directly behind that of the robot')
@@ -122,6 +126,17 @@ contains
     if (other /= '') call raise(err, exit_usage, '--study makes many runs and writes a table with a row for each; leave --'// &
                                 other//' out')
   end subroutine judge_study
+
+  !> Fail because of options that have no meaning beside --optimize.
+  pure subroutine judge_optimum(given, err)
+    character(len=*), intent(in) :: given(:)           !< names of the options that are given, without the dashes
+    type(error_type), allocatable, intent(out) :: err  !< allocated if there is one
+    character(len=:), allocatable :: other
+
+    other = first_of([answers, [character(len=11) :: 'plot', 'sketch', 'animate', 'view', 'hdf5', 'verbose']], given)
+    if (other /= '') call raise(err, exit_usage, '--optimize searches for a design and writes a table with a row for each one '// &
+                                'that it finds; leave --'//other//' out, and give it to a run of the design')
+  end subroutine judge_optimum
 
   !> Fail because of --modes with --animate and without --mode, or the other way round.
   pure subroutine judge_mode(has_mode, err)

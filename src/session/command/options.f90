@@ -69,9 +69,11 @@ module mech9_options
     option_type('part', needed_argument, 'K/N', part_of_whole, .false., both, &
                 'make part K of N parts of a study, for N jobs'), &
     option_type('threads', needed_argument, 'N', whole_number, .false., both, &
-                'make the runs of a study in N threads; without it one for each core'), &
+                'make a study or a search in N threads; without it one for each core'), &
     option_type('continue', needed_argument, 'FILE.h5', any_text, .false., both, &
                 'make the runs of a study that its HDF5 file does not have yet'), &
+    option_type('optimize', no_argument, '', any_text, .false., 'mech9k', &
+                'find the parameters with which the groups &objective are met best'), &
     option_type('set', needed_argument, 'GROUP.NAME=VALUE', assignment, .true., both, &
                 'replace a value of the data file; may be repeated'), &
     option_type('dialogue', no_argument, '', any_text, .false., both, &
@@ -83,7 +85,7 @@ module mech9_options
     option_type('import', needed_argument, 'FILE [LOOPS]', any_text, .false., both, &
                 'make a data file of a robot (URDF, MJCF, SDF); LOOPS: closing joints', 2), &
     option_type('out', needed_argument, 'FILE.nml', any_text, .false., both, &
-                'the data file that --import writes; standard output without it'), &
+                'the data file that --import writes, or that of the best design'), &
     option_type('quiet', no_argument, '', any_text, .false., both, &
                 'print only errors'), &
     option_type('verbose', no_argument, '', any_text, .false., both, &

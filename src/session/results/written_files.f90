@@ -96,6 +96,7 @@ contains
     else
       call append(files, name_of(options, 'table', 'table'), paths%table)
     end if
+    if (options%has('optimize')) call append(files, '--out', options%argument('out'))
     if (options%has('continue')) then
       call append(files, '--continue', paths%hdf5)
     else

@@ -1,6 +1,6 @@
 !> The making of the runs of a study on the cores of one machine.
 !>
-!> This is the one place that knows OpenMP. Compiled without, its directives are comments, and one thread makes all runs.
+!> OpenMP is known here and in the starts of a synthesis alone. Compiled without, its directives are comments, and one thread makes all runs.
 module mech9_study_threads
   !$ use omp_lib, only: omp_get_max_threads
   use mech9_kinds, only: wp

@@ -1,0 +1,181 @@
+!> The synthesis of a mechanism, which finds the designs that meet its objectives best, from many starts.
+module mech9_synthesis
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_model, only: model_type
+  use mech9_variable_model, only: variable_model_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_bounded_least_squares, only: residual_values_type
+  use mech9_design_space, only: design_space_type, design_type, new_design_space, new_design, fix_design_space
+  use mech9_open_position, only: open_position_type, new_open_position
+  use mech9_exact_fit, only: exact_fit_type, new_exact_fit
+  use mech9_targets, only: target_type, gather_targets
+  use mech9_design_search, only: search_type, found_design_type, new_search, search_from
+  implicit none
+  private
+  public :: synthesis_type, optimum_design_type, new_synthesis
+
+  !> A distinct design to which starts led.
+  type, extends(found_design_type) :: optimum_design_type
+    integer :: starts = 0        !< number of starts that led to it
+    integer :: last = 0          !< the last of them
+  end type optimum_design_type
+
+  !> A synthesis: its designs, its targets, and the optima so far, best first. It must not be copied.
+  type :: synthesis_type
+    type(design_space_type) :: space
+    type(target_type), allocatable :: targets(:)
+    type(optimum_design_type), allocatable :: optima(:)
+    integer :: done = 0          !< number of starts that were made
+    integer :: reached = 0       !< number of starts that led to a design that can move through the whole run
+  contains
+    procedure :: make_start
+    procedure :: add
+    procedure :: keep_verified
+  end type synthesis_type
+
+  !> Designs are the same where their parameters differ by less than this part of their ranges,
+  real(wp), parameter :: same_place = 1.0e-4_wp
+  !> and their values by less than this part.
+  real(wp), parameter :: same_value = 1.0e-5_wp
+  !> Round-off of the sum of squares of differences of about one.
+  real(wp), parameter :: round_off = 1.0e-20_wp
+
+contains
+
+  !> Prepare a synthesis. Fails where a parameter has no derivatives.
+  subroutine new_synthesis(variable, model, plan, synthesis, err)
+    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
+    type(model_type), intent(in) :: model                           !< with the values of the data file, and its objectives
+    type(plan_type), intent(in) :: plan                             !< its plan
+    type(synthesis_type), intent(out) :: synthesis                  !< ready for starts
+    type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
+
+    call new_design_space(variable, model, plan, synthesis%space, err)
+    if (allocated(err)) return
+    call gather_targets(model, synthesis%targets)
+    allocate (synthesis%optima(0))
+  end subroutine new_synthesis
+
+  !> Search from one start. The result depends on the seed and the number of the start alone.
+  subroutine make_start(self, space, seed, start, found)
+    class(synthesis_type), intent(in) :: self                          !< the synthesis
+    type(design_space_type), intent(inout), target :: space            !< its designs, of the calling thread
+    integer, intent(in) :: seed                                        !< another seed gives other starts
+    integer, intent(in) :: start                                       !< number of the start, from 1
+    type(found_design_type), allocatable, intent(out) :: found(:)      !< designs to which it led
+    type(search_type), allocatable :: search
+
+    allocate (search)
+    call new_search(space, self%targets, search)
+    call search_from(space, search, seed, start, found)
+  end subroutine make_start
+
+  !> Add the designs to which a start led to the optima. Starts are added in the order of their numbers.
+  subroutine add(self, start, found)
+    class(synthesis_type), intent(inout) :: self             !< the synthesis
+    integer, intent(in) :: start                             !< number of the start
+    type(found_design_type), intent(in) :: found(:)          !< designs to which it led
+    type(optimum_design_type) :: new
+    integer :: i, k
+
+    self%done = self%done + 1
+    if (any(found%found)) self%reached = self%reached + 1
+    do i = 1, size(found)
+      if (.not. found(i)%found) cycle
+      new%found_design_type = found(i)
+      new%starts = 1
+      new%last = start
+      do k = 1, size(self%optima)
+        if (.not. is_same(self%space, found(i), self%optima(k))) cycle
+        new%starts = self%optima(k)%starts + merge(0, 1, self%optima(k)%last == start)
+        if (self%optima(k)%value <= new%value) new%found_design_type = self%optima(k)%found_design_type
+        self%optima = [self%optima(:k - 1), self%optima(k + 1:)]
+        exit
+      end do
+      k = count(self%optima%value <= new%value)
+      self%optima = [self%optima(:k), new, self%optima(k + 1:)]
+    end do
+  end subroutine add
+
+  !> Keep the optima whose motion is the same where their data file is read, planned and assembled anew.
+  subroutine keep_verified(self)
+    class(synthesis_type), intent(inout) :: self   !< the synthesis
+    logical :: holds(size(self%optima))
+    integer :: i
+
+    do i = 1, size(holds)
+      call verify(self, self%optima(i), holds(i))
+    end do
+    self%optima = pack_optima(self%optima, holds)
+  end subroutine keep_verified
+
+  !> The optima that hold.
+  pure function pack_optima(optima, holds) result(kept)
+    type(optimum_design_type), intent(in) :: optima(:)   !< all
+    logical, intent(in) :: holds(:)                      !< whether each is kept
+    type(optimum_design_type), allocatable :: kept(:)
+    integer :: i, n
+
+    allocate (kept(count(holds)))
+    n = 0
+    do i = 1, size(optima)
+      if (.not. holds(i)) cycle
+      n = n + 1
+      kept(n) = optima(i)
+    end do
+  end function pack_optima
+
+  !> Follow the motion of an optimum with a plan of its own, and compare its value.
+  subroutine verify(self, optimum, holds)
+    class(synthesis_type), intent(inout) :: self             !< the synthesis
+    type(optimum_design_type), intent(in) :: optimum         !< the optimum
+    logical, intent(out) :: holds                            !< its motion has the value that was found
+    type(design_space_type), target :: alone
+    type(design_type) :: design
+    type(open_position_type) :: position
+    type(exact_fit_type) :: fit
+    type(residual_values_type) :: values
+    type(state_type) :: start
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: y(:, :)
+    real(wp) :: all(size(self%space%values))
+
+    holds = .false.
+    all = self%space%values
+    all(self%space%varied) = optimum%x
+    call self%space%variable%at(all, alone%model, err)
+    if (allocated(err)) return
+    call make_plan(alone%model%mechanism, alone%model%problem%partition, optimum%q, alone%plan, start, err)
+    if (allocated(err)) return
+    alone%model%request%time = self%space%model%request%time
+    alone%values = all
+    alone%varied = self%space%varied
+    alone%low = self%space%low
+    alone%high = self%space%high
+    alone%tangents = self%space%tangents
+    call fix_design_space(alone)
+    call new_design(alone, design)
+    call new_open_position(design, position)
+    call new_exact_fit(alone, design, position, self%targets, fit)
+    fit%q_start = start%q
+    fit%times = optimum%times
+    allocate (y(fit%own, fit%groups))
+    if (fit%own > 0) y(1, :) = (optimum%times - fit%start)/(fit%end - fit%start)
+    allocate (values%r(3, fit%groups))
+    call fit%evaluate((optimum%x - alone%low)/(alone%high - alone%low), y, .false., values, holds)
+    if (holds) holds = abs(sum(values%r**2) - optimum%value) <= same_value*optimum%value + round_off*sum(values%r**2 + 1.0_wp)
+  end subroutine verify
+
+  !> Whether two designs are the same but for small differences.
+  pure logical function is_same(space, a, b)
+    type(design_space_type), intent(in) :: space      !< the designs
+    type(found_design_type), intent(in) :: a          !< a design
+    class(found_design_type), intent(in) :: b         !< another one
+
+    is_same = all(abs(a%x - b%x) <= same_place*(space%high - space%low)) .and. &
+              abs(a%value - b%value) <= same_value*max(a%value, b%value)
+  end function is_same
+end module mech9_synthesis

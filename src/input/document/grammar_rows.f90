@@ -1,0 +1,41 @@
+!> The rows of the table that describes the language of the data file.
+module mech9_grammar_rows
+  implicit none
+  private
+  public :: group_row_type, item_row_type, unlimited, for_forces, needed, optional
+
+  !> One kind of group.
+  type :: group_row_type
+    character(len=10) :: name
+    logical :: repeats           !< may stand more than once
+    character(len=11) :: key     !< the name whose value tells its groups apart; empty: none does
+    !> Program that uses it: both, mech9k, mech9d, or for_forces: mech9d, and mech9k where forces are asked for.
+    character(len=7) :: program
+    character(len=120) :: help
+  end type group_row_type
+
+  !> One name of a group. Several rows may share a name where its meaning depends on the kind.
+  type :: item_row_type
+    character(len=10) :: group
+    character(len=19) :: name
+    character(len=8) :: type  !< integer, real, text or logical
+    integer :: low            !< fewest values
+    integer :: high           !< most values; more than one makes a list
+    !> Empty for pure numbers. `angle` is rad or degrees, as angle_unit says; `q` is the unit of
+    !> the coordinate: an angle, a length, or that of a user's pair.
+    character(len=13) :: unit
+    logical :: needed             !< must be given wherever its kind allows it
+    character(len=22) :: default  !< the default as it would be written; in parentheses where it is a rule
+    character(len=10) :: range    !< the range of values: empty, >0, >=0, >=1, or >0 and <1
+    character(len=108) :: words   !< the texts allowed, with blanks between; empty: any
+    character(len=72) :: kinds    !< the kinds of the group it belongs to, or the laws of time, as in law:harmonic; empty: all
+    character(len=120) :: help
+    character(len=44) :: example  !< a value as it would be written
+    logical :: seldom = .false.   !< the conversation asks for it only on request
+    character(len=7) :: program = 'both'  !< program that uses it; the conversation of the other one does not ask for it
+  end type item_row_type
+
+  integer, parameter :: unlimited = huge(1)
+  character(len=*), parameter :: for_forces = 'forces'
+  logical, parameter :: needed = .true., optional = .false.
+end module mech9_grammar_rows

@@ -1,0 +1,79 @@
+!> The names of the groups for parameters, quantities, studies and objectives.
+module mech9_study_grammar
+  use mech9_grammar_rows, only: item_row_type, unlimited, needed, optional
+  implicit none
+  private
+  public :: study_items
+
+  type(item_row_type), parameter :: study_items(*) = [ &
+    item_row_type('parameter', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
+                  'its name in results; letters, digits and _', '''crank'''), &
+    item_row_type('parameter', 'sets', 'text', 1, unlimited, '', needed, '', '', '', '', &
+                  'the numbers that it sets, named as in --set: number 1 of point in the second &pair, for instance', &
+                  '''pair(2).point(1)'''), &
+    item_row_type('parameter', 'factors', 'real', 1, unlimited, '', optional, '1', '', '', '', &
+                  'each number is its factor times the value, plus its term: a factor for each number, or one for all', '1, 0.5', &
+                  seldom=.true.), &
+    item_row_type('parameter', 'terms', 'real', 1, unlimited, '', optional, '0', '', '', '', &
+                  'the part of each number that does not depend on the value: a term for each number, or one for all', '0, 0.1', &
+                  seldom=.true.), &
+    item_row_type('parameter', 'value', 'real', 1, 1, '', optional, '(from the number)', '', '', '', &
+                  'its value; by default the one with which the only number that it sets stays as it is written', '0.3'), &
+    item_row_type('parameter', 'low', 'real', 1, 1, '', optional, '(none)', '', '', '', &
+                  'its least value in studies and optimisations', '0.2', seldom=.true.), &
+    item_row_type('parameter', 'high', 'real', 1, 1, '', optional, '(none)', '', '', '', &
+                  'its largest value in studies and optimisations', '0.4', seldom=.true.), &
+    item_row_type('parameter', 'count', 'integer', 1, 1, '', optional, '(none)', '>=1', '', '', &
+                  'how many values from low to high a grid has', '11', seldom=.true.), &
+    item_row_type('parameter', 'spread', 'real', 1, 1, '', optional, '(none)', '>0', '', '', &
+                  'how far it scatters about its value: standard deviation, or half the width of a uniform distribution', '0.001', &
+                  seldom=.true.), &
+    item_row_type('parameter', 'distribution', 'text', 1, 1, '', optional, '''normal''', '', 'normal uniform', '', &
+                  'the distribution of which spread is the measure', '''uniform''', seldom=.true.), &
+    item_row_type('quantity', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
+                  'its name in results; letters, digits and _', '''stroke'''), &
+    item_row_type('quantity', 'of', 'text', 1, 1, '', needed, '', '', '', '', &
+                  'the column of the results from which it is taken', '''P.x'''), &
+    item_row_type('quantity', 'take', 'text', 1, 1, '', needed, '', '', 'start end min max peak range mean rms integral at', '', &
+                  'which number: peak is the largest magnitude, range max - min; mean, rms and integral are over time', &
+                  '''range'''), &
+    item_row_type('quantity', 'at', 'real', 1, 1, 's', optional, '(none)', '', '', '', &
+                  'the time of the value, for take=''at''', '0.5', seldom=.true.), &
+    item_row_type('study', 'kind', 'text', 1, 1, '', needed, '', '', 'grid list random latin sobol', '', &
+                  'all combinations on a grid, a list in a file, or values that are drawn: at random, latin hypercube or Sobol', &
+                  '''grid'''), &
+    item_row_type('study', 'runs', 'integer', 1, 1, '', needed, '', '>=1', '', 'random latin sobol', &
+                  'how many sets of values are drawn', '1000'), &
+    item_row_type('study', 'seed', 'integer', 1, 1, '', optional, '1', '>=0', '', 'random latin sobol', &
+                  'another seed draws other values', '2', seldom=.true.), &
+    item_row_type('study', 'file', 'text', 1, 1, '', needed, '', '', '', 'list', &
+                  'a text file with the values of all parameters in each line, in their order, beside the data file', &
+                  '''designs.dat'''), &
+    item_row_type('objective', 'kind', 'text', 1, 1, '', needed, '', '', 'path function', '', &
+                  'a point follows a path through given points, or a coordinate follows a function', '''path''', &
+                  program='mech9k'), &
+    item_row_type('objective', 'point', 'text', 1, 1, '', needed, '', '', '', 'path', &
+                  'name of the point that follows the path', '''P''', &
+                  program='mech9k'), &
+    item_row_type('objective', 'of', 'text', 1, 1, '', needed, '', '', '', 'function', &
+                  'the coordinate that follows the function, by its heading in the results', '''q6''', &
+                  program='mech9k'), &
+    item_row_type('objective', 'over', 'text', 1, 1, '', optional, '''t''', '', '', 'function', &
+                  'the variable of the function: t, or a driven coordinate', '''q5''', &
+                  program='mech9k'), &
+    item_row_type('objective', 'file', 'text', 1, 1, '', needed, '', '', '', '', &
+                  'a text file beside the data file, with a target in each line: x y [z] or t x y [z] of a path, or x and f(x)', &
+                  '''path.dat''', program='mech9k'), &
+    item_row_type('objective', 'timing', 'text', 1, 1, '', optional, '''free''', '', 'free given', 'path', &
+                  'the points are met at any times in their order (free), or each at the time t in its line (given)', &
+                  '''given''', program='mech9k'), &
+    item_row_type('objective', 'weight', 'real', 1, 1, '', optional, '1', '>0', '', '', &
+                  'factor of its sum of squares where there are several objectives', '10', &
+                  seldom=.true., program='mech9k'), &
+    item_row_type('optimum', 'starts', 'integer', 1, 1, '', optional, '100', '>=1', '', '', &
+                  'number of sets of values at which the search starts', '1000', &
+                  program='mech9k'), &
+    item_row_type('optimum', 'seed', 'integer', 1, 1, '', optional, '1', '>=0', '', '', &
+                  'another seed gives other starts', '2', &
+                  seldom=.true., program='mech9k')]
+end module mech9_study_grammar

@@ -1,0 +1,263 @@
+!> The groups &objective and &optimum of a checked document: targets that a motion should meet, and the search for the best design.
+module mech9_objective_reader
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_counted, only: counted
+  use mech9_error, only: error_type
+  use mech9_source, only: source_type, span_type, read_source
+  use mech9_numeral, only: numeral_type, read_numeral
+  use mech9_document, only: document_type, group_type
+  use mech9_lookup, only: groups_named, group_or_empty, get_integer, get_real, get_text, span_of
+  use mech9_diagnostics, only: diagnostics_type, printable
+  use mech9_table_file, only: beside
+  use mech9_model, only: model_type
+  use mech9_result_units, only: unit_of
+  use mech9_objective, only: objective_type, path_objective, function_objective, timing_given, timing_free, timing_over
+  implicit none
+  private
+  public :: read_objectives
+
+  character(len=*), parameter :: gaps = ' ,;'//achar(9)//achar(13)
+
+contains
+
+  !> Read all groups &objective and the group &optimum.
+  subroutine read_objectives(document, model, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(model_type), intent(inout) :: model              !< with mechanism and problem; gets the objectives
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(group_type) :: search
+    integer, allocatable :: numbers(:)
+    integer :: i
+
+    numbers = groups_named(document, 'objective')
+    allocate (model%request%objectives(size(numbers)))
+    if (size(numbers) == 0) return
+    search = group_or_empty(document, 'optimum')
+    model%request%optimum%starts = get_integer(search, 'starts')
+    model%request%optimum%seed = get_integer(search, 'seed')
+    if (diagnostics%failed()) return             ! points and coordinates may not be known
+    do i = 1, size(numbers)
+      associate (group => document%groups(numbers(i)), objective => model%request%objectives(i))
+        objective%place = diagnostics%place(group%span)
+        objective%weight = get_real(group, 'weight')
+        if (get_text(group, 'kind') == 'path') then
+          call read_path(document, group, model, objective, diagnostics)
+        else
+          call read_function(document, group, model, objective, diagnostics)
+        end if
+      end associate
+    end do
+  end subroutine read_objectives
+
+  !> Read the targets of a point.
+  subroutine read_path(document, group, model, objective, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(group_type), intent(in) :: group                 !< the group of the objective
+    type(model_type), intent(in) :: model                 !< with the points
+    type(objective_type), intent(inout) :: objective      !< gets the targets
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    character(len=40) :: names(size(model%mechanism%points))
+    real(wp), allocatable :: rows(:, :)
+    integer :: i, n
+
+    objective%kind = path_objective
+    objective%timing = merge(timing_given, timing_free, get_text(group, 'timing') == 'given')
+    do i = 1, size(names)
+      names(i) = model%mechanism%points(i)%name
+    end do
+    objective%point = findloc(names, get_text(group, 'point'), dim=1)
+    if (objective%point == 0) then
+      call refuse_name(group, 'point', 'there is no &point '''//get_text(group, 'point')//'''', names, diagnostics)
+      return
+    end if
+    if (objective%timing == timing_free) then
+      call read_rows(document, group, [2, 3], 'the coordinates x and y of a target, or x, y and z', rows, diagnostics)
+    else
+      call read_rows(document, group, [3, 4], 'the time of a target and its coordinates x and y, or x, y and z', rows, diagnostics)
+    end if
+    n = size(rows, 2)
+    if (n == 0) return
+    objective%components = size(rows, 1)
+    if (objective%timing == timing_given) objective%components = size(rows, 1) - 1
+    allocate (objective%targets(3, n), objective%at(n), source=0.0_wp)
+    objective%targets(:objective%components, :) = rows(size(rows, 1) - objective%components + 1:, :)
+    if (objective%timing == timing_free) return
+    objective%at = rows(1, :)
+    call check_times(group, model, objective%at, diagnostics)
+  end subroutine read_path
+
+  !> Read the values of a function.
+  subroutine read_function(document, group, model, objective, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(group_type), intent(in) :: group                 !< the group of the objective
+    type(model_type), intent(in) :: model                 !< with the coordinates and drives
+    type(objective_type), intent(inout) :: objective      !< gets the targets
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    real(wp), allocatable :: rows(:, :)
+    integer :: i, m
+    character(len=40) :: names(size(model%mechanism%pairs))
+
+    m = size(names)
+    names = [(repeat(' ', 40), i=1, m)]
+    do i = 1, m
+      names(i) = 'q'//to_text(i)
+    end do
+    objective%kind = function_objective
+    objective%components = 1
+    objective%coordinate = findloc(names, get_text(group, 'of'), dim=1)
+    if (objective%coordinate == 0) call refuse_name(group, 'of', 'there is no coordinate '''//get_text(group, 'of')//'''', names, &
+                                                    diagnostics)
+    objective%timing = timing_given
+    if (get_text(group, 'over') /= 't' .and. get_text(group, 'over') /= '') then
+      objective%timing = timing_over
+      objective%over = findloc(names, get_text(group, 'over'), dim=1)
+      if (objective%over == 0) then
+        call refuse_name(group, 'over', 'there is no coordinate '''//get_text(group, 'over')//'''', names, diagnostics)
+      else if (.not. any([(model%problem%drives(i)%drive%coordinate == objective%over, i=1, size(model%problem%drives))])) then
+        call diagnostics%add(span_of(group, 'over', 1), 'the variable of the function must be t or a coordinate with a drive')
+      end if
+    end if
+    call read_rows(document, group, [2, 2], 'the variable and the value of the function', rows, diagnostics)
+    if (size(rows, 2) == 0 .or. objective%coordinate == 0) return
+    if (objective%timing == timing_over .and. objective%over == 0) return
+    allocate (objective%targets(3, size(rows, 2)), objective%at(size(rows, 2)), source=0.0_wp)
+    objective%targets(1, :) = rows(2, :)*unit_of(model%mechanism, objective%coordinate)
+    objective%at = rows(1, :)
+    if (objective%timing == timing_given) then
+      call check_times(group, model, objective%at, diagnostics)
+    else
+      objective%at = objective%at*unit_of(model%mechanism, objective%over)
+    end if
+  end subroutine read_function
+
+  !> Report a name that does not exist.
+  pure subroutine refuse_name(group, item, sentence, names, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the objective
+    character(len=*), intent(in) :: item                  !< the item with the name
+    character(len=*), intent(in) :: sentence              !< the fault
+    character(len=*), intent(in) :: names(:)              !< the names that there are
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the error
+    integer :: i
+
+    if (size(names) == 0) then
+      call diagnostics%add(span_of(group, item, 1), sentence)
+    else if (size(names) <= 12) then
+      call diagnostics%add(span_of(group, item, 1), sentence//'; there are '//trim(names(1))// &
+                           listed([(', '//names(i), i=2, size(names))]))
+    else
+      call diagnostics%add(span_of(group, item, 1), sentence//'; there are '//trim(names(1))//' to '//trim(names(size(names))))
+    end if
+  end subroutine refuse_name
+
+  !> Report times that do not increase, or that lie outside the run.
+  pure subroutine check_times(group, model, times, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the objective
+    type(model_type), intent(in) :: model                 !< with the times of the run
+    real(wp), intent(in) :: times(:)                      !< of the targets [s]
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the error
+    integer :: i
+
+    associate (time => model%request%time)
+      do i = 1, size(times)
+        if (times(i) < min(time%start, time%end) .or. times(i) > max(time%start, time%end)) then
+          call diagnostics%add(span_of(group, 'file', 1), 'target '//to_text(i)//' is at t = '//to_text(times(i))// &
+                               ' s, and the run goes from '//to_text(time%start)//' to '//to_text(time%end)//' s; change &time')
+          return
+        end if
+      end do
+    end associate
+  end subroutine check_times
+
+  !> Read the lines of the file that an objective names: as many numbers in each as in the first one.
+  subroutine read_rows(document, group, columns, meaning, rows, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(group_type), intent(in) :: group                 !< the group of the objective
+    integer, intent(in) :: columns(2)                     !< fewest and most numbers in a line
+    character(len=*), intent(in) :: meaning               !< of the numbers, for messages
+    real(wp), allocatable, intent(out) :: rows(:, :)      !< (columns,lines); no lines where errors are reported
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(source_type) :: source
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: path
+    integer :: number, line, n, found, width
+
+    allocate (rows(columns(1), 0))
+    path = beside(document%source%name, get_text(group, 'file'))
+    call read_source(path, source, err)
+    if (allocated(err)) then
+      call diagnostics%add(span_of(group, 'file', 1), 'the targets '''//printable(path)//''': '//err%message, err%code)
+      return
+    end if
+    call diagnostics%add_source(source, number)
+    found = diagnostics%count
+    deallocate (rows)
+    allocate (rows(columns(2), size(source%line_start)))
+    n = 0
+    width = 0
+    do line = 1, size(source%line_start)
+      call read_line(source, number, line, columns, meaning, width, rows, n, diagnostics)
+    end do
+    if (diagnostics%count == found .and. n < 2) &
+      call diagnostics%add(span_type(number, 0, 0), 'an objective needs at least two targets, and the file has '//to_text(n))
+    if (diagnostics%count > found) n = 0
+    rows = rows(:max(width, columns(1)), :n)
+  end subroutine read_rows
+
+  !> Take the numbers of a line, if it has any.
+  pure subroutine read_line(source, number, line, columns, meaning, width, rows, n, diagnostics)
+    type(source_type), intent(in) :: source               !< the text of the file
+    integer, intent(in) :: number                         !< number of the file as a source, for spans
+    integer, intent(in) :: line                           !< number of the line, from 1
+    integer, intent(in) :: columns(2)                     !< fewest and most numbers in a line
+    character(len=*), intent(in) :: meaning               !< of the numbers, for messages
+    integer, intent(inout) :: width                       !< numbers in the first line that has any; 0: there was none
+    real(wp), intent(inout) :: rows(:, :)                 !< (columns,lines) gets the numbers
+    integer, intent(inout) :: n                           !< how many lines had numbers so far
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(numeral_type) :: numeral
+    integer :: first, last, at, length, count
+
+    call source%line_bounds(line, first, last)
+    at = index(source%text(first:last), '#')
+    if (at > 0) last = first + at - 2
+    count = 0
+    at = first
+    do
+      if (at > last) exit
+      length = verify(source%text(at:last), gaps)
+      if (length == 0) exit
+      at = at + length - 1
+      length = scan(source%text(at:last)//' ', gaps) - 1
+      count = count + 1
+      call read_numeral(source%text(at:at + length - 1), numeral)
+      if (allocated(numeral%problem)) then
+        call diagnostics%add(span_type(number, at, at + length - 1), ''''//printable(source%text(at:at + length - 1))//''' '// &
+                             numeral%problem)
+        return
+      end if
+      if (count <= columns(2)) rows(count, n + 1) = numeral%number
+      at = at + length
+    end do
+    if (count == 0) return
+    if (width == 0 .and. count >= columns(1) .and. count <= columns(2)) width = count
+    if (count /= width) then
+      call diagnostics%add(span_type(number, first, max(first, last)), 'each line holds '//meaning//'; this one has '// &
+                           counted(count, 'number'))
+      return
+    end if
+    n = n + 1
+  end subroutine read_line
+
+  !> Names one behind the other.
+  pure function listed(names)
+    character(len=*), intent(in) :: names(:)   !< the names, with commas before them
+    character(len=len(names)*size(names)) :: listed
+    integer :: i
+
+    listed = ''
+    do i = 1, size(names)
+      listed = trim(listed)//names(i)
+    end do
+  end function listed
+end module mech9_objective_reader

@@ -1,0 +1,70 @@
+!> The data file of a design: the text of the data file with other values of the parameters, and with the assembly of its start.
+module mech9_design_file
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_source, only: span_type
+  use mech9_document, only: document_type, group_type
+  use mech9_lookup, only: find_item, get_integer
+  use mech9_model, only: model_type
+  use mech9_result_units, only: unit_of
+  implicit none
+  private
+  public :: text_of_design
+
+  character, parameter :: line_end = achar(10)
+  integer, parameter :: digits = 17   !< of numbers: none is lost
+
+contains
+
+  !> The text of the data file with other values of its parameters, and with the coordinates of an assembly at its start.
+  pure subroutine text_of_design(document, model, values, q, history, text)
+    type(document_type), intent(in) :: document            !< the data file, without changes by --set
+    type(model_type), intent(in) :: model                  !< its model
+    real(wp), intent(in) :: values(:)                      !< of all parameters
+    real(wp), intent(in) :: q(:)                           !< (M) coordinates at the start [rad, m]
+    character(len=*), intent(in) :: history                !< comments for its beginning, as whole lines
+    character(len=:), allocatable, intent(out) :: text     !< of the design's data file
+    logical :: given(size(q))
+    integer :: i, k, group
+
+    text = document%source%text
+    if (text(len(text):) /= line_end) text = text//line_end
+    given = model%problem%partition%independent()
+    i = size(values) + 1
+    ! from the end on, so that places before it stay right
+    do group = size(document%groups), 1, -1
+      if (document%groups(group)%name == 'parameter') then
+        i = i - 1
+        call set_number(document%groups(group), 'value', values(i), text)
+      else if (document%groups(group)%name == 'initial') then
+        k = get_integer(document%groups(group), 'coordinate')
+        if (given(k)) cycle
+        given(k) = .true.
+        call set_number(document%groups(group), 'position', q(k)/unit_of(model%mechanism, k), text)
+      end if
+    end do
+    do k = 1, size(q)
+      if (.not. given(k)) text = text//'&initial coordinate='//to_text(k)//', position='// &
+                                 to_text(q(k)/unit_of(model%mechanism, k), digits)//' /'//line_end
+    end do
+    text = history//text
+  end subroutine text_of_design
+
+  !> Set a number of a group: in the place of the one that stands there, or directly behind the name of the group.
+  pure subroutine set_number(group, name, number, text)
+    type(group_type), intent(in) :: group                      !< the group of the data file
+    character(len=*), intent(in) :: name                       !< of the item
+    real(wp), intent(in) :: number                             !< the number
+    character(len=:), allocatable, intent(inout) :: text       !< of the data file
+    type(span_type) :: span
+    integer :: i
+
+    i = find_item(group, name)
+    if (i > 0) then
+      span = group%items(i)%values(1)%span
+      text = text(:span%first - 1)//to_text(number, digits)//text(span%last + 1:)
+    else
+      text = text(:group%span%last)//' '//name//'='//to_text(number, digits)//','//text(group%span%last + 1:)
+    end if
+  end subroutine set_number
+end module mech9_design_file

@@ -1,0 +1,96 @@
+!> How a synthesis went: a summary for the terminal, comments of the best design's data file, and a report for programs.
+module mech9_optimum_words
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_counted, only: counted
+  use mech9_error, only: error_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_model, only: model_type
+  use mech9_json, only: json_type
+  use mech9_run_words, only: duration, begin_report
+  use mech9_synthesis, only: synthesis_type
+  implicit none
+  private
+  public :: print_optimum, history_of_design, save_optimum_report
+
+contains
+
+  !> Print how the search went, and the best design.
+  subroutine print_optimum(unit, model, synthesis, time)
+    integer, intent(in) :: unit                       !< Fortran unit to write to
+    type(model_type), intent(in) :: model             !< the model
+    type(synthesis_type), intent(in) :: synthesis     !< with its optima, best first
+    real(wp), intent(in) :: time                      !< time that the search took [s]
+    integer :: i
+
+    write (unit, '(a)') counted(synthesis%done, 'start')//': '//duration(time)//'; '//to_text(synthesis%reached)// &
+      ' led to designs that move through the whole run, '//to_text(size(synthesis%optima))//' of them distinct'
+    if (size(synthesis%optima) == 0) return
+    write (unit, '(a)') 'least value: '//to_text(synthesis%optima(1)%value, 8)//', from '// &
+      counted(synthesis%optima(1)%starts, 'start')
+    do i = 1, size(synthesis%space%varied)
+      associate (parameter => model%parameters(synthesis%space%varied(i)))
+        write (unit, '(a)') '  '//parameter%name//' = '//to_text(synthesis%optima(1)%x(i), 12)//at_bound(i)
+      end associate
+    end do
+  contains
+    !> Words for a parameter that is at one of its bounds.
+    pure function at_bound(i) result(words)
+      integer, intent(in) :: i    !< place of the parameter among the varied ones
+      character(len=:), allocatable :: words
+
+      words = ''
+      if (synthesis%optima(1)%x(i) <= synthesis%space%low(i)) words = ', its low'
+      if (synthesis%optima(1)%x(i) >= synthesis%space%high(i)) words = ', its high'
+    end function at_bound
+  end subroutine print_optimum
+
+  !> Comments that tell where a design comes from.
+  subroutine history_of_design(program, model, synthesis, text)
+    character(len=*), intent(in) :: program                  !< name and version of the program
+    type(model_type), intent(in) :: model                    !< the model
+    type(synthesis_type), intent(in) :: synthesis            !< with its optima, best first
+    character(len=:), allocatable, intent(out) :: text       !< comments, as whole lines
+
+    text = '! The best design that '//program//' found by --optimize from '//counted(synthesis%done, 'start')//', seed '// &
+           to_text(model%request%optimum%seed)//'.'//achar(10)// &
+           '! Value: '//to_text(synthesis%optima(1)%value, 12)//', to which '//counted(synthesis%optima(1)%starts, 'start')// &
+           ' led. The positions in &initial are those of its assembly.'//achar(10)
+  end subroutine history_of_design
+
+  !> Write the report of a synthesis as JSON.
+  subroutine save_optimum_report(path, program_name, model, synthesis, table_path, diagnostics, err)
+    character(len=*), intent(in) :: path                   !< of the report
+    character(len=*), intent(in) :: program_name           !< mech9k or mech9d
+    type(model_type), intent(in) :: model                  !< the model
+    type(synthesis_type), intent(in) :: synthesis          !< with its optima, best first
+    character(len=*), intent(in) :: table_path             !< path of the table; '-' is standard output; empty: no table
+    type(diagnostics_type), intent(in) :: diagnostics      !< all errors, which determine the exit code
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(json_type) :: json
+    real(wp), allocatable :: values(:)
+    integer :: i
+
+    call begin_report(json, program_name, model, diagnostics, table_path)
+    call json%add('distinct', size(synthesis%optima))
+    if (size(synthesis%optima) > 0) then
+      values = synthesis%space%values
+      values(synthesis%space%varied) = synthesis%optima(1)%x
+      call json%begin_object('optimum')
+      call json%add('value', synthesis%optima(1)%value)
+      call json%begin_array('parameters')
+      do i = 1, size(values)
+        call json%begin_object()
+        call json%add('name', model%parameters(i)%name)
+        call json%add('value', values(i))
+        call json%end_object()
+      end do
+      call json%end_array()
+      call json%add('starts', synthesis%done)
+      call json%add('reached', synthesis%optima(1)%starts)
+      call json%end_object()
+    end if
+    call json%end_object()
+    call json%save(path, err)
+  end subroutine save_optimum_report
+end module mech9_optimum_words
