@@ -5,10 +5,11 @@
 !> truncation falls to round-off while the differences stay large, so that both derivatives keep
 !> twelve and more digits. A few steps h are tried; the one whose two highest orders agree best wins.
 module mech9_differentiation
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: half_width, stencil_size, step_count, trial_step, derivatives_from_stencil
+  public :: half_width, stencil_size, step_count, trial_step, derivatives_from_stencil, best_slopes_type, length_along
 
   !> Points of the stencil on either side of its middle.
   integer, parameter :: half_width = 8
@@ -17,7 +18,52 @@ module mech9_differentiation
   !> Number of steps h that are tried.
   integer, parameter :: step_count = 7
 
+  !> First derivatives of several functions by the best one of the stencils that were offered.
+  type :: best_slopes_type
+    real(wp), allocatable :: slopes(:)   !< (functions) first derivatives; not allocated before the first stencil
+    real(wp) :: error = huge(1.0_wp)     !< estimated error of the worst of them
+  contains
+    procedure :: offer
+  end type best_slopes_type
+
 contains
+
+  !> Take a stencil if it is better than those before. Values that are not finite are no stencil.
+  pure subroutine offer(self, values, h, good)
+    class(best_slopes_type), intent(inout) :: self              !< the derivatives so far
+    real(wp), intent(in) :: values(:, -half_width:)             !< (functions, stencil) at x + i h, i = -8 .. 8
+    real(wp), intent(in) :: h                                   !< step [unit of x]
+    logical, intent(out) :: good                                !< the error is near round-off: narrower stencils are no better
+    real(wp) :: trial(size(values, 1)), second, error, worst
+    integer :: i
+
+    good = .false.
+    if (.not. all(ieee_is_finite(values))) return
+    worst = 0.0_wp
+    do i = 1, size(trial)
+      call derivatives_from_stencil(values(i, :), h, trial(i), second, error)
+      worst = max(worst, h*error)
+    end do
+    if (worst < self%error) then
+      self%error = worst
+      self%slopes = trial
+    end if
+    good = worst <= 64.0_wp*epsilon(h)*maxval(abs(values))/h
+  end subroutine offer
+
+  !> The length over which a function of several numbers is expected to change if these go on in a given direction: that in which
+  !> one of them would come to zero.
+  pure real(wp) function length_along(numbers, direction) result(length)
+    real(wp), intent(in) :: numbers(:)     !< the numbers
+    real(wp), intent(in) :: direction(:)   !< their changes per unit of length, not all zero
+    integer :: i
+
+    length = huge(length)
+    do i = 1, size(numbers)
+      if (.not. abs(direction(i)) > 0.0_wp) cycle
+      length = min(length, merge(abs(numbers(i)), 1.0_wp, abs(numbers(i)) > 0.0_wp)/abs(direction(i)))
+    end do
+  end function length_along
 
   !> The trial step of this number (1 .. step_count), for a function that varies over lengths of `scale`,
   !> from 1/8 of it down by factors of 4.

@@ -1,11 +1,12 @@
 !> A coupling given by a user's procedure, in either form.
 module mech9_procedure_coupling
-  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
   use mech9_text, only: to_text
   use mech9_taylor, only: taylor, variable
-  use mech9_differentiation, only: half_width, step_count, trial_step, derivatives_from_stencil
+  use mech9_differentiation, only: half_width, step_count, trial_step, derivatives_from_stencil, best_slopes_type, &
+    length_along
   use mech9_coupling, only: coupling_name_length, curve_order
   use mech9_function_coupling, only: function_coupling_type
   use mech9_not_linked, only: not_linked
@@ -24,6 +25,8 @@ module mech9_procedure_coupling
     procedure :: find_curve
     procedure :: find_third
     procedure :: kind_name
+    procedure :: constants
+    procedure :: varied_term
   end type procedure_coupling_type
 
   ! Forms of a value, or of a second derivative, of which differences are taken
@@ -152,6 +155,47 @@ contains
       sample = merge(curve(2), huge(curve), ok)
     end if
   end function sample
+
+  !> The numbers for the user's procedure.
+  pure subroutine constants(self, values)
+    class(procedure_coupling_type), intent(in) :: self   !< the coupling
+    real(wp), allocatable, intent(out) :: values(:)      !< the numbers
+
+    values = self%parameters
+  end subroutine constants
+
+  !> The derivative of a term, or of its derivative by its coordinate, by one parameter while the coordinate is held: differences to
+  !> near round-off. It is NaN where the procedure has no finite values beside the present numbers.
+  real(wp) function varied_term(self, change, i, q, order)
+    class(procedure_coupling_type), intent(in) :: self   !< the coupling
+    real(wp), intent(in) :: change(:)                    !< derivatives of the numbers
+    integer, intent(in) :: i                             !< number of the term, 1 or 2
+    real(wp), intent(in) :: q                            !< its coordinate [rad, m]
+    integer, intent(in) :: order                         !< 0: of the term; 1, 2: of a derivative
+    type(procedure_coupling_type) :: beside
+    type(best_slopes_type) :: best
+    type(error_type), allocatable :: err
+    real(wp) :: values(1, -half_width:half_width), curve(0:curve_order), h
+    integer :: number, j
+    logical :: good
+
+    varied_term = 0.0_wp
+    if (i > 1) return
+    beside = self
+    do number = 1, step_count
+      h = trial_step(number, length_along(self%parameters, change))
+      do j = -half_width, half_width
+        beside%parameters = self%parameters + j*h*change
+        call beside%find_curve(q, curve, err)
+        values(1, j) = -curve(order)
+        if (allocated(err)) values(1, j) = ieee_value(h, ieee_quiet_nan)
+      end do
+      call best%offer(values, h, good)
+      if (good) exit
+    end do
+    varied_term = ieee_value(h, ieee_quiet_nan)
+    if (allocated(best%slopes)) varied_term = best%slopes(1)
+  end function varied_term
 
   !> The name of the kind in the data file.
   pure function kind_name(self) result(name)

@@ -1,11 +1,12 @@
 !> A drive given by a user's procedure, in either form.
 module mech9_procedure_drive
-  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
   use mech9_text, only: to_text
   use mech9_taylor, only: taylor, variable
-  use mech9_differentiation, only: half_width, step_count, trial_step, derivatives_from_stencil
+  use mech9_differentiation, only: half_width, step_count, trial_step, derivatives_from_stencil, best_slopes_type, &
+    length_along
   use mech9_law, only: law_type
   use mech9_not_linked, only: not_linked
   use mech9_user_drive, only: user_drive
@@ -20,6 +21,8 @@ module mech9_procedure_drive
     logical :: plain_values = .false.        !< the form in plain reals is linked, not the one in Taylor arithmetic
   contains
     procedure :: evaluate
+    procedure :: constants
+    procedure :: vary
   end type procedure_drive_type
 
 contains
@@ -69,6 +72,48 @@ contains
       call raise(err, exit_data, 'the user procedure of the drive of coordinate '//to_text(self%coordinate)// &
                  ' gives numbers that are not finite at t = '//to_text(t, 12), self%place)
   end subroutine evaluate
+
+  !> The numbers for the user's procedure.
+  pure subroutine constants(self, values)
+    class(procedure_drive_type), intent(in) :: self  !< the procedure drive
+    real(wp), allocatable, intent(out) :: values(:)  !< the numbers
+
+    values = self%parameters
+  end subroutine constants
+
+  !> The derivatives by one parameter, from those of the numbers for the procedure: differences to near round-off. They are NaN where
+  !> the procedure has no finite values beside the present numbers.
+  subroutine vary(self, change, t, q, dq, ddq)
+    class(procedure_drive_type), intent(in) :: self   !< the procedure drive
+    real(wp), intent(in) :: change(:)                 !< derivatives of the numbers
+    real(wp), intent(in) :: t                         !< time [s]
+    real(wp), intent(out) :: q                        !< derivative of the coordinate [rad, m]
+    real(wp), intent(out) :: dq                       !< derivative of its rate [rad/s, m/s]
+    real(wp), intent(out) :: ddq                      !< derivative of its acceleration [rad/s^2, m/s^2]
+    type(procedure_drive_type) :: beside
+    type(best_slopes_type) :: best
+    type(error_type), allocatable :: err
+    real(wp) :: values(3, -half_width:half_width), h
+    integer :: number, i
+    logical :: good
+
+    beside = self
+    do number = 1, step_count
+      h = trial_step(number, length_along(self%parameters, change))
+      values = ieee_value(h, ieee_quiet_nan)
+      do i = -half_width, half_width
+        beside%parameters = self%parameters + i*h*change
+        call beside%evaluate(t, values(1, i), values(2, i), values(3, i), err)
+        if (allocated(err)) values(:, i) = ieee_value(h, ieee_quiet_nan)
+      end do
+      call best%offer(values, h, good)
+      if (good) exit
+    end do
+    if (.not. allocated(best%slopes)) best%slopes = values(:, 0)
+    q = best%slopes(1)
+    dq = best%slopes(2)
+    ddq = best%slopes(3)
+  end subroutine vary
 
   !> Value and derivatives from the form in plain reals. The widest stencil whose error is round-off is
   !> taken, or else the one with the least error. `ok` is false where no stencil has finite values.

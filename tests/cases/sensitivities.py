@@ -90,6 +90,20 @@ SHAFTS = """&structure cq=1 /
 """
 
 
+SEGMENTS = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /
+&drive coordinate=1, kind='segments', times=0,0.31,0.52,0.83,1.1, values=0.1,0.5,0.5,-0.3,0.2, laws={} /
+&drive coordinate=2, kind='segments', times=0.2,0.61,0.92, period=0.72, values=0.1,0.5,0.7, laws={} /
+&point name='P', link=3, position=0.3,0,0 /
+&time start={}, end={}, intervals=13 /
+&output sensitivities=.true. /
+"""
+SEGMENTS_PARAMETERS = (('first', 'drive(1).values(2)', 0.5), ('last', 'drive(1).values(5)', 0.2), ('early', 'drive(1).times(2)', 0.31),
+                       ('late', 'drive(1).times(4)', 0.83), ('turn', 'drive(2).values(2)', 0.5), ('gain', 'drive(2).values(3)', 0.7),
+                       ('middle', 'drive(2).times(2)', 0.61))
+
+
 def of_motion(names):
     """The numbers of the columns that have derivatives, by kinds."""
     kinds = {}
@@ -135,13 +149,13 @@ class Case:
             self.checks.true(error <= tolerance * max(float(largest), 1e-3), f'{why}: {kind} by {parameter}',
                              f'error {error:.2e}, largest {largest:.2e}')
 
-    def against_runs(self, text, parameters, why, tolerance=BY_RUNS):
+    def against_runs(self, text, parameters, why, tolerance=BY_RUNS, relative_step=STEP):
         """Derivatives against differences of runs at other values of the parameters."""
         declared = ''.join(f"&parameter name='{name}', sets='{target}', value={value!r} /\n" for name, target, value in parameters)
         names, rows = self.table(text + declared)
         plain = text.replace('sensitivities=.true.', 'sensitivities=.false.') + declared
         for number, (name, _, value) in enumerate(parameters, 1):
-            step = STEP * (abs(value) or 1.0)
+            step = relative_step * (abs(value) or 1.0)
             expected = 0
             for i, weight in enumerate(WEIGHTS, 1):
                 above, below = (self.table(plain, '--set', f'parameter({number}).value={value + sign * i * step!r}')[1]
@@ -259,6 +273,25 @@ def check_against_runs(case):
     case.against_runs(rsur, (('rod', 'pair(5).point(2)', 0.5), ('direction', 'pair(7).axis(2)', 0.0)), 'spatial crank and rocker')
 
 
+def check_segments(case):
+    """All motion laws, and a law that repeats and advances. The small steps of the differences, which keep all outputs in their
+    segments, cost three digits."""
+    curves = ('constant-velocity', 'harmonic', 'cycloidal', 'polynomial345', 'polynomial4567', 'modified-sine', 'modified-trapezoidal')
+    for number, curve in enumerate(curves):
+        laws = ','.join(f"'{name}'" for name in (curve, 'constant-velocity', curves[(number + 1) % 7], curve))
+        text = SEGMENTS.format(laws, f"'{curve}'", 0.026, 1.058)
+        if curve in ('harmonic', 'cycloidal'):
+            text += '&mechanism angle_unit=\'deg\' /\n'
+        case.against_runs(text, SEGMENTS_PARAMETERS, f'segments, {curve}', 1e-8, 2.0**-11)
+    turn = "&parameter name='size', sets='drive(2).times(1)','drive(2).times(2)','drive(2).times(3)','drive(2).period', " \
+        "factors=0.2,0.61,0.92,0.72, value=1 /\n"
+    # all times of a law in proportion: q(t/p), so that the derivatives are -t dq, -dq - t ddq
+    names, rows = case.table(SEGMENTS.format("'cycloidal'", "'cycloidal'", 0.3, 3.1).replace('times=0,0.31,0.52,0.83,1.1', 'times=0,1,2,3,4') + turn)
+    t, dq, ddq = (rows[:, names.index(name)] for name in ('t', 'dq2', 'ddq2'))
+    case.checks.near(rows[:, names.index('d(q2)/d(size)')], -t * dq, 1e-12, 'times in proportion: positions', scale=1.0)
+    case.checks.near(rows[:, names.index('d(dq2)/d(size)')], -dq - t * ddq, 1e-11, 'times in proportion: rates', scale=1.0)
+
+
 def check_identities(case):
     """All lengths in proportion: angles stay, points move in proportion. A turn of a crank's zero is a change of its drive."""
     lengths = [('pair(1).point(1)', 0.01), ('pair(1).point(2)', 0.02), ('pair(2).point(1)', 0.3), ('pair(3).point(1)', 0.9),
@@ -336,6 +369,7 @@ def main():
         check_four_bar(case)
         check_helical(case)
         check_against_runs(case)
+        check_segments(case)
         check_identities(case)
         check_singular(case)
         check_refusals(case)

@@ -39,7 +39,7 @@ contains
   pure function new_linear_form(n, rows, steps, coordinates, signs, constants, constant_signs, parameters) result(form)
     integer, intent(in) :: n                        !< number of all parameters
     integer, intent(in) :: rows                     !< how many numbers the form gives
-    integer, intent(in) :: steps(:)                 !< steps
+    integer, intent(in) :: steps(:)                 !< numbers of its steps
     integer, intent(in) :: coordinates(:)           !< their coordinates
     real(wp), intent(in) :: signs(:)                !< their signs
     integer, intent(in) :: constants(:)             !< numbers of twists of constants

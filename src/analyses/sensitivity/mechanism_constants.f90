@@ -1,4 +1,5 @@
-!> The numbers of a mechanism on which its motion depends, in one row: constant poses, offsets, laws of drives, couplings, points.
+!> The numbers of a mechanism on which its motion depends, in one row: constant poses, offsets, points, laws of drives, couplings, users'
+!> pairs.
 !>
 !> The order of the row does not depend on the numbers, so that rows of mechanisms which differ in numbers only can be subtracted.
 module mech9_mechanism_constants
@@ -6,6 +7,7 @@ module mech9_mechanism_constants
   use mech9_rotation, only: about_z
   use mech9_pose, only: pose_type, compose
   use mech9_screw_pair, only: screw_pair_type
+  use mech9_procedure_pair, only: procedure_pair_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_spanning_tree, only: lay_out_frames
@@ -21,7 +23,7 @@ module mech9_mechanism_constants
 contains
 
   !> The numbers of a model, each link's poses in its frames included: 26 for each coordinate, 12 for each link, 3 for each point;
-  !> then the numbers of the drives and of the couplings that are known.
+  !> then the numbers of the drives, of the couplings and of users' pairs that are known.
   subroutine gather_constants(model, length, origin, values)
     type(model_type), intent(in) :: model            !< the model
     real(wp), intent(in) :: length                   !< the mechanism's size, which is not varied [m]
@@ -56,7 +58,7 @@ contains
     call append_laws(model, values)
   end subroutine gather_constants
 
-  !> Append the numbers of drives and couplings, as far as they are known.
+  !> Append the numbers of drives, couplings and users' pairs, as far as they are known.
   subroutine append_laws(model, values)
     type(model_type), intent(in) :: model                !< the model
     real(wp), allocatable, intent(inout) :: values(:)    !< the row so far
@@ -67,10 +69,17 @@ contains
       call model%problem%drives(i)%drive%constants(more)
       if (allocated(more)) values = [values, more]
     end do
-    if (.not. allocated(model%mechanism%couplings)) return
-    do i = 1, size(model%mechanism%couplings)
-      call model%mechanism%couplings(i)%coupling%constants(more)
-      if (allocated(more)) values = [values, more]
+    if (allocated(model%mechanism%couplings)) then
+      do i = 1, size(model%mechanism%couplings)
+        call model%mechanism%couplings(i)%coupling%constants(more)
+        if (allocated(more)) values = [values, more]
+      end do
+    end if
+    do i = 1, size(model%mechanism%pairs)
+      select type (pair => model%mechanism%pairs(i)%pair)
+      type is (procedure_pair_type)
+        values = [values, pair%parameters]
+      end select
     end do
   end subroutine append_laws
 

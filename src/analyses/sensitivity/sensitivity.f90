@@ -23,6 +23,7 @@ module mech9_sensitivity
   use mech9_frame_variation, only: third_derivatives_type, new_third_derivatives, find_third_derivatives
   use mech9_twists, only: frame_twists_type, new_frame_twists, find_frame_twists, find_step_twists
   use mech9_tangent, only: tangent_type, find_tangent
+  use mech9_pair_changes, only: find_pair_change
   use mech9_parameter_support, only: support_type, find_support, point_form, keep_static
   use mech9_linear_form, only: linear_form_type, find_values, add_motion
   use mech9_planar_forms, only: carry_in_plane, fill_planar_closure, fill_planar_point, planar_step_series
@@ -98,7 +99,8 @@ contains
     m = plan%n_coordinates
     allocate (self%q(n, 0:2, m), self%points(n, 3, 0:2, size(model%mechanism%points)), source=0.0_wp)
     self%plan = plan
-    if (plan%planar%used) call put_in_plane(plan, model%problem%initial%position, self%support, self%in_plane)
+    if (plan%planar%used .and. .not. any(self%support%constants%by_user)) &
+      call put_in_plane(plan, model%problem%initial%position, self%support, self%in_plane)
     if (self%in_plane) then
       self%own_frames = self%highest > 0 .and. any(plan%blocks%last_moved < plan%blocks%last_step)
     else
@@ -243,6 +245,7 @@ contains
     type(state_type), intent(in) :: state                 !< the motion
     type(sensitivity_type), intent(inout) :: self         !< gets the twists
     type(error_type), allocatable, intent(out) :: err     !< allocated if a pair has no pose beside the present one
+    integer :: i
 
     associate (n => self%support%count)
       if (self%in_plane) then
@@ -254,6 +257,12 @@ contains
       call find_frame_twists(state, self%frames, self%highest, self%motion)
       call find_step_twists(self%plan, state, self%third, self%steps, self%highest, self%motion)
       call carry_in_space(self%plan, n, self%support%constants(:n), state, self%motion, self%highest, self%series)
+      do i = 1, n
+        associate (constant => self%support%constants(i))
+          if (constant%by_user) call find_pair_change(self%plan, state, self%motion, self%tangents(constant%parameter), &
+                                                      constant%step, self%highest, self%series(:, :, i))
+        end associate
+      end do
     end associate
   end subroutine find_series
 

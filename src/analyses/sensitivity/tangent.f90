@@ -11,6 +11,7 @@ module mech9_tangent
   use mech9_rotation, only: cross
   use mech9_pose, only: pose_type
   use mech9_parameter, only: parameter_type
+  use mech9_procedure_pair, only: procedure_pair_type
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
@@ -37,6 +38,7 @@ module mech9_tangent
     real(wp), allocatable :: points(:, :)      !< (3,P) of the positions of points in their links [m]
     type(law_tangent_type), allocatable :: drives(:)      !< in the order of the drives
     type(law_tangent_type), allocatable :: couplings(:)   !< in the order of the couplings
+    type(law_tangent_type), allocatable :: pairs(:)       !< (M) of the numbers that users' procedures receive, by coordinates
   end type tangent_type
 
   integer, parameter :: half_width = 4
@@ -94,11 +96,6 @@ contains
       do i = 1, size(model%mechanism%couplings)
         call model%mechanism%couplings(i)%coupling%constants(values)
         known = known .and. allocated(values)
-      end do
-    end if
-    if (sets_any(parameter, [character(len=9) :: 'user'])) then
-      do i = 1, size(model%mechanism%pairs)
-        known = known .and. model%mechanism%pairs(i)%pair%user_calls() == 0
       end do
     end if
   end function knows_derivatives
@@ -253,7 +250,7 @@ contains
     call read_laws(model, change(at + 1:), tangent)
   end subroutine read_change
 
-  !> The derivatives of the numbers of drives and couplings.
+  !> The derivatives of the numbers of drives, couplings and users' pairs.
   subroutine read_laws(model, change, tangent)
     type(model_type), intent(in) :: model           !< the present model
     real(wp), intent(in) :: change(:)               !< the part of the row that belongs to them
@@ -263,7 +260,7 @@ contains
 
     n = 0
     if (allocated(model%mechanism%couplings)) n = size(model%mechanism%couplings)
-    allocate (tangent%drives(size(model%problem%drives)), tangent%couplings(n))
+    allocate (tangent%drives(size(model%problem%drives)), tangent%couplings(n), tangent%pairs(size(model%mechanism%pairs)))
     at = 0
     do i = 1, size(tangent%drives)
       call model%problem%drives(i)%drive%constants(values)
@@ -272,6 +269,13 @@ contains
     do i = 1, n
       call model%mechanism%couplings(i)%coupling%constants(values)
       call take_part(values, change, at, tangent%couplings(i))
+    end do
+    do i = 1, size(tangent%pairs)
+      select type (pair => model%mechanism%pairs(i)%pair)
+      type is (procedure_pair_type)
+        values = pair%parameters
+        call take_part(values, change, at, tangent%pairs(i))
+      end select
     end do
   end subroutine read_laws
 

@@ -7,7 +7,7 @@ module mech9_twists
   use mech9_frame_variation, only: third_derivatives_type
   implicit none
   private
-  public :: carried, frame_twists_type, new_frame_twists, find_frame_twists, find_step_twists, shift_at
+  public :: bracket, carried, frame_twists_type, new_frame_twists, find_frame_twists, find_step_twists, shift_at
 
   !> The twists of a motion: velocities and accelerations of frames, and the twist of each step per unit rate with its first two
   !> derivatives in time. Rotation first, then shift, in the axes of frame 0.

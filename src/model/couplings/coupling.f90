@@ -102,7 +102,7 @@ contains
 
   !> The derivative of a term, or of a derivative of it by its coordinate, by one parameter while the coordinate is held. This
   !> procedure is for couplings without numbers.
-  pure real(wp) function unvaried_term(self, change, i, q, order)
+  real(wp) function unvaried_term(self, change, i, q, order)
     class(coupling_type), intent(in) :: self   !< the coupling
     real(wp), intent(in) :: change(:)          !< derivatives of its numbers
     integer, intent(in) :: i                   !< number of the term, from 1 to n

@@ -27,6 +27,7 @@ module mech9_table_coupling
     procedure :: find_third
     procedure :: ends
     procedure :: kind_name
+    procedure :: constants
   end type table_coupling_type
 
   !> A coordinate may be beyond the end of a table by this part of its length, by round-off.
@@ -163,6 +164,14 @@ contains
       end if
     end do
   end function piece_of
+
+  !> A table has no numbers that a parameter could set.
+  pure subroutine constants(self, values)
+    class(table_coupling_type), intent(in) :: self   !< the coupling
+    real(wp), allocatable, intent(out) :: values(:)  !< none
+
+    allocate (values(0))
+  end subroutine constants
 
   !> The name of the kind in the data file.
   pure function kind_name(self) result(name)

@@ -4,7 +4,7 @@ module mech9_cam_curves
   use mech9_kinds, only: wp, pi
   implicit none
   private
-  public :: curve_names, curve_number, cam_curve, steepest_slope_of
+  public :: curve_names, curve_number, cam_curve, cam_third, steepest_slope_of
 
   character(len=20), parameter :: curve_names(8) = [character(len=20) :: 'dwell', 'constant-velocity', 'harmonic', 'cycloidal', &
                                                     'polynomial345', 'polynomial4567', 'modified-sine', 'modified-trapezoidal']
@@ -37,7 +37,34 @@ contains
     if (number == 1) s = 0.0_wp
   end subroutine cam_curve
 
-  !> The same for the first half of the time.
+  !> The third derivative of a law; where it jumps, that of the part after it in the first half of the time.
+  pure real(wp) function cam_third(number, x) result(third)
+    integer, intent(in) :: number     !< of the law in curve_names
+    real(wp), intent(in) :: x         !< part of the time, 0 to 1
+    real(wp), parameter :: sine = 16.0_wp*pi**3/(4.0_wp + pi), trapezoid = 32.0_wp*pi**2/(2.0_wp + pi)
+    real(wp) :: y
+
+    y = min(x, 1.0_wp - x)      ! all laws have the same one in both halves
+    third = 0.0_wp
+    select case (number)
+    case (3)
+      third = -0.5_wp*pi**3*sin(pi*y)
+    case (4)
+      third = 4.0_wp*pi**2*cos(2.0_wp*pi*y)
+    case (5)
+      third = 60.0_wp*(1.0_wp - 6.0_wp*y*(1.0_wp - y))
+    case (6)
+      third = 840.0_wp*y*(1.0_wp - y)*((1.0_wp - 2.0_wp*y)**2 - y*(1.0_wp - y))
+    case (7)
+      if (y < 0.125_wp) third = sine*cos(4.0_wp*pi*y)
+      if (y >= 0.125_wp) third = sine/3.0_wp*cos(pi/3.0_wp*(1.0_wp + 4.0_wp*y))
+    case (8)
+      if (y < 0.125_wp) third = trapezoid*cos(4.0_wp*pi*y)
+      if (y >= 0.375_wp) third = -trapezoid*cos(4.0_wp*pi*(0.5_wp - y))
+    end select
+  end function cam_third
+
+  !> Way, slope and curvature of a law in the first half of the time.
   pure subroutine first_half(number, x, s, ds, dds)
     integer, intent(in) :: number     !< of the law in curve_names
     real(wp), intent(in) :: x         !< part of the time, 0 to 1/2

@@ -6,7 +6,7 @@ module mech9_segments_law
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_law, only: law_type, refuse_time
-  use mech9_cam_curves, only: cam_curve, steepest_slope_of
+  use mech9_cam_curves, only: cam_curve, cam_third, steepest_slope_of
   implicit none
   private
   public :: segments_law_type
@@ -22,6 +22,8 @@ module mech9_segments_law
     procedure :: greatest_rate
     procedure :: next_joint
     procedure :: check_time
+    procedure :: constants
+    procedure :: vary
     procedure, private :: rounds_before
   end type segments_law_type
 
@@ -52,6 +54,46 @@ contains
     dq = rise*ds/span
     ddq = rise*dds/span**2
   end subroutine evaluate
+
+  !> The times and the values.
+  pure subroutine constants(self, values)
+    class(segments_law_type), intent(in) :: self     !< the law
+    real(wp), allocatable, intent(out) :: values(:)  !< (2n+2) the times, then the values
+
+    values = [self%times, self%values]
+  end subroutine constants
+
+  !> The derivatives by one parameter, from those of the times and values; at a joint those of the segment after it.
+  subroutine vary(self, change, t, q, dq, ddq)
+    class(segments_law_type), intent(in) :: self   !< the law
+    real(wp), intent(in) :: change(:)              !< (2n+2) derivatives of the times, then of the values
+    real(wp), intent(in) :: t                      !< time [s]
+    real(wp), intent(out) :: q                     !< derivative of the coordinate [rad, m]
+    real(wp), intent(out) :: dq                    !< derivative of its rate [rad/s, m/s]
+    real(wp), intent(out) :: ddq                   !< derivative of its acceleration [rad/s^2, m/s^2]
+    real(wp) :: x, x_change, part, part_change, stretch, span, rise, rise_change, s, ds, dds, ddds, rounds
+    integer :: i, n
+
+    n = size(self%curves)
+    rounds = self%rounds_before(t)
+    x = t - rounds*(self%times(n + 1) - self%times(1))
+    x_change = -rounds*(change(n + 1) - change(1))
+    i = segment_of(self, x)
+    associate (times => change(:n + 1), values => change(n + 2:))
+      span = self%times(i + 1) - self%times(i)
+      stretch = (times(i + 1) - times(i))/span
+      rise = self%values(i + 1) - self%values(i)
+      rise_change = values(i + 1) - values(i)
+      part = max(0.0_wp, min(1.0_wp, (x - self%times(i))/span))
+      part_change = (x_change - times(i))/span - part*stretch
+      call cam_curve(self%curves(i), part, s, ds, dds)
+      ddds = cam_third(self%curves(i), part)
+      q = values(i) + rise_change*s + rise*ds*part_change
+      if (self%coordinate > 0) q = q + rounds*(values(n + 1) - values(1))
+      dq = ((rise_change - rise*stretch)*ds + rise*dds*part_change)/span
+      ddq = ((rise_change - 2.0_wp*rise*stretch)*dds + rise*ddds*part_change)/span**2
+    end associate
+  end subroutine vary
 
   !> Fail outside the times of the segments, unless they repeat. Output times are sums and may miss the ends by round-off.
   subroutine check_time(self, t, demand, err)

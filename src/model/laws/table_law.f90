@@ -15,6 +15,7 @@ module mech9_table_law
     procedure :: evaluate
     procedure :: greatest_rate
     procedure :: check_time
+    procedure :: constants
   end type table_law_type
 
 contains
@@ -46,6 +47,14 @@ contains
         call refuse_time(self, 'table', first, last, t, demand, 'lengthen the table or shorten &time', err)
     end associate
   end subroutine check_time
+
+  !> A table has no numbers that a parameter could set.
+  pure subroutine constants(self, values)
+    class(table_law_type), intent(in) :: self        !< the table law
+    real(wp), allocatable, intent(out) :: values(:)  !< none
+
+    allocate (values(0))
+  end subroutine constants
 
   !> The bound is that of the spline between the two times.
   function greatest_rate(self, t, h) result(rate)

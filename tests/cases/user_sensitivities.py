@@ -1,0 +1,124 @@
+"""Derivatives by the numbers that users' procedures receive: a pair, a drive and a coupling, each in both forms, against closed forms
+and against differences of runs.
+
+Compares the program with itself in part: differences of runs at other values of a parameter.
+
+usage: user_sensitivities.py FOLDER      FOLDER holds the programs of user_procs, such as trammel_k
+"""
+import os
+import sys
+import tempfile
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import Checks, read_table, run, text_of
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'user_procs')
+WEIGHTS = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
+# Procedures in Taylor form lose two digits in differences by the parameter; those in plain values, which are differentiated in time by
+# differences too, some three more in accelerations.
+TAYLOR, PLAIN = 1e-9, 1e-7
+
+
+def rows_of(program, directory, text, *options):
+    path = os.path.join(directory, 'a.nml')
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(text)
+    done = run(program, path, '--quiet', '--table', '-', *options)
+    if done.returncode != 0:
+        raise RuntimeError(f'{program} {options} ended with {done.returncode}:\n{done.stderr}')
+    return read_table(done.stdout)
+
+
+def compare(checks, found, parameter, expected, tolerance, why):
+    """Columns of one kind, as all rates, are judged by the largest one of them."""
+    kinds = {}
+    for name in expected:
+        kinds.setdefault(name.rstrip('0123456789xyz'), []).append(name)
+    for kind, names in kinds.items():
+        mine = np.array([found[f'd({name})/d({parameter})'] for name in names])
+        right = np.array([expected[name] for name in names])
+        largest = np.abs(right).max()
+        error = np.abs(mine - right).max()
+        checks.true(error <= tolerance * max(largest, 1e-3), f'{why}: {kind} by {parameter}', f'error {error:.2e} of {largest:.2e}')
+
+
+def sample(name, intervals):
+    text = text_of(os.path.join(ROOT, name, f'{name}.nml'))
+    lines = [line.split('!')[0] if 'intervals' in line else line for line in text.splitlines() if not line.startswith('&output')]
+    return '\n'.join(line.replace(line.split('intervals=')[1].split()[0], str(intervals)) if 'intervals=' in line else line
+                     for line in lines) + '\n&output sensitivities=.true. /\n'
+
+
+def differences(program, directory, text, values, number):
+    """Differences of runs by one parameter."""
+    plain = text.replace('sensitivities=.true.', 'sensitivities=.false.')
+    step, total = abs(values[number]) / 128, {}
+    for i, weight in enumerate(WEIGHTS, 1):
+        above, below = (rows_of(program, directory, plain, '--set', f'parameter({number + 1}).value={values[number] + sign * i * step!r}')
+                        for sign in (1, -1))
+        for name in above:
+            if name not in ('t', 'closure'):
+                total[name] = total.get(name, 0) + weight * (above[name] - below[name]) / step
+    return total
+
+
+def closed_trammel(t, a):
+    """P is 0.2 from A on AB of length a: (a - 0.2) cos q, 0.2 sin q."""
+    q = 0.3 + 2 * t
+    nought = 0 * t
+    return {'P.x': np.cos(q), 'P.vx': -2 * np.sin(q), 'P.ax': -4 * np.cos(q), 'P.y': nought, 'P.vy': nought, 'P.ay': nought}
+
+
+def closed_drive(t, rise, duration):
+    """q = h (t/T - sin(2 pi t/T)/2 pi), by h and by T."""
+    turn, share = 2 * np.pi, t / duration
+    s, c = np.sin(turn * share), np.cos(turn * share)
+    by_rise = {'q4': share - s / turn, 'dq4': (1 - c) / duration, 'ddq4': turn * s / duration**2}
+    by_duration = {'q4': -rise * share / duration * (1 - c), 'dq4': -rise * (1 - c + turn * share * s) / duration**2,
+                   'ddq4': -rise * turn * (2 * s + turn * share * c) / duration**3}
+    return by_rise, by_duration
+
+
+def closed_coupling(t, angle):
+    """tan q2 = tan q1 / cos(angle): the derivative by the angle, and its derivatives in time by extended differences."""
+    def slope(t):
+        q = 0.3 + 2 * t + t**2
+        return np.sin(angle) * np.sin(q) * np.cos(q) / (np.sin(q)**2 + (np.cos(angle) * np.cos(q))**2)
+
+    step = np.longdouble(2.0**-9)
+    t, angle = t.astype(np.longdouble), np.longdouble(angle)
+
+    def rate(function):
+        return lambda t: sum(w * (function(t + i * step) - function(t - i * step)) / step for i, w in enumerate(
+            (np.longdouble(4) / 5, -np.longdouble(1) / 5, np.longdouble(4) / 105, -np.longdouble(1) / 280), 1))
+
+    return {'q2': slope(t).astype(float), 'dq2': rate(slope)(t).astype(float), 'ddq2': rate(rate(slope))(t).astype(float)}
+
+
+def main():
+    folder = sys.argv[1]
+    checks = Checks()
+    with tempfile.TemporaryDirectory() as directory:
+        for name, values, closed in (('trammel', (0.5,), lambda t, v: (closed_trammel(t, *v),)),
+                                     ('cycloidal_drive', (0.4, 2.0), lambda t, v: closed_drive(t, *v)),
+                                     ('cardan_coupling', (0.3,), lambda t, v: (closed_coupling(t, *v),))):
+            text = sample(name, 10) + ''.join(f"&parameter name='p{i}', sets='user.parameters({i})', value={value} /\n"
+                                              for i, value in enumerate(values, 1))
+            for form, tolerance in (('', TAYLOR), ('_values', PLAIN)):
+                program = os.path.join(folder, f'{name}{form}_k')
+                found = rows_of(program, directory, text)
+                for i, expected in enumerate(closed(found['t'], values)):
+                    compare(checks, found, f'p{i + 1}', expected, tolerance, f'{name}{form}, closed form')
+                    compare(checks, found, f'p{i + 1}', differences(program, directory, text, values, i), tolerance,
+                            f'{name}{form}, runs')
+        # the pair the other way round: the moving link is now the one that its procedure describes the other in
+        text = sample('trammel', 10).replace('links=1,2, kind', 'links=2,1, kind') + "&parameter name='p1', sets='user.parameters(1)', value=0.5 /\n"
+        program = os.path.join(folder, 'trammel_k')
+        compare(checks, rows_of(program, directory, text), 'p1', differences(program, directory, text, (0.5,), 0), TAYLOR, 'reversed pair')
+    checks.finish()
+
+
+if __name__ == '__main__':
+    main()
