@@ -1,0 +1,118 @@
+"""Derivatives by parameters where a motion is special: mechanisms that turn as a whole, pairs along curves, ball joints beside and through
+gimbal lock, rods that turn about themselves; and in files of comma-separated values.
+
+Compares the program with itself in part: differences of runs at other values of a parameter.
+
+usage: special_sensitivities.py MECH9K MECH9D
+"""
+import csv
+import os
+import sys
+import tempfile
+
+import numpy as np
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from ball_charts import DRIVE, SLIDER
+from idle_rods import Rssr
+from sensitivities import FOUR_BAR, Case, of_motion
+from mech9_cases import Checks, run
+
+PATH = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', point=0.02,0.01,0, axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', point=0.25,0,0, axis=0,0,1, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', point=0.9,0,0, axis=0,0,1, moving_point=0,0,0 /
+&pair coordinate=4, links=1,4, kind='path', file='curve.dat', orientation='{}', point=0.1,0.05,0, zero=1,0,0, moving_point=0,0,0 /
+&initial coordinate=4, position=0.6 /
+&drive coordinate=1, kind='polynomial', coefficients=0.3,2 /
+&point name='P', link=4, position=0.1,0.2,0 /
+&time end=1, intervals=8 /
+&output sensitivities=.true. /
+"""
+
+
+def check_turning(case):
+    """Everything that belongs to the frame turns about a line through the origin: coordinates stay, points turn."""
+    line = np.array([0.3, -0.2, 1.0])
+    vectors = [('pair(1).point', (0.01, 0.02, 0)), ('pair(1).axis', (0, 0, 1)), ('pair(1).zero', (1, 0, 0)),
+               ('pair(4).point', (1, 0, 0)), ('pair(4).axis', (0, 0, 1)), ('pair(4).zero', (1, 0, 0))]
+    names, factors, terms = [], [], []
+    for name, vector in vectors:
+        for i, (change, number) in enumerate(zip(np.cross(line, vector), vector), 1):
+            if change == 0:
+                continue
+            names.append(f"'{name}({i})'")
+            factors.append(repr(float(change)))
+            terms.append(repr(float(number)))
+    text = FOUR_BAR.replace("axis=0,0,1, moving_point=0,0,0 /\n&pair coordinate=2", "axis=0,0,1, zero=1,0,0, moving_zero=1,0,0, moving_point=0,0,0 "
+                            "/\n&pair coordinate=2").replace("point=1,0,0, axis=0,0,1,", 'point=1,0,0, axis=0,0,1, zero=1,0,0, moving_zero=1,0,0,')
+    text = text.replace('zero=1,0,0, moving_zero', 'zero=1,0,0, moving_axis=0,0,1, moving_zero')
+    names, rows = case.table(text + f"&parameter name='turn', value=0, sets={','.join(names)}, factors={','.join(factors)}, "
+                             f"terms={','.join(terms)} /\n")
+    for kind, columns in of_motion(names).items():
+        found = rows[:, [names.index(f'd({names[i]})/d(turn)') for i in columns]]
+        expected = np.cross(line, rows[:, columns]) if kind.startswith('P.') else 0 * found
+        case.checks.near(found, expected, 1e-10, f'everything turns: {kind}', scale=max(1.0, float(np.abs(expected).max())))
+
+
+def check_paths(case):
+    """A slider on an ellipse. Splines have four continuous derivatives: the differences of runs are less exact than the derivatives."""
+    angle = np.linspace(0, 2 * np.pi, 81)
+    with open(os.path.join(case.directory, 'curve.dat'), 'w', encoding='utf-8') as file:
+        for x, y in zip(0.8 + 0.5 * np.cos(angle), 0.3 * np.sin(angle)):
+            file.write(f'{float(x)!r} {float(y) if abs(y) > 1e-12 else 0.0!r}\n')
+    for orientation in ('fixed', 'tangent'):
+        case.against_runs(PATH.format(orientation), (('rod', 'pair(3).point(1)', 0.9), ('place', 'pair(4).point(2)', 0.05),
+                                                     ('tilt', 'pair(4).zero(2)', 0.0), ('off', 'pair(4).moving_point(2)', 0.0)),
+                          f'path, {orientation}', 1e-7, 2.0**-10)
+
+
+def check_gimbal_lock(case):
+    """Ball joints that pass beside gimbal lock at some distance. Through it the rates of angles have no derivatives."""
+    for why, crank, guide, tolerance in (('beside the lock', '0.2,1,0.1', '0,0.1,0.05', 1e-7), ('near the lock', '0.05,1,0.03', '0,0.03,0.02', 1e-5)):
+        text = SLIDER.format(crank=crank, guide=guide, frame='') + DRIVE.format(start='0.2') \
+            + '&time end=6.5, intervals=13 /\n&output sensitivities=.true. /\n'
+        case.against_runs(text, (('crank', 'pair(2).point(3)', 0.3), ('rod', 'pair(3).point(1)', 1.0)), f'ball, {why}', tolerance, 2.0**-10)
+
+
+def check_rods(case):
+    """Rods between two balls: the derivatives of all that does not depend on how the rod turns about itself."""
+    for seed in range(4):
+        rssr = Rssr(seed)
+        length = float(np.linalg.norm(rssr.arms[0]))
+        text = rssr.pairs(seed % 3 > 0) + "&drive coordinate=1, kind='polynomial', coefficients=0, 1 /\n" \
+            "&point name='P', link=4, position=0.1,0.2,0.3 /\n&time end=6, intervals=12 /\n" \
+            '&output sensitivities=.true., coordinates=1,8 /\n'
+        case.against_runs(text, (('arm', 'pair(3).point(1)', float(rssr.arms[0][0])), ('rod', 'pair(4).point(2)', float(rssr.in_rod[1]))),
+                          f'rod {seed} of a crank of {length:.2f} m', 1e-7, 2.0**-9)
+
+
+def check_commas(case):
+    """A table with commas has the same columns."""
+    crank = "&parameter name='crank', sets='pair(2).point(1)' /\n"
+    names, rows = case.table(FOUR_BAR + crank)
+    path = os.path.join(case.directory, 'a.csv')
+    done = run(case.mech9k, os.path.join(case.directory, 'a.nml'), '--quiet', '--table', path)
+    case.checks.equal(done.returncode, 0, 'a table with commas')
+    with open(path, encoding='utf-8', newline='') as file:
+        lines = [line for line in csv.reader(file) if line and not line[0].startswith('#')]
+    heads = [head.split(' [')[0] for head in lines[0]]
+    case.checks.equal(heads, names, 'its headings')
+    numbers = np.array([[float(x) for x in line] for line in lines[1:] if line[0][:1] in '-0123456789'])
+    case.checks.true(np.array_equal(numbers, rows), 'its numbers')
+
+
+def main():
+    checks = Checks()
+    with tempfile.TemporaryDirectory() as directory:
+        case = Case(checks, directory, *sys.argv[1:3])
+        check_turning(case)
+        check_paths(case)
+        check_gimbal_lock(case)
+        check_rods(case)
+        check_commas(case)
+    checks.finish()
+
+
+if __name__ == '__main__':
+    main()
