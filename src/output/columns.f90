@@ -252,9 +252,11 @@ contains
     type(sensitivity_type), intent(in) :: sensitivity     !< the derivatives
     real(wp), intent(inout), contiguous :: row(:)         !< numbers of one row, one for each column
 
-    call put_derivatives(size(self%parameters), size(self%coordinates), self%coordinates, self%factors, self%derivatives, &
-                         size(sensitivity%q, 3), sensitivity%q, size(sensitivity%points, 4), sensitivity%points, &
-                         row(self%count - self%sensitivities + 1:self%count))
+    associate (before => before_sensitivities(self), n => self%sensitivities + self%unrecorded)
+      call put_derivatives(size(self%parameters), size(self%coordinates), self%coordinates, self%factors, self%derivatives, &
+                           size(sensitivity%q, 3), sensitivity%q, size(sensitivity%points, 4), sensitivity%points, &
+                           row(before + 1:before + n))
+    end associate
   end subroutine fill_sensitivities
 
   !> Put derivatives by parameters in the order of columns: all by the first parameter first. The arrays have known shapes, so that
