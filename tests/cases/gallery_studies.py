@@ -1,7 +1,7 @@
 """Studies and gradients of the gallery: the draw latch against its closed form and the propagation of errors, Jansen's leg over its grid, and
-hard points that move together.
+hard points that move together; the energy of SUNDIALS' slider-crank.
 
-usage: gallery_studies.py MECH9K
+usage: gallery_studies.py MECH9K MECH9D
 """
 import json
 import os
@@ -85,12 +85,22 @@ def check_hard_points(checks, program, folder):
     checks.true(abs(found['toe']['rack']) > 4 * abs(found['toe']['upper_bushings']), 'toe: the rack matters most')
 
 
+def check_sundials(checks, program):
+    """Published: G = 3.33662 at a tolerance of 1e-6, and central differences by k and c with five digits."""
+    rows = study(program, 'sundials_sensitivity')
+    energy = rows['G'].reshape(3, 3)           # the last parameter changes fastest
+    checks.true(abs(energy[1, 1] - 3.3366157997761721) <= 2e-5, 'the integral of the energy', energy[1, 1])
+    for name, found, published in (('k', energy[2, 1] - energy[0, 1], 0.33345), ('c', energy[1, 2] - energy[1, 0], -0.36375)):
+        checks.true(abs(found / 0.002 - published) <= 1e-5, f'its derivative by {name}', found / 0.002)
+
+
 def main():
     checks = Checks()
     with tempfile.TemporaryDirectory() as folder:
         check_latch(checks, sys.argv[1], folder)
         check_jansen(checks, sys.argv[1], folder)
         check_hard_points(checks, sys.argv[1], folder)
+        check_sundials(checks, sys.argv[2])
     checks.finish()
 
 
