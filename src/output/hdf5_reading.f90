@@ -7,15 +7,18 @@ module mech9_hdf5_reading
                   h5tget_class_f, h5tis_variable_str_f, h5tclose_f, h5t_string_f, h5sclose_f, h5sget_simple_extent_npoints_f, &
                   h5dvlen_reclaim_f, h5kind_to_type, h5_integer_kind
   use mech9_error, only: error_type, raise, exit_file
+  use mech9_text, only: string_type
   use mech9_same_file, only: file_place_type, find_place, is_regular
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_reason, only: last_reason
   implicit none
   private
-  public :: open_existing, read_text, read_integer, has_data_set
+  public :: open_existing, read_text, read_texts, read_integer, has_data_set
 
   !> Longest text that is read [bytes].
   integer, parameter :: longest_text = 100000000
+  !> Most texts that are read together.
+  integer, parameter :: most_texts = 1000000
 
 contains
 
@@ -76,36 +79,60 @@ contains
     type(hdf5_file_type), intent(inout) :: file                !< the open file
     character(len=*), intent(in) :: name                       !< path of the data set
     character(len=:), allocatable, intent(out) :: text         !< its text
-    integer(hid_t) :: data_set, data_type, space
-    type(c_ptr), target :: address(1)
-    type(c_ptr) :: place
-    integer(hsize_t) :: points
-    integer :: status, class
-    logical :: sound
+    type(string_type), allocatable :: texts(:)
 
     text = ''
+    call read_texts(file, name, texts)
+    if (allocated(file%failure)) return
+    if (size(texts) == 1) then
+      text = texts(1)%text
+    else
+      call file%fail("data set '"//name//"' is not one text")
+    end if
+  end subroutine read_text
+
+  !> Read a data set of texts. It is a failure of the file where there is none.
+  subroutine read_texts(file, name, texts)
+    type(hdf5_file_type), intent(inout) :: file                     !< the open file
+    character(len=*), intent(in) :: name                            !< path of the data set
+    type(string_type), allocatable, intent(out) :: texts(:)         !< its texts
+    integer(hid_t) :: data_set, data_type, space
+    type(c_ptr), allocatable, target :: addresses(:)
+    type(c_ptr) :: place
+    integer(hsize_t) :: points
+    integer :: status, class, i
+    logical :: sound
+
+    allocate (texts(0))
     call open_data_set(file, name, data_set)
     if (allocated(file%failure)) return
     call h5dget_type_f(data_set, data_type, status)
     call h5dget_space_f(data_set, space, status)
     call h5tget_class_f(data_type, class, status)
     call h5sget_simple_extent_npoints_f(space, points, status)
-    sound = class == h5t_string_f .and. points == 1
+    sound = class == h5t_string_f .and. points >= 0 .and. points <= most_texts
     if (sound) call h5tis_variable_str_f(data_type, sound, status)
-    if (sound) then
-      address = c_null_ptr
-      place = c_loc(address)
+    if (sound .and. points > 0) then
+      allocate (addresses(points))
+      addresses = c_null_ptr
+      place = c_loc(addresses)
       call h5dread_f(data_set, data_type, place, status)
       call file%check(status)
-      if (status >= 0) call take_letters(address(1), text)
-      if (status >= 0) call h5dvlen_reclaim_f(data_type, space, h5p_default_f, place, status)
-    else
+      if (status >= 0) then
+        deallocate (texts)
+        allocate (texts(points))
+        do i = 1, size(texts)
+          call take_letters(addresses(i), texts(i)%text)
+        end do
+        call h5dvlen_reclaim_f(data_type, space, h5p_default_f, place, status)
+      end if
+    else if (.not. sound) then
       call file%fail("data set '"//name//"' is not a text")
     end if
     call h5sclose_f(space, status)
     call h5tclose_f(data_type, status)
     call h5dclose_f(data_set, status)
-  end subroutine read_text
+  end subroutine read_texts
 
   !> A text from its letters in memory, which end with a byte of zero.
   subroutine take_letters(address, text)

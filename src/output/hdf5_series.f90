@@ -91,16 +91,18 @@ contains
   end subroutine start
 
   !> Set the number of rows and the size of buffers, in place of `start`, for data sets with all their rows from the beginning.
-  subroutine start_fixed(self, n_quantities, n_columns, rows)
+  subroutine start_fixed(self, n_quantities, n_columns, rows, only_read)
     class(hdf5_series_type), intent(inout) :: self  !< the quantities over runs
     integer, intent(in) :: n_quantities             !< most quantities
     integer, intent(in) :: n_columns                !< most columns of the rows
     integer, intent(in) :: rows                     !< number of rows
+    logical, intent(in) :: only_read                !< no rows are going to be written
 
     allocate (self%quantities(n_quantities))
     self%fixed = .true.
     self%rows = rows
     self%capacity = min(most_buffered, rows_within(buffer_size, n_columns))
+    if (only_read) self%capacity = 1
   end subroutine start_fixed
 
   !> The number of rows that fit into a memory of the given size; at least one.

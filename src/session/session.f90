@@ -24,6 +24,7 @@ module mech9_session
   use mech9_task, only: task_type, answers_only
   use mech9_run_words, only: save_short_report
   use mech9_study_task, only: work_on_study
+  use mech9_study_merge, only: merge_studies
   use mech9_optimum_task, only: work_on_optimum
   use mech9_choice_check, only: judge_choice_of
   use mech9_unused_options, only: print_unused_options
@@ -49,6 +50,8 @@ contains
       write (output_unit, '(a)') version_text(task%program_name)
     else if (options%has('help-data')) then
       call show_data_help(task, options%argument('help-data'), code)
+    else if (options%has('merge')) then
+      call merge_studies(task%program_name, options, code)
     else
       call run_file(task, options, options%file, code)
     end if

@@ -1,5 +1,5 @@
 """The HDF5 file of a study: its data sets and dimensions; a study that is killed, interrupted or made in parts is continued with the
-same bits; files of other studies, and files that are no files of studies, are refused and stay as they are.
+same bits, and joined to the whole study; files of other studies, and files that are no files of studies, are refused and stay as they are.
 
 usage: study_files.py MECH9K MECH9D
 """
@@ -199,10 +199,77 @@ def parts(cases, mech9k):
     for more in ((), ('--part', '2/4')):
         cases.study(mech9k, text, '--continue', path, *more, why='part continued')
     printed = cases.study(mech9k, text, '--continue', path, '--part', '1/4', why='another part', code=FILE)
-    cases.checks.true('it is of part 2/4, and --part 1/4 is another one' in printed, 'another part is refused', printed)
+    cases.checks.true("part.h5' is of part 2/4, and --part 1/4 is another one" in printed, 'another part is refused', printed)
     cases.study(mech9k, text, '--part', '31/40', '--hdf5', path, why='no runs')
     cases.checks.true(all(len(values) == 0 for values in numbers_of(path).values()), 'a part without runs')
     cases.study(mech9k, text, '--continue', path, why='no runs')
+
+
+def merged(cases, mech9k):
+    """Parts joined in any order are the whole study, in every bit; what they lack is told and can be made; files that do not go together
+    are refused, and nothing is written."""
+    check = cases.checks
+    text = random_study(3000)
+    cases.study(mech9k, text, '--hdf5', cases.path('whole.h5'), '--table', cases.path('whole.dat'), why='whole')
+    whole = numbers_of(cases.path('whole.h5'))
+    parts = [cases.path(f'part{k}.h5') for k in (1, 2, 3)]
+    for k, path in enumerate(parts):
+        cases.study(mech9k, text, '--part', f'{k + 1}/3', '--hdf5', path, why=f'part {k + 1}')
+    joined, table = cases.path('joined.h5'), cases.path('joined.dat')
+
+    def merge(paths, *more, code=DONE, why):
+        done = run(mech9k, '--merge', *paths, '--hdf5', joined, *more)
+        check.true(done.returncode == code, f'{why}: ends with {code}', f'{done.returncode}: {done.stderr}')
+        return done.stderr
+
+    for paths in (parts, parts[::-1], [parts[1], parts[0], parts[2], parts[1]]):
+        printed = merge(paths, '--table', table, why='merge')
+        check.true(same_bits(numbers_of(joined), whole), 'merged: the bits of the whole study')
+        check.equal(text_of(table), text_of(cases.path('whole.dat')), 'merged: the same table')
+        check.true(f'3000 runs of 3000 from {len(paths)} files' in printed and 'not made yet' not in printed, 'merged: told', printed)
+        failed = np.sum(whole['exit_code'] == 6)
+        check.true(f'{failed} runs failed with exit code 6' in printed, 'merged: failed runs', printed)
+        check.true(('note: 1000 runs stood in more than one file, with the same numbers; first of them run 2 in' in printed) == (len(paths) == 4),
+                   'merged: overlapping parts are told', printed)
+    with h5py.File(joined) as file, h5py.File(parts[0]) as part:
+        check.equal([file[name][()] for name in ('study/part', 'study/parts', 'study/runs')], [1, 1, 3000], 'merged: the whole study')
+        check.true(file['provenance/data'][()] == part['provenance/data'][()] and file['quantities/way'].attrs['units'] == 'm s', 'merged: origin, units')
+    printed = merge([parts[0], parts[2]], why='merge two of three')
+    check.true('note: 1000 runs of the study are not made yet; --study --continue makes them' in printed, 'merged: missing runs are told', printed)
+    left = numbers_of(joined)
+    check.true(np.all(left['exit_code'][1::3] == -1) and np.all(np.isnan(left['quantities/way'][1::3])), 'merged: missing runs')
+    # an incomplete merge is a part of a merge, and can be continued
+    other = cases.path('other.h5')
+    done = run(mech9k, '--merge', parts[1], joined, '--hdf5', other, '--quiet')
+    check.true(done.returncode == DONE and done.stderr == '' and same_bits(numbers_of(other), whole), 'merged twice', done.stderr)
+    cases.study(mech9k, text, '--continue', joined, why='continue a merge')
+    check.true(same_bits(numbers_of(joined), whole), 'a continued merge has the same bits')
+
+    before = open(joined, 'rb').read()
+    cases.study(mech9k, random_study(2999), '--hdf5', cases.path('other.h5'), why='another')
+    shutil.copy(parts[1], cases.path('changed.h5'))
+    with h5py.File(cases.path('changed.h5'), 'r+') as file:
+        file['quantities/way'][7] += 1e-9
+    with open(cases.path('short.h5'), 'wb') as file:
+        file.write(open(parts[0], 'rb').read()[:2500])
+    for names, message in ((('part1.h5', 'other.h5'), "other.h5' are of different studies: in the first one '&study kind='random', runs=3000"),
+                           (('part1.h5', 'changed.h5', 'part2.h5'), "part2.h5' have different numbers for run 23; make it anew"),
+                           (('part1.h5', 'short.h5'), 'truncated file'),
+                           (('part1.h5', 'none.h5'), 'there is no such file'),
+                           (('case.nml', 'part1.h5'), 'file signature not found')):
+        printed = merge([cases.path(name) for name in names], why=names, code=FILE)
+        check.true(message in printed, f'{names}: {message}', printed)
+    for words, message in ((('--merge', 'part1.h5', '--hdf5', 'joined.h5'), 'give two of them or more'),
+                           (('--merge', 'part1.h5', 'part2.h5'), '--merge needs the file that it makes'),
+                           (('--merge', 'part1.h5', 'joined.h5', '--hdf5', 'joined.h5'), "would overwrite 'joined.h5', which is read"),
+                           (('case.nml', '--merge', 'part1.h5', 'part2.h5', '--hdf5', 'joined.h5'), 'a data file is given beside --merge'),
+                           (('--merge', 'part1.h5', 'part2.h5', '--hdf5', 'joined.h5', '--study'), 'leave --study out')):
+        done = run(mech9k, *words, folder=cases.folder)
+        check.true(done.returncode == USAGE and message in done.stderr, f'{words}: {message}', f'{done.returncode}: {done.stderr}')
+    for target in ('--hdf5', '--table'):
+        done = run(mech9k, '--merge', *parts, target, '/dev/full')
+        check.true(done.returncode == FILE and 'No space left on device' in done.stderr, f'{target} /dev/full', done.stderr)
+    check.true(before == open(joined, 'rb').read(), 'refused: nothing is written over')
 
 
 def refused(cases, mech9k):
@@ -279,6 +346,7 @@ def main():
         only_what_is_missing(cases, mech9k)
         interrupted(cases, mech9k)
         parts(cases, mech9k)
+        merged(cases, mech9k)
         refused(cases, mech9k)
     checks.finish()
 

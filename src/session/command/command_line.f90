@@ -395,7 +395,7 @@ contains
   pure logical function converses(self)
     class(command_line_type), intent(in) :: self  !< the command line
 
-    converses = (self%file == '' .and. .not. self%has('import')) .or. self%has('dialogue') .or. self%has('edit') &
-                .or. self%has('resume')
+    converses = (self%file == '' .and. .not. (self%has('import') .or. self%has('merge'))) .or. self%has('dialogue') .or. &
+                self%has('edit') .or. self%has('resume')
   end function converses
 end module mech9_command_line

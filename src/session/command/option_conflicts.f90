@@ -57,6 +57,8 @@ contains
     if (has('help') .or. has('version') .or. has('help-data')) return
     if (has('import') .or. (has('out') .and. .not. has('optimize'))) then
       call judge_import(given, has_file, err)
+    else if (has('merge')) then
+      call judge_merge(given, has_file, err)
     else if (has('part') .and. .not. has('study')) then
       call raise(err, exit_usage, '--part K/N is a part of --study; give both')
     else if (has('threads') .and. .not. (has('study') .or. has('optimize'))) then
@@ -115,6 +117,27 @@ contains
         call raise(err, exit_usage, '--import makes a data file and no run; leave --'//trim(given(i))//' out')
     end do
   end subroutine judge_import
+
+  !> Check the options of a merge: it makes one file of several, and no run.
+  pure subroutine judge_merge(given, has_file, err)
+    character(len=*), intent(in) :: given(:)           !< names of the options that are given, without the dashes
+    logical, intent(in) :: has_file                    !< a data file is given beside the options
+    type(error_type), allocatable, intent(out) :: err  !< allocated if they contradict it
+    integer :: i
+
+    if (has_file) then
+      call raise(err, exit_usage, 'a data file is given beside --merge, which reads the files of a study alone; leave it out')
+    else if (count(given == 'merge') < 2) then
+      call raise(err, exit_usage, '--merge joins the files of parts of a study; give two of them or more')
+    else if (.not. (any(given == 'hdf5') .or. any(given == 'table'))) then
+      call raise(err, exit_usage, '--merge needs the file that it makes: give --hdf5 FILE.h5, or --table FILE')
+    end if
+    do i = 1, size(given)
+      if (allocated(err)) return
+      if (all(given(i) /= [character(len=5) :: 'merge', 'hdf5', 'table', 'quiet'])) &
+        call raise(err, exit_usage, '--merge makes no run; leave --'//trim(given(i))//' out')
+    end do
+  end subroutine judge_merge
 
   !> Fail because of options that have no meaning beside --study.
   pure subroutine judge_study(given, err)

@@ -9,6 +9,9 @@ module mech9_options
   !> Forms of an argument: any text, a whole number from 1 on, GROUP.NAME=VALUE, K/N.
   integer, parameter :: any_text = 0, whole_number = 1, assignment = 2, part_of_whole = 3
 
+  !> Arguments of an option that takes as many as there are.
+  integer, parameter :: unlimited_arguments = huge(1)
+
   !> One option.
   type :: option_type
     character(len=12) :: name       !< name of the option, without the dashes
@@ -72,6 +75,8 @@ module mech9_options
                 'make a study or a search in N threads; without it one for each core'), &
     option_type('continue', needed_argument, 'FILE.h5', any_text, .false., both, &
                 'make the runs of a study that its HDF5 file does not have yet'), &
+    option_type('merge', needed_argument, 'FILE FILE ...', any_text, .false., both, &
+                'join the HDF5 files of parts of a study to that of --hdf5', unlimited_arguments), &
     option_type('optimize', no_argument, '', any_text, .false., 'mech9k', &
                 'find the parameters with which the groups &objective are met best'), &
     option_type('set', needed_argument, 'GROUP.NAME=VALUE', assignment, .true., both, &

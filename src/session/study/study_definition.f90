@@ -106,20 +106,22 @@ contains
 
   !> Tell where two definitions differ: the first line of each that the other one does not have at its place; empty where they are
   !> equal.
-  subroutine tell_difference(there, here, words)
-    character(len=*), intent(in) :: there                    !< the definition of a file
-    character(len=*), intent(in) :: here                     !< the definition of this study
+  subroutine tell_difference(one, other, words, name_of_one, name_of_other)
+    character(len=*), intent(in) :: one                      !< a definition
+    character(len=*), intent(in) :: other                    !< another one
     character(len=:), allocatable, intent(out) :: words      !< a sentence, or empty
+    character(len=*), intent(in) :: name_of_one              !< place of the first definition in words, as 'there'
+    character(len=*), intent(in) :: name_of_other            !< place of the other one, as 'here'
     integer :: first, i
 
     words = ''
-    if (len(there) == len(here) .and. there == here) return
+    if (len(one) == len(other) .and. one == other) return
     first = 1
-    do i = 1, min(len(there), len(here))
-      if (there(i:i) /= here(i:i)) exit
-      if (there(i:i) == line_end) first = i + 1
+    do i = 1, min(len(one), len(other))
+      if (one(i:i) /= other(i:i)) exit
+      if (one(i:i) == line_end) first = i + 1
     end do
-    words = 'there '//line_from(there, first)//', here '//line_from(here, first)
+    words = name_of_one//' '//line_from(one, first)//', '//name_of_other//' '//line_from(other, first)
   end subroutine tell_difference
 
   !> The line of a text that begins at a place, shortened, in quotes.

@@ -2,18 +2,14 @@
 !> the run is made; so a program that is killed at any moment leaves a file whose runs are either whole or not made.
 module mech9_study_file
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
   use mech9_error, only: error_type
   use mech9_clock, only: pacer_type
-  use mech9_model, only: model_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_series, only: hdf5_series_type
-  use mech9_hdf5_reading, only: open_existing, read_text, read_integer
-  use mech9_hdf5_record, only: write_provenance
-  use mech9_command_line, only: command_line_type
-  use mech9_quantity_record, only: quantity_record_type
+  use mech9_hdf5_reading, only: open_existing
   use mech9_run_maker, only: made_run_type
   use mech9_study_definition, only: digest_of, tell_difference
+  use mech9_study_layout, only: study_layout_type, write_layout, read_layout
   implicit none
   private
   public :: study_file_type, not_made
@@ -27,8 +23,7 @@ module mech9_study_file
 
   type :: study_file_type
     type(hdf5_file_type) :: file
-    integer :: part(2) = 1                                 !< number of the part and how many parts there are
-    integer :: runs = 0                                    !< runs of the part
+    type(study_layout_type) :: layout                      !< names and units of what it holds
     type(hdf5_series_type), private :: outcomes            !< parameters, quantities and exit code over the runs
     type(pacer_type), private :: pacer
     real(wp), allocatable, private :: row(:)               !< parameters, quantities and exit code of a run
@@ -42,7 +37,9 @@ module mech9_study_file
     procedure :: is_open
     procedure :: code_of
     procedure :: read_run
+    procedure :: read_row
     procedure :: write_run
+    procedure :: write_row
     procedure :: close => close_file
     procedure, private :: begin_outcomes
     procedure, private :: tell
@@ -50,46 +47,26 @@ module mech9_study_file
 
 contains
 
-  !> How many runs part K of N parts has.
-  pure integer function runs_of_part(part, runs) result(n)
-    integer, intent(in) :: part(2)   !< K and N
-    integer, intent(in) :: runs      !< of the whole study
-
-    n = 0
-    if (part(1) <= runs) n = 1 + (runs - part(1))/part(2)
-  end function runs_of_part
-
   !> Create the file with all its places. It gets its name with `publish`; a file of that name stays until then.
-  subroutine create(self, path, program_name, options, model, quantities, definition, data_text, err)
+  subroutine create(self, path, layout, err)
     class(study_file_type), intent(out) :: self               !< the file
     character(len=*), intent(in) :: path                      !< of the file
-    character(len=*), intent(in) :: program_name              !< mech9k or mech9d
-    type(command_line_type), intent(in) :: options            !< the command line
-    type(model_type), intent(in) :: model                     !< the model with the values of the data file
-    type(quantity_record_type), intent(in) :: quantities      !< with their columns
-    character(len=*), intent(in) :: definition                !< the text that determines the numbers of the study
-    character(len=*), intent(in) :: data_text                 !< text of the data file
+    type(study_layout_type), intent(in) :: layout             !< names and units
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(hdf5_series_type) :: numbers
 
-    self%part = options%part()
-    self%runs = runs_of_part(self%part, model%request%study%runs)
+    self%layout = layout
     call self%file%create(path, err)
     if (allocated(err)) return
-    call numbers%start_fixed(1, 1, self%runs)
+    call numbers%start_fixed(1, 1, layout%runs_of_part(), .false.)
     call numbers%add('run', [1], [integer ::], 'number of the run in the whole study', '1', [character(len=4) ::], whole=.true.)
-    call self%begin_outcomes(model, quantities)
+    call self%begin_outcomes(.false.)
     call numbers%create(self%file)
     call self%outcomes%create(self%file)
     call self%outcomes%attach(self%file)
     call write_numbers(self, numbers)
-    call write_provenance(self%file, program_name, options, model, data_text)
-    call self%file%put('study/kind', trim(model%request%study%kind), 'kind of the study')
-    call self%file%put('study/runs', model%request%study%runs, 'runs of the whole study')
-    call self%file%put('study/part', self%part(1), 'number of the part of the study that this file has')
-    call self%file%put('study/parts', self%part(2), 'how many parts there are')
-    call self%file%put('study/definition', definition, 'text that determines the numbers of the study')
-    call self%file%put('study/digest', digest_of(definition), 'cyclic redundancy check of the definition')
+    call write_layout(self%file, layout)
+    call self%file%put('study/digest', digest_of(layout%definition), 'cyclic redundancy check of the definition')
     call self%pacer%start(longest_wait)
     call self%tell(err)
     if (allocated(err)) call self%file%close()
@@ -105,29 +82,28 @@ contains
   end subroutine publish
 
   !> Add parameters, quantities and the exit code, which is written last.
-  subroutine begin_outcomes(self, model, quantities)
-    class(study_file_type), intent(inout) :: self             !< the file
-    type(model_type), intent(in) :: model                     !< the model
-    type(quantity_record_type), intent(in) :: quantities      !< with their columns
+  subroutine begin_outcomes(self, only_read)
+    class(study_file_type), intent(inout) :: self   !< the file, with its layout
+    logical, intent(in) :: only_read                !< nothing is going to be written
     integer :: i, n, columns
 
-    n = size(model%parameters)
-    columns = n + size(model%request%quantities) + 1
-    call self%outcomes%start_fixed(columns, columns, self%runs)
-    do i = 1, n
-      call self%outcomes%add('parameters/'//model%parameters(i)%name, [i], [integer ::], 'parameter '//model%parameters(i)%name, &
-                             '', ['/run'])
-    end do
-    do i = 1, size(model%request%quantities)
-      associate (quantity => model%request%quantities(i))
-        call self%outcomes%add('quantities/'//quantity%name, [n + i], [integer ::], trim(quantity%take)//' of '//quantity%column, &
-                               quantities%unit_of(i), ['/run'])
-      end associate
-    end do
+    associate (layout => self%layout)
+      n = size(layout%parameters)
+      columns = n + size(layout%quantities) + 1
+      call self%outcomes%start_fixed(columns, columns, layout%runs_of_part(), only_read)
+      do i = 1, n
+        call self%outcomes%add('parameters/'//layout%parameters(i)%text, [i], [integer ::], &
+                               'parameter '//layout%parameters(i)%text, '', ['/run'])
+      end do
+      do i = 1, size(layout%quantities)
+        call self%outcomes%add('quantities/'//layout%quantities(i)%text, [n + i], [integer ::], layout%meanings(i)%text, &
+                               layout%units(i)%text, ['/run'])
+      end do
+    end associate
     call self%outcomes%add('exit_code', [columns], [integer ::], 'exit code of a single run with these values; -1: not made yet', &
                            '1', ['/run'], whole=.true.)
     allocate (self%row(columns), source=0.0_wp)
-    allocate (self%block(columns, min(most_together, max(1, self%runs))), source=0.0_wp)
+    allocate (self%block(columns, max(1, min(most_together, self%layout%runs_of_part()))), source=0.0_wp)
   end subroutine begin_outcomes
 
   !> Write the numbers of the runs.
@@ -136,40 +112,33 @@ contains
     type(hdf5_series_type), intent(inout) :: numbers       !< the data set of the numbers; closed on return
     integer :: i
 
-    do i = 1, self%runs
+    do i = 1, self%layout%runs_of_part()
       if (allocated(self%file%failure)) exit
-      call numbers%write_row_at(self%file, i, [real(self%part(1) + (i - 1)*self%part(2), wp)])
+      call numbers%write_row_at(self%file, i, [real(self%layout%part(1) + (i - 1)*self%layout%part(2), wp)])
     end do
     call numbers%close(self%file)
   end subroutine write_numbers
 
-  !> Open a file that is there, to make what is missing in it. Fails with exit_file where it is the file of another study.
-  subroutine open(self, path, options, model, quantities, definition, err)
+  !> Open a file that is there: to make what is missing in it, or to read it. Fails with exit_file where it is not the file of a
+  !> study, or that of another study than the one that is defined.
+  subroutine open(self, path, writable, definition, err)
     class(study_file_type), intent(out) :: self               !< the file
     character(len=*), intent(in) :: path                      !< of the file
-    type(command_line_type), intent(in) :: options            !< the command line
-    type(model_type), intent(in) :: model                     !< the model with the values of the data file
-    type(quantity_record_type), intent(in) :: quantities      !< with their columns
-    character(len=*), intent(in) :: definition                !< the text that determines the numbers of the study
+    logical, intent(in) :: writable                           !< runs are going to be written
+    character(len=*), intent(in) :: definition                !< text that determines the numbers of the study; empty: any study
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
-    character(len=:), allocatable :: other, difference
+    character(len=:), allocatable :: difference
 
-    call open_existing(path, .true., self%file, err)
+    call open_existing(path, writable, self%file, err)
     if (allocated(err)) return
-    call read_text(self%file, 'study/definition', other)
-    call read_integer(self%file, 'study/part', self%part(1))
-    call read_integer(self%file, 'study/parts', self%part(2))
+    call read_layout(self%file, self%layout)
     if (.not. allocated(self%file%failure)) then
-      call tell_difference(other, definition, difference)
+      difference = ''
+      if (definition /= '') call tell_difference(self%layout%definition, definition, difference, 'there', 'here')
       if (difference /= '') call self%file%fail('it is of another study: '//difference)
-      if (any(self%part < 1) .or. self%part(1) > self%part(2)) call self%file%fail('the number of its part makes no sense')
-      if (options%has('part') .and. any(options%part() /= self%part)) &
-        call self%file%fail('it is of part '//to_text(self%part(1))//'/'//to_text(self%part(2))//', and --part '// &
-                            options%argument('part')//' is another one')
     end if
     if (.not. allocated(self%file%failure)) then
-      self%runs = runs_of_part(self%part, model%request%study%runs)
-      call self%begin_outcomes(model, quantities)
+      call self%begin_outcomes(.not. writable)
       call self%outcomes%open(self%file)
     end if
     call self%pacer%start(longest_wait)
@@ -207,12 +176,24 @@ contains
     if (allocated(self%file%failure)) return
     n = size(run%values)
     associate (row => self%block(:, place - self%block_first + 1))
-      run%number = self%part(1) + (place - 1)*self%part(2)
+      run%number = self%layout%part(1) + (place - 1)*self%layout%part(2)
       run%values = row(:n)
       run%quantities = row(n + 1:size(row) - 1)
       run%exit_code = nint(row(size(row)))
     end associate
   end subroutine read_run
+
+  !> Read the row of a run.
+  subroutine read_row(self, place, row, err)
+    class(study_file_type), intent(inout) :: self       !< the file
+    integer, intent(in) :: place                        !< of the run in the part, from 1
+    real(wp), intent(inout) :: row(:)                   !< parameters, quantities and exit code
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it cannot be read
+
+    call go_to(self, place)
+    call self%tell(err)
+    if (.not. allocated(err)) row = self%block(:, place - self%block_first + 1)
+  end subroutine read_row
 
   !> Read the block of runs that has a place.
   subroutine go_to(self, place)
@@ -224,10 +205,10 @@ contains
     first = 1 + (place - 1)/n*n
     if (first == self%block_first) return
     self%block_first = first
-    call self%outcomes%read_rows(self%file, first, self%block(:, :min(n, self%runs - first + 1)))
+    call self%outcomes%read_rows(self%file, first, self%block(:, :min(n, self%layout%runs_of_part() - first + 1)))
   end subroutine go_to
 
-  !> Write a run that is made. Runs come mostly in order; the file has them after half a second at most.
+  !> Write a run that is made.
   subroutine write_run(self, place, run, err)
     class(study_file_type), intent(inout) :: self       !< the file
     integer, intent(in) :: place                        !< of the run in the part, from 1
@@ -239,10 +220,20 @@ contains
     self%row(:n) = run%values
     self%row(n + 1:n + size(run%quantities)) = run%quantities
     self%row(size(self%row)) = run%exit_code
-    call self%outcomes%write_row_at(self%file, place, self%row)
+    call self%write_row(place, self%row, err)
+  end subroutine write_run
+
+  !> Write the row of a run. Runs come mostly in order; the file has them after half a second at most.
+  subroutine write_row(self, place, row, err)
+    class(study_file_type), intent(inout) :: self       !< the file
+    integer, intent(in) :: place                        !< of the run in the part, from 1
+    real(wp), intent(in) :: row(:)                      !< parameters, quantities and exit code
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it cannot be written
+
+    call self%outcomes%write_row_at(self%file, place, row)
     if (self%pacer%due()) call self%outcomes%hand_over(self%file)
     call self%tell(err)
-  end subroutine write_run
+  end subroutine write_row
 
   !> Write all runs and close the file. Does nothing to a file that is not open.
   subroutine close_file(self, err)

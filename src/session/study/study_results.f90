@@ -1,7 +1,8 @@
 !> The files of a study: a table with a row for each run, and an HDF5 file with a place for each.
 module mech9_study_results
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
+  use mech9_error, only: error_type, raise, exit_file
+  use mech9_text, only: to_text
   use mech9_version, only: version
   use mech9_command_line, only: command_line_type
   use mech9_document, only: document_type
@@ -13,6 +14,8 @@ module mech9_study_results
   use mech9_run_maker, only: made_run_type
   use mech9_study_definition, only: define_study
   use mech9_study_file, only: study_file_type, not_made
+  use mech9_study_layout, only: study_layout_type, layout_of
+  use mech9_hdf5_record, only: write_provenance
   implicit none
   private
   public :: study_results_type
@@ -46,6 +49,7 @@ contains
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(columns_type) :: columns
     type(error_type), allocatable :: at_close
+    type(study_layout_type) :: layout
     character(len=:), allocatable :: definition
 
     call find_result_paths(options, model%request%output, self%paths)
@@ -54,10 +58,11 @@ contains
       call define_study(program_name, document, definition, err)
       if (allocated(err)) return
       if (options%has('continue')) then
-        call self%file%open(self%paths%hdf5, options, model, quantities, definition, err)
-        self%part = self%file%part
+        call continue_file(self, options, definition, err)
       else
-        call self%file%create(self%paths%hdf5, program_name, options, model, quantities, definition, document%source%text, err)
+        call layout_of(model, quantities, definition, self%part, layout)
+        call self%file%create(self%paths%hdf5, layout, err)
+        if (.not. allocated(err)) call write_provenance(self%file%file, program_name, options, model, document%source%text)
       end if
       if (allocated(err)) return
     end if
@@ -69,6 +74,23 @@ contains
     if (.not. allocated(err) .and. self%paths%hdf5 /= '' .and. .not. options%has('continue')) call self%file%publish(err)
     if (allocated(err)) call self%close(at_close)
   end subroutine open_results
+
+  !> Open the file that is continued, of the part that it knows itself.
+  subroutine continue_file(self, options, definition, err)
+    class(study_results_type), intent(inout) :: self          !< the files
+    type(command_line_type), intent(in) :: options            !< the command line
+    character(len=*), intent(in) :: definition                !< text that determines the numbers of the study
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    type(error_type), allocatable :: at_close
+
+    call self%file%open(self%paths%hdf5, .true., definition, err)
+    if (allocated(err)) return
+    self%part = self%file%layout%part
+    if (.not. options%has('part') .or. all(options%part() == self%part)) return
+    call raise(err, exit_file, "'"//self%paths%hdf5//"' is of part "//to_text(self%part(1))//'/'//to_text(self%part(2))// &
+               ', and --part '//options%argument('part')//' is another one')
+    call self%file%close(at_close)
+  end subroutine continue_file
 
   !> The columns of the table of a study.
   function columns_of_study(model, quantities) result(columns)

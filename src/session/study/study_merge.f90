@@ -1,0 +1,286 @@
+!> The files of parts of a study, joined to one file of the whole study.
+module mech9_study_merge
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use mech9_kinds, only: wp, long
+  use mech9_text, only: string_type, to_text
+  use mech9_counted, only: counted
+  use mech9_error, only: error_type, raise, exit_done, exit_file
+  use mech9_version, only: version
+  use mech9_request, only: output_settings_type
+  use mech9_command_line, only: command_line_type
+  use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_hdf5_reading, only: read_text
+  use mech9_table, only: table_type
+  use mech9_overwriting, only: refuse_overwriting
+  use mech9_study_definition, only: tell_difference
+  use mech9_study_file, only: study_file_type, not_made
+  use mech9_study_layout, only: study_layout_type
+  use mech9_study_sums, only: study_sums_type
+  implicit none
+  private
+  public :: merge_studies
+
+  !> Runs that are joined at a time.
+  integer, parameter :: runs_together = 1024
+
+  !> Runs that more than one file has.
+  type :: overlap_type
+    integer :: runs = 0      !< how many there are
+    integer :: first = 0     !< number of the first of them
+    integer :: files(2) = 0  !< numbers of two files that have it
+  end type overlap_type
+
+contains
+
+  !> Join the files that --merge names, to the file that --hdf5 names and a table; `code` is the exit code of the program.
+  subroutine merge_studies(program_name, options, code)
+    character(len=*), intent(in) :: program_name     !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options   !< the command line
+    integer, intent(out) :: code                     !< exit code
+    type(string_type), allocatable :: paths(:)
+    type(study_file_type), allocatable :: files(:)
+    type(study_sums_type) :: sums
+    type(overlap_type) :: overlap
+    type(error_type), allocatable :: err, at_close
+    integer :: i
+
+    call options%arguments('merge', paths)
+    call refuse_overwriting(options, paths, err, output_settings_type(table='', hdf5='', sketch='', animation=''))
+    allocate (files(size(paths)))
+    if (.not. allocated(err)) call open_files(paths, files, err)
+    if (.not. allocated(err)) call join(program_name, options, paths, files, sums, overlap, err)
+    do i = 1, size(files)
+      call files(i)%close(at_close)
+    end do
+    code = exit_done
+    if (allocated(err)) then
+      code = err%code
+      write (error_unit, '(3a)') program_name, ': ', err%message
+    else if (.not. options%has('quiet')) then
+      call print_merge(options, paths, files(1)%layout%runs, sums, overlap)
+    end if
+  end subroutine merge_studies
+
+  !> Open all files. Fails with exit_file where one is not of the study of the first one.
+  subroutine open_files(paths, files, err)
+    type(string_type), intent(in) :: paths(:)               !< of the files
+    type(study_file_type), intent(inout) :: files(:)        !< the files
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    character(len=:), allocatable :: difference
+    integer :: i
+
+    do i = 1, size(files)
+      call files(i)%open(paths(i)%text, .false., '', err)
+      if (allocated(err)) return
+      call tell_difference(files(1)%layout%definition, files(i)%layout%definition, difference, &
+                           'in the first one', 'in the second one')
+      if (difference == '') cycle
+      call raise(err, exit_file, "'"//paths(1)%text//"' and '"//paths(i)%text//"' are of different studies: "//difference)
+      return
+    end do
+  end subroutine open_files
+
+  !> Join the runs of all files in the order of their numbers.
+  subroutine join(program_name, options, paths, files, sums, overlap, err)
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(string_type), intent(in) :: paths(:)               !< of the files
+    type(study_file_type), intent(inout) :: files(:)        !< the files
+    type(study_sums_type), intent(inout) :: sums            !< counts the runs
+    type(overlap_type), intent(out) :: overlap              !< runs that more than one file has
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(study_file_type) :: whole
+    type(table_type) :: table
+    type(error_type), allocatable :: at_close
+    real(wp), allocatable :: rows(:, :)
+    integer :: first, n, i
+
+    call open_results(program_name, options, files(1), whole, table, err)
+    if (allocated(err)) return
+    allocate (rows(size(files(1)%layout%parameters) + size(files(1)%layout%quantities) + 1, runs_together))
+    call sums%begin(0)
+    first = 1
+    do while (first <= files(1)%layout%runs .and. .not. allocated(err))
+      n = min(runs_together, files(1)%layout%runs - first + 1)
+      call gather(paths, files, first, rows(:, :n), overlap, err)
+      do i = 1, n
+        if (allocated(err)) exit
+        if (nint(rows(size(rows, 1), i)) == not_made) cycle
+        call count_run(first + i - 1, nint(rows(size(rows, 1), i)), sums)
+        if (whole%is_open()) call whole%write_row(first + i - 1, rows(:, i), err)
+        if (options%has('table') .and. .not. allocated(err)) &
+          call table%write_row([real(first + i - 1, wp), rows(:, i)], err)
+      end do
+      first = first + n
+    end do
+    if (.not. allocated(err) .and. whole%is_open()) call whole%publish(err)
+    call whole%close(at_close)
+    if (.not. allocated(err)) call move_alloc(at_close, err)
+    call table%close(at_close)
+    if (.not. allocated(err)) call move_alloc(at_close, err)
+  end subroutine join
+
+  !> Create the files of the whole study. The HDF5 file gets its name when it is whole.
+  subroutine open_results(program_name, options, part, whole, table, err)
+    character(len=*), intent(in) :: program_name          !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options        !< the command line
+    type(study_file_type), intent(inout) :: part          !< the first file of a part
+    type(study_file_type), intent(inout) :: whole         !< the HDF5 file, if one is wanted
+    type(table_type), intent(inout) :: table              !< the table, if one is wanted
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    type(study_layout_type) :: layout
+    type(error_type), allocatable :: at_close
+
+    layout = part%layout
+    layout%part = 1
+    if (options%has('hdf5')) then
+      call whole%create(options%argument('hdf5'), layout, err)
+      if (allocated(err)) return
+      call copy_provenance(part%file, whole%file)
+    end if
+    if (options%has('table')) call open_table(program_name, options%argument('table'), layout, table, err)
+    if (allocated(err)) call whole%close(at_close)
+  end subroutine open_results
+
+  !> Open the table of the whole study.
+  subroutine open_table(program_name, path, layout, table, err)
+    character(len=*), intent(in) :: program_name          !< mech9k or mech9d
+    character(len=*), intent(in) :: path                  !< of the table
+    type(study_layout_type), intent(in) :: layout         !< names and units
+    type(table_type), intent(inout) :: table              !< the table
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    type(string_type), allocatable :: names(:), units(:)
+    integer :: i, n, m
+
+    n = size(layout%parameters)
+    m = size(layout%quantities)
+    allocate (names(n + m + 2), units(n + m + 2))
+    names(1)%text = 'run'
+    do i = 1, n
+      names(1 + i)%text = layout%parameters(i)%text
+    end do
+    do i = 1, m
+      names(1 + n + i)%text = layout%quantities(i)%text
+    end do
+    names(n + m + 2)%text = 'exit_code'
+    do i = 1, n + m + 2
+      units(i)%text = ''
+      if (i > n + 1 .and. i < n + m + 2) units(i)%text = layout%units(i - n - 1)%text
+    end do
+    call table%open(path, layout%title, program_name//' '//version, names, units, err)
+  end subroutine open_table
+
+  !> Copy the origin of the first part.
+  subroutine copy_provenance(from, to)
+    type(hdf5_file_type), intent(inout) :: from   !< the file of the part
+    type(hdf5_file_type), intent(inout) :: to     !< the file of the whole study
+    character(len=*), parameter :: names(*) = [character(len=12) :: 'program', 'version', 'revision', 'compiler', 'libraries', &
+                                               'created', 'command_line', 'data_file', 'data']
+    character(len=:), allocatable :: text
+    integer :: i
+
+    do i = 1, size(names)
+      call read_text(from, 'provenance/'//trim(names(i)), text)
+      call to%put('provenance/'//trim(names(i)), text, 'of the first part')
+    end do
+    if (allocated(from%failure)) call to%fail("the origin in '"//from%path//"' cannot be read")
+  end subroutine copy_provenance
+
+  !> Gather runs that follow each other from the files; not made where none has them. Fails with exit_file where two files have
+  !> different numbers for one run.
+  subroutine gather(paths, files, first, rows, overlap, err)
+    type(string_type), intent(in) :: paths(:)               !< of the files
+    type(study_file_type), intent(inout) :: files(:)        !< the files
+    integer, intent(in) :: first                            !< number of the first run
+    real(wp), intent(out) :: rows(:, :)                     !< (parameters, quantities, exit code; runs)
+    type(overlap_type), intent(inout) :: overlap            !< runs that more than one file has
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp) :: row(size(rows, 1))
+    integer(long) :: run
+    integer :: source(size(rows, 2)), i, j, place
+
+    rows = ieee_value(1.0_wp, ieee_quiet_nan)
+    rows(size(rows, 1), :) = not_made
+    source = 0
+    do i = 1, size(files)
+      associate (part => files(i)%layout%part)
+        ! the first run of the part that is not before these ones
+        run = part(1)
+        if (first > part(1)) run = part(1) + (1_long + (first - part(1) - 1)/part(2))*part(2)
+        do while (run - first < size(rows, 2))
+          place = 1 + int((run - part(1))/part(2))
+          call files(i)%read_row(place, row, err)
+          if (allocated(err)) return
+          j = int(run - first) + 1
+          if (nint(row(size(row))) /= not_made) call take_row(paths, i, int(run), row, rows(:, j), source(j), overlap, err)
+          if (allocated(err)) return
+          run = run + part(2)
+        end do
+      end associate
+    end do
+  end subroutine gather
+
+  !> Take the row of a run, or compare it with that of another file.
+  subroutine take_row(paths, file, run, row, taken, source, overlap, err)
+    type(string_type), intent(in) :: paths(:)               !< of the files
+    integer, intent(in) :: file                             !< number of the file that has the row
+    integer, intent(in) :: run                              !< number of the run
+    real(wp), intent(in) :: row(:)                          !< the row
+    real(wp), intent(inout) :: taken(:)                     !< gets the row, unless another file had it
+    integer, intent(inout) :: source                        !< number of the file from which it is taken; 0: none yet
+    type(overlap_type), intent(inout) :: overlap            !< runs that more than one file has
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+
+    if (source == 0) then
+      taken = row
+      source = file
+      return
+    end if
+    overlap%runs = overlap%runs + 1
+    if (overlap%runs == 1) overlap%first = run
+    if (overlap%runs == 1) overlap%files = [source, file]
+    if (all(transfer(row, [0_long]) == transfer(taken, [0_long]))) return
+    call raise(err, exit_file, "'"//paths(source)%text//"' and '"//paths(file)%text//"' have different numbers for run "// &
+               to_text(run)//'; make it anew by the same version of the program')
+  end subroutine take_row
+
+  !> Count a run.
+  subroutine count_run(run, code, sums)
+    integer, intent(in) :: run                       !< its number
+    integer, intent(in) :: code                      !< its exit code
+    type(study_sums_type), intent(inout) :: sums     !< counts it
+    real(wp) :: none(0)
+
+    if (code == exit_done) then
+      call sums%add(none)
+    else
+      call sums%add_failure(run, code)
+    end if
+  end subroutine count_run
+
+  !> Tell what the whole study has, what it lacks, and what more than one part had.
+  subroutine print_merge(options, paths, runs, sums, overlap)
+    type(command_line_type), intent(in) :: options     !< the command line
+    type(string_type), intent(in) :: paths(:)          !< of the files
+    integer, intent(in) :: runs                        !< of the whole study
+    type(study_sums_type), intent(in) :: sums          !< counts of the runs
+    type(overlap_type), intent(in) :: overlap          !< runs that more than one file has
+    integer :: i
+
+    write (error_unit, '(a)') counted(sums%made(), 'run')//' of '//to_text(runs)//' from '//counted(size(paths), 'file')
+    do i = 1, sums%n_codes
+      write (error_unit, '(a)') counted(sums%failed(i), 'run')//' failed with exit code '//to_text(sums%codes(i))// &
+        ', the first one is run '//to_text(sums%first_failed(i))
+    end do
+    if (overlap%runs > 0) &
+      write (error_unit, '(a)') 'note: '//counted(overlap%runs, 'run')//' stood in more than one file, with the same numbers; '// &
+      'first of them run '//to_text(overlap%first)//" in '"//paths(overlap%files(1))%text//"' and '"// &
+      paths(overlap%files(2))%text//"'"
+    if (sums%made() < runs) &
+      write (error_unit, '(a)') 'note: '//counted(runs - sums%made(), 'run')// &
+      ' of the study are not made yet; --study --continue makes them'
+    if (options%has('table') .and. options%argument('table') /= '-') write (error_unit, '(2a)') 'table: ', options%argument('table')
+    if (options%has('hdf5')) write (error_unit, '(2a)') 'HDF5 file: ', options%argument('hdf5')
+  end subroutine print_merge
+end module mech9_study_merge
