@@ -2,7 +2,8 @@
 !> follow.
 module mech9_interview
   use mech9_text, only: to_text
-  use mech9_grammar, only: group_table, item_table, find_item_rows, rows_of_group, for_forces
+  use mech9_grammar, only: group_table, item_table, rows_of_group, for_forces
+  use mech9_item_rows, only: find_item_rows
   use mech9_structure, only: structure_type
   use mech9_partition, only: partition_type
   use mech9_draft, only: draft_type, plain_name

@@ -3,7 +3,8 @@
 !> unit that is asked for. A group that was begun can be left out, and nothing is proposed that was meant for something else.
 program test_questions
   use mech9_text, only: string_type
-  use mech9_grammar, only: group_table, item_table, find_group_row, item_row_for_kind
+  use mech9_grammar, only: group_table, item_table, find_group_row
+  use mech9_item_rows, only: item_row_for_kind
   use mech9_compound_joint, only: compound_kinds
   use mech9_draft_joints, only: give_joints, joints_text
   use mech9_draft, only: draft_type

@@ -1,6 +1,7 @@
 !> Short answers become what a data file holds in full; what only looks like one stays as it is.
 program test_short_answers
-  use mech9_grammar, only: item_table, item_row_for_kind
+  use mech9_grammar, only: item_table
+  use mech9_item_rows, only: item_row_for_kind
   use mech9_short_answers, only: full_form, word_meant
   use mech9_testing, only: tester_type
   implicit none

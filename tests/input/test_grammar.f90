@@ -2,8 +2,8 @@
 !> another type, a value too many and a value out of range are refused at their place.
 program test_grammar
   use mech9_source, only: source_from_text
-  use mech9_grammar, only: group_table, item_table, item_row_type, unlimited, find_group_row, find_item_rows, takes_kind, &
-                           words_of, for_forces
+  use mech9_grammar, only: group_table, item_table, item_row_type, unlimited, find_group_row, words_of, for_forces
+  use mech9_item_rows, only: find_item_rows, takes_kind
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: parse_document
@@ -33,6 +33,8 @@ contains
     associate (group => group_table(row))
       call tester%is_true(find_group_row(group%name) == row, trim(group%name)//': the group is found under its name')
       call tester%is_true(any(item_table%group == group%name), trim(group%name)//': the group has names')
+      call tester%is_true(count(item_table%group == group%name) == findloc(item_table%group, group%name, dim=1, back=.true.) - &
+                          findloc(item_table%group, group%name, dim=1) + 1, trim(group%name)//': its names stand together')
       call tester%is_true(all(len_trim([character(len=12) :: group%name, group%key, group%program]) < &
                               [len(group%name), len(group%key), len(group%program)]), &
                           trim(group%name)//': its words fit their fields')

@@ -3,7 +3,8 @@
 !> A group is identified by its name and its place among the groups of that name, from 1 on.
 module mech9_draft
   use mech9_numeral, only: numeral_type, read_numeral
-  use mech9_grammar, only: find_group_row, find_item_rows
+  use mech9_grammar, only: find_group_row
+  use mech9_item_rows, only: find_item_rows
   implicit none
   private
   public :: draft_type, draft_group_type, entry_type, plain_name, integer_of, unquoted

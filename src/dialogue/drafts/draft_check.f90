@@ -2,7 +2,8 @@
 module mech9_draft_check
   use mech9_text, only: to_text
   use mech9_source, only: span_type, source_from_text
-  use mech9_grammar, only: item_table, rows_of_group, takes_kind
+  use mech9_grammar, only: item_table, rows_of_group
+  use mech9_item_rows, only: takes_kind
   use mech9_structure, only: structure_type
   use mech9_partition, only: partition_type
   use mech9_model, only: model_type

@@ -2,7 +2,8 @@
 !> of which is its number.
 module mech9_draft_joints
   use mech9_text, only: to_text, lower
-  use mech9_grammar, only: item_table, item_row_for_kind, words_of
+  use mech9_grammar, only: item_table, words_of
+  use mech9_item_rows, only: item_row_for_kind
   use mech9_compound_joint, only: compound_kinds, is_compound
   use mech9_short_answers, only: full_form
   use mech9_draft, only: draft_type, integer_of, unquoted

@@ -2,7 +2,8 @@
 !> that the user wants, and the independent coordinates. The groups that follow from them are made here.
 module mech9_outline
   use mech9_text, only: to_text
-  use mech9_grammar, only: item_table, find_item_rows, item_row_for_kind
+  use mech9_grammar, only: item_table
+  use mech9_item_rows, only: find_item_rows, item_row_for_kind
   use mech9_draft, only: draft_type, plain_name
   use mech9_draft_joints, only: kind_in, coordinates_of_pair, number_in, settle_joints
   implicit none

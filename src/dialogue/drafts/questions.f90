@@ -4,7 +4,8 @@
 !> two lists if it has the same label.
 module mech9_questions
   use mech9_text, only: to_text
-  use mech9_grammar, only: group_table, item_table, for_forces, rows_of_group, takes_kind, find_item_rows, find_group_row
+  use mech9_grammar, only: group_table, item_table, for_forces, rows_of_group, find_group_row
+  use mech9_item_rows, only: takes_kind, find_item_rows
   use mech9_draft, only: draft_type
   use mech9_topics, only: topics, groups_of_topic, is_numbered, can_be_left_out, is_on_request
   use mech9_draft_joints, only: kind_in, has_joints

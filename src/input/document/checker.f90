@@ -5,8 +5,8 @@ module mech9_checker
   use mech9_text, only: to_text, lower, nearest_name
   use mech9_counted, only: counted
   use mech9_source, only: span_type
-  use mech9_grammar, only: group_table, item_table, find_group_row, rows_of_group, find_item_rows, &
-                           item_row_for_kind, takes_kind, names_of_groups, names_in_group
+  use mech9_grammar, only: group_table, item_table, find_group_row, rows_of_group, names_of_groups, names_in_group
+  use mech9_item_rows, only: find_item_rows, item_row_for_kind, takes_kind
   use mech9_document, only: document_type, group_type, item_type, value_type, value_bad, value_null, value_text, &
                             value_integer, add_item
   use mech9_item_merge, only: merge_items, expand_repeats

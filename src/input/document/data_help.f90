@@ -2,8 +2,9 @@
 module mech9_data_help
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: to_text, nearest_name
-  use mech9_grammar, only: group_table, item_table, item_row_type, group_row_type, unlimited, find_group_row, rows_of_group, &
-                           find_item_rows, names_of_groups, names_in_group, for_forces
+  use mech9_grammar, only: group_table, item_table, item_row_type, group_row_type, unlimited, find_group_row, &
+    rows_of_group, names_of_groups, names_in_group, for_forces
+  use mech9_item_rows, only: find_item_rows
   implicit none
   private
   public :: write_data_help, write_data_tables

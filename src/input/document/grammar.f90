@@ -9,8 +9,7 @@ module mech9_grammar
   implicit none
   private
   public :: group_row_type, item_row_type, group_table, item_table, unlimited, for_forces
-  public :: find_group_row, rows_of_group, find_item_rows, item_row_for_kind, takes_kind, words_of
-  public :: names_of_groups, names_in_group
+  public :: find_group_row, row_of_group, rows_of_group, words_of, names_of_groups, names_in_group
 
   character(len=*), parameter :: screws = 'revolute prismatic helical'
   character(len=*), parameter :: joints = 'spherical universal cylindrical planar free'
@@ -438,10 +437,20 @@ contains
   pure integer function find_group_row(name) result(row)
     character(len=*), intent(in) :: name  !< name of a group, in any case
 
-    do row = size(group_table), 1, -1
-      if (group_table(row)%name == lower(name)) return
-    end do
+    row = row_of_group(lower(name))
   end function find_group_row
+
+  !> Row of a group in group_table; 0 where there is no such group.
+  pure integer function row_of_group(name) result(row)
+    character(len=*), intent(in) :: name  !< name of a group, in lower case
+
+    row = 0
+    if (len(name) == 0) return
+    do row = size(group_table), 1, -1
+      if (group_table(row)%name(1:1) /= name(1:1)) cycle
+      if (group_table(row)%name == name) return
+    end do
+  end function row_of_group
 
   !> Rows of a group's names in item_table.
   pure function rows_of_group(group) result(rows)
@@ -466,45 +475,6 @@ contains
 
     names = pack(item_table%name, item_table%group == lower(group))
   end function names_in_group
-
-  !> Rows of one name of a group: none where it is unknown, several where its kinds differ.
-  pure function find_item_rows(group, name) result(rows)
-    character(len=*), intent(in) :: group  !< name of a group, in any case
-    character(len=*), intent(in) :: name   !< name of an item, in any case
-    integer, allocatable :: rows(:)
-    integer :: i
-
-    rows = pack([(i, i=1, size(item_table))], item_table%group == lower(group) .and. item_table%name == lower(name))
-  end function find_item_rows
-
-  !> Row of a name of a group of this kind; 0 where the name does not belong to the kind.
-  pure integer function item_row_for_kind(group, name, kind) result(row)
-    character(len=*), intent(in) :: group  !< name of a group, in any case
-    character(len=*), intent(in) :: name   !< name of an item, in any case
-    character(len=*), intent(in) :: kind   !< kind of the group; empty: unknown
-    integer, allocatable :: rows(:)
-    integer :: i
-
-    row = 0
-    rows = find_item_rows(group, name)
-    do i = 1, size(rows)
-      if (takes_kind(item_table(rows(i)), kind)) row = rows(i)
-    end do
-  end function item_row_for_kind
-
-  !> Whether a name belongs to groups of this kind; where no kind is known, to groups of any kind.
-  pure logical function takes_kind(row, kind)
-    type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
-    character(len=*), intent(in) :: kind    !< kind of the group, and after a blank its law, as in law:harmonic; empty: unknown
-    integer :: blank
-
-    takes_kind = row%kinds == ''
-    if (kind == '' .or. takes_kind) return
-    blank = index(trim(kind)//' ', ' ')
-    takes_kind = index(' '//row%kinds//' ', ' '//kind(:blank - 1)//' ') > 0
-    if (blank > len_trim(kind) .or. takes_kind) return
-    takes_kind = index(' '//row%kinds//' ', kind(blank:len_trim(kind))//' ') > 0
-  end function takes_kind
 
   !> The words of a list with blanks between.
   pure function words_of(list) result(words)

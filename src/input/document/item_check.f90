@@ -3,7 +3,8 @@ module mech9_item_check
   use mech9_kinds, only: wp, long
   use mech9_text, only: to_text, lower, nearest_name
   use mech9_source, only: span_type
-  use mech9_grammar, only: item_row_type, unlimited, words_of, find_item_rows
+  use mech9_grammar, only: item_row_type, unlimited, words_of
+  use mech9_item_rows, only: find_item_rows
   use mech9_document, only: item_type, value_type, value_null, value_integer, value_real, value_logical, value_text, &
                             value_word, value_bad
   use mech9_diagnostics, only: diagnostics_type, printable

@@ -6,7 +6,8 @@ module mech9_lookup
   use mech9_text, only: lower
   use mech9_source, only: span_type
   use mech9_numeral, only: numeral_type, read_numeral
-  use mech9_grammar, only: item_table, item_row_for_kind
+  use mech9_grammar, only: item_table
+  use mech9_item_rows, only: only_item_row, item_row_for_kind
   use mech9_document, only: document_type, group_type
   implicit none
   private
@@ -81,7 +82,12 @@ contains
     character(len=*), intent(in) :: name   !< name of the item, in lower case
 
     do number = size(group%items), 1, -1
-      if (group%items(number)%name == name) return
+      associate (given => group%items(number)%name)
+        ! most names differ in the first letter, which is compared much faster
+        if (len(given) == 0 .or. len(name) == 0) cycle
+        if (given(1:1) /= name(1:1)) cycle
+        if (given == name) return
+      end associate
     end do
   end function find_item
 
@@ -129,9 +135,15 @@ contains
     type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
     real(wp), allocatable :: numbers(:)
+    integer :: i
 
-    numbers = get_reals(group, name)
-    get_real = numbers(1)
+    i = find_item(group, name)
+    if (i > 0) then
+      get_real = group%items(i)%values(1)%number
+    else
+      numbers = default_numbers(group, name)
+      get_real = numbers(1)
+    end if
   end function get_real
 
   !> Whole numbers given under a name, or those of its default.
@@ -188,17 +200,29 @@ contains
     type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
     character(len=text_length(group, name)) :: text
-    integer :: i, row
+    integer :: i
 
     i = find_item(group, name)
-    row = row_of(group, name)
     if (i > 0) then
       text = group%items(i)%values(1)%text
-      if (item_table(row)%words /= '') text = lower(text)
+      if (.not. has_capital(text)) return
+      if (item_table(row_of(group, name))%words /= '') text = lower(text)
     else if (len(text) > 0) then
-      text = item_table(row)%default(2:)
+      text = item_table(row_of(group, name))%default(2:)
     end if
   end function get_text
+
+  !> Whether a text has a capital letter.
+  pure logical function has_capital(text)
+    character(len=*), intent(in) :: text   !< any text
+    integer :: i
+
+    has_capital = .true.
+    do i = 1, len(text)
+      if (text(i:i) >= 'A' .and. text(i:i) <= 'Z') return
+    end do
+    has_capital = .false.
+  end function has_capital
 
   !> How many values a group gives under a name; 0 where it gives none.
   pure integer function count_values(group, name)
@@ -248,6 +272,8 @@ contains
     character(len=:), allocatable :: kind
     integer :: i
 
+    row = only_item_row(group%name, name)
+    if (row > 0) return
     kind = ''
     i = find_item(group, 'kind')
     if (i > 0 .and. name /= 'kind') kind = lower(trim(group%items(i)%values(1)%text))

@@ -2,7 +2,8 @@
 module mech9_named_number
   use mech9_text, only: lower, nearest_name, to_text
   use mech9_source, only: span_type
-  use mech9_grammar, only: item_table, find_group_row, find_item_rows, names_of_groups, names_in_group
+  use mech9_grammar, only: item_table, find_group_row, names_of_groups, names_in_group
+  use mech9_item_rows, only: find_item_rows
   use mech9_document, only: document_type, group_type, item_type, subscript_type, value_real, add_item
   use mech9_lookup, only: find_item, get_reals, row_of
   use mech9_scanner, only: scan_word, scan_subscripts, is_letter

@@ -3,7 +3,8 @@ module mech9_setting
   use mech9_text, only: lower, to_text
   use mech9_counted, only: counted
   use mech9_source, only: source_type, span_type, source_from_text
-  use mech9_grammar, only: item_table, find_item_rows
+  use mech9_grammar, only: item_table
+  use mech9_item_rows, only: find_item_rows
   use mech9_document, only: document_type, group_type, item_type, subscript_type, value_text, &
                             add_group, add_item, trim_document
   use mech9_scanner, only: scan_word, scan_subscripts, next_is_name, is_letter
