@@ -28,7 +28,7 @@ contains
     type(pair_slot_type), intent(in) :: pairs(:)            !< (M) pairs by coordinate; a slot is empty where its group has an error
     type(body_type), allocatable, intent(out) :: bodies(:)  !< one for each sound group, in their order
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
-    type(turning_search_type) :: search
+    type(turning_search_type), allocatable :: search
     integer, allocatable :: numbers(:)
     real(wp) :: j(6)
     logical :: judged
@@ -40,7 +40,6 @@ contains
     do i = 1, size(pairs)
       judged = judged .and. allocated(pairs(i)%pair)
     end do
-    if (judged) call new_turning_search(structure, pairs, search)
     do i = 1, size(numbers)
       associate (group => document%groups(numbers(i)))
         bodies(i)%link = get_integer(group, 'link')
@@ -50,19 +49,21 @@ contains
         bodies(i)%inertia = reshape([j(1), j(4), j(5), j(4), j(2), j(6), j(5), j(6), j(3)], [3, 3])
         bodies(i)%place = diagnostics%place(group%span)
         call check_link(group, 'link', 1, structure%shown_links(), diagnostics)
-        call check_inertia(group, structure, bodies(i), judged .and. bodies(i)%link <= structure%shown_links(), search, diagnostics)
+        call check_inertia(group, structure, pairs, bodies(i), judged .and. bodies(i)%link <= structure%shown_links(), search, &
+                           diagnostics)
       end associate
     end do
   end subroutine read_bodies
 
   !> Report a tensor that no body has. For a link that can turn about one direction only, the moment about that direction
   !> is enough; the rest of its tensor may be zero.
-  pure subroutine check_inertia(group, structure, body, judged, search, diagnostics)
+  pure subroutine check_inertia(group, structure, pairs, body, judged, search, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     type(structure_type), intent(in) :: structure         !< links and joints
+    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate
     type(body_type), intent(in) :: body                   !< the body that the group describes
     logical, intent(in) :: judged                         !< whether it is known how the link can turn
-    type(turning_search_type), intent(inout) :: search    !< directions in which links turn; used where `judged` is true
+    type(turning_search_type), allocatable, intent(inout) :: search   !< directions in which links turn; made when it is needed
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=:), allocatable :: problem
     real(wp) :: direction(3)
@@ -74,6 +75,10 @@ contains
     call only_direction(body%inertia, direction, has_one)
     if (has_one) then
       if (.not. judged) return                               ! the structure or the pairs have errors, which were reported
+      if (.not. allocated(search)) then
+        allocate (search)
+        call new_turning_search(structure, pairs, search)
+      end if
       call search%turns_only_about(body%link, direction, slack, is_enough, barrier)
       if (is_enough) return
       problem = problem//'; one moment alone is enough where a link turns about the axis of that moment only'

@@ -16,7 +16,7 @@ module mech9_coupling_reader
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_couplings
+  public :: read_couplings, read_coupling
 
   real(wp), parameter :: turn = 2.0_wp*pi   !< a full turn [rad]
   !> A table is a whole turn long, and ends as it begins, within this part of a turn or of its range: numbers of six digits serve.
@@ -34,31 +34,45 @@ contains
     type(coupling_slot_type), allocatable, intent(out) :: couplings(:)   !< one for each sound group
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:)
-    logical :: ok
     integer :: i
 
     numbers = groups_named(document, 'coupling')
     allocate (couplings(size(numbers)))
     if (size(positions) == 0) return
     do i = 1, size(numbers)
-      associate (group => document%groups(numbers(i)))
-        call check_coordinates(group, size(positions), ok, diagnostics)
-        if (.not. ok) cycle
-        select case (get_text(group, 'kind'))
-        case ('table')
-          call read_table(beside(document%source%name, get_text(group, 'file')), group, pairs, angle_unit, couplings(i), &
-                          diagnostics)
-        case ('user')
-          call read_procedure(group, i, positions, parameters, couplings(i), diagnostics)
-        case default
-          call read_linear(group, pairs, positions, angle_unit, couplings(i), diagnostics)
-        end select
-        if (.not. allocated(couplings(i)%coupling)) cycle
-        couplings(i)%coupling%coordinates = get_integers(group, 'coordinates')
-        couplings(i)%coupling%place = diagnostics%place(group%span)
-      end associate
+      call read_coupling(document, numbers(i), i, pairs, positions, angle_unit, parameters, couplings(i), diagnostics)
     end do
   end subroutine read_couplings
+
+  !> The coupling of one group; of use only where nothing is reported.
+  subroutine read_coupling(document, number, i, pairs, positions, angle_unit, parameters, slot, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    integer, intent(in) :: number                         !< of the group in the document
+    integer, intent(in) :: i                              !< number of the coupling
+    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; a slot is empty where its group has an error
+    real(wp), intent(in) :: positions(:)                  !< (M) coordinates at the start, which give constants [rad, m]
+    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
+    type(coupling_slot_type), intent(out) :: slot         !< gets the coupling
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    logical :: ok
+
+    associate (group => document%groups(number))
+      call check_coordinates(group, size(positions), ok, diagnostics)
+      if (.not. ok) return
+      select case (get_text(group, 'kind'))
+      case ('table')
+        call read_table(beside(document%source%name, get_text(group, 'file')), group, pairs, angle_unit, slot, diagnostics)
+      case ('user')
+        call read_procedure(group, i, positions, parameters, slot, diagnostics)
+      case default
+        call read_linear(group, pairs, positions, angle_unit, slot, diagnostics)
+      end select
+      if (.not. allocated(slot%coupling)) return
+      slot%coupling%coordinates = get_integers(group, 'coordinates')
+      slot%coupling%place = diagnostics%place(group%span)
+    end associate
+  end subroutine read_coupling
 
   !> Report coordinates that do not exist, that are named twice, or of which there are too many.
   pure subroutine check_coordinates(group, n_coordinates, ok, diagnostics)

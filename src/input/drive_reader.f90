@@ -22,7 +22,7 @@ module mech9_drive_reader
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_drives, read_law, files_of_groups, unit_of_coordinate
+  public :: read_drives, read_drive_group, read_law, files_of_groups, unit_of_coordinate
 
   !> A period is that of the segments where it differs by no more than this part.
   real(wp), parameter :: same_period = 1.0e-9_wp
@@ -47,16 +47,9 @@ contains
     allocate (drives(size(numbers)))
     n = 0
     do i = 1, size(numbers)
-      associate (group => document%groups(numbers(i)), slot => drives(n + 1))
-        call read_drive(document, group, angle_unit, unit_of_coordinate(group, pairs, angle_unit), start, parameters, &
-                        slot, diagnostics)
-        call check_coordinate(group, partition, diagnostics)
-        if (.not. allocated(slot%drive)) cycle
-        k = get_integer(group, 'coordinate')
-        slot%drive%coordinate = k
-        slot%drive%place = diagnostics%place(group%span)
-        n = n + 1
-      end associate
+      call read_drive_group(document, numbers(i), pairs, angle_unit, start, parameters, drives(n + 1), diagnostics)
+      call check_coordinate(document%groups(numbers(i)), partition, diagnostics)
+      if (allocated(drives(n + 1)%drive)) n = n + 1
     end do
     do i = 1, n
       k = drives(i)%drive%coordinate
@@ -64,6 +57,26 @@ contains
       if (partition%is_independent(k)) partition%kind(k) = driven_coordinate
     end do
   end subroutine read_drives
+
+  !> The drive of one group; the slot stays empty where something was reported.
+  subroutine read_drive_group(document, number, pairs, angle_unit, start, parameters, slot, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    integer, intent(in) :: number                         !< of the group in the document
+    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; a slot is empty where its group has an error
+    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    real(wp), intent(in) :: start                         !< time of the first result [s]
+    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
+    type(drive_slot_type), intent(out) :: slot            !< gets the drive
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+
+    associate (group => document%groups(number))
+      call read_drive(document, group, angle_unit, unit_of_coordinate(group, pairs, angle_unit), start, parameters, slot, &
+                      diagnostics)
+      if (.not. allocated(slot%drive)) return
+      slot%drive%coordinate = get_integer(group, 'coordinate')
+      slot%drive%place = diagnostics%place(group%span)
+    end associate
+  end subroutine read_drive_group
 
   !> The factor that turns a number of a group about a coordinate into rad or m.
   pure real(wp) function unit_of_coordinate(group, pairs, angle_unit) result(unit)

@@ -15,7 +15,7 @@ module mech9_load_reader
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_loads, check_coordinate
+  public :: read_loads, read_load, check_coordinate
 
 contains
 
@@ -34,27 +34,41 @@ contains
     numbers = groups_named(document, 'load')
     allocate (loads(size(numbers)))
     do i = 1, size(numbers)
-      associate (group => document%groups(numbers(i)))
-        select case (get_text(group, 'kind'))
-        case ('force', 'torque')
-          call check_link(group, 'link', 1, n_links, diagnostics)
-          allocate (loads(i)%load, source=force_load(group))
-        case ('spring')
-          call check_spring(group, n_links, diagnostics)
-          allocate (loads(i)%load, source=spring_load(group))
-        case ('coordinate')
-          call check_coordinate(group, size(pairs), diagnostics)
-          allocate (loads(i)%load, source=coordinate_load(group, pairs, angle_unit))
-        case ('user')
-          allocate (loads(i)%load, source=procedure_load_type(parameters=parameters, n_links=n_links))
-        end select
-        loads(i)%load%place = diagnostics%place(group%span)
-        if (get_text(group, 'kind') == 'user' .or. .not. has_name(group, 'law')) cycle
-        call read_law(document, group, get_text(group, 'law'), angle_unit, 1.0_wp, loads(i)%load%law, diagnostics)
-        if (allocated(loads(i)%load%law)) loads(i)%load%law%place = diagnostics%place(group%span)
-      end associate
+      call read_load(document, numbers(i), n_links, pairs, angle_unit, parameters, loads(i), diagnostics)
     end do
   end subroutine read_loads
+
+  !> The load of one group.
+  subroutine read_load(document, number, n_links, pairs, angle_unit, parameters, slot, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    integer, intent(in) :: number                         !< of the group in the document
+    integer, intent(in) :: n_links                        !< how many links there are; 0 where it is not known
+    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; size 0 where they are not known
+    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedure
+    type(load_slot_type), intent(out) :: slot             !< gets the load
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+
+    associate (group => document%groups(number))
+      select case (get_text(group, 'kind'))
+      case ('force', 'torque')
+        call check_link(group, 'link', 1, n_links, diagnostics)
+        allocate (slot%load, source=force_load(group))
+      case ('spring')
+        call check_spring(group, n_links, diagnostics)
+        allocate (slot%load, source=spring_load(group))
+      case ('coordinate')
+        call check_coordinate(group, size(pairs), diagnostics)
+        allocate (slot%load, source=coordinate_load(group, pairs, angle_unit))
+      case ('user')
+        allocate (slot%load, source=procedure_load_type(parameters=parameters, n_links=n_links))
+      end select
+      slot%load%place = diagnostics%place(group%span)
+      if (get_text(group, 'kind') == 'user' .or. .not. has_name(group, 'law')) return
+      call read_law(document, group, get_text(group, 'law'), angle_unit, 1.0_wp, slot%load%law, diagnostics)
+      if (allocated(slot%load%law)) slot%load%law%place = diagnostics%place(group%span)
+    end associate
+  end subroutine read_load
 
   !> A force or torque on a link.
   function force_load(group) result(load)

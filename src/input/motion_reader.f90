@@ -13,7 +13,7 @@ module mech9_motion_reader
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_initial, read_points, check_link
+  public :: read_initial, read_points, read_point, check_link
 
 contains
 
@@ -66,16 +66,24 @@ contains
     numbers = groups_named(document, 'point')
     allocate (points(size(numbers)))
     do i = 1, size(numbers)
-      associate (group => document%groups(numbers(i)))
-        points(i)%name = get_text(group, 'name')
-        points(i)%link = get_integer(group, 'link')
-        points(i)%position = get_reals(group, 'position')
-        points(i)%place = diagnostics%place(group%span)
-        call check_name(group, points(i)%name, diagnostics)
-        call check_link(group, 'link', 1, n_links, diagnostics)
-      end associate
+      call read_point(document%groups(numbers(i)), n_links, points(i), diagnostics)
     end do
   end subroutine read_points
+
+  !> Name, link and position of one point.
+  pure subroutine read_point(group, n_links, point, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    integer, intent(in) :: n_links                        !< how many links there are; 0 where it is not known
+    type(point_type), intent(out) :: point                !< the point
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+
+    point%name = get_text(group, 'name')
+    point%link = get_integer(group, 'link')
+    point%position = get_reals(group, 'position')
+    point%place = diagnostics%place(group%span)
+    call check_name(group, point%name, diagnostics)
+    call check_link(group, 'link', 1, n_links, diagnostics)
+  end subroutine read_point
 
   !> Report the number of a link that does not exist.
   pure subroutine check_link(group, name, position, n_links, diagnostics)

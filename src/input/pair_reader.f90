@@ -25,7 +25,7 @@ module mech9_pair_reader
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_pairs
+  public :: read_pairs, read_pair_group
 
   !> The ends of a curve meet where their distance is this part of the size of the curve. Where it is this part of the mean distance
   !> of neighbours, they probably should.
@@ -42,24 +42,38 @@ contains
     real(wp), intent(in) :: parameters(:)                       !< numbers of the group &user, for the user's procedures
     type(pair_slot_type), allocatable, intent(out) :: pairs(:)  !< (M) pairs by coordinate; empty where the group is wrong
     type(diagnostics_type), intent(inout) :: diagnostics        !< gets the errors
-    type(pair_slot_type) :: slot
     integer, allocatable :: numbers(:)
-    integer :: i, k
+    integer :: i
 
     allocate (pairs(structure%n_coordinates))
     numbers = groups_named(document, 'pair')
     do i = 1, size(numbers)
-      associate (group => document%groups(numbers(i)))
-        if (is_compound(get_text(group, 'kind'))) then
-          call read_chain(group, structure, pairs, diagnostics)
-          cycle
-        end if
-        call read_pair(document%source%name, group, angle_unit, parameters, slot, diagnostics)
-        k = get_integer(group, 'coordinate')
-        if (k <= size(pairs) .and. allocated(slot%pair)) call move_alloc(slot%pair, pairs(k)%pair)
-      end associate
+      call read_pair_group(document, numbers(i), structure, angle_unit, parameters, pairs, diagnostics)
     end do
   end subroutine read_pairs
+
+  !> Make the pair, or the chain of pairs, of one group.
+  subroutine read_pair_group(document, number, structure, angle_unit, parameters, pairs, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    integer, intent(in) :: number                         !< of the group in the document
+    type(structure_type), intent(in) :: structure         !< links and joints; without coordinates where it is not known
+    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
+    type(pair_slot_type), intent(inout) :: pairs(:)       !< (M) pairs by coordinate; gets those of the group where it is right
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(pair_slot_type) :: slot
+    integer :: k
+
+    associate (group => document%groups(number))
+      if (is_compound(get_text(group, 'kind'))) then
+        call read_chain(group, structure, pairs, diagnostics)
+        return
+      end if
+      k = get_integer(group, 'coordinate')
+      call read_pair(document%source%name, group, get_text(group, 'kind'), k, angle_unit, parameters, slot, diagnostics)
+      if (k <= size(pairs) .and. allocated(slot%pair)) call move_alloc(slot%pair, pairs(k)%pair)
+    end associate
+  end subroutine read_pair_group
 
   !> The chain of pairs that stands for a joint with several freedoms.
   subroutine read_chain(group, structure, pairs, diagnostics)
@@ -82,9 +96,11 @@ contains
   end subroutine read_chain
 
   !> One pair; the slot stays empty where something was reported.
-  subroutine read_pair(data_file, group, angle_unit, parameters, slot, diagnostics)
+  subroutine read_pair(data_file, group, kind, coordinate, angle_unit, parameters, slot, diagnostics)
     character(len=*), intent(in) :: data_file             !< path of the data file
     type(group_type), intent(in) :: group                 !< the group of the data file
+    character(len=*), intent(in) :: kind                  !< of the pair
+    integer, intent(in) :: coordinate                     !< number of its coordinate
     real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
     real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
     type(pair_slot_type), intent(out) :: slot             !< gets the pair; stays empty where an error was reported
@@ -96,36 +112,37 @@ contains
     integer :: links(2), found
 
     found = diagnostics%count
-    if (get_text(group, 'kind') == 'user') then
-      call make_procedure_pair(get_integer(group, 'coordinate'), parameters, procedure_pair, err)
+    if (kind == 'user') then
+      call make_procedure_pair(coordinate, parameters, procedure_pair, err)
       if (allocated(err)) then
         call diagnostics%add(span_of(group, 'kind', 1), err%message, err%code)
         return
       end if
       allocate (slot%pair, source=procedure_pair)
-    else if (get_text(group, 'kind') == 'path') then
+    else if (kind == 'path') then
       call read_path(data_file, group, path, diagnostics)
       if (diagnostics%count > found) return
       allocate (slot%pair, source=path)
     else
       if (has_name(group, 'dh')) then
-        call read_dh(group, angle_unit, screw, diagnostics)
+        call read_dh(group, kind, angle_unit, screw, diagnostics)
       else
-        call read_frames(group, screw, diagnostics)
+        call read_frames(group, kind, screw, diagnostics)
       end if
       if (diagnostics%count > found) return
       allocate (slot%pair, source=screw)
     end if
     links = get_integers(group, 'links')
-    slot%pair%coordinate = get_integer(group, 'coordinate')
+    slot%pair%coordinate = coordinate
     slot%pair%reference = links(1)
     slot%pair%moving = links(2)
     slot%pair%place = diagnostics%place(group%span)
   end subroutine read_pair
 
   !> A pair in Denavit-Hartenberg form.
-  pure subroutine read_dh(group, angle_unit, pair, diagnostics)
+  pure subroutine read_dh(group, kind, angle_unit, pair, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
+    character(len=*), intent(in) :: kind                  !< of the pair
     real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
     type(screw_pair_type), intent(out) :: pair            !< the pair of screw motion
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
@@ -141,7 +158,7 @@ contains
     end do
     dh = get_reals(group, 'dh')
     associate (a => dh(1), alpha => angle_unit*dh(2), d => dh(3), theta => angle_unit*dh(4))
-      select case (get_text(group, 'kind'))
+      select case (kind)
       case ('revolute')
         pair = revolute_pair_dh(a, alpha, d, theta)
       case ('prismatic')
@@ -153,8 +170,9 @@ contains
   end subroutine read_dh
 
   !> A pair between a frame in its reference link and one in its moving link.
-  pure subroutine read_frames(group, pair, diagnostics)
+  pure subroutine read_frames(group, kind, pair, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
+    character(len=*), intent(in) :: kind                  !< of the pair
     type(screw_pair_type), intent(out) :: pair            !< the pair of screw motion
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(pose_type) :: reference, moving
@@ -167,7 +185,7 @@ contains
     end if
     call read_axis_frames(group, reference, moving, diagnostics)
     if (diagnostics%count > found) return
-    select case (get_text(group, 'kind'))
+    select case (kind)
     case ('revolute')
       pair = revolute_pair(reference, moving)
     case ('prismatic')

@@ -1,12 +1,11 @@
 !> The groups &parameter of a checked document, and the numbers of the document that they set.
 module mech9_parameter_reader
-  use mech9_kinds, only: wp
+  use mech9_kinds, only: wp, long
   use mech9_text, only: to_text
   use mech9_source, only: span_type
   use mech9_grammar, only: item_table
   use mech9_document, only: document_type, group_type, value_real
-  use mech9_lookup, only: groups_named, find_item, has_name, count_values, get_integer, get_real, get_reals, get_text, span_of, &
-                          row_of
+  use mech9_lookup, only: groups_named, find_item, has_name, count_values, get_integer, get_real, get_reals, get_text, span_of
   use mech9_item_check, only: is_in_range, is_sensible
   use mech9_named_number, only: number_name_type, number_place_type, find_number
   use mech9_name_check, only: check_name
@@ -82,6 +81,7 @@ contains
         call find_number(document, names(i)%text, names(i)%span, has_name(group, 'value'), place, name, diagnostics)
         parameter%targets(i) = parameter_target_type(names(i)%text, name%group, name%number, name%item, name%position, &
                                                      group_place=place%group, item_place=place%item)
+        if (place%group > 0) document%groups(place%group)%items(place%item)%row = place%row
       end do
     end associate
     call read_each(group, 'factors', parameter%targets%factor, diagnostics)
@@ -213,11 +213,12 @@ contains
   end function span_of_target
 
   !> Set the numbers of a document that parameters set to their values. Numbers outside the range of their names are reported.
-  pure subroutine place_parameters(document, parameters, diagnostics)
+  pure subroutine place_parameters(document, parameters, diagnostics, changed)
     type(document_type), intent(inout) :: document        !< checked, with an item for each target
     type(parameter_type), intent(in) :: parameters(:)     !< all parameters, with their values
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
-    integer :: i, j, row
+    logical, intent(inout), optional :: changed(:)        !< (groups) set where numbers change; others are not checked again
+    integer :: i, j
     real(wp) :: number
 
     do i = 1, size(parameters)
@@ -225,10 +226,14 @@ contains
         associate (target => parameters(i)%targets(j))
           if (target%group_place == 0) cycle
           number = target%factor*parameters(i)%value + target%term
-          associate (value => document%groups(target%group_place)%items(target%item_place)%values(target%position))
+          associate (value => document%groups(target%group_place)%items(target%item_place)%values(target%position), &
+                     row => document%groups(target%group_place)%items(target%item_place)%row)
+            if (present(changed)) then
+              if (same_bits(value%number, number)) cycle
+              changed(target%group_place) = .true.
+            end if
             value%kind = value_real
             value%number = number
-            row = row_of(document%groups(target%group_place), trim(target%item))
             if (.not. is_sensible(number)) then
               call diagnostics%add(value%span, 'parameter '''//parameters(i)%name//''' sets this number to '// &
                                    to_text(number)//', which is too large or too small')
@@ -241,4 +246,12 @@ contains
       end do
     end do
   end subroutine place_parameters
+
+  !> Whether two numbers are the same, the sign of a zero included.
+  pure logical function same_bits(a, b)
+    real(wp), intent(in) :: a   !< a number
+    real(wp), intent(in) :: b   !< another one
+
+    same_bits = transfer(a, 1_long) == transfer(b, 1_long)
+  end function same_bits
 end module mech9_parameter_reader

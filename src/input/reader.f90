@@ -66,12 +66,13 @@ contains
     call check_document(checked, diagnostics)
     call read_parameters(checked, model%parameters, diagnostics)
     call read_checked(checked, needs_drives, model, diagnostics)
+    if (.not. diagnostics%failed()) call hold_idle_rods(needs_drives, model)
     call read_study(checked, model%parameters, model%request%study, diagnostics)
     call read_objectives(checked, model, diagnostics)
   end subroutine read_model
 
-  !> The model of a document that is checked and in which the parameters have set their numbers; see read_model. Motors are left
-  !> out where all independent coordinates are driven.
+  !> The model of a document that is checked and in which the parameters have set their numbers; see read_model. Idle rods are not
+  !> held yet. Motors are left out where all independent coordinates are driven.
   subroutine read_checked(document, needs_drives, model, diagnostics)
     type(document_type), intent(in) :: document           !< checked
     logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
@@ -89,7 +90,6 @@ contains
     call check_drives(document, needs_drives, model, diagnostics)
     if (.not. needs_drives) call check_motors(document, model, diagnostics)
     call check_sensitivities(document, needs_drives, size(model%parameters), diagnostics)
-    if (.not. diagnostics%failed()) call hold_idle_rods(needs_drives, model)
   end subroutine read_checked
 
   !> Set a structure and its partition to the form that means unknown: no links and no coordinates.

@@ -1,4 +1,7 @@
 !> The model of a data file as a function of its parameters: the file is read and checked once, and its numbers change in memory.
+!>
+!> The model is kept. Where other values of the parameters change few groups of the document, only these are read again; the result
+!> has the same bits as reading all, and where a number is wrong all is read, so that the message is the same, too.
 module mech9_varied_document
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise
@@ -9,6 +12,8 @@ module mech9_varied_document
   use mech9_parameter, only: parameter_type
   use mech9_parameter_reader, only: read_parameters, place_parameters
   use mech9_reader, only: read_checked
+  use mech9_rod_holding, only: hold_idle_rods
+  use mech9_changed_groups, only: group_map_type, map_groups, read_changed
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   implicit none
@@ -18,9 +23,11 @@ module mech9_varied_document
   type, extends(variable_model_type) :: varied_document_type
     private
     type(document_type) :: document                       !< checked, with an item for each target
-    type(source_type), allocatable :: sources(:)          !< the texts that it comes from
+    type(group_map_type) :: map                           !< of its groups
+    type(diagnostics_type) :: diagnostics                 !< with the texts that the document comes from; without errors
     type(parameter_type), allocatable :: parameters(:)
     logical :: needs_drives = .false.                     !< every independent coordinate must be driven
+    type(model_type), allocatable :: kept                 !< of the present document, without held rods; only where it is right
   contains
     procedure :: at
   end type varied_document_type
@@ -28,19 +35,19 @@ module mech9_varied_document
 contains
 
   !> Prepare a document that has been read without errors.
-  pure subroutine new_varied_document(document, sources, needs_drives, varied)
+  subroutine new_varied_document(document, sources, needs_drives, varied)
     type(document_type), intent(in) :: document           !< the data file as groups and items, with the changes by --set
     type(source_type), intent(in) :: sources(:)           !< the texts that it comes from, for messages: those of its diagnostics
     logical, intent(in) :: needs_drives                   !< every independent coordinate must be driven
     type(varied_document_type), intent(out) :: varied     !< the model as a function of the parameters
-    type(diagnostics_type) :: diagnostics
 
     varied%document = document
-    varied%sources = sources
     varied%needs_drives = needs_drives
-    diagnostics%sources = sources
-    call check_document(varied%document, diagnostics)
-    call read_parameters(varied%document, varied%parameters, diagnostics)
+    varied%diagnostics%sources = sources
+    call check_document(varied%document, varied%diagnostics)
+    call read_parameters(varied%document, varied%parameters, varied%diagnostics)
+    call varied%diagnostics%clear()
+    call map_groups(varied%document, varied%map)
   end subroutine new_varied_document
 
   !> The model with other values of its parameters. Fails with the first error that a data file with these numbers would have.
@@ -49,17 +56,47 @@ contains
     real(wp), intent(in) :: values(:)                    !< of all parameters, in their order, in the units of the data file
     type(model_type), intent(out) :: model               !< of use only where nothing failed
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
-    type(diagnostics_type) :: diagnostics
+
+    self%parameters%value = values
+    if (allocated(self%kept)) call follow(self)
+    if (.not. allocated(self%kept)) call read_all(self, err)
+    if (allocated(err)) return
+    model = self%kept
+    model%parameters = self%parameters
+    call hold_idle_rods(self%needs_drives, model)
+  end subroutine at
+
+  !> Let the kept model follow the values of the parameters. It is given up where the whole document must be read, or a number is
+  !> wrong.
+  subroutine follow(self)
+    type(varied_document_type), intent(inout) :: self   !< the model as a function
+    logical :: changed(size(self%document%groups))
+
+    changed = .false.
+    call place_parameters(self%document, self%parameters, self%diagnostics, changed)
+    if (all(self%map%is_alone .or. .not. changed) .and. .not. self%diagnostics%failed()) then
+      call read_changed(self%document, changed, self%map, self%needs_drives, self%kept, self%diagnostics)
+      if (.not. self%diagnostics%failed()) return
+    end if
+    deallocate (self%kept)
+    call self%diagnostics%clear()
+  end subroutine follow
+
+  !> Read the whole document. Fails with its first error; then no model is kept.
+  subroutine read_all(self, err)
+    type(varied_document_type), intent(inout) :: self   !< the model as a function
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     character(len=:), allocatable :: text
     type(span_type) :: span
 
-    diagnostics%sources = self%sources
-    self%parameters%value = values
-    call place_parameters(self%document, self%parameters, diagnostics)
-    model%parameters = self%parameters
-    call read_checked(self%document, self%needs_drives, model, diagnostics)
-    if (.not. diagnostics%failed()) return
-    call diagnostics%get(1, text, span)
-    call raise(err, diagnostics%code(), text, diagnostics%place(span))
-  end subroutine at
+    allocate (self%kept)
+    call place_parameters(self%document, self%parameters, self%diagnostics)
+    self%kept%parameters = self%parameters
+    call read_checked(self%document, self%needs_drives, self%kept, self%diagnostics)
+    if (.not. self%diagnostics%failed()) return
+    call self%diagnostics%get(1, text, span)
+    call raise(err, self%diagnostics%code(), text, self%diagnostics%place(span))
+    deallocate (self%kept)
+    call self%diagnostics%clear()
+  end subroutine read_all
 end module mech9_varied_document

@@ -29,6 +29,7 @@ module mech9_diagnostics
     procedure :: add
     procedure :: add_error
     procedure :: add_source
+    procedure :: clear
     procedure :: failed
     procedure :: code
     procedure :: place
@@ -116,6 +117,15 @@ contains
     grown(number) = source
     call move_alloc(grown, self%sources)
   end subroutine add_source
+
+  !> Forget all errors, and keep the sources.
+  pure subroutine clear(self)
+    class(diagnostics_type), intent(inout) :: self  !< the diagnostics
+
+    self%count = 0
+    self%kept_count = 0
+    if (allocated(self%kept)) deallocate (self%kept)
+  end subroutine clear
 
   !> Whether there are errors.
   pure logical function failed(self)

@@ -39,6 +39,7 @@ module mech9_document
     type(value_type), allocatable :: values(:)
     type(span_type) :: span         !< place of the name
     logical :: overrides = .false.  !< comes from --set and replaces the value of the file
+    integer :: row = 0              !< of item_table, where a parameter sets one of its values
   end type item_type
 
   !> One group with its items, in the order of the file.
@@ -119,6 +120,7 @@ contains
     call move_alloc(from%values, to%values)
     to%span = from%span
     to%overrides = from%overrides
+    to%row = from%row
   end subroutine move_item
 
   !> Append a value; see add_group.
