@@ -10,10 +10,10 @@ module mech9_mechanism_constants
   use mech9_procedure_pair, only: procedure_pair_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
-  use mech9_spanning_tree, only: lay_out_frames
+  use mech9_spanning_tree, only: lay_out_frames, renew_frames
   implicit none
   private
-  public :: gather_constants, align_axes, constants_of_coordinate, constants_of_pose
+  public :: gather_constants, renew_constants, align_axes, constants_of_coordinate, constants_of_pose
 
   !> Numbers of a coordinate: the pose of its axis, offset, advance per unit, and the pose of its closing frame in the target.
   integer, parameter :: constants_of_coordinate = 26
@@ -30,9 +30,29 @@ contains
     real(wp), intent(in) :: origin(3)                !< origin of frame 0 in link 1, which is not varied [m]
     real(wp), allocatable, intent(out) :: values(:)  !< the row
     type(plan_type) :: plan
-    integer :: at, i, c, k
 
     call lay_out_frames(model%mechanism, model%problem%partition, model%problem%initial%position, plan, length, origin)
+    call take_constants(model, plan, values)
+  end subroutine gather_constants
+
+  !> The same by the frames of a plan that was made for other numbers, which is faster.
+  subroutine renew_constants(model, plan, values)
+    type(model_type), intent(in) :: model            !< the model
+    type(plan_type), intent(inout) :: plan           !< of a model that differs in numbers only; gets those of this one, but for
+                                                     !< size and origin, which are not varied
+    real(wp), allocatable, intent(out) :: values(:)  !< the row
+
+    call renew_frames(model%mechanism, plan)
+    call take_constants(model, plan, values)
+  end subroutine renew_constants
+
+  !> The row of numbers from the frames of a plan.
+  subroutine take_constants(model, plan, values)
+    type(model_type), intent(in) :: model            !< the model
+    type(plan_type), intent(in) :: plan              !< with its frames laid out
+    real(wp), allocatable, intent(out) :: values(:)  !< the row
+    integer :: at, i, c, k
+
     allocate (values(constants_of_coordinate*plan%n_coordinates + constants_of_pose*plan%n_links &
                      + 3*size(model%mechanism%points)), source=0.0_wp)
     do i = 1, plan%n_coordinates
@@ -56,7 +76,7 @@ contains
       at = at + 3
     end do
     call append_laws(model, values)
-  end subroutine gather_constants
+  end subroutine take_constants
 
   !> Append the numbers of drives, couplings and users' pairs, as far as they are known.
   subroutine append_laws(model, values)

@@ -1,8 +1,9 @@
 !> The derivatives of all constants of a mechanism by one of its parameters.
 !>
-!> The constants are smooth functions of one number that the readers of the data file evaluate. Their derivatives come from
-!> central differences of eighth order over models with shifted values, with a step at which truncation is below round-off. All
-!> that follows from the constants (positions, rates, accelerations) is differentiated exactly elsewhere.
+!> The constants are smooth functions of one number that the readers of the data file evaluate. Most are linear functions of it,
+!> which two differences over models with shifted values tell. The derivatives of others come from central differences of eighth
+!> order, with a step at which truncation is below round-off. All that follows from the constants (positions, rates, accelerations)
+!> is differentiated exactly elsewhere.
 module mech9_tangent
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp
@@ -15,7 +16,7 @@ module mech9_tangent
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
-  use mech9_mechanism_constants, only: gather_constants, align_axes, constants_of_coordinate, constants_of_pose
+  use mech9_mechanism_constants, only: renew_constants, align_axes, constants_of_coordinate, constants_of_pose
   implicit none
   private
   public :: tangent_type, law_tangent_type, find_tangent
@@ -51,6 +52,9 @@ module mech9_tangent
   !> Factors of this length that are tried one after the other, until the two orders agree to `agreement` of the largest derivative.
   real(wp), parameter :: factors(7) = [1.0_wp, 2.0_wp**(-4), 2.0_wp**4, 2.0_wp**(-8), 2.0_wp**8, 2.0_wp**(-12), 2.0_wp**(-16)]
   real(wp), parameter :: agreement = 2.0e-12_wp
+  !> All constants are linear functions where their slopes over one step and over four agree to so many units of round-off. Terms of
+  !> third order would then change the slope by a fifteenth of that.
+  real(wp), parameter :: linear_round_off = 4.0_wp*epsilon(1.0_wp)
 
 contains
 
@@ -120,35 +124,26 @@ contains
     integer, intent(in) :: number                           !< of the parameter
     real(wp), allocatable, intent(out) :: change(:)         !< the derivatives
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(plan_type) :: renewed
     real(wp), allocatable :: present(:), trial(:)
     real(wp) :: scale, error, best
     integer :: i
 
-    call gather_constants(model, plan%length, plan%origin, present)
+    renewed = plan
+    call renew_constants(model, renewed, present)
     scale = abs(model%parameters(number)%value)
     if (.not. scale > 0.0_wp) scale = 1.0_wp
     best = huge(best)
     do i = 1, size(factors)
-      call try_step(variable, model, plan, number, step_part*2.0_wp**exponent(scale)*factors(i), present, trial, error)
+      call try_step(variable, model, number, step_part*2.0_wp**exponent(scale)*factors(i), present, renewed, trial, error)
       if (error < best) then
         best = error
         change = trial
       end if
       if (best <= agreement) exit
     end do
-    call restore(variable, model)
     if (.not. allocated(change)) call raise(err, exit_data, failure_no_neighbours)
   end subroutine differentiate
-
-  !> Let the model as a function keep the present values again.
-  subroutine restore(variable, model)
-    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
-    type(model_type), intent(in) :: model                   !< the present model
-    type(model_type) :: again
-    type(error_type), allocatable :: err
-
-    call variable%at(values_of(model), again, err)
-  end subroutine restore
 
   !> The present values of all parameters.
   pure function values_of(model) result(values)
@@ -159,60 +154,85 @@ contains
     values = [(model%parameters(i)%value, i=1, size(values))]
   end function values_of
 
-  !> The differences at one step, and an estimate of their error: what the two orders differ by, and the round-off of the constants,
-  !> as a part of the largest derivative.
-  subroutine try_step(variable, model, plan, number, h, present, change, error)
+  !> The derivatives from differences at one step, and an estimate of their error: what two orders or two steps differ by, and the
+  !> round-off of the constants, as a part of the largest derivative.
+  subroutine try_step(variable, model, number, h, present, plan, change, error)
     class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the present model
-    type(plan_type), intent(in) :: plan                     !< its plan
     integer, intent(in) :: number                           !< of the parameter
     real(wp), intent(in) :: h                               !< the step, in the unit of the parameter
     real(wp), intent(in) :: present(:)                      !< the present constants
-    real(wp), allocatable, intent(out) :: change(:)         !< their derivatives
+    type(plan_type), intent(inout) :: plan                  !< scratch: the plan of the present model, with other numbers
+    real(wp), allocatable, intent(out) :: change(:)         !< the derivatives
     real(wp), intent(out) :: error                          !< estimated; huge where a model beside the present one does not exist
-    real(wp), allocatable :: above(:), below(:), lower(:), round_off(:)
-    real(wp) :: values(size(model%parameters)), middle
+    real(wp) :: difference(size(present), half_width), round_off(size(present)), lower(size(present))
+    integer, parameter :: order(half_width) = [1, half_width, 2, 3]
     integer :: i
+    logical :: exists
 
     error = huge(error)
     change = 0.0_wp*present
-    lower = change
-    round_off = change
-    values = values_of(model)
-    middle = values(number)
     do i = 1, half_width
-      values(number) = middle + i*h
-      call constants_at(variable, model, values, plan, above)
-      values(number) = middle - i*h
-      call constants_at(variable, model, values, plan, below)
-      if (size(above) /= size(present) .or. size(below) /= size(present)) return
-      change = change + eighth(i)*(above - below)
-      lower = lower + sixth(i)*(above - below)
-      where (abs(above - below) > 0.0_wp) round_off = 2.0_wp*epsilon(h)*abs(present)
+      call find_difference(variable, model, number, order(i)*h, plan, difference(:, order(i)), exists)
+      if (.not. exists) return
+      if (i /= 2) cycle
+      change = difference(:, half_width)/(2*half_width*h)
+      lower = difference(:, 1)/(2.0_wp*h)
+      if (all(abs(change - lower) <= linear_round_off*max(abs(present), min(1.0_wp, plan%length))/h)) exit
     end do
+    if (i > half_width) then
+      change = matmul(difference, eighth)/h
+      lower = matmul(difference, sixth)/h
+    else
+      difference(:, 2:3) = 0.0_wp
+    end if
     if (.not. all(ieee_is_finite(change))) return
-    change = change/h
-    error = maxval(abs(change - lower/h) + round_off/h)
+    round_off = merge(2.0_wp*epsilon(h)*abs(present), 0.0_wp, any(abs(difference) > 0.0_wp, dim=2))
+    error = maxval(abs(change - lower) + round_off/h)
     if (error > 0.0_wp) error = error/max(maxval(abs(change)), tiny(error))
   end subroutine try_step
 
-  !> The constants at some values of the parameters; none where there is no such model.
+  !> The difference of the constants at two values of a parameter, on both sides of the present one.
+  subroutine find_difference(variable, model, number, distance, plan, difference, exists)
+    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    type(model_type), intent(in) :: model                   !< the present model
+    integer, intent(in) :: number                           !< of the parameter
+    real(wp), intent(in) :: distance                        !< of each value from the present one
+    type(plan_type), intent(inout) :: plan                  !< scratch: the plan of the present model, with other numbers
+    real(wp), intent(out) :: difference(:)                  !< the difference
+    logical, intent(out) :: exists                          !< there are models at both values
+    real(wp), allocatable :: above(:), below(:)
+    real(wp) :: values(size(model%parameters))
+
+    values = values_of(model)
+    values(number) = model%parameters(number)%value + distance
+    call constants_at(variable, model, values, plan, above)
+    values(number) = model%parameters(number)%value - distance
+    exists = size(above) == size(difference)
+    if (exists) call constants_at(variable, model, values, plan, below)
+    if (exists) exists = size(below) == size(difference)
+    difference = 0.0_wp
+    if (exists) difference = above - below
+  end subroutine find_difference
+
+  !> The constants at some values of the parameters; none where there is no such model, or other coordinates are independent there.
   subroutine constants_at(variable, present, values, plan, constants)
     class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
     type(model_type), intent(in) :: present                 !< the present model
     real(wp), intent(in) :: values(:)                       !< of all parameters
-    type(plan_type), intent(in) :: plan                     !< the plan of the present model
+    type(plan_type), intent(inout) :: plan                  !< scratch: the plan of the present model, with other numbers
     real(wp), allocatable, intent(out) :: constants(:)      !< the constants
     type(model_type) :: model
     type(error_type), allocatable :: err
 
     call variable%at(values, model, err)
-    if (allocated(err)) then
-      allocate (constants(0))
-    else
-      call align_axes(present, model)
-      call gather_constants(model, plan%length, plan%origin, constants)
+    if (.not. allocated(err)) then
+      if (all(model%problem%partition%kind == present%problem%partition%kind)) then
+        call align_axes(present, model)
+        call renew_constants(model, plan, constants)
+      end if
     end if
+    if (.not. allocated(constants)) allocate (constants(0))
   end subroutine constants_at
 
   !> The derivatives of the row of constants as twists and numbers of the parts of the mechanism.

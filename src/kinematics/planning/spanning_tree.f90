@@ -6,8 +6,8 @@
 !> it. A later chain may start from either frame of a link: the one is taken that makes the loop short.
 module mech9_spanning_tree
   use mech9_kinds, only: wp, pi
-  use mech9_pose, only: pose_type, compose, inverse
-  use mech9_pair, only: screw_factors_type, pair_guide_type
+  use mech9_pose, only: pose_type, compose, inverse, identity_pose
+  use mech9_pair, only: screw_factors_type, pair_guide_type, pair_slot_type
   use mech9_structural_vectors, only: chain_type, chains_of
   use mech9_partition, only: partition_type
   use mech9_mechanism, only: mechanism_type
@@ -16,7 +16,7 @@ module mech9_spanning_tree
   use mech9_scaling, only: find_size, find_units
   implicit none
   private
-  public :: lay_out_frames
+  public :: lay_out_frames, renew_frames
 
   !> Number of second frames of a link that are kept, the latest ones.
   integer, parameter :: most_remembered = 3
@@ -80,6 +80,35 @@ contains
       call make_coupling(i, plan, plan%closures(layout%closures))
     end do
   end subroutine lay_out_frames
+
+  !> Give the frames of a plan the constant poses and offsets of another mechanism that differs in its numbers only. Size, origin,
+  !> units, ranks and planes stay. The numbers are those of lay_out_frames, bit for bit.
+  subroutine renew_frames(mechanism, plan)
+    type(mechanism_type), intent(in) :: mechanism   !< the other mechanism
+    type(plan_type), intent(inout) :: plan          !< its steps may be sorted by blocks; gets the numbers
+    type(pose_type) :: link_in(0:plan%n_coordinates)
+    integer :: s, c
+
+    if (allocated(mechanism%couplings)) plan%couplings = mechanism%couplings
+    plan%link_in_frame(1)%r = identity_pose%r
+    plan%link_in_frame(1)%p = -plan%origin
+    link_in(0) = plan%link_in_frame(1)
+    do s = 1, plan%n_coordinates
+      associate (step => plan%steps(s))
+        call set_numbers(mechanism, link_in(step%parent), plan%pairs(step%coordinate), step, link_in(s))
+        if (plan%frame_of(step%link) == s) plan%link_in_frame(step%link) = link_in(s)
+      end associate
+    end do
+    do c = 1, size(plan%closures)
+      associate (closure => plan%closures(c))
+        if (closure%coupling > 0) cycle
+        closure%in_target = compose(link_in(closure%target), inverse(link_in(closure%closing)))
+      end associate
+    end do
+    do c = 1, size(plan%closures)
+      if (plan%closures(c)%coupling > 0) call set_coupling_numbers(plan%closures(c)%coupling, plan, plan%closures(c))
+    end do
+  end subroutine renew_frames
 
   !> Lay out one chain. Open chains, and the stem of a chain that closes on itself, start at their known end.
   subroutine lay_out_chain(mechanism, partition, chain, links, coordinates, closed, plan, layout)
@@ -222,15 +251,29 @@ contains
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(step_type), intent(out) :: step   !< the step
     type(pose_type), intent(out) :: after   !< the reached link's system in the new frame
+
+    step%coordinate = coordinate
+    step%link = to
+    step%reversed = mechanism%pairs(coordinate)%pair%reference /= from
+    step%dependent = .not. partition%is_independent(coordinate)
+    call set_numbers(mechanism, link_in_frame, plan%pairs(coordinate), step, after)
+  end subroutine make_step
+
+  !> The numbers of a step.
+  subroutine set_numbers(mechanism, link_in_frame, slot, step, after)
+    type(mechanism_type), intent(in) :: mechanism    !< the mechanism
+    type(pose_type), intent(in) :: link_in_frame     !< system of the link where the step starts, in the frame where it starts
+    type(pair_slot_type), intent(inout) :: slot      !< of the plan; gets the pair where it has no fixed axis
+    type(step_type), intent(inout) :: step           !< with its coordinate and direction; gets the numbers
+    type(pose_type), intent(out) :: after            !< the reached link's system in the new frame
     type(screw_factors_type) :: factors
     type(pair_guide_type) :: guide
+    type(step_type), parameter :: anywhere = step_type()
     real(wp) :: direction
 
-    associate (pair => mechanism%pairs(coordinate)%pair)
-      step%coordinate = coordinate
-      step%link = to
-      step%reversed = pair%reference /= from
-      step%dependent = .not. partition%is_independent(coordinate)
+    step%period = anywhere%period
+    step%range = anywhere%range
+    associate (pair => mechanism%pairs(step%coordinate)%pair)
       call pair%as_screw(factors, step%is_screw)
       if (step%reversed) then
         step%before = compose(link_in_frame, inverse(factors%after))
@@ -246,14 +289,15 @@ contains
         step%offset = factors%offset
         if (abs(step%turn) > 0.0_wp .and. .not. abs(step%slide) > 0.0_wp) step%period = 2.0_wp*pi
       else
-        allocate (plan%pairs(coordinate)%pair, source=pair)
+        if (allocated(slot%pair)) deallocate (slot%pair)
+        allocate (slot%pair, source=pair)
         call pair%guide(guide)
         step%roams = guide%length > 0.0_wp
         if (guide%closed) step%period = guide%length
         if (step%roams .and. .not. guide%closed) step%range = [0.0_wp, guide%length]
       end if
     end associate
-  end subroutine make_step
+  end subroutine set_numbers
 
   !> The closure where two frames of a link must coincide, and the loop it belongs to.
   subroutine make_closure(plan, layout, closing, target, closure)
@@ -270,23 +314,32 @@ contains
     call find_loop(plan%steps, closure)
   end subroutine make_closure
 
-  !> The closure that is a coupling. Full turns of its coordinates count, so that these have no period.
+  !> The closure that is a coupling.
   pure subroutine make_coupling(number, plan, closure)
     integer, intent(in) :: number                !< of the coupling
     type(plan_type), intent(inout) :: plan       !< with its steps, which lose their periods
     type(closure_type), intent(inout) :: closure !< gets its equation; one of those of the plan
-    real(wp) :: ends(2)
-    integer :: first
 
     closure%chain = -number
     closure%coupling = number
     closure%rank = 1
     closure%independent_equations = 1
+    closure%loop%steps = ascending(plan%step_of(plan%couplings(number)%coupling%coordinates))
+    allocate (closure%loop%signs(size(closure%loop%steps)), source=1.0_wp)
+    call set_coupling_numbers(number, plan, closure)
+  end subroutine make_coupling
+
+  !> The numbers of a coupling's equation. Full turns of its coordinates count, so that these have no period.
+  pure subroutine set_coupling_numbers(number, plan, closure)
+    integer, intent(in) :: number                !< of the coupling
+    type(plan_type), intent(inout) :: plan       !< with the numbers of its steps, which lose their periods
+    type(closure_type), intent(inout) :: closure !< gets the numbers; one of those of the plan
+    real(wp) :: ends(2)
+    integer :: first
+
     associate (coupling => plan%couplings(number)%coupling)
       closure%weight = coupling%weight(plan%unit_of(coupling%coordinates))
-      closure%loop%steps = ascending(plan%step_of(coupling%coordinates))
     end associate
-    allocate (closure%loop%signs(size(closure%loop%steps)), source=1.0_wp)
     plan%steps(closure%loop%steps)%period = 0.0_wp
     associate (coupling => plan%couplings(number)%coupling)
       if (coupling%is_linear()) return
@@ -297,5 +350,5 @@ contains
     associate (step => plan%steps(first))
       step%range = [max(step%range(1), ends(1)), min(step%range(2), ends(2))]
     end associate
-  end subroutine make_coupling
+  end subroutine set_coupling_numbers
 end module mech9_spanning_tree
