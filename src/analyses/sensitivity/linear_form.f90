@@ -153,7 +153,7 @@ contains
       case (1)
         call add_to_two(n, factors, q(1, a), q(1, b), q(1, c), values(1, row))
       case default
-        call add_to_three(n, factors, q(1, a), q(1, b), q(1, c), values(1, row), values(1, row + 1), values(1, row + 2))
+        call add_to_three(n, 3, factors, q(1, a), q(1, b), q(1, c), values(1, row), values(1, row + 1), values(1, row + 2))
       end select
     end associate
   end subroutine add_terms
@@ -202,9 +202,10 @@ contains
   end subroutine add_to_two
 
   !> The same in three rows.
-  pure subroutine add_to_three(n, f, a, b, c, x, y, z)
+  pure subroutine add_to_three(n, lead, f, a, b, c, x, y, z)
     integer, intent(in) :: n               !< number of parameters
-    real(wp), intent(in) :: f(3, 3)        !< factors, a column for each sum
+    integer, intent(in) :: lead            !< number of rows in which the factors stand
+    real(wp), intent(in) :: f(lead, *)     !< factors, a column for each sum; the first three rows are used
     real(wp), intent(in) :: a(n)           !< first numbers
     real(wp), intent(in) :: b(n)           !< second numbers
     real(wp), intent(in) :: c(n)           !< third numbers
@@ -221,9 +222,10 @@ contains
   end subroutine add_to_three
 
   !> Three products instead of sums, in three rows.
-  pure subroutine set_three(n, f, a, b, c, x, y, z)
+  pure subroutine set_three(n, lead, f, a, b, c, x, y, z)
     integer, intent(in) :: n               !< number of parameters
-    real(wp), intent(in) :: f(3, 3)        !< factors, a column for each sum
+    integer, intent(in) :: lead            !< number of rows in which the factors stand
+    real(wp), intent(in) :: f(lead, *)     !< factors, a column for each sum; the first three rows are used
     real(wp), intent(in) :: a(n)           !< first numbers
     real(wp), intent(in) :: b(n)           !< second numbers
     real(wp), intent(in) :: c(n)           !< third numbers
@@ -252,11 +254,19 @@ contains
     integer :: u, r, p
 
     if (unknowns == 3 .and. rows == 3) then
-      call set_three(n, solver, openings(1, 1), openings(1, 2), openings(1, 3), q(1, columns(1)), q(1, columns(2)), &
+      call set_three(n, rows, solver, openings(1, 1), openings(1, 2), openings(1, 3), q(1, columns(1)), q(1, columns(2)), &
                      q(1, columns(3)))
       return
     end if
-    do u = 1, unknowns
+    do u = 1, unknowns - 2, 3
+      call set_three(n, rows, solver(1, u), openings(1, 1), openings(1, 2), openings(1, 3), q(1, columns(u)), &
+                     q(1, columns(u + 1)), q(1, columns(u + 2)))
+      do r = 4, rows, 3
+        call add_to_three(n, rows, solver(r, u), openings(1, r), openings(1, r + 1), openings(1, r + 2), q(1, columns(u)), &
+                          q(1, columns(u + 1)), q(1, columns(u + 2)))
+      end do
+    end do
+    do u = 3*(unknowns/3) + 1, unknowns
       do p = 1, n
         q(p, columns(u)) = 0.0_wp
       end do

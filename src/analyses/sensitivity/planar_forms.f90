@@ -15,14 +15,15 @@ module mech9_planar_forms
 contains
 
   !> Twists of constants, seen from frame 0, and their derivatives in time.
-  pure subroutine carry_in_plane(n, constants, motion, highest, series)
+  pure subroutine carry_in_plane(n, constants, motion, highest, again, series)
     integer, intent(in) :: n                                !< number of twists
     type(varied_constant_type), intent(in) :: constants(n)  !< rotation and shifts in twist(1:3), in the axes of the planar frames
     type(planar_motion_type), intent(in) :: motion          !< the motion of the frames
     integer, intent(in) :: highest                          !< order of the highest derivative
+    logical, intent(in) :: again                            !< twists of the ground are in `series` already
     real(wp), intent(inout) :: series(3, 0:2, n)            !< gets the twists up to this derivative
 
-    call carry(n, constants, ubound(motion%pose, 2), motion%pose, motion%velocity, motion%acceleration, highest, series)
+    call carry(n, constants, ubound(motion%pose, 2), motion%pose, motion%velocity, motion%acceleration, highest, again, series)
   end subroutine carry_in_plane
 
   !> Fill the form of a closed chain: its rotation, and its shift at the origin of its base frame in lengths of the mechanism.
@@ -33,36 +34,22 @@ contains
     integer, intent(in) :: highest                       !< order of the highest derivative
     real(wp), intent(in) :: series(:, 0:, :)             !< (3,0:2,constants) twists of constants
     type(linear_form_type), intent(inout) :: form        !< gets its columns and shares
-    real(wp) :: base(2), per_length, factor, share(3)
-    integer :: i, order
+    real(wp) :: base(2), per_length
 
     per_length = 1.0_wp/planar%length
     base = motion%pose(3:4, planar%closures(c)%base)
     call fill_columns(size(form%steps), form%steps, form%signs, size(planar%steps), planar%steps, per_length, base, motion%pose, &
                       motion%slide, motion%velocity, motion%acceleration, highest, form%columns)
-    do i = 1, size(form%constants)
-      if (form%keeps(i) .and. form%is_filled) cycle
-      associate (twist => series(:, :, form%constants(i)))
-        factor = form%constant_signs(i)*per_length
-        share(1) = form%constant_signs(i)*twist(1, 1)
-        share(2) = factor*(twist(2, 1) - twist(1, 1)*base(2))
-        share(3) = factor*(twist(3, 1) + twist(1, 1)*base(1))
-        call put_constant(form, i, 0, share)
-        share(1) = 0.0_wp
-        do order = 1, highest
-          share(2) = factor*twist(2, order + 1)
-          share(3) = factor*twist(3, order + 1)
-          call put_constant(form, i, order, share)
-        end do
-      end associate
-    end do
+    call add_constants(size(form%constants), form%constants, form%constant_signs, form%parameters, form%is_first, &
+                       form%keeps, form%is_filled, per_length, base, size(series, 3), series, highest, &
+                       size(form%of_constants, 1), form%of_constants)
     form%is_filled = .true.
   end subroutine fill_planar_closure
 
-  ! The next three procedures take arrays of known shape, so that the compiler keeps their addresses in registers.
+  ! The next four procedures take arrays of known shape, so that the compiler keeps their addresses in registers.
 
   !> Twists of constants, seen from frame 0, from plain arrays.
-  pure subroutine carry(n, constants, m, f, v, a, highest, series)
+  pure subroutine carry(n, constants, m, f, v, a, highest, again, series)
     integer, intent(in) :: n                                !< number of twists
     type(varied_constant_type), intent(in) :: constants(n)  !< rotation and shifts in twist(1:3), in the axes of the planar frames
     integer, intent(in) :: m                                !< number of steps of the plan
@@ -70,12 +57,14 @@ contains
     real(wp), intent(in) :: v(3, 0:m)                       !< velocities of the frames [rad/s, m/s]
     real(wp), intent(in) :: a(3, 0:m)                       !< accelerations of the frames [rad/s^2, m/s^2]
     integer, intent(in) :: highest                          !< order of the highest derivative
+    logical, intent(in) :: again                            !< twists of the ground are in `series` already
     real(wp), intent(inout) :: series(3, 0:2, n)            !< gets the twists up to this derivative
     real(wp) :: x, y, w, square, turning
     integer :: i, k
 
     do i = 1, n
       k = constants(i)%frame
+      if (again .and. k == 0) cycle
       turning = constants(i)%twist(1)
       x = f(1, k)*constants(i)%twist(2) - f(2, k)*constants(i)%twist(3)
       y = f(2, k)*constants(i)%twist(2) + f(1, k)*constants(i)%twist(3)
@@ -91,6 +80,54 @@ contains
       series(3, 2, i) = a(1, k)*x - square*y - turning*a(2, k)
     end do
   end subroutine carry
+
+  !> The shares of constants in the opening of a chain.
+  pure subroutine add_constants(n, numbers, signs, parameters, is_first, keeps, is_filled, per_length, base, count, series, &
+                                highest, n_parameters, sums)
+    integer, intent(in) :: n                             !< number of these constants
+    integer, intent(in) :: numbers(n)                    !< numbers of the constants
+    real(wp), intent(in) :: signs(n)                     !< of the constants
+    integer, intent(in) :: parameters(n)                 !< of the constants
+    logical, intent(in) :: is_first(n)                   !< the constant is the first one of its parameter
+    logical, intent(in) :: keeps(n)                      !< its share never changes
+    logical, intent(in) :: is_filled                     !< all shares have been found once
+    real(wp), intent(in) :: per_length                   !< one over the length of the mechanism [1/m]
+    real(wp), intent(in) :: base(2)                      !< origin of the frame at which the opening is written [m]
+    integer, intent(in) :: count                         !< number of all constants
+    real(wp), intent(in) :: series(3, 0:2, count)        !< twists of all constants
+    integer, intent(in) :: highest                       !< order of the highest derivative
+    integer, intent(in) :: n_parameters                  !< number of parameters
+    real(wp), intent(inout) :: sums(n_parameters, 3, 0:2)   !< gets the shares, by parameters
+    real(wp) :: factor, share(3)
+    integer :: i, k, p, order
+
+    do i = 1, n
+      if (keeps(i) .and. is_filled) cycle
+      k = numbers(i)
+      p = parameters(i)
+      factor = signs(i)*per_length
+      share(1) = signs(i)*series(1, 0, k)
+      share(2) = factor*(series(2, 0, k) - series(1, 0, k)*base(2))
+      share(3) = factor*(series(3, 0, k) + series(1, 0, k)*base(1))
+      if (is_first(i)) then
+        sums(p, 1, 0) = share(1)
+        sums(p, 2, 0) = share(2)
+        sums(p, 3, 0) = share(3)
+        do order = 1, highest
+          sums(p, 2, order) = factor*series(2, order, k)
+          sums(p, 3, order) = factor*series(3, order, k)
+        end do
+      else
+        sums(p, 1, 0) = sums(p, 1, 0) + share(1)
+        sums(p, 2, 0) = sums(p, 2, 0) + share(2)
+        sums(p, 3, 0) = sums(p, 3, 0) + share(3)
+        do order = 1, highest
+          sums(p, 2, order) = sums(p, 2, order) + factor*series(2, order, k)
+          sums(p, 3, order) = sums(p, 3, order) + factor*series(3, order, k)
+        end do
+      end if
+    end do
+  end subroutine add_constants
 
   !> The columns of steps in the opening of a chain.
   pure subroutine fill_columns(n, numbers, signs, m, steps, per_length, base, f, slide, v, a, highest, columns)

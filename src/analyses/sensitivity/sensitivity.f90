@@ -55,6 +55,7 @@ module mech9_sensitivity
     type(linear_form_type), allocatable, private :: points_shift(:)   !< of all points
     real(wp), allocatable, private :: places(:, :)             !< (3,points) of the points in the first frames of their links [m]
     real(wp), allocatable, private :: series(:, :, :)          !< (3 or 6,0:2,constants) twists of constants
+    logical, private :: is_carried = .false.                   !< twists of the ground are in `series`
     integer, allocatable, private :: steps(:)                  !< steps whose twists are found
     integer, allocatable, private :: frames(:)                 !< frames whose motion is found as twists
     type(plan_type), private :: plan                           !< in the arithmetic of the derivatives
@@ -249,14 +250,17 @@ contains
 
     associate (n => self%support%count)
       if (self%in_plane) then
-        call carry_in_plane(n, self%support%constants(:n), state%planar, self%highest, self%series)
+        call carry_in_plane(n, self%support%constants, state%planar, self%highest, self%is_carried, self%series)
+        self%is_carried = .true.
         return
       end if
       if (self%highest > 1) call find_third_derivatives(self%plan, state, self%third, err)
       if (allocated(err)) return
       call find_frame_twists(state, self%frames, self%highest, self%motion)
       call find_step_twists(self%plan, state, self%third, self%steps, self%highest, self%motion)
-      call carry_in_space(self%plan, n, self%support%constants(:n), state, self%motion, self%highest, self%series)
+      call carry_in_space(self%plan, n, self%support%constants, state, self%motion, self%highest, self%is_carried, &
+                          self%series)
+      self%is_carried = .true.
       do i = 1, n
         associate (constant => self%support%constants(i))
           if (constant%by_user) call find_pair_change(self%plan, state, self%motion, self%tangents(constant%parameter), &

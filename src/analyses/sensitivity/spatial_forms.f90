@@ -16,19 +16,21 @@ module mech9_spatial_forms
 contains
 
   !> Twists of constants, seen from frame 0, and their derivatives in time.
-  pure subroutine carry_in_space(plan, n, constants, state, twists, highest, series)
+  pure subroutine carry_in_space(plan, n, constants, state, twists, highest, again, series)
     type(plan_type), intent(in) :: plan                     !< the plan, in space
     integer, intent(in) :: n                                !< number of twists
     type(varied_constant_type), intent(in) :: constants(n)  !< the twists
     type(state_type), intent(in) :: state                   !< the motion
     type(frame_twists_type), intent(in) :: twists           !< of its frames
     integer, intent(in) :: highest                          !< order of the highest derivative
+    logical, intent(in) :: again                            !< twists of the ground are in `series` already
     real(wp), intent(inout) :: series(6, 0:2, n)            !< gets the twists up to this derivative
     real(wp) :: length(0:2)
     integer :: i
 
     do i = 1, n
       associate (constant => constants(i))
+        if (again .and. constant%frame == 0 .and. constant%stretched_by == 0) cycle
         call carried(state, twists, constant%frame, constant%twist, highest, series(:, :, i))
         if (constant%stretched_by == 0) cycle
         length(0) = state%q(constant%stretched_by) + plan%steps(constant%step)%offset

@@ -33,8 +33,13 @@ contains
     real(wp), intent(in) :: b(6)   !< the fixed twist
     real(wp) :: c(6)
 
-    c(1:3) = cross(a(1:3), b(1:3))
-    c(4:6) = cross(a(1:3), b(4:6)) + cross(a(4:6), b(1:3))
+    ! written out, since it takes most of the time
+    c(1) = a(2)*b(3) - a(3)*b(2)
+    c(2) = a(3)*b(1) - a(1)*b(3)
+    c(3) = a(1)*b(2) - a(2)*b(1)
+    c(4) = a(2)*b(6) - a(3)*b(5) + a(5)*b(3) - a(6)*b(2)
+    c(5) = a(3)*b(4) - a(1)*b(6) + a(6)*b(1) - a(4)*b(3)
+    c(6) = a(1)*b(5) - a(2)*b(4) + a(4)*b(2) - a(5)*b(1)
   end function bracket
 
   !> A twist that is constant in a frame, seen in frame 0, and its first derivatives in time.
