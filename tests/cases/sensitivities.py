@@ -475,8 +475,8 @@ MOST_COST = 7.0
 
 
 def check_cost(case):
-    """What the derivatives by ten parameters cost, as a part of the time that a run without them takes. Both are differences between
-    runs of two lengths, so that reading and planning do not count."""
+    """Derivatives by ten parameters take a few times the time of a run without them. Both times are differences between runs of two
+    lengths, so that reading and planning do not count."""
     targets = [f'pair({k}).{name}({i})' for k, name in ((2, 'point'), (3, 'point'), (3, 'moving_point'), (4, 'point'), (1, 'point'))
                for i in (1, 2)]
     declared = ''.join(f"&parameter name='p{i}', sets='{target}' /\n" for i, target in enumerate(targets))

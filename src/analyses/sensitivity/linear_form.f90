@@ -63,24 +63,40 @@ contains
   end function new_linear_form
 
   !> Put the share of a constant in its place, or add it to that of an earlier constant of the same parameter.
-  pure subroutine put_constant(form, i, order, share)
+  pure subroutine put_constant(form, i, highest, share)
     type(linear_form_type), intent(inout) :: form   !< gets the share
     integer, intent(in) :: i                        !< number of the constant in the form; in ascending order
-    integer, intent(in) :: order                    !< of the derivative in time
-    real(wp), intent(in) :: share(form%rows)        !< addition of the constant to the values
-    integer :: r, p
+    integer, intent(in) :: highest                  !< order of the highest derivative in time
+    real(wp), intent(in) :: share(form%rows, 0:2)   !< addition of the constant to the values
 
-    p = form%parameters(i)
-    if (form%is_first(i)) then
-      do r = 1, form%rows
-        form%of_constants(p, r, order) = share(r)
+    call put_share(size(form%of_constants, 1), form%rows, form%parameters(i), form%is_first(i), highest, share, form%of_constants)
+  end subroutine put_constant
+
+  !> The same with arrays of known shape, so that the compiler keeps their addresses in registers.
+  pure subroutine put_share(n, rows, p, is_first, highest, share, sums)
+    integer, intent(in) :: n                           !< number of parameters
+    integer, intent(in) :: rows                        !< number of rows
+    integer, intent(in) :: p                           !< number of the parameter
+    logical, intent(in) :: is_first                    !< its other shares are overwritten
+    integer, intent(in) :: highest                     !< order of the highest derivative in time
+    real(wp), intent(in) :: share(rows, 0:2)           !< addition to the values
+    real(wp), intent(inout) :: sums(n, rows, 0:2)      !< gets the share
+    integer :: order, r
+
+    if (is_first) then
+      do order = 0, highest
+        do r = 1, rows
+          sums(p, r, order) = share(r, order)
+        end do
       end do
     else
-      do r = 1, form%rows
-        form%of_constants(p, r, order) = form%of_constants(p, r, order) + share(r)
+      do order = 0, highest
+        do r = 1, rows
+          sums(p, r, order) = sums(p, r, order) + share(r, order)
+        end do
       end do
     end if
-  end subroutine put_constant
+  end subroutine put_share
 
   !> The values of a form, or of its derivatives in time. Products are added three at a time to three rows at a time, so that numbers
   !> are read and written seldom.
@@ -92,48 +108,57 @@ contains
     logical, intent(in) :: whole                      !< with the unknowns in this order, not only with those that are given
     real(wp), intent(in) :: q(n, 3*m)                 !< derivatives of the coordinates, each with two derivatives in time
     real(wp), intent(inout) :: values(n, form%rows)   !< the values
-    real(wp) :: factors(3, 3)
-    integer :: columns(3), first, row, terms, i, j, count
+    integer :: first, own
 
     call copy(n*form%rows, form%of_constants(1, 1, order), values)
+    own = form%n_given
+    if (whole) own = size(form%steps)
     first = 1
-    if (order > 0 .and. form%n_given == 0 .and. .not. whole) first = form%first_moving
-    do row = first, form%rows, 3
+    if (order > 0 .and. own == 0) first = form%first_moving
+    if (size(form%steps) > 0) call add_steps(n, m, form%rows, first, order, size(form%steps), own, form%coordinates, &
+                                             form%columns, q, values)
+  end subroutine find_values
+
+  !> Add the products of all steps. The arrays have known shapes, so that the compiler keeps their addresses in registers.
+  pure subroutine add_steps(n, m, rows, first, order, count, own, coordinates, factors_of, q, values)
+    integer, intent(in) :: n                               !< number of parameters
+    integer, intent(in) :: m                               !< number of coordinates
+    integer, intent(in) :: rows                            !< number of all rows
+    integer, intent(in) :: first                           !< first of the rows that is not left out
+    integer, intent(in) :: order                           !< of the derivative in time
+    integer, intent(in) :: count                           !< number of steps
+    integer, intent(in) :: own                             !< number of steps whose coordinates count in this order itself
+    integer, intent(in) :: coordinates(count)              !< of the steps
+    real(wp), intent(in) :: factors_of(rows, 0:2, count)   !< columns of the steps
+    real(wp), intent(in) :: q(n, 3*m)                      !< derivatives of the coordinates
+    real(wp), intent(inout) :: values(n, rows)             !< the sums
+    real(wp) :: factors(3, 3), weight
+    integer :: columns(3), row, terms, i, j, r, last
+
+    do row = first, rows, 3
+      last = min(3, rows - row + 1)
       terms = 0
       do j = 0, order
-        count = size(form%steps)
-        if (j == order .and. .not. whole) count = form%n_given
-        do i = 1, count
+        weight = binomial(j, order)
+        do i = 1, merge(own, count, j == order)
           terms = terms + 1
-          call take_term(form, row, order - j, i, binomial(j, order), terms, factors)
-          columns(terms) = 3*form%coordinates(i) - 2 + j
+          do r = 1, last
+            factors(terms, r) = weight*factors_of(row + r - 1, order - j, i)
+          end do
+          columns(terms) = 3*coordinates(i) - 2 + j
           if (terms < 3) cycle
-          call add_terms(n, m, form%rows, row, factors, columns, q, values)
+          call add_terms(n, m, rows, row, factors, columns, q, values)
           terms = 0
         end do
       end do
       if (terms == 0) cycle
-      factors(terms + 1:, :) = 0.0_wp
-      columns(terms + 1:) = columns(1)
-      call add_terms(n, m, form%rows, row, factors, columns, q, values)
+      do j = terms + 1, 3
+        factors(j, :) = 0.0_wp
+        columns(j) = columns(1)
+      end do
+      call add_terms(n, m, rows, row, factors, columns, q, values)
     end do
-  end subroutine find_values
-
-  !> The factors of a coordinate in up to three rows.
-  pure subroutine take_term(form, row, order, i, weight, term, factors)
-    type(linear_form_type), intent(in) :: form   !< with its columns
-    integer, intent(in) :: row                   !< the first of the rows
-    integer, intent(in) :: order                 !< of the derivative of columns in time
-    integer, intent(in) :: i                     !< number of the step in the form
-    real(wp), intent(in) :: weight               !< of the factors
-    integer, intent(in) :: term                  !< number of the term that gets the factors
-    real(wp), intent(inout) :: factors(3, 3)     !< (terms,rows); those of rows that do not exist stay
-    integer :: r
-
-    do r = 1, min(3, form%rows - row + 1)
-      factors(term, r) = weight*form%columns(row + r - 1, order, i)
-    end do
-  end subroutine take_term
+  end subroutine add_steps
 
   !> Add three products to each of up to three rows.
   pure subroutine add_terms(n, m, rows, row, factors, columns, q, values)

@@ -195,7 +195,7 @@ contains
     type(varied_constant_type), intent(in) :: constants(:)   !< the constants
     real(wp), intent(in) :: series(:, 0:, :)             !< (3,0:2,constants) twists of constants
     type(linear_form_type), intent(inout) :: form        !< gets its columns and shares
-    real(wp) :: arm(2), p(2, 0:2), shift(2, 0:2), share(3)
+    real(wp) :: arm(2), p(2, 0:2), shift(2, 0:2), share(3, 0:2)
     integer :: i, s, k, order
 
     p = 0.0_wp
@@ -226,12 +226,18 @@ contains
         do order = 0, highest
           shift(1, order) = twist(2, order + 1) - twist(1, 1)*p(2, order)
           shift(2, order) = twist(3, order + 1) + twist(1, 1)*p(1, order)
-          call put(planar, shift(:, order), share(:form%rows))
-          ! points alone may be shifted along the normal
-          if (order == 0 .and. form%rows == 3 .and. constants(form%constants(i))%point > 0) &
-            share = share + constants(form%constants(i))%twist(4)*planar%axes(:, 3)
-          call put_constant(form, i, order, share)
         end do
+        if (form%rows == 2) then
+          call put_constant(form, i, highest, shift)
+          cycle
+        end if
+        do order = 0, highest
+          call put(planar, shift(:, order), share(:, order))
+        end do
+        ! points alone may be shifted along the normal
+        if (constants(form%constants(i))%point > 0) &
+          share(:, 0) = share(:, 0) + constants(form%constants(i))%twist(4)*planar%axes(:, 3)
+        call put_constant(form, i, highest, share)
       end associate
     end do
     form%is_filled = .true.

@@ -52,21 +52,35 @@ contains
     integer, intent(in) :: highest                       !< order of the highest derivative
     real(wp), intent(in) :: series(:, 0:, :)             !< (6,0:2,constants) twists of constants
     type(linear_form_type), intent(inout) :: form        !< gets its columns and shares
-    real(wp) :: share(6)
+    real(wp) :: share(6, 0:2), few(18)
     integer :: i, order
 
-    do i = 1, size(form%steps)
-      do order = 0, highest
-        call reduce(plan, plan%closures(c), state, form%signs(i), twists%step(:, order, form%steps(i)), form%columns(:, order, i))
+    associate (closure => plan%closures(c), per_length => 1.0_wp/plan%length)
+      if (closure%rank == 6) then
+        do i = 1, size(form%steps)
+          call shift_to_place(form%signs(i), per_length, state%p(:, closure%closing), twists%step(:, :, form%steps(i)), highest, &
+                              form%columns(:, :, i))
+        end do
+        do i = 1, size(form%constants)
+          call shift_to_place(form%constant_signs(i), per_length, state%p(:, closure%closing), series(:, :, form%constants(i)), &
+                              highest, share)
+          call put_constant(form, i, highest, share)
+        end do
+        return
+      end if
+      do i = 1, size(form%steps)
+        do order = 0, highest
+          call reduce(plan, closure, state, form%signs(i), twists%step(:, order, form%steps(i)), form%columns(:, order, i))
+        end do
       end do
-    end do
-    do i = 1, size(form%constants)
-      do order = 0, highest
-        call reduce(plan, plan%closures(c), state, form%constant_signs(i), series(:, order, form%constants(i)), &
-                    share(:form%rows))
-        call put_constant(form, i, order, share)
+      do i = 1, size(form%constants)
+        do order = 0, highest
+          call reduce(plan, closure, state, form%constant_signs(i), series(:, order, form%constants(i)), &
+                      few(order*form%rows + 1:(order + 1)*form%rows))
+        end do
+        call put_constant(form, i, highest, few)
       end do
-    end do
+    end associate
   end subroutine fill_spatial_closure
 
   !> The components of a twist in the equations of a closure.
@@ -79,36 +93,33 @@ contains
     real(wp), intent(inout) :: rows(:)             !< the components
     integer :: i
 
-    if (closure%rank == 6) then
-      call shift_to_closing(plan, closure, state, factor, twist, rows)
-    else
-      call reduced_screw(plan, closure, state, twist(1:3), twist(4:6), [0.0_wp, 0.0_wp, 0.0_wp], rows)
-      do i = 1, size(rows)
-        rows(i) = factor*rows(i)
-      end do
-    end if
+    call reduced_screw(plan, closure, state, twist(1:3), twist(4:6), [0.0_wp, 0.0_wp, 0.0_wp], rows)
+    do i = 1, size(rows)
+      rows(i) = factor*rows(i)
+    end do
   end subroutine reduce
 
-  !> A twist at the origin of the closing frame, its shift in lengths of the mechanism.
-  pure subroutine shift_to_closing(plan, closure, state, factor, twist, rows)
-    type(plan_type), intent(in) :: plan            !< the plan, in space
-    type(closure_type), intent(in) :: closure      !< the closure
-    type(state_type), intent(in) :: state          !< with the poses of the frames
+  !> A twist and its derivatives at a place, with a factor, its shift in lengths of the mechanism.
+  pure subroutine shift_to_place(factor, per_length, p, twist, highest, rows)
     real(wp), intent(in) :: factor                 !< of the twist
-    real(wp), intent(in) :: twist(6)               !< rotation, and shift at the origin of frame 0
-    real(wp), intent(inout) :: rows(6)             !< the same at the closing frame
-    real(wp) :: per_length
+    real(wp), intent(in) :: per_length             !< one over the length of the mechanism [1/m]
+    real(wp), intent(in) :: p(3)                   !< the place [m]
+    real(wp), intent(in) :: twist(6, 0:2)          !< rotation, and shift at the origin of frame 0
+    integer, intent(in) :: highest                 !< order of the highest derivative
+    real(wp), intent(inout) :: rows(6, 0:2)        !< the same at the place
+    real(wp) :: scaled
+    integer :: o
 
-    per_length = factor/plan%length
-    associate (p => state%p(:, closure%closing))
-      rows(1) = factor*twist(1)
-      rows(2) = factor*twist(2)
-      rows(3) = factor*twist(3)
-      rows(4) = per_length*(twist(4) + twist(2)*p(3) - twist(3)*p(2))
-      rows(5) = per_length*(twist(5) + twist(3)*p(1) - twist(1)*p(3))
-      rows(6) = per_length*(twist(6) + twist(1)*p(2) - twist(2)*p(1))
-    end associate
-  end subroutine shift_to_closing
+    scaled = factor*per_length
+    do o = 0, highest
+      rows(1, o) = factor*twist(1, o)
+      rows(2, o) = factor*twist(2, o)
+      rows(3, o) = factor*twist(3, o)
+      rows(4, o) = scaled*(twist(4, o) + twist(2, o)*p(3) - twist(3, o)*p(2))
+      rows(5, o) = scaled*(twist(5, o) + twist(3, o)*p(1) - twist(1, o)*p(3))
+      rows(6, o) = scaled*(twist(6, o) + twist(1, o)*p(2) - twist(2, o)*p(1))
+    end do
+  end subroutine shift_to_place
 
   !> Fill the form of the whole opening of a closed chain, with the components that its equations leave out. Only the openings
   !> themselves are filled, not their derivatives in time.
@@ -119,16 +130,18 @@ contains
     type(frame_twists_type), intent(in) :: twists        !< of the steps
     real(wp), intent(in) :: series(:, 0:, :)             !< (6,0:2,constants) twists of constants
     type(linear_form_type), intent(inout) :: form        !< six rows; gets its columns and shares
-    real(wp) :: share(6)
+    real(wp) :: share(6, 0:2)
     integer :: i
 
-    do i = 1, size(form%steps)
-      call shift_to_closing(plan, plan%closures(c), state, form%signs(i), twists%step(:, 0, form%steps(i)), form%columns(:, 0, i))
-    end do
-    do i = 1, size(form%constants)
-      call shift_to_closing(plan, plan%closures(c), state, form%constant_signs(i), series(:, 0, form%constants(i)), share)
-      call put_constant(form, i, 0, share)
-    end do
+    associate (p => state%p(:, plan%closures(c)%closing), per_length => 1.0_wp/plan%length)
+      do i = 1, size(form%steps)
+        call shift_to_place(form%signs(i), per_length, p, twists%step(:, :, form%steps(i)), 0, form%columns(:, :, i))
+      end do
+      do i = 1, size(form%constants)
+        call shift_to_place(form%constant_signs(i), per_length, p, series(:, :, form%constants(i)), 0, share)
+        call put_constant(form, i, 0, share)
+      end do
+    end associate
   end subroutine fill_whole_closure
 
   !> Fill the form of a coupling.
@@ -157,7 +170,7 @@ contains
     real(wp), intent(in) :: series(:, 0:, :)             !< (6,0:2,constants) twists of constants
     type(linear_form_type), intent(inout) :: form        !< gets its columns and shares
     real(wp) :: arm(3), slip(3), p(3, 0:2), share(3, 0:2)
-    integer :: i, order
+    integer :: i
 
     p = 0.0_wp
     arm = turn(state%r(:, :, frame), place)
@@ -172,9 +185,7 @@ contains
     end do
     do i = 1, size(form%constants)
       call shift_point(p, series(:, :, form%constants(i)), highest, share)
-      do order = 0, highest
-        call put_constant(form, i, order, share(:, order))
-      end do
+      call put_constant(form, i, highest, share)
     end do
   end subroutine fill_spatial_point
 
