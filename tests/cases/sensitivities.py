@@ -469,8 +469,8 @@ def check_turned_plane(case):
     case.checks.near(rows[:, :planar.shape[1]], planar, 1e-10, 'beside such a parameter, others have the same derivatives', scale=1.0)
 
 
-# Ten parameters of a four-bar linkage cost about twice a run without derivatives in an optimised program; run-time checks cost more.
-# When the derivatives were found for each parameter by itself, in space, this was 20.
+# A run with ten parameters of a four-bar linkage takes 2.6 times the instructions of a run without derivatives (docs/measurements.md).
+# Times are less certain. When the derivatives were found for each parameter by itself, in space, this was 20.
 MOST_COST = 7.0
 
 
@@ -492,7 +492,7 @@ def check_cost(case):
 
     least = [min(seconds(wanted, 12000) for _ in range(3)) - min(seconds(wanted, 1000) for _ in range(3))
              for wanted in ('.false.', '.true.')]
-    case.checks.true(least[1] <= MOST_COST * max(least[0], 0.02), 'ten parameters cost little',
+    case.checks.true(least[1] <= MOST_COST * max(least[0], 0.015), 'ten parameters cost little',
                      f'{least[1]:.3f} s, against {least[0]:.3f} s without derivatives')
 
 
