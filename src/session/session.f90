@@ -14,7 +14,6 @@ module mech9_session
   use mech9_drive_reader, only: files_of_groups
   use mech9_varied_document, only: varied_document_type, new_varied_document
   use mech9_reader, only: read_structure_only, read_model
-  use mech9_varied_document, only: varied_document_type, new_varied_document
   use mech9_data_help, only: write_data_help
   use mech9_structure, only: structure_type
   use mech9_partition, only: partition_type
@@ -24,6 +23,7 @@ module mech9_session
   use mech9_task, only: task_type, answers_only
   use mech9_run_words, only: save_short_report
   use mech9_study_task, only: work_on_study
+  use mech9_dakota_task, only: work_for_dakota
   use mech9_study_merge, only: merge_studies
   use mech9_optimum_task, only: work_on_optimum
   use mech9_choice_check, only: judge_choice_of
@@ -109,7 +109,7 @@ contains
         call apply_setting(document, settings(i)%text, diagnostics)
       end do
     end if
-    call list_inputs(path, document, inputs)
+    call list_inputs(path, options, document, inputs)
     call refuse_overwriting(options, inputs, err)
     if (allocated(err)) then
       write (error_unit, '(3a)') task%program_name, ': ', err%message
@@ -132,9 +132,12 @@ contains
         call refuse_overwriting(options, inputs, err, model%request%output)
         reported = allocated(err)
         if (allocated(err)) call diagnostics%add_error(err)
-        if (options%has('study') .or. options%has('optimize') .or. model%request%output%with_derivatives()) &
+        if (options%has('study') .or. options%has('optimize') .or. options%has('dakota') .or. &
+            model%request%output%with_derivatives()) &
           call new_varied_document(document, diagnostics%sources, task%needs_drives, variable)
-        if (.not. allocated(err) .and. options%has('study')) then
+        if (.not. allocated(err) .and. options%has('dakota')) then
+          call work_for_dakota(task%program_name, options, variable, model, diagnostics)
+        else if (.not. allocated(err) .and. options%has('study')) then
           call work_on_study(task%program_name, options, document, variable, model, diagnostics, reported)
         else if (.not. allocated(err) .and. options%has('optimize')) then
           call work_on_optimum(task%program_name, options, document, variable, model, diagnostics, reported)
@@ -153,20 +156,24 @@ contains
     call diagnostics%report(error_unit)
   end subroutine run_file
 
-  !> The files that are read: the data file, and those that its groups name.
-  pure subroutine list_inputs(path, document, inputs)
+  !> The files that are read: the data file, those that its groups name, and one of Dakota.
+  pure subroutine list_inputs(path, options, document, inputs)
     character(len=*), intent(in) :: path                       !< of the data file
+    type(command_line_type), intent(in) :: options             !< the command line
     type(document_type), intent(in) :: document                !< its groups and items
     type(string_type), allocatable, intent(out) :: inputs(:)   !< paths of the files that are read
-    type(string_type), allocatable :: of_groups(:)
-    integer :: i
+    type(string_type), allocatable :: of_groups(:), of_dakota(:)
+    integer :: i, n
 
     call files_of_groups(document, of_groups)
-    allocate (inputs(1 + size(of_groups)))
+    call options%arguments('dakota', of_dakota)
+    n = min(1, size(of_dakota))
+    allocate (inputs(1 + size(of_groups) + n))
     inputs(1)%text = path
     do i = 1, size(of_groups)
       inputs(1 + i)%text = of_groups(i)%text
     end do
+    if (n > 0) inputs(size(inputs))%text = of_dakota(1)%text
   end subroutine list_inputs
 
   !> Write the report where no run wrote one. A failure to write it is another error; the first error determines the code.

@@ -7,12 +7,13 @@ module mech9_option_conflicts
 
   !> The options that replace a run by an answer, the first ones before the others.
   character(len=*), parameter :: answers(*) = [character(len=11) :: 'structure', 'check', 'plan', 'branches', 'range', 'cam', &
-                                               'graph', 'equilibrium', 'modes', 'linear']
+                                               'graph', 'equilibrium', 'modes', 'linear', 'dakota']
   !> Those of them that are about positions of equilibrium.
   character(len=*), parameter :: of_rest(*) = [character(len=11) :: 'equilibrium', 'modes', 'linear']
   !> Options that a conversation does not take.
   character(len=*), parameter :: of_files(*) = [character(len=11) :: 'check', 'structure', 'plan', 'branches', 'range', 'cam', &
-                                                'equilibrium', 'modes', 'linear', 'study', 'optimize', 'set']
+                                                'equilibrium', 'modes', 'linear', 'study', 'optimize', 'dakota', &
+                                                'set']
 
 contains
 
@@ -80,6 +81,8 @@ contains
       call judge_conversation(program_name, given, has_file, err)
     else if (has('study') .and. has('optimize')) then
       call raise(err, exit_usage, '--study and --optimize are different tasks; give one of them')
+    else if (has('dakota')) then
+      call judge_dakota(given, err)
     else if (has('study')) then
       call judge_study(given, err)
     else if (has('optimize')) then
@@ -160,6 +163,20 @@ contains
     if (other /= '') call raise(err, exit_usage, '--optimize searches for a design and writes a table with a row for each one '// &
                                 'that it finds; leave --'//other//' out, and give it to a run of the design')
   end subroutine judge_optimum
+
+  !> Check the options beside --dakota, which takes two files and writes nothing but results for Dakota and a report.
+  pure subroutine judge_dakota(given, err)
+    character(len=*), intent(in) :: given(:)           !< names of the options that are given, without the dashes
+    type(error_type), allocatable, intent(out) :: err  !< allocated if they contradict it
+    integer :: i
+
+    if (count(given == 'dakota') < 2) call raise(err, exit_usage, '--dakota needs two files: --dakota PARAMS RESULTS')
+    do i = 1, size(given)
+      if (allocated(err)) return
+      if (all(given(i) /= [character(len=6) :: 'dakota', 'set', 'quiet', 'report'])) &
+        call raise(err, exit_usage, '--dakota makes one run for Dakota; leave --'//trim(given(i))//' out')
+    end do
+  end subroutine judge_dakota
 
   !> Fail because of --modes with --animate and without --mode, or the other way round.
   pure subroutine judge_mode(has_mode, err)

@@ -79,6 +79,8 @@ module mech9_options
                 'join the HDF5 files of parts of a study to that of --hdf5', unlimited_arguments), &
     option_type('optimize', no_argument, '', any_text, .false., 'mech9k', &
                 'find the parameters with which the groups &objective are met best'), &
+    option_type('dakota', needed_argument, 'PARAMS RESULTS', any_text, .false., both, &
+                'make the run that a parameters file of Dakota asks for', 2), &
     option_type('set', needed_argument, 'GROUP.NAME=VALUE', assignment, .true., both, &
                 'replace a value of the data file; may be repeated'), &
     option_type('dialogue', no_argument, '', any_text, .false., both, &

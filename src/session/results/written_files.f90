@@ -132,6 +132,7 @@ contains
     type(command_line_type), intent(in) :: options                    !< the command line
     type(written_file_type), allocatable, intent(inout) :: files(:)   !< gets the files of answers
     character(len=*), parameter :: printed(*) = [character(len=9) :: 'structure', 'check', 'plan', 'branches', 'range']
+    type(string_type), allocatable :: paths(:)
     character(len=:), allocatable :: graph
     integer :: i
 
@@ -139,6 +140,8 @@ contains
       if (options%has(trim(printed(i)))) call append(files, '--'//trim(printed(i)), standard_output_path)
     end do
     if (options%has('structure')) return
+    call options%arguments('dakota', paths)
+    if (size(paths) == 2) call append(files, 'the results of --dakota', paths(2)%text)
     if (options%has('equilibrium') .or. options%has('modes') .or. options%has('linear')) then
       call list_of_equilibrium(options, files)
       return

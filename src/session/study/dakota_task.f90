@@ -1,0 +1,161 @@
+!> One evaluation for Dakota: a run with the values of its variables, and the quantities that it asks for.
+module mech9_dakota_task
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_data, exit_singular
+  use mech9_text, only: string_type, nearest_name
+  use mech9_command_line, only: command_line_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_explanation, only: explain
+  use mech9_model, only: model_type
+  use mech9_variable_model, only: variable_model_type
+  use mech9_row_source, only: row_source_type
+  use mech9_quantity_record, only: quantity_record_type
+  use mech9_design_run, only: run_design, find_quantities
+  use mech9_driven_quantities, only: find_driven_quantities
+  use mech9_dakota_file, only: dakota_request_type, read_dakota, write_dakota_failure, write_dakota_results
+  implicit none
+  private
+  public :: work_for_dakota
+
+  !> Bits of the active set vector.
+  integer, parameter :: gradients = 2, hessians = 4
+  !> Letters of a name that are compared when the nearest name is looked for.
+  integer, parameter :: longest_name = 64
+
+contains
+
+  !> Make the run that Dakota asks for, and write its quantities. A run that fails is told to Dakota, and is no failure of the
+  !> program; a request that cannot be understood is one, and leaves no results.
+  subroutine work_for_dakota(program_name, options, varied, model, diagnostics)
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options          !< the command line, with --dakota
+    class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
+    type(model_type), intent(in) :: model                   !< the model with the values of the data file
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
+    type(string_type), allocatable :: paths(:)
+    type(dakota_request_type) :: request
+    type(quantity_record_type) :: columns
+    type(error_type), allocatable :: err
+    integer, allocatable :: parameters(:), quantities(:)
+
+    call options%arguments('dakota', paths)
+    call find_quantities(program_name, model, columns, err)
+    if (.not. allocated(err)) call read_dakota(paths(1)%text, request, err)
+    if (.not. allocated(err)) call match_names(program_name, model, paths(1)%text, request, parameters, quantities, err)
+    if (.not. allocated(err)) call evaluate(program_name, varied, model, request, parameters, quantities, paths(2)%text, &
+                                            options%has('quiet'), err)
+    if (allocated(err)) call diagnostics%add_error(err)
+  end subroutine work_for_dakota
+
+  !> Find the parameters and quantities that Dakota means, and refuse what it cannot have.
+  subroutine match_names(program_name, model, path, request, parameters, quantities, err)
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+    type(model_type), intent(in) :: model                   !< the model
+    character(len=*), intent(in) :: path                    !< of the parameters file
+    type(dakota_request_type), intent(in) :: request        !< the evaluation
+    integer, allocatable, intent(out) :: parameters(:)      !< (variables) number of the parameter of each
+    integer, allocatable, intent(out) :: quantities(:)      !< (responses) number of the quantity of each
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    character(len=longest_name) :: of_parameters(size(model%parameters)), of_quantities(size(model%request%quantities))
+    integer :: i
+
+    do i = 1, size(of_parameters)
+      of_parameters(i) = model%parameters(i)%name
+    end do
+    do i = 1, size(of_quantities)
+      of_quantities(i) = model%request%quantities(i)%name
+    end do
+    call match(request%variables, of_parameters, path, 'variable', '&parameter', parameters, err)
+    if (.not. allocated(err)) call match(request%responses, of_quantities, path, 'response', '&quantity', quantities, err)
+    if (allocated(err)) return
+    if (request%wants(hessians)) then
+      call raise(err, exit_data, path//': second derivatives are asked for, and there are none; use no_hessians or '// &
+                 'numerical_hessians')
+    else if (request%wants(gradients) .and. program_name == 'mech9d') then
+      call raise(err, exit_data, path//': gradients are asked for, and mech9d has none of quantities; use numerical_gradients')
+    end if
+  end subroutine match_names
+
+  !> Find descriptors among names.
+  subroutine match(descriptors, names, path, kind, group, numbers, err)
+    type(string_type), intent(in) :: descriptors(:)      !< of Dakota
+    character(len=*), intent(in) :: names(:)             !< in the data file
+    character(len=*), intent(in) :: path                 !< of the parameters file
+    character(len=*), intent(in) :: kind                 !< of the descriptors, for messages
+    character(len=*), intent(in) :: group                !< of the names, for messages
+    integer, allocatable, intent(out) :: numbers(:)      !< (descriptors) of the names
+    type(error_type), allocatable, intent(out) :: err    !< allocated if one is unknown, or stands twice
+    character(len=:), allocatable :: nearest, hint
+    integer :: i
+
+    allocate (numbers(size(descriptors)), source=0)
+    do i = 1, size(descriptors)
+      numbers(i) = findloc(names == descriptors(i)%text, .true., dim=1)
+      if (numbers(i) == 0) then
+        nearest = nearest_name(descriptors(i)%text, names)
+        hint = ''
+        if (nearest /= '') hint = "; did you mean '"//nearest//"'?"
+        call raise(err, exit_data, path//': no '//group//" has the name of the "//kind//" '"//descriptors(i)%text//"'"//hint)
+      else if (any(numbers(:i - 1) == numbers(i))) then
+        call raise(err, exit_data, path//': the '//kind//" '"//descriptors(i)%text//"' stands there twice")
+      end if
+      if (allocated(err)) return
+    end do
+  end subroutine match
+
+  !> Make the run and write its results, or that it failed.
+  subroutine evaluate(program_name, varied, model, request, parameters, quantities, path, quiet, err)
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+    class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
+    type(model_type), intent(in) :: model                   !< the model with the values of the data file
+    type(dakota_request_type), intent(in) :: request        !< the evaluation
+    integer, intent(in) :: parameters(:)                    !< (variables) number of the parameter of each
+    integer, intent(in) :: quantities(:)                    !< (responses) number of the quantity of each
+    character(len=*), intent(in) :: path                    !< of the results
+    logical, intent(in) :: quiet                            !< a failure is not told
+    type(error_type), allocatable, intent(out) :: err       !< allocated if the results cannot be written
+    type(error_type), allocatable :: failure
+    real(wp) :: values(size(model%parameters)), numbers(size(model%request%quantities))
+    real(wp) :: gradient(size(model%parameters), size(model%request%quantities))
+
+    values = model%parameters%value
+    values(parameters) = request%values
+    call run_at(program_name, varied, values, request%wants(gradients), numbers, gradient, failure)
+    if (.not. allocated(failure) .and. request%wants(gradients)) then
+      if (any(ieee_is_nan(gradient(parameters(request%by), pack(quantities, iand(request%active, gradients) /= 0))))) &
+        call raise(failure, exit_singular, 'a quantity has no derivative here')
+    end if
+    if (allocated(failure)) then
+      call explain(failure)
+      if (.not. quiet) write (error_unit, '(4a)') program_name, ': ', 'the run failed: ', failure%message
+      call write_dakota_failure(path, failure%message, err)
+    else
+      call write_dakota_results(path, request, numbers(quantities), gradient(parameters(request%by), quantities), err)
+    end if
+  end subroutine evaluate
+
+  !> Make a run with values of the parameters.
+  subroutine run_at(program_name, varied, values, with_gradient, numbers, gradient, err)
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+    class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
+    real(wp), intent(in) :: values(:)                       !< (parameters) in the units of the file
+    logical, intent(in) :: with_gradient                    !< derivatives are taken
+    real(wp), intent(out) :: numbers(:)                     !< (quantities)
+    real(wp), intent(out) :: gradient(:, :)                 !< (parameters,quantities)
+    type(error_type), allocatable, intent(out) :: err       !< allocated if the run failed
+    type(model_type), target :: model
+    type(row_source_type) :: source
+
+    numbers = 0.0_wp
+    gradient = 0.0_wp
+    call varied%at(values, model, err)
+    if (allocated(err)) return
+    if (with_gradient) then
+      call find_driven_quantities(program_name, model, varied, numbers, gradient, err)
+    else
+      call run_design(program_name, model, source, numbers, err)
+    end if
+  end subroutine run_at
+end module mech9_dakota_task

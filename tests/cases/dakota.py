@@ -1,0 +1,169 @@
+"""One evaluation for Dakota: its two forms of parameters files, values and gradients in its results file, failures, mistakes.
+
+usage: dakota.py MECH9K MECH9D
+"""
+import os
+import sys
+import tempfile
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import Checks, run, text_of
+
+DONE, USAGE, DATA, FILE = 0, 2, 3, 8
+# The stroke of a slider-crank without offset is twice its crank; at the end of the drive the crank points along the slider.
+SLIDER_CRANK = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1.1,0,0, moving_point=0,0,0 /
+&pair coordinate=4, links=1,4, kind='prismatic', axis=1,0,0, zero=0,1,0, moving_point=0,0,0 /
+&initial coordinate=4, position=1.2 /
+&drive coordinate=1, kind='polynomial', coefficients=0, 6.283185307179586 /
+&point name='B', link=4 /
+&time end=1, intervals=40 /
+&output table='never.dat' /
+&quantity name='stroke', of='B.x', take='range' /
+&quantity name='far', of='B.x', take='end' /
+&parameter name='crank', sets='pair(2).point(1)' /
+&parameter name='rod', sets='pair(3).point(1)' /
+"""
+PENDULUM = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&initial coordinate=1, position=0.4 /
+&body link=2, mass=1, centre=0,-0.5,0, inertia=0,0,0.1,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&time end=1, intervals=20 /
+&parameter name='mass', sets='body.mass' /
+&quantity name='swing', of='q1', take='start' /
+"""
+
+
+def standard(variables, responses, by=()):
+    """A parameters file in the standard form, as Dakota 6 writes it."""
+    lines = [f'{len(variables)} variables'] + [f'{value:.15e} {name}' for name, value in variables]
+    lines += [f'{len(responses)} functions'] + [f'{active} ASV_{i}:{name}' for i, (name, active) in enumerate(responses, 1)]
+    lines += [f'{len(by)} derivative_variables'] + [f'{k} DVV_{i}:{variables[k - 1][0]}' for i, k in enumerate(by, 1)]
+    lines += ['0 analysis_components', '7 eval_id', '0 metadata']
+    return ''.join(f'{line:>60}\n' for line in lines)
+
+
+def aprepro(variables, responses, by=()):
+    """The same in the form of APREPRO."""
+    lines = [f'DAKOTA_VARS     = {len(variables)}'] + [f'{name} = {value:.15e}' for name, value in variables]
+    lines += [f'DAKOTA_FNS      = {len(responses)}'] + [f'ASV_{i}:{name} = {active}' for i, (name, active) in enumerate(responses, 1)]
+    lines += [f'DAKOTA_DER_VARS = {len(by)}'] + [f'DVV_{i}:{variables[k - 1][0]} = {k}' for i, k in enumerate(by, 1)]
+    lines += ['DAKOTA_AN_COMPS = 0', 'DAKOTA_EVAL_ID  = 7', 'DAKOTA_METADATA = 0']
+    return ''.join(f'                    {{ {line} }}\n' for line in lines)
+
+
+class Cases:
+    def __init__(self, checks, folder):
+        self.checks, self.folder = checks, folder
+
+    def write(self, text, name='case.nml'):
+        path = os.path.join(self.folder, name)
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        return path
+
+    def evaluate(self, program, text, parameters, *more):
+        """One evaluation: the finished program, and the text of its results file (None without one)."""
+        results = os.path.join(self.folder, 'results.out')
+        if os.path.exists(results):
+            os.remove(results)
+        self.write(parameters, 'params.in')
+        done = run(program, self.write(text), '--dakota', 'params.in', 'results.out', *more, folder=self.folder)
+        return done, text_of(results) if os.path.exists(results) else None
+
+
+def values(cases, mech9k, mech9d):
+    check = cases.checks
+    for form in (standard, aprepro):
+        why = form.__name__
+        done, results = cases.evaluate(mech9k, SLIDER_CRANK, form([('rod', 1.0), ('crank', 0.25)], [('far', 1), ('stroke', 1)]))
+        check.true(done.returncode == DONE and done.stderr == '', f'{why}: the evaluation is made', done.stderr)
+        words = [line.split() for line in results.splitlines()]
+        check.equal([word[1] for word in words], ['far', 'stroke'], f'{why}: descriptors in the order of the responses')
+        check.near([float(word[0]) for word in words], [1.25, 0.5], 1e-10, f'{why}: values')
+        _, results = cases.evaluate(mech9k, SLIDER_CRANK, form([('crank', 0.25)], [('stroke', 0), ('far', 1)]))
+        words = [line.split() for line in results.splitlines()]
+        check.true(len(words) == 1 and words[0][1] == 'far' and abs(float(words[0][0]) - 1.35) < 1e-10,
+                   f'{why}: a variable that Dakota leaves out keeps its value; a response that is not active is left out', results)
+        done, results = cases.evaluate(mech9d, PENDULUM, form([('mass', 2.0)], [('swing', 1)]))
+        check.near(float(results.split()[0]), 0.4, 1e-12, f'{why}: mech9d')
+    check.true(not os.path.exists(os.path.join(cases.folder, 'never.dat')), 'the table of the data file is not written')
+    done, results = cases.evaluate(mech9k, SLIDER_CRANK, standard([('crank', 0.25)], [('far', 1)]), '--set', 'parameter(2).value=1.2')
+    check.near(float(results.split()[0]), 1.45, 1e-10, 'with --set')
+
+
+def gradients(cases, mech9k, mech9d):
+    """far = crank + rod, stroke = 2 crank."""
+    check = cases.checks
+    for form in (standard, aprepro):
+        _, results = cases.evaluate(mech9k, SLIDER_CRANK, form([('rod', 1.0), ('crank', 0.25)], [('far', 3), ('stroke', 2)], (2, 1)))
+        lines = results.splitlines()
+        check.true(len(lines) == 3 and lines[0].split()[1] == 'far' and all(line.startswith('[') and line.endswith(']') for line in lines[1:]),
+                   'values first, then gradients', results)
+        found = np.array([line.strip('[]').split() for line in lines[1:]], float)
+        check.near(found, [[1, 1], [2, 0]], 1e-8, 'gradients in the order of the derivative variables')
+    done, results = cases.evaluate(mech9d, PENDULUM, standard([('mass', 2.0)], [('swing', 3)], (1,)))
+    check.true(done.returncode == DATA and results is None and 'numerical_gradients' in done.stderr, 'mech9d has no gradients', done.stderr)
+    done, results = cases.evaluate(mech9k, SLIDER_CRANK, standard([('crank', 0.2)], [('far', 5)]))
+    check.true(done.returncode == DATA and results is None and 'no_hessians' in done.stderr, 'no Hessians', done.stderr)
+
+
+def failures(cases, mech9k):
+    """A crank that is too long, and a value that the data file refuses: Dakota is told, and the program has done its work."""
+    for crank in (1.3, float('1e300')):
+        done, results = cases.evaluate(mech9k, SLIDER_CRANK, standard([('crank', crank)], [('far', 1)]))
+        cases.checks.true(done.returncode == DONE and results.split()[0] == 'fail' and 'the run failed' in done.stderr, f'crank {crank}: fail', (results, done.stderr))
+
+
+def mistakes(cases, mech9k):
+    check = cases.checks
+    good = standard([('crank', 0.25)], [('far', 1)])
+    for parameters, message in ((good.replace('crank', 'krank'), "the variable 'krank'; did you mean 'crank'?"),
+                                (good.replace('far', 'response_fn_1'), "no &quantity has the name of the response 'response_fn_1'"),
+                                (standard([('crank', 0.25), ('crank', 0.3)], [('far', 1)]), "the variable 'crank' stands there twice"),
+                                (good.replace('2.500000000000000e-01', 'long'), "params.in:2: 'long' is not a number"),
+                                (good.replace('1 ASV_1', '9 ASV_1'), 'params.in:4: the active set vector has numbers from 0 to 7'),
+                                (standard([('crank', 0.25)], [('far', 1)], (1,)).replace('1 DVV', '2 DVV'), 'params.in:6: there are 1 variables'),
+                                (good.replace('1 variables', '2 variables'), "params.in:4: the number of functions is expected here"),
+                                ('\n'.join(good.splitlines()[:3]), 'the file ends before'),
+                                (good.replace('1 variables', '-1 variables'), 'params.in:1: this is no length of a list'),
+                                ('', 'params.in: the file is empty'),
+                                ('{ }\n', 'params.in:1: a value and a tag are expected'),
+                                ('{}', 'params.in:1: a value and a tag are expected'),
+                                ('{', 'params.in:1: a value and a tag are expected'),
+                                ('1e99 variables', 'params.in:1: this is no length of a list'),
+                                ('\n\n', 'params.in:1: a value and a tag are expected')):
+        done, results = cases.evaluate(mech9k, SLIDER_CRANK, parameters)
+        check.true(done.returncode == DATA and results is None and message in done.stderr, message, f'{done.returncode}: {done.stderr} {results}')
+    cases.write(good, 'params.in')
+    path = cases.write(SLIDER_CRANK)
+    for words, code, message in ((('--dakota', 'params.in'), USAGE, '--dakota needs two files: --dakota PARAMS RESULTS'),
+                                 (('--dakota', 'params.in', 'params.in'), USAGE, 'would overwrite'),
+                                 (('--dakota', 'params.in', 'case.nml'), USAGE, 'would overwrite'),
+                                 (('--dakota', 'none.in', 'x.out'), FILE, 'none.in'),
+                                 (('--dakota', 'params.in', 'none/x.out'), FILE, 'none/x.out'),
+                                 (('--study', '--dakota', 'params.in', 'x.out'), USAGE, 'leave --study out'),
+                                 (('--table', 'x.dat', '--dakota', 'params.in', 'x.out'), USAGE, 'leave --table out')):
+        done = run(mech9k, path, *words, folder=cases.folder)
+        check.true(done.returncode == code and message in done.stderr, f'{words}: {message}', f'{done.returncode}: {done.stderr}')
+    check.equal(text_of(path), SLIDER_CRANK, 'nothing is written over')
+
+
+def main():
+    checks = Checks()
+    mech9k, mech9d = map(os.path.abspath, sys.argv[1:3])
+    with tempfile.TemporaryDirectory() as folder:
+        cases = Cases(checks, folder)
+        values(cases, mech9k, mech9d)
+        gradients(cases, mech9k, mech9d)
+        failures(cases, mech9k)
+        mistakes(cases, mech9k)
+    checks.finish()
+
+
+main()
