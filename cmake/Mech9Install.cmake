@@ -37,6 +37,9 @@ install(PROGRAMS "${PROJECT_BINARY_DIR}/install/mech9-link" DESTINATION "${CMAKE
 foreach(program mech9k mech9d)
   if(TARGET ${program})
     install(TARGETS ${program} DESTINATION "${CMAKE_INSTALL_BINDIR}")
+    if(TARGET ${program}-mpi)
+      install(TARGETS ${program}-mpi DESTINATION "${CMAKE_INSTALL_BINDIR}")
+    endif()
     install(FILES "${MECH9_PROGRAMS_DIR}/${program}.f90" DESTINATION "${MECH9_INSTALL_PROGRAMS}")
     install(FILES "${PROJECT_BINARY_DIR}/pages/${program}.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
     install(FILES "${PROJECT_BINARY_DIR}/pages/${program}.bash"

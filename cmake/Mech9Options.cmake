@@ -6,6 +6,7 @@ option(MECH9_NATIVE "use every instruction of this machine (-march=native)" OFF)
 option(MECH9_LTO "release: optimise across files when linking (a fifth faster, measured on Fig. 1)" ON)
 option(MECH9_LINE_EDITING "edit lines at the terminal by libedit, where it is found" ON)
 option(MECH9_THREADS "make the runs of a study in threads by OpenMP, where it is found" ON)
+option(MECH9_MPI "build mech9k-mpi and mech9d-mpi, studies in several processes, where MPI is found" ON)
 option(MECH9_IMPORT "import robots from XML by expat, where it is found" ON)
 
 if(NOT CMAKE_BUILD_TYPE)

@@ -95,6 +95,17 @@ if(MECH9_THREADS AND NOT CMAKE_BUILD_TYPE MATCHES "^(Debug|Sanitize|Threads)$")
   endif()
 endif()
 
+# MPI makes the runs of a study in several processes. The sanitizers know nothing of its library.
+set(MECH9_MPI_FOUND OFF)
+if(MECH9_MPI AND NOT CMAKE_BUILD_TYPE MATCHES "^(Sanitize|Threads|Coverage)$")
+  find_package(MPI COMPONENTS Fortran)
+  if(MPI_Fortran_FOUND AND MPI_Fortran_HAVE_F08_MODULE)
+    set(MECH9_MPI_FOUND ON)
+  else()
+    message(STATUS "MPI was not found (Debian: libopenmpi-dev openmpi-bin): no mech9k-mpi and mech9d-mpi")
+  endif()
+endif()
+
 # The same libraries as files or linker options, for mech9-link, which works without CMake.
 set(MECH9_LINK_LIBRARIES ${MECH9_HDF5_LIBRARIES} ${MECH9_SUNDIALS_LIBRARIES} ${LAPACK_LIBRARIES} ${LAPACK_LINKER_FLAGS}
   ${MECH9_LINE_EDITING_LIBRARIES} ${MECH9_XML_LIBRARY} ${MECH9_OPENMP_LIBRARIES})

@@ -23,6 +23,7 @@ module mech9_session
   use mech9_task, only: task_type, answers_only
   use mech9_run_words, only: save_short_report
   use mech9_study_task, only: work_on_study
+  use mech9_study_team, only: study_team_type
   use mech9_dakota_task, only: work_for_dakota
   use mech9_study_merge, only: merge_studies
   use mech9_optimum_task, only: work_on_optimum
@@ -37,10 +38,11 @@ contains
 
   !> Carry out a command line about a data file or about the program itself; `code` is the exit code of the
   !> program.
-  subroutine carry_out(task, options, code)
+  subroutine carry_out(task, options, code, team)
     class(task_type), intent(in) :: task             !< the work of this program
     type(command_line_type), intent(in) :: options   !< the command line
     integer, intent(out) :: code                     !< exit code of the program
+    class(study_team_type), intent(in), optional :: team   !< processes that make studies together
     type(error_type), allocatable :: err
 
     code = exit_done
@@ -53,7 +55,7 @@ contains
     else if (options%has('merge')) then
       call merge_studies(task%program_name, options, code)
     else
-      call run_file(task, options, options%file, code)
+      call run_file(task, options, options%file, code, team=team)
     end if
     call flush_output(err)
     if (.not. allocated(err)) return
@@ -82,12 +84,13 @@ contains
   end subroutine show_data_help
 
   !> Read a data file and carry out the options.
-  subroutine run_file(task, options, path, code, kept)
+  subroutine run_file(task, options, path, code, kept, team)
     class(task_type), intent(in) :: task                    !< the work of this program
     type(command_line_type), intent(in) :: options          !< the command line
     character(len=*), intent(in) :: path                    !< of the data file
     integer, intent(out) :: code                            !< exit code of the program
     type(kept_rows_type), intent(inout), optional :: kept   !< the rows of the run, for who looks at them after it
+    class(study_team_type), intent(in), optional :: team    !< processes that make studies together
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics, choice
     type(structure_type) :: structure
@@ -116,7 +119,9 @@ contains
       code = err%code
       return
     end if
+    ! of several processes the first one writes the report
     reported = .false.
+    if (present(team)) reported = .not. team%is_first
     if (options%has('structure')) then
       if (.not. options%has('quiet')) call print_unused_options(error_unit, task%program_name, options, model)
       call read_structure_only(document, structure, partition, diagnostics)
@@ -130,7 +135,7 @@ contains
       if (.not. diagnostics%failed()) then
         if (.not. options%has('quiet')) call print_unused_options(error_unit, task%program_name, options, model)
         call refuse_overwriting(options, inputs, err, model%request%output)
-        reported = allocated(err)
+        reported = reported .or. allocated(err)
         if (allocated(err)) call diagnostics%add_error(err)
         if (options%has('study') .or. options%has('optimize') .or. options%has('dakota') .or. &
             model%request%output%with_derivatives()) &
@@ -138,7 +143,7 @@ contains
         if (.not. allocated(err) .and. options%has('dakota')) then
           call work_for_dakota(task%program_name, options, variable, model, diagnostics)
         else if (.not. allocated(err) .and. options%has('study')) then
-          call work_on_study(task%program_name, options, document, variable, model, diagnostics, reported)
+          call work_on_study(task%program_name, options, document, variable, model, diagnostics, reported, team)
         else if (.not. allocated(err) .and. options%has('optimize')) then
           call work_on_optimum(task%program_name, options, document, variable, model, diagnostics, reported)
         else if (.not. allocated(err)) then

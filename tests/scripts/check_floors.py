@@ -17,7 +17,7 @@ FLOORS = ['base', 'system', 'numerics', 'numerics/minima', 'spatial', 'structure
           'pictures/films', 'terminal', 'session/command', 'session/words', 'facade', 'session/results', 'session/study', 'session/synthesis', 'session',
           'dialogue/drafts',
           'interchange/xml', 'interchange', 'dialogue',
-          'programs']
+          'programs/mpi', 'programs']
 MOST_FILES = 25            # in one folder: more are hard to find one's way in
 MOST_KINEMATICS = 14       # files of the kinematics that Lagrange's equations depend on, directly and through others
 WITHOUT_WORDS = ('numerics', 'spatial', 'kinematics/', 'ode', 'dynamics', 'simulation', 'analyses/')   # they fail with numbers, see src/wording

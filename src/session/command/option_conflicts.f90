@@ -12,8 +12,7 @@ module mech9_option_conflicts
   character(len=*), parameter :: of_rest(*) = [character(len=11) :: 'equilibrium', 'modes', 'linear']
   !> Options that a conversation does not take.
   character(len=*), parameter :: of_files(*) = [character(len=11) :: 'check', 'structure', 'plan', 'branches', 'range', 'cam', &
-                                                'equilibrium', 'modes', 'linear', 'study', 'optimize', 'dakota', &
-                                                'set']
+                                                'equilibrium', 'modes', 'linear', 'study', 'optimize', 'dakota', 'set']
 
 contains
 

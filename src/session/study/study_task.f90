@@ -17,6 +17,7 @@ module mech9_study_task
   use mech9_study_runs, only: study_runs_type
   use mech9_study_plots, only: study_plots_type
   use mech9_user_calls, only: calls_user_procedures
+  use mech9_study_team, only: study_team_type
   use mech9_study_threads, only: make_in_threads, threads_of_machine, has_threads
   use mech9_study_words, only: print_study, save_study_report
   implicit none
@@ -31,7 +32,7 @@ module mech9_study_task
 contains
 
   !> Carry out the study that a data file describes.
-  subroutine work_on_study(program_name, options, document, varied, model, diagnostics, reported)
+  subroutine work_on_study(program_name, options, document, varied, model, diagnostics, reported, team)
     character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     type(command_line_type), intent(in) :: options          !< the command line
     type(document_type), intent(in) :: document             !< the data file as groups and items, with the changes by --set
@@ -39,7 +40,7 @@ contains
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< a report was asked for, and it is written
-    type(result_paths_type) :: paths
+    class(study_team_type), intent(in), optional :: team    !< processes that make the runs together
     type(quantity_record_type) :: quantities
     type(study_runs_type) :: runs
     type(study_plots_type) :: plots
@@ -47,24 +48,57 @@ contains
 
     reported = .false.
     call check_study(program_name, options, model, quantities, err)
+    if (present(team)) call agree_on(team, err)
+    if (present(team) .and. .not. allocated(err)) then
+      if (.not. team%is_first) then
+        call agree_on(team, err)
+        if (.not. allocated(err)) call team%follow(program_name, model, varied)
+        reported = .true.
+        return
+      end if
+    end if
+    if (.not. allocated(err)) then
+      call open_files(program_name, options, document, model, quantities, runs, plots, err)
+      if (present(team)) call agree_on(team, err)
+    end if
     if (allocated(err)) then
       call diagnostics%add_error(err)
-      return
+    else
+      call carry_out(program_name, options, varied, model, quantities, runs, plots, diagnostics, reported, team)
     end if
+  end subroutine work_on_study
+
+  !> Go on only where all processes can.
+  subroutine agree_on(team, err)
+    class(study_team_type), intent(in) :: team              !< processes that make the runs together
+    type(error_type), allocatable, intent(inout) :: err     !< allocated if this process cannot go on; afterwards if any cannot
+    type(error_type), allocatable :: of_others
+    integer :: code
+
+    code = 0
+    if (allocated(err)) code = err%code
+    call team%agree(code, of_others)
+    if (.not. allocated(err)) call move_alloc(of_others, err)
+  end subroutine agree_on
+
+  !> Open the files of a study, and read the requests for its plots.
+  subroutine open_files(program_name, options, document, model, quantities, runs, plots, err)
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(document_type), intent(in) :: document             !< the data file as groups and items, with the changes by --set
+    type(model_type), intent(in) :: model                   !< the model with the values of the data file
+    type(quantity_record_type), intent(in) :: quantities    !< with their columns
+    type(study_runs_type), intent(inout) :: runs            !< gets the open files
+    type(study_plots_type), intent(inout) :: plots          !< gets the requests
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(result_paths_type) :: paths
+
     call find_result_paths(options, model%request%output, paths)
     call plots%open(options, model, quantities, paths%table, err)
-    if (allocated(err)) then
-      call diagnostics%add_error(err)
-      return
-    end if
+    if (allocated(err)) return
     if (.not. options%has('quiet')) call print_notes(options, model)
     call runs%results%open(program_name, options, document, model, quantities, err)
-    if (allocated(err)) then
-      call diagnostics%add_error(err)
-      return
-    end if
-    call carry_out(program_name, options, varied, model, quantities, runs, plots, diagnostics, reported)
-  end subroutine work_on_study
+  end subroutine open_files
 
   !> Report a study that cannot be carried out, and find the columns of its quantities.
   subroutine check_study(program_name, options, model, quantities, err)
@@ -121,7 +155,7 @@ contains
   end subroutine print_notes
 
   !> Make the runs, close the files, and tell how the study went. Where every run failed, the first failure is that of the study.
-  subroutine carry_out(program_name, options, varied, model, quantities, runs, plots, diagnostics, reported)
+  subroutine carry_out(program_name, options, varied, model, quantities, runs, plots, diagnostics, reported, team)
     character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     type(command_line_type), intent(in) :: options          !< the command line
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
@@ -131,6 +165,7 @@ contains
     type(study_plots_type), intent(inout) :: plots          !< the plots that are requested
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(inout) :: reported                      !< the report is written
+    class(study_team_type), intent(in), optional :: team    !< processes that make the runs together
     type(error_type), allocatable :: err
     real(wp) :: clock
     integer :: threads
@@ -139,8 +174,13 @@ contains
     quiet = options%has('quiet')
     clock = seconds()
     threads = threads_of_study(options, model)
+    if (present(team)) threads = team%processes
     call runs%begin(program_name, model, runs_ahead*threads, options%has('plot'), quiet)
-    call make_in_threads(program_name, model, varied, threads, runs)
+    if (present(team)) then
+      call team%lead(program_name, model, varied, runs)
+    else
+      call make_in_threads(program_name, model, varied, threads, runs)
+    end if
     call runs%finish(err)
     kept = .true.
     if (allocated(err)) kept = err%code == exit_interrupted

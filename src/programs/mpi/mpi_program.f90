@@ -1,0 +1,81 @@
+!> A program of several processes, from the words of its command line to its exit code. It makes studies and nothing else.
+module mech9_mpi_program
+  use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use mpi_f08, only: MPI_COMM_WORLD, MPI_INTEGER, MPI_Init, MPI_Finalize, MPI_Comm_rank, MPI_Comm_size, MPI_Bcast
+  use mech9_error, only: error_type, raise, exit_usage
+  use mech9_text, only: string_type
+  use mech9_command_line, only: command_line_type, get_command_words, parse_command_line
+  use mech9_system, only: exit_program, leave_quit_alone
+  use mech9_session, only: carry_out, asks_for_text
+  use mech9_task, only: task_type
+  use mech9_mpi_team, only: mpi_team_type
+  implicit none
+  private
+  public :: run_mpi_program
+
+contains
+
+  !> The whole program is run. There is no return from it. All processes end with the exit code of the first one.
+  subroutine run_mpi_program(task)
+    class(task_type), intent(in) :: task  !< computation of the program: kinematics or dynamics
+    integer :: code, rank
+
+    call leave_quit_alone()
+    call MPI_Init()
+    call MPI_Comm_rank(MPI_COMM_WORLD, rank)
+    ! the other processes come to the same messages as the first one
+    if (rank > 0) call fall_silent()
+    call run_processes(task, rank == 0, code)
+    call MPI_Bcast(code, 1, MPI_INTEGER, 0, MPI_COMM_WORLD)
+    call MPI_Finalize()
+    call exit_program(code)
+  end subroutine run_mpi_program
+
+  !> Let the output of this process go nowhere.
+  subroutine fall_silent()
+    open (unit=error_unit, file='/dev/null', action='write')
+    open (unit=output_unit, file='/dev/null', action='write')
+  end subroutine fall_silent
+
+  !> Carry out the command line, with the other processes.
+  subroutine run_processes(task, is_first, code)
+    class(task_type), intent(in) :: task  !< computation of the program: kinematics or dynamics
+    logical, intent(in) :: is_first       !< this is the first process
+    integer, intent(out) :: code          !< exit code of this process
+    type(mpi_team_type) :: team
+    type(command_line_type) :: options
+    type(error_type), allocatable :: err
+
+    call read_options(task%program_name, options, err)
+    if (allocated(err)) then
+      write (error_unit, '(4a)') task%program_name, '-mpi: ', err%message
+      code = err%code
+      return
+    end if
+    team%is_first = is_first
+    call MPI_Comm_size(MPI_COMM_WORLD, team%processes)
+    allocate (team%agreements, source=0)
+    call carry_out(task, options, code, team)
+    ! a process that did not come to a study tells the others, which may have done so
+    if (team%agreements == 0) call team%agree(code, err)
+    if (code == 0 .and. allocated(err)) code = err%code
+    deallocate (team%agreements)
+  end subroutine run_processes
+
+  !> Read the command line. It must be that of a study.
+  subroutine read_options(program_name, options, err)
+    character(len=*), intent(in) :: program_name          !< mech9k or mech9d
+    type(command_line_type), intent(out) :: options       !< the command line
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it is wrong
+    type(string_type), allocatable :: words(:)
+
+    call get_command_words(words)
+    call parse_command_line(words, program_name, options, err)
+    if (allocated(err) .or. asks_for_text(options)) return
+    if (.not. options%has('study')) then
+      call raise(err, exit_usage, 'several processes make the runs of a study; add --study, or use '//program_name)
+    else if (options%has('threads')) then
+      call raise(err, exit_usage, '--threads is for one process; here mpirun -n tells how many make the runs')
+    end if
+  end subroutine read_options
+end module mech9_mpi_program

@@ -1,0 +1,150 @@
+"""Studies in several processes: the same bits as in one, whatever their number; failed runs, mistakes and interruptions as in one.
+
+usage: study_processes.py MECH9K MECH9D MECH9K_MPI MECH9D_MPI MPIRUN
+"""
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import Checks, run, text_of
+
+DONE, USAGE, DATA, FILE, INTERRUPTED = 0, 2, 3, 8, 130
+SLIDER_CRANK = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1.1,0,0, moving_point=0,0,0 /
+&pair coordinate=4, links=1,4, kind='prismatic', axis=1,0,0, zero=0,1,0, moving_point=0,0,0 /
+&initial coordinate=4, position=1.2 /
+&drive coordinate=1, kind='polynomial', coefficients=0.4, 10 /
+&point name='B', link=4 /
+&time end=0.7, intervals=40 /
+&quantity name='stroke', of='B.x', take='range' /
+&quantity name='late', of='B.x', take='end' /
+&parameter name='crank', sets='pair(2).point(1)', low=0.2, high=0.8, count=9 /
+&parameter name='rod', sets='pair(3).point(1)', low=0.5, high=1.1, count=11 /
+"""
+PENDULUM = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&initial coordinate=1, position=0.4 /
+&body link=2, mass=1, centre=0,-0.5,0, inertia=0,0,0.1,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&time end=1, intervals=20 /
+&parameter name='mass', sets='body.mass' , spread=0.1 /
+&quantity name='swing', of='q1', take='range' /
+"""
+# Debian's OpenMPI asks root for these; several processes share a core, and a container may forbid them to read each other's memory.
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1', OMPI_MCA_mpi_yield_when_idle='1',
+                   OMPI_MCA_btl_vader_single_copy_mechanism='none', OMPI_MCA_btl_sm_single_copy_mechanism='none')
+
+
+class Cases:
+    def __init__(self, checks, folder, mpirun):
+        self.checks, self.folder, self.mpirun = checks, folder, mpirun
+
+    def write(self, text, name='case.nml'):
+        path = os.path.join(self.folder, name)
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        return path
+
+    def command(self, processes, program, *words):
+        return [self.mpirun, '-n', str(processes), '--oversubscribe', program, *words]
+
+    def processes(self, processes, program, *words):
+        return subprocess.run(self.command(processes, program, *words), cwd=self.folder, env=ENVIRONMENT, text=True, capture_output=True, timeout=110)
+
+    def file(self, name):
+        return text_of(os.path.join(self.folder, name))
+
+
+def same_bits(cases, text, program, program_mpi, why):
+    """Table and report of one process and of several; times and names of tables apart, they are the same."""
+    check = cases.checks
+    path = cases.write(text)
+    alone = run(program, path, '--study', '--table', 'alone.dat', '--report', 'alone.json', folder=cases.folder)
+    check.true(alone.returncode == DONE, f'{why}: one process', alone.stderr)
+    for n in (1, 2, 4):
+        done = cases.processes(n, program_mpi, path, '--study', '--table', 'team.dat', '--report', 'team.json')
+        check.true(done.returncode == DONE, f'{why}: {n} processes go through', f'{done.returncode}: {done.stderr}')
+        check.equal(cases.file('team.dat'), cases.file('alone.dat'), f'{why}: {n} processes write the same table')
+        check.equal(json.loads(cases.file('team.json').replace('team.dat', 'alone.dat')), json.loads(cases.file('alone.json')),
+                    f'{why}: {n} processes write the same report')
+        messages = [re.sub(r'\S+ m?s$', '', line) for line in alone.stderr.splitlines() if not line.startswith('table')]
+        lines = [re.sub(r'\S+ m?s$', '', line) for line in done.stderr.splitlines()]
+        check.true(all(lines.count(line) == 1 for line in messages), f'{why}: {n} processes say the same, and once', (messages, lines))
+    done = cases.processes(2, program_mpi, path, '--study', '--part', '2/3', '--table', 'team.dat')
+    run(program, path, '--study', '--part', '2/3', '--table', 'alone.dat', folder=cases.folder)
+    check.equal(cases.file('team.dat'), cases.file('alone.dat'), f'{why}: a part of it')
+
+
+def mistakes(cases, mech9k_mpi):
+    """All processes end with the code of the mistake, which is told once; a table that cannot be written ends them, too."""
+    check = cases.checks
+    good = SLIDER_CRANK + "&study kind='grid' /\n"
+    path = cases.write(good)
+    for words, code, message in ((('--study', '--table', 'none/table.dat'), FILE, 'none/table.dat'),
+                                 ((), USAGE, 'several processes make the runs of a study; add --study, or use mech9k'),
+                                 (('--study', '--threads', '2'), USAGE, '--threads is for one process'),
+                                 (('--study', '--part', '4/3'), USAGE, '--part needs the number K'),
+                                 (('--study', '--plot', 'stroek'), USAGE, "did you mean 'stroke'?")):
+        done = cases.processes(4, mech9k_mpi, path, *words)
+        check.true(done.returncode == code and done.stderr.count(message) == 1, f'{words}: {message}', f'{done.returncode}: {done.stderr}')
+    for text, message in ((good.replace("'crank'", "'rod'"), "a second &parameter for name 'rod'"),
+                          (SLIDER_CRANK, '--study carries out the study of a group &study')):
+        done = cases.processes(2, mech9k_mpi, cases.write(text), '--study')
+        check.true(done.returncode in (USAGE, DATA) and done.stderr.count(message) == 1, message, f'{done.returncode}: {done.stderr}')
+    if check.has_full_disk():
+        done = cases.processes(2, mech9k_mpi, cases.write(good), '--study', '--table', '/dev/full')
+        check.true(done.returncode == FILE, 'a full disk ends all', f'{done.returncode}: {done.stderr}')
+    done = cases.processes(2, mech9k_mpi, '--version')
+    check.true(done.returncode == DONE and len(done.stdout.splitlines()) == len(run(mech9k_mpi, '--version').stdout.splitlines()), 'the version, once',
+               done.stdout)
+
+
+def interruption(cases, mech9k_mpi):
+    """Ctrl-C ends all processes soon; the table has whole rows, those of the first runs."""
+    check = cases.checks
+    text = SLIDER_CRANK.replace('count=9', 'count=900').replace('count=11', 'count=1100') + "&study kind='grid' /\n"
+    with subprocess.Popen(cases.command(2, mech9k_mpi, cases.write(text), '--study', '--table', 'cut.dat'), cwd=cases.folder, env=ENVIRONMENT,
+                          text=True, stderr=subprocess.PIPE, start_new_session=True) as process:
+        table = os.path.join(cases.folder, 'cut.dat')
+        end = time.time() + 30
+        while time.time() < end and not (os.path.exists(table) and os.path.getsize(table) > 20000):
+            time.sleep(0.05)
+        os.killpg(process.pid, signal.SIGINT)
+        try:
+            _, errors = process.communicate(timeout=30)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
+            check.true(False, 'Ctrl-C ends all processes')
+            return
+    check.true(process.returncode not in (DONE, FILE), 'an interrupted study tells so', f'{process.returncode}: {errors}')
+    lines = [line for line in cases.file('cut.dat').splitlines() if not line.startswith('#')]
+    rows = [line.split() for line in lines[1:] if line.strip()]
+    numbers = [int(float(row[0])) for row in rows if row[0][0].isdigit()]
+    check.true(len(numbers) > 10 and numbers == list(range(1, len(numbers) + 1)) and all(len(row) == 6 for row in rows), 'the first rows are whole',
+               (numbers[:3], numbers[-3:], rows[-1:]))
+
+
+def main():
+    checks = Checks()
+    mech9k, mech9d, mech9k_mpi, mech9d_mpi, mpirun = sys.argv[1:6]
+    with tempfile.TemporaryDirectory() as folder:
+        cases = Cases(checks, folder, mpirun)
+        same_bits(cases, SLIDER_CRANK + "&study kind='grid' /\n", mech9k, mech9k_mpi, 'grid')
+        same_bits(cases, PENDULUM + "&study kind='sobol', runs=150, seed=4 /\n", mech9d, mech9d_mpi, 'dynamics')
+        mistakes(cases, mech9k_mpi)
+        interruption(cases, mech9k_mpi)
+        libraries = subprocess.run(['ldd', mech9k], text=True, capture_output=True, timeout=60).stdout
+        checks.true('libmpi' not in libraries, 'the program for one process is free of MPI', libraries)
+    checks.finish()
+
+
+main()
