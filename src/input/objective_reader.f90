@@ -138,19 +138,17 @@ contains
     character(len=*), intent(in) :: sentence              !< the fault
     character(len=*), intent(in) :: names(:)              !< the names that there are
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the error
-    integer :: i
 
     if (size(names) == 0) then
       call diagnostics%add(span_of(group, item, 1), sentence)
     else if (size(names) <= 12) then
-      call diagnostics%add(span_of(group, item, 1), sentence//'; there are '//trim(names(1))// &
-                           listed([(', '//names(i), i=2, size(names))]))
+      call diagnostics%add(span_of(group, item, 1), sentence//'; there are '//trim(listed(names)))
     else
       call diagnostics%add(span_of(group, item, 1), sentence//'; there are '//trim(names(1))//' to '//trim(names(size(names))))
     end if
   end subroutine refuse_name
 
-  !> Report times that do not increase, or that lie outside the run.
+  !> Report times that lie outside the run.
   pure subroutine check_times(group, model, times, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the objective
     type(model_type), intent(in) :: model                 !< with the times of the run
@@ -249,15 +247,17 @@ contains
     n = n + 1
   end subroutine read_line
 
-  !> Names one behind the other.
+  !> Names one behind the other, with commas between.
   pure function listed(names)
-    character(len=*), intent(in) :: names(:)   !< the names, with commas before them
-    character(len=len(names)*size(names)) :: listed
+    character(len=*), intent(in) :: names(:)   !< the names
+    character(len=(len(names) + 2)*size(names)) :: listed
     integer :: i
 
     listed = ''
     do i = 1, size(names)
-      listed = trim(listed)//names(i)
+      if (i > 1) listed = trim(listed)//','
+      listed = trim(listed)//' '//names(i)
     end do
+    listed = adjustl(listed)
   end function listed
 end module mech9_objective_reader

@@ -254,6 +254,7 @@ contains
     y = times(:seen%exact%own, :)
     last = 1.0_wp
     seen%exact%q_start = q
+    seen%exact%work = 0
     settings%small = (1.0e-14_wp*seen%scale)**2*size(seen%targets)
     settings%short = 1.0e-9_wp
     call minimise_squares(seen%exact, at, y, low, high, 0.0_wp*last, last, settings, outcome)

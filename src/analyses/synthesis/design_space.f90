@@ -32,6 +32,7 @@ module mech9_design_space
     real(wp), allocatable :: high(:)                !< largest value of each
     real(wp), allocatable :: values(:)              !< values of all parameters in the data file
     logical :: is_affine = .false.                  !< all numbers are affine functions of the parameters
+    logical, allocatable :: is_constant(:)          !< (varied) the derivatives by this parameter are constant
     real(wp), allocatable :: constants(:)           !< numbers of the model, in the order of mech9_mechanism_constants
     real(wp), allocatable :: slopes(:, :)           !< (constants,varied) their derivatives, where they are affine
     type(tangent_type), allocatable :: tangents(:)  !< (varied) the same as tangents
@@ -111,8 +112,9 @@ contains
     type(design_space_type), intent(inout) :: space   !< gets the slopes
     real(wp), allocatable :: above(:), below(:)
     real(wp) :: x(size(space%varied)), largest
-    integer :: i, j
+    integer :: i
 
+    allocate (space%is_constant(size(space%varied)), source=.false.)
     allocate (space%slopes(size(space%constants), size(space%varied)))
     do i = 1, size(x)
       x = space%values(space%varied)
@@ -134,8 +136,9 @@ contains
         end select
       end associate
     end do
+    call judge_each(space)
     do i = 1, probes
-      x = [(space%low(j) + uniform_at(1, i, j)*(space%high(j) - space%low(j)), j=1, size(x))]
+      x = probe(space, i)
       call constants_at(space, x, above)
       if (size(above) /= size(space%constants)) return
       below = space%constants + matmul(space%slopes, x - space%values(space%varied))
@@ -144,6 +147,50 @@ contains
     end do
     space%is_affine = .true.
   end subroutine judge_affinity
+
+  !> Find out which parameters have constant derivatives: over their whole range, from any place in the ranges of the others.
+  subroutine judge_each(space)
+    type(design_space_type), intent(inout) :: space   !< with the slopes over the ranges
+    real(wp), allocatable :: values(:), slope(:), below(:)
+    real(wp) :: x(size(space%varied)), ends(3), largest
+    integer :: i, j, k
+
+    do i = 1, size(x)
+      space%is_constant(i) = .true.
+      do j = 1, probes
+        x = probe(space, j)
+        ends = [space%low(i), x(i), space%high(i)]
+        x(i) = ends(1)
+        call constants_at(space, x, below)
+        if (size(below) /= size(space%constants)) space%is_constant(i) = .false.
+        do k = 2, 3
+          if (.not. space%is_constant(i)) exit
+          x(i) = ends(k)
+          call constants_at(space, x, values)
+          if (size(values) /= size(below)) then
+            space%is_constant(i) = .false.
+          else
+            slope = values - below - space%slopes(:, i)*(ends(k) - ends(1))
+            largest = max(maxval(abs(values)), maxval(abs(below)))
+            space%is_constant(i) = all(abs(slope) <= affine*largest)
+          end if
+        end do
+        if (.not. space%is_constant(i)) exit
+      end do
+    end do
+  end subroutine judge_each
+
+  !> A place between all bounds.
+  pure function probe(space, number) result(x)
+    type(design_space_type), intent(in) :: space   !< the designs
+    integer, intent(in) :: number                  !< of the place, from 1
+    real(wp) :: x(size(space%varied))
+    integer :: j
+
+    do j = 1, size(x)
+      x(j) = space%low(j) + uniform_at(1, number, j)*(space%high(j) - space%low(j))
+    end do
+  end function probe
 
   !> The numbers of the model at some values of the varied parameters; none where there is no such model.
   subroutine constants_at(space, x, constants)
@@ -281,6 +328,7 @@ contains
     call space%variable%at(all_values(space, design%x), model, err)
     do i = 1, size(design%tangents)
       if (allocated(err)) return
+      if (space%is_constant(i)) cycle
       call find_tangent(space%variable, model, design%in_space, space%varied(i), design%tangents(i), err)
     end do
   end subroutine find_tangents

@@ -2,7 +2,7 @@
 !> the targets follow. A design that cannot be assembled near the last one, or whose motion does not come to the end of the run, has
 !> no value.
 module mech9_exact_fit
-  use mech9_kinds, only: wp
+  use mech9_kinds, only: wp, long
   use mech9_error, only: error_type
   use mech9_reflections, only: triangulate, solve_upper
   use mech9_bounded_least_squares, only: residuals_type, residual_values_type
@@ -20,6 +20,9 @@ module mech9_exact_fit
   private
   public :: exact_fit_type, new_exact_fit, follow, close_near
 
+  !> Steps of the motions of one search. A search that creeps along the edge of the designs that can move takes many more, and ends.
+  integer(long), parameter :: most_work = 60000
+
   !> The shared unknowns are the parameters, each as a part of its range; the unknown of a target is its time, as a part of the run.
   type, extends(residuals_type) :: exact_fit_type
     type(design_space_type), pointer :: space => null()
@@ -31,7 +34,7 @@ module mech9_exact_fit
     real(wp), allocatable :: q_start(:)                     !< (M) the start of the last design with a value [rad, m]
     real(wp), allocatable :: q(:, :)                        !< (M,targets) its coordinates at the targets [rad, m]
     real(wp), allocatable :: times(:)                       !< (targets) times of the targets [s]
-    integer :: evaluations = 0                              !< number of motions that were followed
+    integer(long) :: work = 0                               !< steps of all motions that were followed
   contains
     procedure :: evaluate
     procedure :: has_derivatives
@@ -89,8 +92,8 @@ contains
     has_value = has_value .and. are_in_order(self%targets, self%times, self%end - self%start)
     if (.not. has_value) return
     q_start = self%q_start
-    self%evaluations = self%evaluations + 1
-    call follow_targets(self, q_start, has_value)
+    has_value = self%work < most_work
+    if (has_value) call follow_targets(self, q_start, has_value)
     if (.not. has_value) return
     do g = 1, self%groups
       call place_at(self, g, err)
@@ -138,6 +141,7 @@ contains
     end do
     if (.not. allocated(err)) call advance(self%design%drives, self%design%plan, driven, self%end, err)
     has_value = .not. allocated(err)
+    self%work = self%work + driven%steps + driven%halvings
   end subroutine follow_targets
 
   !> Follow the branch of a position from one time to another; `came` tells whether the motion comes there.
