@@ -22,7 +22,7 @@ module mech9_failure
     failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve, &
     failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, failure_open_coupling, failure_coupled, &
     failure_off_table, failure_no_neighbours, failure_unknown_derivative, failure_singular_sensitivity, &
-    failure_opening_parameter, last_failure
+    failure_opening_parameter, failure_jump_sensitivity, failure_angles_sensitivity, last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
@@ -182,7 +182,11 @@ module mech9_failure
   integer, parameter :: failure_singular_sensitivity = 67
   !> A change of a parameter opens a closed chain: chains, coordinates, name, t.
   integer, parameter :: failure_opening_parameter = 68
-  integer, parameter :: last_failure = failure_opening_parameter
+  !> Rates jump at a joint of laws, so that their derivatives by parameters jump: t.
+  integer, parameter :: failure_jump_sensitivity = 69
+  !> Other angles are integrated in place of those of the data file, whose derivatives are not known: t.
+  integer, parameter :: failure_angles_sensitivity = 70
+  integer, parameter :: last_failure = failure_angles_sensitivity
 
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type

@@ -76,9 +76,9 @@ contains
     quantities = groups_named(document, 'quantity')
     do i = 1, size(requests)
       if (.not. get_logical(group, trim(requests(i)))) cycle
-      if (.not. needs_drives) then
-        call diagnostics%add(span_of(group, trim(requests(i)), 1), &
-                             trim(requests(i))//' are computed by mech9k only; leave them out here')
+      if (.not. needs_drives .and. size(groups_named(document, 'motor')) > 0) then
+        call diagnostics%add(span_of(group, trim(requests(i)), 1), trim(requests(i))//' are not computed for mechanisms with '// &
+                             'motors; leave them out here')
       else if (n_parameters == 0) then
         call diagnostics%add(span_of(group, trim(requests(i)), 1), trim(requests(i))//' are derivatives by the parameters, '// &
                              'and there are none; give a group &parameter for each')
@@ -87,7 +87,7 @@ contains
                              'and there are none; give a group &quantity for each')
       end if
     end do
-    if (needs_drives .and. get_logical(group, 'sensitivities')) call check_forces(group, diagnostics)
+    if (get_logical(group, 'sensitivities')) call check_forces(group, diagnostics)
     if (.not. (get_logical(group, 'sensitivities') .or. get_logical(group, 'gradients'))) return
     do i = 1, size(quantities)
       if (get_text(document%groups(quantities(i)), 'name') == 'gradient') &

@@ -24,6 +24,9 @@ module mech9_coordinate_load
     procedure :: apply
     procedure :: potential
     procedure :: vary
+    procedure :: numbers
+    procedure :: vary_own
+    procedure :: varied_potential
   end type coordinate_load_type
 
 contains
@@ -83,6 +86,48 @@ contains
       call changes%add_generalized(k, -factor*(self%stiffness*change%q(k) + self%damping*change%dq(k)))
     end associate
   end subroutine vary
+
+  !> Stiffness, rest position, damping and force.
+  pure subroutine numbers(self, values)
+    class(coordinate_load_type), intent(in) :: self   !< the coordinate load
+    real(wp), allocatable, intent(out) :: values(:)   !< (4) the numbers
+
+    values = [self%stiffness, self%rest, self%damping, self%force]
+  end subroutine numbers
+
+  !> Add the derivative of the generalized force by a parameter on which its numbers depend.
+  subroutine vary_own(self, change, factor, state, changes, err)
+    class(coordinate_load_type), intent(in) :: self     !< the coordinate load
+    real(wp), intent(in) :: change(:)                   !< (4) derivatives of the numbers
+    real(wp), intent(in) :: factor                      !< of its law
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< never allocated
+
+    associate (k => self%coordinate)
+      call changes%add_generalized(k, factor*(change(4) - change(1)*(state%q(k) - self%rest) + self%stiffness*change(2) &
+                                              - change(3)*state%dq(k)))
+    end associate
+  end subroutine vary_own
+
+  !> The derivative of the energy of the spring by a parameter.
+  pure real(wp) function varied_potential(self, state, change, own) result(energy)
+    class(coordinate_load_type), intent(in) :: self  !< the coordinate load
+    type(motion_view_type), intent(in) :: state      !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: change   !< derivative of the motion by the parameter
+    real(wp), intent(in) :: own(:)                   !< derivatives of its numbers and those of its law; of size 0: all are zero
+    real(wp) :: stretch, stretch_change
+
+    energy = 0.0_wp
+    if (allocated(self%law)) return
+    stretch = state%q(self%coordinate) - self%rest
+    stretch_change = change%q(self%coordinate)
+    if (size(own) > 0) then
+      stretch_change = stretch_change - own(2)
+      energy = 0.5_wp*own(1)*stretch**2
+    end if
+    energy = energy + self%stiffness*stretch*stretch_change
+  end function varied_potential
 
   !> Energy of the spring [J]; the work of the actuator counts as put in.
   pure real(wp) function potential(self, state)

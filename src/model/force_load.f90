@@ -2,6 +2,7 @@
 module mech9_force_load
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_rotation, only: cross
   use mech9_motion_view, only: motion_view_type
   use mech9_motion_change, only: motion_change_type
   use mech9_force_sum, only: force_sum_type
@@ -23,6 +24,8 @@ module mech9_force_load
     procedure :: apply
     procedure :: potential
     procedure :: vary
+    procedure :: numbers
+    procedure :: vary_own
   end type force_load_type
 
 contains
@@ -86,6 +89,38 @@ contains
       end if
     end associate
   end subroutine vary
+
+  !> The point of the force, the force and the torque.
+  pure subroutine numbers(self, values)
+    class(force_load_type), intent(in) :: self        !< the force load
+    real(wp), allocatable, intent(out) :: values(:)   !< (9) the numbers
+
+    values = [self%position, self%force, self%torque]
+  end subroutine numbers
+
+  !> Add the derivatives of the forces by a parameter on which the point, the force and the torque depend.
+  subroutine vary_own(self, change, factor, state, changes, err)
+    class(force_load_type), intent(in) :: self          !< the force load
+    real(wp), intent(in) :: change(:)                   !< (9) derivatives of the numbers
+    real(wp), intent(in) :: factor                      !< of its law
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< never allocated
+    real(wp) :: force(3), force_change(3), torque_change(3)
+
+    associate (link => state%links(self%link))
+      force = factor*self%force
+      force_change = factor*change(4:6)
+      torque_change = factor*change(7:9)
+      if (self%turns_with_link) then
+        force = link%fixed_components(force)
+        force_change = link%fixed_components(force_change)
+        torque_change = link%fixed_components(torque_change)
+      end if
+      call changes%add_force(state, self%link, self%position, force_change)
+      call changes%add_torque(self%link, torque_change + cross(link%fixed_components(change(1:3)), force))
+    end associate
+  end subroutine vary_own
 
   !> Zero: the work of a given force counts as put in.
   pure real(wp) function potential(self, state)

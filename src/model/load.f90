@@ -24,6 +24,11 @@ module mech9_load
     procedure(apply_interface), deferred :: apply
     procedure(potential_interface), deferred :: potential
     procedure :: vary
+    procedure :: numbers => unknown_numbers
+    procedure :: vary_own
+    procedure :: varied_potential => unvaried_potential
+    procedure, non_overridable :: constants
+    procedure, non_overridable :: vary_numbers
   end type load_type
 
   !> One of several loads of different kinds.
@@ -124,6 +129,82 @@ contains
     changes%generalized = changes%generalized + derivative(6*n + 1:)
     changes%any_generalized = .true.
   end subroutine vary
+
+  !> The numbers of the load on which its forces depend smoothly, in an order of its own, without those of its law. This procedure,
+  !> for kinds whose numbers are not known, gives none.
+  pure subroutine unknown_numbers(self, values)
+    class(load_type), intent(in) :: self              !< the load
+    real(wp), allocatable, intent(out) :: values(:)   !< its numbers; not allocated where they are not known
+
+  end subroutine unknown_numbers
+
+  !> Add the derivatives of the load's forces by a parameter on which its own numbers depend, for the present motion. This
+  !> procedure is for loads without such numbers.
+  subroutine vary_own(self, change, factor, state, changes, err)
+    class(load_type), intent(in) :: self                !< the load
+    real(wp), intent(in) :: change(:)                   !< derivatives of its numbers
+    real(wp), intent(in) :: factor                      !< of its law
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+  end subroutine vary_own
+
+  !> The derivative of the potential energy by a parameter on which the motion depends, and perhaps the load's own numbers. This
+  !> procedure is for loads without potential energy.
+  pure real(wp) function unvaried_potential(self, state, change, own) result(energy)
+    class(load_type), intent(in) :: self             !< the load
+    type(motion_view_type), intent(in) :: state      !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: change   !< derivative of the motion by the parameter
+    real(wp), intent(in) :: own(:)                   !< derivatives of its numbers and those of its law; of size 0: all are zero
+
+    energy = 0.0_wp
+  end function unvaried_potential
+
+  !> The numbers of the load, then those of its law.
+  pure subroutine constants(self, values)
+    class(load_type), intent(in) :: self              !< the load
+    real(wp), allocatable, intent(out) :: values(:)   !< the numbers; not allocated where some are not known
+    real(wp), allocatable :: of_law(:)
+
+    call self%numbers(values)
+    if (.not. (allocated(values) .and. allocated(self%law))) return
+    call self%law%constants(of_law)
+    if (allocated(of_law)) then
+      values = [values, of_law]
+    else
+      deallocate (values)
+    end if
+  end subroutine constants
+
+  !> Add the derivatives of the load's forces by a parameter on which its numbers or those of its law depend, for the present
+  !> motion. Fails where the load has no value.
+  subroutine vary_numbers(self, change, state, changes, err)
+    class(load_type), intent(in) :: self                !< the load
+    real(wp), intent(in) :: change(:)                   !< derivatives of its numbers, then of those of its law
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(load_type), allocatable :: constant
+    type(force_sum_type) :: sum
+    real(wp), allocatable :: own(:)
+    real(wp) :: factor, factor_change, rate, acceleration
+
+    call self%numbers(own)
+    call self%find_factor(state%t, factor, err)
+    if (.not. allocated(err)) call self%vary_own(change(:size(own)), factor, state, changes, err)
+    if (allocated(err) .or. .not. any(abs(change(size(own) + 1:)) > 0.0_wp)) return
+    call self%law%vary(change(size(own) + 1:), state%t, factor_change, rate, acceleration)
+    allocate (constant, source=self)
+    deallocate (constant%law)
+    sum = new_force_sum(size(changes%force, 2), size(changes%generalized))
+    call constant%apply(state, sum, err)
+    if (allocated(err)) return
+    changes%force = changes%force + factor_change*sum%force
+    changes%torque = changes%torque + factor_change*sum%torque
+    changes%generalized = changes%generalized + factor_change*sum%generalized
+    changes%any_generalized = changes%any_generalized .or. sum%any_generalized
+  end subroutine vary_numbers
 
   !> The sums of a load's forces at motions on both sides of the present one. `found` is false where one of them is not finite,
   !> or the load fails.

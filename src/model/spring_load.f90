@@ -3,6 +3,7 @@ module mech9_spring_load
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_integrator
   use mech9_text, only: to_text
+  use mech9_rotation, only: cross
   use mech9_motion_view, only: motion_view_type
   use mech9_motion_change, only: motion_change_type
   use mech9_force_sum, only: force_sum_type
@@ -24,6 +25,9 @@ module mech9_spring_load
     procedure :: apply
     procedure :: potential
     procedure :: vary
+    procedure :: numbers
+    procedure :: vary_own
+    procedure :: varied_potential
     procedure, private, non_overridable :: span
     procedure, private, non_overridable :: span_rate
     procedure, private, non_overridable :: pull
@@ -157,6 +161,91 @@ contains
     change = (spring%stiffness*length_change + spring%damping*(dot_product(e_change, rate) + dot_product(e, rate_change)))*e &
              + tension*e_change
   end function change_of_pull
+
+  !> The points of both ends, stiffness, free length and damping.
+  pure subroutine numbers(self, values)
+    class(spring_load_type), intent(in) :: self       !< the spring load
+    real(wp), allocatable, intent(out) :: values(:)   !< (9) the numbers
+
+    values = [self%positions(:, 1), self%positions(:, 2), self%stiffness, self%free_length, self%damping]
+  end subroutine numbers
+
+  !> Add the derivatives of the pull by a parameter on which the ends and the numbers of the spring depend. Fails for a spring with
+  !> a free length whose ends meet.
+  subroutine vary_own(self, change, factor, state, changes, err)
+    class(spring_load_type), intent(in) :: self         !< the spring load
+    real(wp), intent(in) :: change(:)                   !< (9) derivatives of the numbers
+    real(wp), intent(in) :: factor                      !< of its law
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(spring_load_type) :: of_numbers
+    real(wp) :: d(3), rate(3), shifts(3, 2), d_change(3), rate_change(3), force(3), force_change(3)
+    integer :: i
+
+    d = self%span(state)
+    rate = self%span_rate(state)
+    call self%pull(d, rate, force, err)
+    if (allocated(err)) return
+    do i = 1, 2
+      shifts(:, i) = state%links(self%links(i))%fixed_components(change(3*i - 2:3*i))
+    end do
+    d_change = shifts(:, 2) - shifts(:, 1)
+    rate_change = cross(state%links(self%links(2))%omega, shifts(:, 2)) - cross(state%links(self%links(1))%omega, shifts(:, 1))
+    force_change = change_of_pull(self, d, rate, d_change, rate_change)
+    ! the pull is linear in stiffness and damping; without a free length it has no direction of its own
+    of_numbers%stiffness = change(7)
+    of_numbers%damping = change(9)
+    of_numbers%free_length = self%free_length
+    if (norm2(d) > 0.0_wp) then
+      force_change = force_change + pull_of(of_numbers, d, rate) - self%stiffness*change(8)/norm2(d)*d
+    else
+      force_change = force_change + change(9)*rate
+    end if
+    do i = 1, 2
+      call changes%add_force(state, self%links(i), self%positions(:, i), factor*force_change)
+      call changes%add_torque(self%links(i), cross(shifts(:, i), factor*force))
+      force_change = -force_change
+      force = -force
+    end do
+  end subroutine vary_own
+
+  !> The pull of a spring whose ends do not meet.
+  pure function pull_of(spring, d, rate) result(force)
+    type(spring_load_type), intent(in) :: spring   !< the spring load
+    real(wp), intent(in) :: d(3)                   !< from the first end to the second, fixed axes [m]
+    real(wp), intent(in) :: rate(3)                !< rate of this vector [m/s]
+    real(wp) :: force(3), length
+
+    length = norm2(d)
+    force = (spring%stiffness*(length - spring%free_length) + spring%damping*dot_product(d, rate)/length)/length*d
+  end function pull_of
+
+  !> The derivative of the energy by a parameter.
+  pure real(wp) function varied_potential(self, state, change, own) result(energy)
+    class(spring_load_type), intent(in) :: self      !< the spring load
+    type(motion_view_type), intent(in) :: state      !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: change   !< derivative of the motion by the parameter
+    real(wp), intent(in) :: own(:)                   !< derivatives of its numbers and those of its law; of size 0: all are zero
+    real(wp) :: d(3), d_change(3), length, stretch, stretch_change
+
+    energy = 0.0_wp
+    if (allocated(self%law)) return
+    d = self%span(state)
+    associate (i => self%links(1), k => self%links(2), at => self%positions)
+      d_change = change%links(k)%of_position(state%links(k), at(:, 2)) - change%links(i)%of_position(state%links(i), at(:, 1))
+      if (size(own) > 0) d_change = d_change + state%links(k)%fixed_components(own(4:6)) - state%links(i)%fixed_components(own(1:3))
+    end associate
+    length = norm2(d)
+    stretch = length - self%free_length
+    stretch_change = 0.0_wp
+    if (length > 0.0_wp) stretch_change = dot_product(d, d_change)/length
+    if (size(own) > 0) then
+      stretch_change = stretch_change - own(8)
+      energy = 0.5_wp*own(7)*stretch**2
+    end if
+    energy = energy + self%stiffness*stretch*stretch_change
+  end function varied_potential
 
   !> Energy of the spring [J].
   pure real(wp) function potential(self, state)

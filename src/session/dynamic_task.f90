@@ -66,7 +66,7 @@ contains
     class(dynamic_task_type), intent(in) :: self            !< the dynamic task
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in), target :: model           !< the model
-    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
@@ -91,17 +91,19 @@ contains
     used = model
     call read_picture_requests(options, model, self%program_name, pictures, err)
     if (.not. allocated(err)) call assemble_free_start(model, plan, start, err)
-    if (.not. allocated(err)) call new_free_simulation(used, plan, start, simulation, err, pictures%any_wanted())
+    if (.not. allocated(err)) &
+      call new_free_simulation(used, plan, start, simulation, err, &
+                               pictures%any_wanted() .or. model%request%output%with_derivatives())
     if (allocated(err)) then
       if (options%has('check')) call print_given(model, .true.)
       call diagnostics%add_error(err)
     else if (answers_only(options)) then
       call print_check(options, pictures, model, plan, simulation%requested, start, diagnostics)
       if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, plan, simulation%coefficients)
-      if (options%has('check')) call check_motion(model, simulation, err)
+      if (options%has('check')) call check_motion(model, variable, simulation, err)
       if (allocated(err)) call diagnostics%add_error(err)
     else
-      call carry_out(options, pictures, used, plan, start, simulation, diagnostics, reported, kept)
+      call carry_out(options, pictures, used, variable, plan, start, simulation, diagnostics, reported, kept)
     end if
     call simulation%close()
   end subroutine work
@@ -114,25 +116,28 @@ contains
   end function is_all_driven
 
   !> Fail in a check where a run would fail at its start.
-  subroutine check_motion(model, simulation, err)
+  subroutine check_motion(model, variable, simulation, err)
     type(model_type), intent(in), target :: model                     !< the model
+    class(variable_model_type), intent(inout), target :: variable     !< the model as a function of its parameters
     type(free_simulation_type), intent(inout), target :: simulation   !< is started
     type(error_type), allocatable, intent(out) :: err                 !< allocated if it failed
     type(row_source_type) :: source
     real(wp), allocatable :: row(:)
 
     call new_row_source('mech9d', simulation, source)
-    call source%begin_quantities(err)
+    if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
+    if (.not. allocated(err)) call source%begin_quantities(err)
     if (allocated(err)) return
     allocate (row(source%columns%width()))
     call source%row_at(model%request%time%start, row, err)
   end subroutine check_motion
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, model, plan, start, simulation, diagnostics, reported, kept)
+  subroutine carry_out(options, pictures, model, variable, plan, start, simulation, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options                    !< the command line
     type(picture_requests_type), intent(in) :: pictures               !< the pictures of the mechanism that are requested
     type(model_type), intent(inout), target :: model                  !< of the simulation; gets the tolerances for an accuracy
+    class(variable_model_type), intent(inout), target :: variable     !< the model as a function of its parameters
     type(plan_type), intent(in) :: plan                               !< the plan of the mechanism
     type(state_type), intent(in) :: start                             !< assembled position
     type(free_simulation_type), intent(inout), target :: simulation   !< to be started
@@ -149,6 +154,12 @@ contains
 
     call new_row_source('mech9d', simulation, source)
     call source%forces%judge(model, plan, start)
+    reported = .false.
+    if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+      return
+    end if
     call begin_run(options, pictures, model, plan, simulation%requested, source, results, diagnostics, ready)
     reported = ready .and. options%has('report')
     if (.not. ready) return

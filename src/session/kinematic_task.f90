@@ -60,7 +60,7 @@ contains
     class(kinematic_task_type), intent(in) :: self          !< the kinematic task
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in), target :: model           !< the model
-    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
@@ -74,7 +74,7 @@ contains
     logical, intent(in) :: with_masses                      !< bodies count, and energies are recorded
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in), target :: model               !< the model
-    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
@@ -114,7 +114,7 @@ contains
   !> at the end of the time.
   subroutine check_motion(model, variable, plan, start, err)
     type(model_type), intent(in), target :: model           !< the model
-    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
     type(plan_type), intent(in) :: plan                     !< the plan of the mechanism
     type(state_type), intent(in) :: start                   !< assembled position
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -125,7 +125,7 @@ contains
 
     call new_driven_simulation(model, plan, start, simulation)
     call new_row_source('mech9k', simulation, source)
-    if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, simulation%plan, err)
+    if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
     if (.not. allocated(err)) call source%begin_quantities(err)
     if (allocated(err)) return
     allocate (row(source%columns%width()))
@@ -139,7 +139,7 @@ contains
     type(command_line_type), intent(in) :: options                      !< the command line
     type(picture_requests_type), intent(in) :: pictures                 !< the pictures of the mechanism that are requested
     type(model_type), intent(in), target :: model                           !< the model
-    class(variable_model_type), intent(inout) :: variable               !< the model as a function of its parameters
+    class(variable_model_type), intent(inout), target :: variable               !< the model as a function of its parameters
     type(plan_type), intent(in) :: plan                                 !< the plan of the mechanism
     type(driven_simulation_type), intent(inout), target :: simulation   !< to be started
     type(diagnostics_type), intent(inout) :: diagnostics                !< gets the errors
@@ -155,7 +155,7 @@ contains
     call new_row_source(program_name, simulation, source)
     call source%forces%judge(model, plan, simulation%assembled)
     reported = .false.
-    if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, simulation%plan, err)
+    if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
       return

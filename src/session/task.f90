@@ -59,7 +59,7 @@ module mech9_task
       class(task_type), intent(in) :: self                    !< the task
       type(command_line_type), intent(in) :: options          !< the command line
       type(model_type), intent(in), target :: model           !< the model
-      class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+      class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
       type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
       logical, intent(out) :: reported                        !< a report was asked for, and it is written: there was a run
       type(kept_rows_type), intent(inout), optional :: kept   !< the rows of a run, for who looks at them after it

@@ -27,7 +27,8 @@ module mech9_dense_output
     real(wp), allocatable :: y(:)                     !< vector of the motion system
     integer, allocatable :: signs(:)                  !< signs of the determinants of the blocks' Jacobians
     logical :: is_known = .false.                     !< the following are known
-    !> (M and motors) coordinates, rates and accelerations; then states of motors, their first and second derivatives
+    !> (M, motors, derivatives by parameters) coordinates, rates and accelerations; states of motors, derivatives by parameters, and
+    !> their first and second derivatives in time
     real(wp), allocatable :: q(:), dq(:), ddq(:)
   end type step_point_type
 
@@ -156,9 +157,9 @@ contains
     real(wp), intent(out) :: y(:)                       !< the vector at this time
     logical, intent(out) :: found                       !< the vector is certain to be accurate
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp), dimension(system%plan%n_coordinates + system%model%mechanism%n_motors) :: q, dq, ddq, worse_q, worse_dq
+    real(wp), dimension(count_states(system)) :: q, dq, ddq, worse_q, worse_dq
     real(wp) :: change, change_of_rate, per_length
-    integer :: i, k, m, n
+    integer :: i, k, m, n, varied
 
     y = 0.0_wp
     found = .false.
@@ -171,7 +172,9 @@ contains
     m = system%plan%n_coordinates
     n = m + size(system%plan%free)
     y(:m) = q(:m)
-    y(n + 1:) = q(m + 1:)
+    varied = system%count_varied()
+    y(n + 1:size(y) - varied) = q(m + 1:)
+    y(size(y) - varied + 1:) = dq(size(q) - varied + 1:)
     found = .true.
     associate (solver => system%model%request%solver)
       do i = 1, size(system%plan%free)
@@ -185,12 +188,29 @@ contains
                 .and. change_of_rate + change*per_length <= solver%relative_tolerance*abs(dq(k)) &
                 + solver%absolute_tolerance
       end do
-      do i = m + 1, size(q)
+      do i = m + 1, size(q) - varied
         found = found .and. abs(q(i) - worse_q(i)) + abs(dq(i) - worse_dq(i))/per_length <= &
                 solver%relative_tolerance*abs(q(i)) + solver%absolute_tolerance
       end do
+      do i = size(q) - varied + 1, size(q)
+        if (.not. found) exit
+        k = mod(i - size(q) + varied - 1, size(system%sensitivity%size_of)) + 1
+        change = abs(q(i) - worse_q(i))
+        change_of_rate = abs(dq(i) - worse_dq(i))
+        found = change + change_of_rate/per_length <= solver%relative_tolerance*abs(q(i)) &
+                + solver%absolute_tolerance*system%sensitivity%size_of(k) &
+                .and. change_of_rate + change*per_length <= solver%relative_tolerance*abs(dq(i)) &
+                + solver%absolute_tolerance*system%sensitivity%size_of(k)
+      end do
     end associate
   end subroutine find
+
+  !> How many coordinates, states of motors and derivatives by parameters are interpolated.
+  pure integer function count_states(system)
+    type(motion_system_type), intent(in) :: system   !< the system
+
+    count_states = system%plan%n_coordinates + system%model%mechanism%n_motors + system%count_varied()
+  end function count_states
 
   !> Build the polynomial through the points next to time t, unless the present one goes through them.
   subroutine build(self, system, t, err)
@@ -198,7 +218,7 @@ contains
     type(motion_system_type), intent(inout) :: system   !< the system, which is evaluated
     real(wp), intent(in) :: t                           !< time within the last step [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp), dimension(system%plan%n_coordinates + system%model%mechanism%n_motors, most) :: q, dq, ddq
+    real(wp), dimension(count_states(system), most) :: q, dq, ddq
     real(wp) :: times(most)
     integer :: chosen(most), i, n
 
@@ -228,7 +248,7 @@ contains
     type(step_point_type), intent(inout) :: point       !< gets coordinates, states of motors, and their derivatives
     type(error_type), allocatable, intent(out) :: err   !< allocated if the law of a motor has no value
     type(motor_action_type) :: action
-    integer :: i
+    integer :: i, n
 
     point%q = system%state%q
     point%dq = system%state%dq
@@ -240,6 +260,12 @@ contains
       point%dq = [point%dq, action%rate]
       point%ddq = [point%ddq, action%second]
     end do
+    if (allocated(system%sensitivity)) then
+      n = system%count_varied()
+      point%q = [point%q, reshape(system%sensitivity%values(:, :, 0), [n])]
+      point%dq = [point%dq, reshape(system%sensitivity%values(:, :, 1), [n])]
+      point%ddq = [point%ddq, reshape(system%sensitivity%values(:, :, 2), [n])]
+    end if
     point%is_known = .true.
   end subroutine take_motion
 

@@ -23,6 +23,8 @@ module mech9_free_simulation
   use mech9_integrated_motion, only: integrated_motion_type
   use mech9_limit_passing, only: stop_at_limits
   use mech9_stopped_motion, only: name_cause, name_cause_at_start
+  use mech9_variable_model, only: variable_model_type
+  use mech9_sensitivity, only: sensitivity_type
   use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type
   implicit none
   private
@@ -39,6 +41,8 @@ module mech9_free_simulation
     procedure :: go_to
     procedure :: present
     procedure :: present_for_forces
+    procedure :: begin_sensitivity
+    procedure :: show_sensitivity
     procedure :: present_closure
     procedure :: watch_conditioning
     procedure :: energies
@@ -377,6 +381,36 @@ contains
     plan => self%motion%system%plan
     state => self%motion%system%state
   end subroutine present_for_forces
+
+  !> Integrate the derivatives of the motion by all parameters as well, from the start on. Fails where they do not exist.
+  subroutine begin_sensitivity(self, variable, highest, sensitivity, err)
+    class(free_simulation_type), intent(inout) :: self                 !< the simulation
+    class(variable_model_type), intent(inout), target :: variable      !< the model as a function of its parameters; outlives it
+    integer, intent(in) :: highest                                     !< order of the highest derivative in time
+    type(sensitivity_type), intent(out) :: sensitivity                 !< room for the results
+    type(error_type), allocatable, intent(out) :: err                  !< allocated if it failed
+
+    call self%motion%begin_sensitivity(variable, err)
+    if (allocated(err)) return
+    associate (motion => self%motion%system%sensitivity%motion)
+      sensitivity%n_parameters = motion%n_parameters
+      sensitivity%highest = highest
+      sensitivity%q = motion%q
+      sensitivity%points = motion%points
+    end associate
+  end subroutine begin_sensitivity
+
+  !> Find the derivatives of the present motion by all parameters.
+  subroutine show_sensitivity(self, sensitivity, err)
+    class(free_simulation_type), intent(inout) :: self       !< the simulation
+    type(sensitivity_type), intent(inout) :: sensitivity     !< gets the derivatives
+    type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
+
+    call self%motion%system%show_sensitivity(err)
+    if (allocated(err)) return
+    sensitivity%q = self%motion%system%sensitivity%motion%q
+    sensitivity%points = self%motion%system%sensitivity%motion%points
+  end subroutine show_sensitivity
 
   !> Largest closure error of the present position [m].
   real(wp) function present_closure(self)

@@ -3,7 +3,9 @@
 module mech9_integrated_motion
   use mech9_kinds, only: wp, long
   use mech9_tolerances, only: doubtful_conditioning, worthwhile_improvement, third_derivative_step
-  use mech9_error, only: error_type
+  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_failure, only: failure_angles_sensitivity
+  use mech9_variable_model, only: variable_model_type
   use mech9_partition, only: partition_type
   use mech9_block_solver, only: work_count_type, work_of
   use mech9_requested, only: requested_type
@@ -26,6 +28,7 @@ module mech9_integrated_motion
   !> A free motion under integration. It must not be copied: the integrator keeps hold of the system.
   type :: integrated_motion_type
     type(motion_system_type), pointer :: system => null()   !< owned
+    class(variable_model_type), pointer :: variable => null()   !< the model by its parameters, for their derivatives; not owned
     type(ball_angles_type) :: angles              !< of ball joints, as in the data file
     type(integrator_type) :: integrator
     type(dense_output_type) :: dense_output       !< motion within the last step
@@ -39,6 +42,7 @@ module mech9_integrated_motion
     type(work_count_type), private :: work_before          !< for the blocks of the systems before the present one
   contains
     procedure :: begin
+    procedure :: begin_sensitivity
     procedure :: change_coordinates
     procedure :: change_angles
     procedure :: show_angles
@@ -66,6 +70,18 @@ contains
     call begin_integration(self%integrator, self%system, self%t, self%y, err)
     if (.not. allocated(err)) call self%limits%note(self%system, err)
   end subroutine begin
+
+  !> Integrate the derivatives by all parameters as well, from the start on. Fails where they are not known.
+  subroutine begin_sensitivity(self, variable, err)
+    class(integrated_motion_type), intent(inout) :: self               !< the motion, before it begins
+    class(variable_model_type), intent(inout), target :: variable      !< the model as a function of its parameters; outlives it
+    type(error_type), allocatable, intent(out) :: err                  !< allocated if it failed
+
+    call refuse_angles(self%angles, self%t, err)
+    if (allocated(err)) return
+    self%variable => variable
+    call self%system%begin_sensitivity(variable, err)
+  end subroutine begin_sensitivity
 
   !> Go on in better conditioned independent coordinates, if there are any. Where the others cannot serve, the motion goes on
   !> in the present ones; any other failure ends it.
@@ -95,15 +111,41 @@ contains
     if (.not. (in_vain .or. allocated(failure) .or. allocated(err))) &
       changed = other%conditioning() >= worthwhile_improvement*self%system%conditioning()
     if (changed) then
+      call hand_on_sensitivity(self, angles, other, err)
       self%angles = angles
       call replace_system(self, other)
-      call self%begin(err)
+      if (.not. allocated(err)) call self%begin(err)
     else
       deallocate (other)
       if (.not. (allocated(failure) .or. allocated(err))) &
         self%look_below = self%system%conditioning()/worthwhile_improvement
     end if
   end subroutine change_coordinates
+
+  !> Let another system go on with the derivatives by parameters, if there are any. Fails where it moves in other angles than those
+  !> of the data file.
+  subroutine hand_on_sensitivity(self, angles, other, err)
+    class(integrated_motion_type), intent(inout) :: self     !< the motion
+    type(ball_angles_type), intent(in) :: angles             !< of ball joints, in the other system
+    type(motion_system_type), intent(inout) :: other         !< in other coordinates, with its motion
+    type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
+
+    if (.not. allocated(self%system%sensitivity)) return
+    call refuse_angles(angles, self%t, err)
+    if (.not. allocated(err)) call self%system%show_sensitivity(err)
+    if (.not. allocated(err)) call other%begin_sensitivity(self%variable, err, self%system%sensitivity%motion%q)
+  end subroutine hand_on_sensitivity
+
+  !> Fail because derivatives by parameters are not known in other angles than those of the data file.
+  subroutine refuse_angles(angles, t, err)
+    type(ball_angles_type), intent(in) :: angles             !< of ball joints
+    real(wp), intent(in) :: t                                !< time [s]
+    type(error_type), allocatable, intent(out) :: err        !< allocated where there are other angles
+
+    if (.not. angles%in_use()) return
+    call raise(err, exit_singular, failure_angles_sensitivity)
+    err%failure%t = t
+  end subroutine refuse_angles
 
   !> Make the system in other independent coordinates, at the present state. What belongs to frames and blocks that do not change
   !> is taken over. `failure` tells that these coordinates cannot serve, `err` that the motion ends.
@@ -167,10 +209,14 @@ contains
     allocate (other)
     call take_angles(self, requested, angles, other, failure)
     changed = .not. (gives_up(failure, err) .or. angles%move_as(self%angles))
+    if (changed .and. allocated(self%system%sensitivity)) then
+      call raise(err, exit_singular, failure_angles_sensitivity)
+      err%failure%t = self%t
+    end if
     if (changed) then
       self%angles = angles
       call replace_system(self, other)
-      call self%begin(err)
+      if (.not. allocated(err)) call self%begin(err)
     else
       deallocate (other)
     end if

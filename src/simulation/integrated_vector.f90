@@ -1,4 +1,5 @@
-!> The vector that is integrated: all coordinates, after them the rates of the free ones, then the states of the motors.
+!> The vector that is integrated: all coordinates, after them the rates of the free ones, then the states of the motors; perhaps
+!> followed by the derivatives of free coordinates by parameters and those of their rates (mech9_motion_system).
 !>
 !> Driven coordinates are in the vector, too, but they are not taken from it: their drives give them.
 module mech9_integrated_vector
@@ -38,7 +39,7 @@ contains
   pure subroutine pack_state(plan, state, y)
     type(plan_type), intent(in) :: plan     !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< coordinates, rates of the free ones, and states of the motors
-    real(wp), intent(out) :: y(:)           !< the vector
+    real(wp), intent(inout) :: y(:)         !< the vector
     integer :: i, m
 
     m = plan%n_coordinates
@@ -48,7 +49,7 @@ contains
     do i = 1, size(plan%free)
       y(m + i) = state%dq(plan%free(i))
     end do
-    if (allocated(state%motor)) y(m + size(plan%free) + 1:) = state%motor
+    if (allocated(state%motor)) y(m + size(plan%free) + 1:m + size(plan%free) + size(state%motor)) = state%motor
   end subroutine pack_state
 
   !> The derivative of the vector in time.
@@ -56,7 +57,7 @@ contains
     type(plan_type), intent(in) :: plan          !< the plan of the mechanism
     type(state_type), intent(in) :: state        !< with the rates of all coordinates, and of the motors' states
     real(wp), intent(in) :: accelerations(:)     !< of the independent coordinates [rad/s^2, m/s^2]
-    real(wp), intent(out) :: ydot(:)             !< the derivative
+    real(wp), intent(inout) :: ydot(:)           !< the derivative
     integer :: i, m
 
     m = plan%n_coordinates
@@ -66,7 +67,7 @@ contains
     do i = 1, size(plan%free)
       ydot(m + i) = accelerations(plan%free_places(i))
     end do
-    if (allocated(state%motor)) ydot(m + size(plan%free) + 1:) = state%motor_rate
+    if (allocated(state%motor)) ydot(m + size(plan%free) + 1:m + size(plan%free) + size(state%motor)) = state%motor_rate
   end subroutine pack_rates
 
   !> Put time, coordinates, free rates and motors of a vector into a state. The drives give the motion of driven coordinates
@@ -86,6 +87,6 @@ contains
     do i = 1, size(plan%free)
       state%dq(plan%free(i)) = y(m + i)
     end do
-    if (allocated(state%motor)) state%motor = y(m + size(plan%free) + 1:)
+    if (allocated(state%motor)) state%motor = y(m + size(plan%free) + 1:m + size(plan%free) + size(state%motor))
   end subroutine unpack_state
 end module mech9_integrated_vector

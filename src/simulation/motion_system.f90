@@ -1,14 +1,14 @@
 !> The motion as differential equations for an integrator.
 !>
-!> The vector that is integrated holds all coordinates, the rates of the free ones and the states of motors; the motion of driven
-!> coordinates is that of their drives. An evaluation takes the positions as they are, and the chains are closed after each
+!> The vector that is integrated holds all coordinates, the rates of the free ones and the states of motors; then, where they are
+!> asked for, derivatives of free coordinates and of their rates by parameters. The motion of driven coordinates is that of their drives. An evaluation takes the positions as they are, and the chains are closed after each
 !> accepted step: half the cost of closing them in every evaluation, at the same error (docs/design-decisions.md).
 module mech9_motion_system
   use mech9_kinds, only: wp, long
   use mech9_tolerances, only: trusted_between_steps, trusted_closing
   use mech9_error, only: error_type, raise, exit_singular, exit_integrator
   use mech9_failure, only: failure_singular_step, failure_unclosed_step, failure_drive_jumps, failure_no_inertia, &
-    failure_lost_inertia, failure_infinite_rate
+    failure_lost_inertia, failure_infinite_rate, failure_jump_sensitivity
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_driven_equations, only: hold
   use mech9_law, only: drive_slot_type
@@ -31,6 +31,8 @@ module mech9_motion_system
   use mech9_branch_stepping, only: set_inputs
   use mech9_held_angles, only: copy_drives
   use mech9_smooth_interval, only: smooth_interval_type
+  use mech9_variable_model, only: variable_model_type
+  use mech9_motion_sensitivity, only: motion_sensitivity_type, new_motion_sensitivity
   implicit none
   private
   public :: motion_system_type, set_motion_system
@@ -50,8 +52,13 @@ module mech9_motion_system
     logical, private :: just_settled = .false.
     logical, private :: has_inertia = .false.        !< all free coordinates had inertia in the position with which it was made
     type(smooth_interval_type) :: interval           !< in which the present steps lie
+    type(motion_sensitivity_type), allocatable :: sensitivity   !< derivatives by parameters, where they are integrated, too
   contains
     procedure :: size_of_vector
+    procedure :: size_of_motion
+    procedure :: count_varied
+    procedure :: begin_sensitivity
+    procedure :: show_sensitivity
     procedure :: vector
     procedure :: rate
     procedure :: settle
@@ -133,16 +140,78 @@ contains
   pure integer function size_of_vector(self)
     class(motion_system_type), intent(in) :: self   !< the motion system
 
-    size_of_vector = length_of_vector(self%plan, self%model%mechanism%n_motors)
+    size_of_vector = self%size_of_motion() + 2*self%count_varied()
   end function size_of_vector
+
+  !> Length of the part of the vector that is the motion itself.
+  pure integer function size_of_motion(self)
+    class(motion_system_type), intent(in) :: self   !< the motion system
+
+    size_of_motion = length_of_vector(self%plan, self%model%mechanism%n_motors)
+  end function size_of_motion
+
+  !> How many derivatives of free coordinates by parameters are integrated.
+  pure integer function count_varied(self)
+    class(motion_system_type), intent(in) :: self   !< the motion system
+
+    count_varied = 0
+    if (allocated(self%sensitivity)) count_varied = size(self%sensitivity%values(:, :, 0))
+  end function count_varied
 
   !> The vector of the present state.
   pure function vector(self) result(y)
     class(motion_system_type), intent(in) :: self   !< the motion system
-    real(wp) :: y(length_of_vector(self%plan, self%model%mechanism%n_motors))
+    real(wp) :: y(self%size_of_vector())
 
     call pack_state(self%plan, self%state, y)
+    if (.not. allocated(self%sensitivity)) return
+    call self%sensitivity%pack(y(self%size_of_motion() + 1:))
   end function vector
+
+  !> Integrate the derivatives by all parameters as well, from those of the free coordinates and their rates that are given, or
+  !> from those that the start of the motion has. To be called before the integration begins.
+  subroutine begin_sensitivity(self, variable, err, values)
+    class(motion_system_type), intent(inout) :: self        !< the motion system, with its motion
+    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp), intent(in), optional :: values(:, 0:, :)      !< (P,0:2,M) derivatives of all coordinates
+
+    allocate (self%sensitivity)
+    call new_motion_sensitivity(variable, self%model, self%plan, self%sensitivity, err)
+    if (allocated(err)) return
+    if (present(values)) then
+      self%sensitivity%values(:, :, 0) = values(:, 0, self%plan%free)
+      self%sensitivity%values(:, :, 1) = values(:, 1, self%plan%free)
+    else
+      call self%sensitivity%start()
+    end if
+    call self%present(err)
+  end subroutine begin_sensitivity
+
+  !> Find the derivatives of the whole present motion by all parameters.
+  subroutine show_sensitivity(self, err)
+    class(motion_system_type), intent(inout) :: self    !< the motion system, with its motion
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    call self%sensitivity%complete(self%model, self%state, err)
+  end subroutine show_sensitivity
+
+  !> Find the derivatives of the free accelerations, for a motion whose accelerations are complete.
+  subroutine vary_accelerations(self, err)
+    class(motion_system_type), intent(inout) :: self    !< the motion system
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(state_type) :: scratch
+    real(wp) :: coefficients(size(self%plan%free), size(self%plan%free))
+
+    ! articulated bodies give the accelerations without the coefficients
+    if (self%dynamics%articulated) then
+      scratch = self%state
+      call find_equations(self%model%mechanism, self%plan, self%dynamics, scratch, self%work, err)
+      if (allocated(err)) return
+    end if
+    coefficients = self%work%coefficients(self%plan%free_places, self%plan%free_places)
+    call self%sensitivity%find_accelerations(self%model, self%state, coefficients, err)
+  end subroutine vary_accelerations
 
   !> Take time, coordinates and free rates from a vector, and the motion of the driven coordinates from their drives. Fails where
   !> a drive has no value.
@@ -153,6 +222,7 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call unpack_state(self%plan, t, y, self%state)
+    if (allocated(self%sensitivity)) call self%sensitivity%unpack(y(self%size_of_motion() + 1:))
     self%state%t = self%interval%time_inside(t)
     call set_inputs(self%drives, self%state%t, self%state%q, self%state%dq, self%state%ddq, err)
   end subroutine take_vector
@@ -178,7 +248,14 @@ contains
     elsewhere
       jump = 0.0_wp
     end where
-    if (maxval(abs(jump)) > 0.0_wp) call take_impulse(self, jump(self%plan%independent), y, err)
+    if (maxval(abs(jump)) > 0.0_wp) then
+      if (allocated(self%sensitivity)) then
+        call raise(err, exit_singular, failure_jump_sensitivity)
+        err%failure%t = t
+      else
+        call take_impulse(self, jump(self%plan%independent), y, err)
+      end if
+    end if
     if (allocated(err)) return
     do i = 1, size(self%drives)
       associate (k => self%drives(i)%drive%coordinate)
@@ -274,6 +351,11 @@ contains
     call find_motor_rates(self%model%mechanism, self%state, err)
     if (allocated(err)) return
     call pack_rates(self%plan, self%state, self%work%accelerations, ydot)
+    if (.not. allocated(self%sensitivity)) return
+    call complete_accelerations(self%plan, self%dynamics, self%work, self%state)
+    call vary_accelerations(self, err)
+    if (allocated(err)) return
+    call self%sensitivity%pack_rates(ydot(self%size_of_motion() + 1:))
   end subroutine rate
 
   !> Keep the accelerations of the first evaluation after an accepted step.
@@ -381,6 +463,7 @@ contains
     call complete_accelerations(self%plan, self%dynamics, self%work, self%state)
     call find_motor_rates(self%model%mechanism, self%state, err)
     if (.not. allocated(err)) call show_state(self%plan, self%dynamics, self%state, self%work%view)
+    if (allocated(self%sensitivity) .and. .not. allocated(err)) call vary_accelerations(self, err)
   end subroutine show_present
 
   !> The worst block's pivot ratio at the last evaluation: 1 is best, 0 a singular position.

@@ -31,11 +31,21 @@ contains
     real(wp), intent(in) :: t                                   !< time of the start [s]
     real(wp), intent(in) :: y(:)   !< the vector: all coordinates, and the rates of the free ones
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
-    real(wp) :: absolute(size(y))
+    real(wp) :: absolute(size(y)), strict
+    integer :: i, n
 
     associate (solver => system%model%request%solver)
       absolute = solver%absolute_tolerance
-      call integrator%create(system, solver%method, solver%relative_tolerance, absolute, t, y, err)
+      strict = 1.0_wp
+      if (allocated(system%sensitivity)) then
+        ! the error of a step is a mean over the vector, in which the derivatives by parameters must not hide that of the motion
+        n = system%size_of_motion()
+        strict = sqrt(real(n, wp)/size(y))
+        do i = n + 1, size(y)
+          absolute(i) = absolute(i)*system%sensitivity%size_of(mod(i - n - 1, size(system%sensitivity%size_of)) + 1)
+        end do
+      end if
+      call integrator%create(system, solver%method, strict*solver%relative_tolerance, strict*absolute, t, y, err)
       if (.not. allocated(err)) call integrator%limit(err, maximum_steps=solver%maximum_steps)
     end associate
   end subroutine begin_integration

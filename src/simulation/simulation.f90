@@ -8,6 +8,8 @@ module mech9_simulation
   use mech9_state, only: state_type
   use mech9_requested, only: requested_type
   use mech9_closure_guard, only: check_closure
+  use mech9_variable_model, only: variable_model_type
+  use mech9_sensitivity, only: sensitivity_type, new_sensitivity, find_sensitivities
   implicit none
   private
   public :: simulation_type, interruption_type, simulation_statistics_type, coordinate_change_type
@@ -76,6 +78,8 @@ module mech9_simulation
     procedure :: statistics
     procedure :: close => close_nothing
     procedure :: present_for_forces => present_as_shown
+    procedure :: begin_sensitivity
+    procedure :: show_sensitivity
     procedure(position_interface), deferred :: begin
     procedure(position_interface), deferred :: go_to
     procedure(present_interface), deferred :: present
@@ -276,6 +280,33 @@ contains
     statistics%positions = self%positions
     call self%count_work(statistics)
   end function statistics
+
+  !> Prepare the derivatives of the motion by all parameters, before the start. Fails where they do not exist. This procedure is for
+  !> motions that drives determine.
+  subroutine begin_sensitivity(self, variable, highest, sensitivity, err)
+    class(simulation_type), intent(inout) :: self                      !< the simulation
+    class(variable_model_type), intent(inout), target :: variable      !< the model as a function of its parameters; outlives it
+    integer, intent(in) :: highest                                     !< order of the highest derivative in time
+    type(sensitivity_type), intent(out) :: sensitivity                 !< prepared
+    type(error_type), allocatable, intent(out) :: err                  !< allocated if it failed
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    call self%present(plan, state)
+    call new_sensitivity(variable, self%model, plan, highest, sensitivity, err)
+  end subroutine begin_sensitivity
+
+  !> Find the derivatives of the present motion by all parameters.
+  subroutine show_sensitivity(self, sensitivity, err)
+    class(simulation_type), intent(inout) :: self            !< the simulation
+    type(sensitivity_type), intent(inout) :: sensitivity     !< gets the derivatives
+    type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    call self%present(plan, state)
+    call find_sensitivities(self%model, state, sensitivity, err)
+  end subroutine show_sensitivity
 
   !> The plan and the state from which forces in the pairs are found. They are those that are presented, unless angles of ball
   !> joints are singular in these.

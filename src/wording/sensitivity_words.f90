@@ -2,7 +2,7 @@
 module mech9_sensitivity_words
   use mech9_text, only: to_text
   use mech9_failure, only: failure_type, failure_no_neighbours, failure_unknown_derivative, failure_singular_sensitivity, &
-    failure_opening_parameter
+    failure_opening_parameter, failure_jump_sensitivity, failure_angles_sensitivity
   use mech9_block_names, only: chain_names
   implicit none
   private
@@ -28,6 +28,14 @@ contains
     case (failure_opening_parameter)
       text = 'derivatives by the parameter '''//failure%name//''' do not exist: '//chain_names(failure%chains)//' would not '// &
              'stay closed if it changed alone. Let the parameter set the other dimensions too that must change with it'
+    case (failure_jump_sensitivity)
+      text = 'derivatives by the parameters are not computed beyond t = '//to_text(failure%t, 10)//' s, where the rates of '// &
+             'drives jump, and those of free coordinates with them. Give drives without jumps of their rates, end the run '// &
+             'before, or leave out sensitivities'
+    case (failure_angles_sensitivity)
+      text = 'derivatives by the parameters are not computed at t = '//to_text(failure%t, 10)//' s, where the motion goes on '// &
+             'in other angles of a ball joint or of a rod than those of the data file. End the run before, or leave out '// &
+             'sensitivities'
     end select
   end subroutine explain_sensitivity
 end module mech9_sensitivity_words

@@ -103,9 +103,34 @@ def open_chain(first, link, n):
 LONG = 500
 
 
+BODY_ON_DRIVE = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,1,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /
+&drive coordinate=1, kind='segments', times=0,0.5,3, values=0,1,2, laws='constant-velocity','constant-velocity' /
+&initial coordinate=2, position=0.8 /
+&body link=3, mass=0.7, centre=0,-0.5,0 /
+&time end=1, intervals=1 /
+"""
+TUMBLING = """&structure cq=1,2,3 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,1,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1 /
+&initial coordinate=1, position=0 /
+&initial coordinate=2, position=1, velocity=3 /
+&initial coordinate=3, position=0, velocity=0.1 /
+&body link=4, mass=1, centre=0,0,0.1, inertia=0.002,0.002,0.001,0,0,0 /
+&time end=2, intervals=1 /
+"""
+
+
 def sensitive(target, *groups, end=1):
     """A parallelogram whose derivatives by one number are asked for."""
     return four_bar(FLAT, *groups, f"&parameter name='number', sets='{target}' /\n", '&output sensitivities=.true. /\n', end=end)
+
+
+def by_mass():
+    """The request for derivatives by the mass of the last body."""
+    return "&parameter name='mass', sets='body.mass' /\n&output sensitivities=.true. /\n"
 
 
 def large(independent, coordinates, links, closed_chain):
@@ -326,6 +351,10 @@ def free_cases():
         ('no_inertia', four_bar(ROCKER, START), (), DATA,
          ['independent coordinate 1 has no inertia: no link with mass moves with it (apart from those that the independent '
           'coordinates before it move already); give a &body']),
+        ('jump_sensitivity', BODY_ON_DRIVE + by_mass(), (), SINGULAR,
+         ['derivatives by the parameters are not computed beyond t = 0.5 s, where the rates of drives jump']),
+        ('angles_sensitivity', TUMBLING + by_mass(), (), SINGULAR,
+         ['derivatives by the parameters are not computed at t = ', 'in other angles of a ball joint or of a rod']),
         # the load keeps the angles as they are
         ('gimbal_lock', BALL_JOINT + "&load kind='coordinate', coordinate=1, damping=1 /\n", (), SINGULAR,
          ['the motion comes to gimbal lock at t = 0 s: there coordinates 1, 3 can move together without moving any mass, so that '

@@ -215,7 +215,7 @@ def check_refusals(case, mech9d):
     with open(case.path('case.nml'), 'w', encoding='utf-8') as file:
         file.write(text + one + '&output gradients=.true. /\n')
     done = run(mech9d, case.path('case.nml'))
-    case.checks.true(done.returncode == DATA and 'gradients are computed by mech9k only' in done.stderr, 'mech9d', done.stderr)
+    case.checks.equal(done.returncode, 0, 'mech9d finds gradients of driven motions')
 
 
 def main():

@@ -335,7 +335,6 @@ def check_refusals(case):
     case.refused(FOUR_BAR.replace('sensitivities', 'drive_forces=.true., sensitivities') + crank.format('pair(2).point(1)'), 3,
                  'derivatives of forces are not computed; leave out drive_forces')
     case.refused('&mechanism title=\'a\' /\n' + FOUR_BAR + crank.format('mechanism.data_tolerance'), 3, 'its value cannot be changed a little in both directions')
-    case.refused(FOUR_BAR + crank.format('pair(2).point(1)'), 3, 'sensitivities are computed by mech9k only', program=case.mech9d)
 
 
 def check_hdf5(case):

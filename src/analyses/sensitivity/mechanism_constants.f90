@@ -13,17 +13,20 @@ module mech9_mechanism_constants
   use mech9_spanning_tree, only: lay_out_frames, renew_frames
   implicit none
   private
-  public :: gather_constants, renew_constants, align_axes, constants_of_coordinate, constants_of_pose
+  public :: gather_constants, renew_constants, align_axes, constants_of_coordinate, constants_of_pose, constants_of_body
 
   !> Numbers of a coordinate: the pose of its axis, offset, advance per unit, and the pose of its closing frame in the target.
   integer, parameter :: constants_of_coordinate = 26
   !> Numbers of a pose: the rotation by columns, and the origin.
   integer, parameter :: constants_of_pose = 12
+  !> Numbers of a body: mass, centre, inertia.
+  integer, parameter :: constants_of_body = 13
 
 contains
 
   !> The numbers of a model, each link's poses in its frames included: 26 for each coordinate, 12 for each link, 3 for each point;
-  !> then the numbers of the drives, of the couplings and of users' pairs that are known.
+  !> then the numbers of the drives, couplings, users' pairs and loads that are known; 13 for each body, gravity, and the start of
+  !> each coordinate.
   subroutine gather_constants(model, length, origin, values)
     type(model_type), intent(in) :: model            !< the model
     real(wp), intent(in) :: length                   !< the mechanism's size, which is not varied [m]
@@ -76,9 +79,10 @@ contains
       at = at + 3
     end do
     call append_laws(model, values)
+    call append_masses(model, values)
   end subroutine take_constants
 
-  !> Append the numbers of drives, couplings and users' pairs, as far as they are known.
+  !> Append the numbers of drives, couplings, users' pairs and loads, as far as they are known.
   subroutine append_laws(model, values)
     type(model_type), intent(in) :: model                !< the model
     real(wp), allocatable, intent(inout) :: values(:)    !< the row so far
@@ -101,7 +105,25 @@ contains
         values = [values, pair%parameters]
       end select
     end do
+    do i = 1, size(model%mechanism%loads)
+      call model%mechanism%loads(i)%load%constants(more)
+      if (allocated(more)) values = [values, more]
+    end do
   end subroutine append_laws
+
+  !> Append the numbers that matter in dynamics only: bodies, gravity, and positions and rates at the start.
+  subroutine append_masses(model, values)
+    type(model_type), intent(in) :: model                !< the model
+    real(wp), allocatable, intent(inout) :: values(:)    !< the row so far
+    integer :: i
+
+    do i = 1, size(model%mechanism%bodies)
+      associate (body => model%mechanism%bodies(i))
+        values = [values, body%mass, body%centre, reshape(body%inertia, [9])]
+      end associate
+    end do
+    values = [values, model%mechanism%gravity, model%problem%initial%position, model%problem%initial%velocity]
+  end subroutine append_masses
 
   !> Turn both frames of each pair of a model about its axis, so that they are near those of another model with nearly the same
   !> numbers. The motion of the pair stays the same; but frames whose zero direction the program chooses may differ by a large angle.

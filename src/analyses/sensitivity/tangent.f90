@@ -16,7 +16,8 @@ module mech9_tangent
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
-  use mech9_mechanism_constants, only: renew_constants, align_axes, constants_of_coordinate, constants_of_pose
+  use mech9_mechanism_constants, only: renew_constants, align_axes, constants_of_coordinate, constants_of_pose, &
+    constants_of_body
   implicit none
   private
   public :: tangent_type, law_tangent_type, find_tangent
@@ -40,6 +41,13 @@ module mech9_tangent
     type(law_tangent_type), allocatable :: drives(:)      !< in the order of the drives
     type(law_tangent_type), allocatable :: couplings(:)   !< in the order of the couplings
     type(law_tangent_type), allocatable :: pairs(:)       !< (M) of the numbers that users' procedures receive, by coordinates
+    type(law_tangent_type), allocatable :: loads(:)       !< in the order of the loads
+    type(law_tangent_type), allocatable :: bodies(:)      !< mass, centre and inertia by columns, in the order of the bodies
+    real(wp) :: gravity(3) = 0.0_wp            !< of gravity [m/s^2]
+    real(wp), allocatable :: start(:, :)       !< (M,0:1) of positions and rates at the start [rad, m]
+    !> Largest change of a constant, as a part of it, of the mechanism's size or of a rad: the inverse of the change of the
+    !> parameter that matters.
+    real(wp) :: size = 0.0_wp
   end type tangent_type
 
   integer, parameter :: half_width = 4
@@ -55,6 +63,8 @@ module mech9_tangent
   !> All constants are linear functions where their slopes over one step and over four agree to so many units of round-off. Terms of
   !> third order would then change the slope by a fifteenth of that.
   real(wp), parameter :: linear_round_off = 4.0_wp*epsilon(1.0_wp)
+  !> Constants that are smaller than this part of the largest one are zero but for round-off.
+  real(wp), parameter :: zero_beside = 1.0e-12_wp
 
 contains
 
@@ -268,9 +278,34 @@ contains
     at = at + size(tangent%points)
     tangent%moves = [(any(abs(tangent%before(:, k)) > 0.0_wp), k=1, m)]
     call read_laws(model, change(at + 1:), tangent)
+    tangent%size = size_of_change(model, plan, change, tangent)
   end subroutine read_change
 
-  !> The derivatives of the numbers of drives, couplings and users' pairs.
+  !> The largest change of a constant, as a part of what it is itself, of the mechanism's size or of a rad.
+  real(wp) function size_of_change(model, plan, change, tangent) result(largest)
+    type(model_type), intent(in) :: model         !< the present model
+    type(plan_type), intent(in) :: plan           !< its plan
+    real(wp), intent(in) :: change(:)             !< derivatives of the row
+    type(tangent_type), intent(in) :: tangent     !< the derivatives of its parts
+    type(plan_type) :: renewed
+    real(wp), allocatable :: present(:)
+    real(wp) :: round_off
+    integer :: i, k
+
+    renewed = plan
+    call renew_constants(model, renewed, present)
+    largest = maxval([0.0_wp, abs(tangent%before(1:3, :)), abs(tangent%in_target(1:3, :)), abs(tangent%link(1:3, :)), &
+                      abs(tangent%before(4:6, :))/plan%length, abs(tangent%in_target(4:6, :))/plan%length, &
+                      abs(tangent%link(4:6, :))/plan%length, abs(tangent%offset)/plan%unit_of, abs(tangent%slide)/plan%length, &
+                      (abs(tangent%start(k, :))/plan%unit_of(k), k=1, plan%n_coordinates)])
+    round_off = zero_beside*maxval(abs(present))
+    do i = constants_of_coordinate*plan%n_coordinates + constants_of_pose*plan%n_links + 1, size(change) - size(tangent%start)
+      if (.not. abs(change(i)) > 0.0_wp) cycle
+      largest = max(largest, abs(change(i))/merge(abs(present(i)), 1.0_wp, abs(present(i)) > round_off))
+    end do
+  end function size_of_change
+
+  !> The derivatives of the numbers of drives, couplings, users' pairs and loads, and of those of dynamics.
   subroutine read_laws(model, change, tangent)
     type(model_type), intent(in) :: model           !< the present model
     real(wp), intent(in) :: change(:)               !< the part of the row that belongs to them
@@ -297,6 +332,19 @@ contains
         call take_part(values, change, at, tangent%pairs(i))
       end select
     end do
+    allocate (tangent%loads(size(model%mechanism%loads)), tangent%bodies(size(model%mechanism%bodies)))
+    do i = 1, size(tangent%loads)
+      call model%mechanism%loads(i)%load%constants(values)
+      call take_part(values, change, at, tangent%loads(i))
+    end do
+    values = spread(0.0_wp, 1, constants_of_body)
+    do i = 1, size(tangent%bodies)
+      call take_part(values, change, at, tangent%bodies(i))
+    end do
+    tangent%gravity = change(at + 1:at + 3)
+    n = size(model%problem%initial%position)
+    allocate (tangent%start(n, 0:1))
+    tangent%start = reshape(change(at + 4:at + 3 + 2*n), [n, 2])
   end subroutine read_laws
 
   !> Take the derivatives of the numbers of one law or coupling.
@@ -304,7 +352,7 @@ contains
     real(wp), allocatable, intent(in) :: values(:)   !< its numbers; not allocated where they are not known
     real(wp), intent(in) :: change(:)                !< derivatives of the numbers of all
     integer, intent(inout) :: at                     !< number of constants taken so far; grows
-    type(law_tangent_type), intent(out) :: part      !< gets the derivatives of this law
+    type(law_tangent_type), intent(out) :: part      !< gets the derivatives of this part
 
     if (.not. allocated(values)) return
     part%change = change(at + 1:at + size(values))

@@ -416,11 +416,9 @@ module mech9_grammar
     item_row_type('output', 'drive_forces', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'the force or torque that each drive needs for its motion', '.true.', seldom=.true.), &
     item_row_type('output', 'sensitivities', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
-                  'derivatives of all recorded coordinates and points by each parameter', '.true.', seldom=.true., &
-                  program='mech9k'), &
+                  'derivatives of all recorded coordinates and points by each parameter', '.true.', seldom=.true.), &
     item_row_type('output', 'gradients', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
-                  'derivatives of the quantities by each parameter, without columns of their own', '.true.', seldom=.true., &
-                  program='mech9k'), &
+                  'derivatives of the quantities by each parameter, without columns of their own', '.true.', seldom=.true.), &
     item_row_type('output', 'force_arrows', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'arrows of the forces in the pairs in both pictures, the longest for the largest force', '.true.', &
                   seldom=.true.), &

@@ -19,7 +19,7 @@ contains
   subroutine find_driven_quantities(program_name, model, variable, numbers, gradient, err)
     character(len=*), intent(in) :: program_name            !< mech9k or mech9d; mech9d where all independent coordinates are driven
     type(model_type), intent(in), target :: model           !< the model, which requests quantities
-    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
     real(wp), intent(out) :: numbers(:)                     !< (quantities)
     real(wp), intent(out) :: gradient(:, :)                 !< (parameters,quantities); NaN where a number has no derivative
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
@@ -34,7 +34,7 @@ contains
     if (allocated(err)) return
     call new_driven_simulation(model, plan, start, simulation, .false., program_name == 'mech9d')
     call new_row_source(program_name, simulation, source)
-    call source%add_sensitivities(variable, simulation%plan, err)
+    call source%add_sensitivities(variable, err)
     if (.not. allocated(err)) call source%begin_quantities(err)
     if (allocated(err)) return
     allocate (row(source%columns%width()))

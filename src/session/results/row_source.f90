@@ -9,7 +9,7 @@ module mech9_row_source
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_simulation, only: simulation_type, interruption_type
-  use mech9_sensitivity, only: sensitivity_type, new_sensitivity, find_sensitivities
+  use mech9_sensitivity, only: sensitivity_type
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_film, only: film_type
   use mech9_force_record, only: force_record_type
@@ -75,11 +75,10 @@ contains
 
   !> Add the derivatives of the motion by the parameters of the model, after all other columns: those of the results, or, where the
   !> gradients of quantities alone are requested, those that no file gets. Fails where they do not exist.
-  subroutine add_sensitivities(self, variable, plan, err)
-    class(row_source_type), intent(inout) :: self           !< the row source
-    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
-    type(plan_type), intent(in) :: plan                     !< the plan that the simulation executes
-    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+  subroutine add_sensitivities(self, variable, err)
+    class(row_source_type), intent(inout) :: self                   !< the row source
+    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters; outlives the run
+    type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
     type(string_type) :: names(size(self%simulation%model%parameters))
     integer :: i
 
@@ -87,7 +86,7 @@ contains
       names(i)%text = self%simulation%model%parameters(i)%name
     end do
     allocate (self%sensitivity)
-    call new_sensitivity(variable, self%simulation%model, plan, self%columns%derivatives, self%sensitivity, err)
+    call self%simulation%begin_sensitivity(variable, self%columns%derivatives, self%sensitivity, err)
     if (.not. allocated(err)) &
       call self%columns%append_sensitivities(names, self%simulation%model%request%output%sensitivities)
   end subroutine add_sensitivities
@@ -178,7 +177,7 @@ contains
       if (simulation%with_error) row(next + 1) = simulation%error
     end associate
     if (allocated(self%sensitivity)) then
-      call find_sensitivities(self%simulation%model, state, self%sensitivity, err)
+      call self%simulation%show_sensitivity(self%sensitivity, err)
       if (allocated(err)) return
       call self%columns%fill_sensitivities(self%sensitivity, row)
     end if

@@ -1,0 +1,426 @@
+!> The forces that a motion requires along the coordinates beyond its loads, and their exact derivatives by all parameters.
+!>
+!> With a parameter, a link moves by a twist. Seen by an observer who moves with it, the link's velocity changes by the derivative of
+!> this twist in time, its inertia by the change of its own numbers only, and gravity turns. The forces of closed chains are held
+!> in the frames in which their loops start: the rates that dependent coordinates have per unit rate of an independent one let these
+!> forces do no work, before and after the change (see mech9_linearisation).
+module mech9_varied_forces
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_rotation, only: turn, cross, combine
+  use mech9_inertia, only: inertia_in_axes
+  use mech9_motion_view, only: motion_view_type
+  use mech9_motion_change, only: motion_change_type, new_motion_change
+  use mech9_force_sum, only: force_sum_type, new_force_sum
+  use mech9_model, only: model_type
+  use mech9_plan, only: plan_type
+  use mech9_generalized_forces, only: sum_loads
+  use mech9_tree_forces, only: loop_wrench_type
+  use mech9_loop_forces, only: loop_forces_type, new_loop_forces, eliminate_dependent, loop_wrenches, vary_couplings, &
+    coupling_multiplier
+  use mech9_twists, only: carried, shift_at
+  use mech9_varied_motion, only: varied_motion_type, link_twists
+  use mech9_parameter_twists, only: inertia_type, momentum, momenta, crossed, add_bracket, add_turned_wrench
+  implicit none
+  private
+  public :: varied_forces_type, new_varied_forces, find_varied_forces
+
+  !> The forces and their derivatives. The first index of derivatives is the parameter.
+  type :: varied_forces_type
+    real(wp), allocatable :: forces(:)           !< (M) required along the independent coordinates; zero for others [N m, N]
+    real(wp), allocatable :: changes(:, :)       !< (P,M) their derivatives
+    integer, allocatable, private :: acting(:)            !< numbers of the loads
+    integer, allocatable, private :: loaded(:)            !< links on which they act or whose motion they read
+    type(motion_view_type), private :: view               !< the motion as loads read it
+    type(motion_change_type), private :: change           !< its derivative by one parameter
+    type(force_sum_type), private :: sum, sum_change      !< of the loads, and of their derivatives by one parameter
+    type(loop_forces_type), private :: loops, loops_held  !< forces of the equations: scratch, and those of the motion
+    type(loop_wrench_type), allocatable, private :: chains(:)   !< (closures) forces of the closed chains
+    real(wp), allocatable, private :: wrench(:, :)        !< (6,0:M) that each frame must be given, with all beyond it
+    real(wp), allocatable, private :: wrenches(:, :, :)   !< (P,6,0:M) derivatives
+  end type varied_forces_type
+
+contains
+
+  !> Room for the forces of a model and their derivatives.
+  subroutine new_varied_forces(model, motion, self)
+    type(model_type), intent(in) :: model               !< the model
+    type(varied_motion_type), intent(in) :: motion      !< derivatives of its motion
+    type(varied_forces_type), intent(out) :: self       !< gets its room
+    logical :: marked(motion%plan%n_links)
+    integer :: i, m, n, links
+
+    m = motion%plan%n_coordinates
+    n = motion%n_parameters
+    links = motion%plan%n_links
+    self%acting = [(i, i=1, size(model%mechanism%loads))]
+    marked = .false.
+    do i = 1, size(self%acting)
+      call model%mechanism%loads(i)%load%mark_links(marked)
+    end do
+    self%loaded = pack([(i, i=2, links)], marked(2:))
+    allocate (self%view%links(links), self%view%q(m), self%view%dq(m))
+    self%change = new_motion_change(links, m)
+    self%sum = new_force_sum(links, m)
+    self%sum_change = new_force_sum(links, m)
+    self%loops = new_loop_forces(motion%plan)
+    allocate (self%chains(size(motion%plan%closures)))
+    allocate (self%forces(m), self%changes(n, m), self%wrench(6, 0:m), self%wrenches(n, 6, 0:m), source=0.0_wp)
+  end subroutine new_varied_forces
+
+  !> The forces of the present motion and their derivatives, after find_varied_motion for this motion. Fails where a load does.
+  subroutine find_varied_forces(model, motion, self, err)
+    type(model_type), intent(in) :: model                  !< the model
+    type(varied_motion_type), intent(inout) :: motion      !< derivatives of its motion; its blocks serve as scratch
+    type(varied_forces_type), intent(inout) :: self        !< gets the forces
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    self%wrench = 0.0_wp
+    self%wrenches = 0.0_wp
+    self%changes = 0.0_wp
+    call add_bodies(model, motion, self)
+    if (size(self%acting) > 0) call add_loads(model, motion, self, err)
+    if (allocated(err)) return
+    call find_forces(motion, self)
+    call hold_chains(motion%plan, motion, self)
+    call vary_required(motion%plan, motion, self)
+    call eliminate_changes(model, motion%plan, motion, self)
+  end subroutine find_varied_forces
+
+  !> Add the inertial forces of all bodies, less their weights, and the derivatives.
+  subroutine add_bodies(model, motion, self)
+    type(model_type), intent(in) :: model               !< the model
+    type(varied_motion_type), intent(in) :: motion      !< derivatives of its motion
+    type(varied_forces_type), intent(inout) :: self     !< gets the forces
+    real(wp) :: twists(motion%n_parameters, 6, 0:2)
+    integer :: i
+
+    do i = 1, size(model%mechanism%bodies)
+      associate (body => model%mechanism%bodies(i))
+        if (body%link == 1 .or. .not. body%has_inertia()) cycle
+        call link_twists(motion, body%link, twists)
+        call add_body(model, i, twists, motion, self)
+      end associate
+    end do
+  end subroutine add_bodies
+
+  !> Add the inertial force of one body, less its weight, and the derivatives.
+  subroutine add_body(model, number, twists, motion, self)
+    type(model_type), intent(in) :: model               !< the model
+    integer, intent(in) :: number                       !< of the body
+    real(wp), intent(in) :: twists(:, :, 0:)            !< (P,6,0:2) of its link
+    type(varied_motion_type), intent(in) :: motion      !< derivatives of the motion
+    type(varied_forces_type), intent(inout) :: self     !< gets the forces
+    type(inertia_type) :: body, changed
+    real(wp) :: r(3, 3), velocity(6), fall(6), h(6), wrench(6)
+    real(wp), dimension(motion%n_parameters, 6) :: change, h_change, fall_change
+    integer :: f, p
+
+    f = motion%plan%frame_of(model%mechanism%bodies(number)%link)
+    call place_body(model, number, motion, r, body)
+    velocity = motion%motion%velocity(:, f)
+    fall = motion%motion%acceleration(:, f)
+    fall(4:6) = fall(4:6) - model%mechanism%gravity
+    h = momentum(body, velocity)
+    wrench = momentum(body, fall) + crossed(velocity, h)
+    ! seen by an observer who moves with the link
+    fall_change = twists(:, :, 2)
+    call add_bracket(twists(:, :, 1), velocity, fall_change)
+    call add_bracket(twists(:, :, 0), [0.0_wp, 0.0_wp, 0.0_wp, model%mechanism%gravity], fall_change)
+    do p = 1, motion%n_parameters
+      fall_change(p, 4:6) = fall_change(p, 4:6) - motion%tangents(p)%gravity
+    end do
+    call momenta(body, fall_change, change)
+    call add_turned_wrench(twists(:, :, 1), h, change)
+    call momenta(body, twists(:, :, 1), h_change)
+    do p = 1, motion%n_parameters
+      associate (part => motion%tangents(p)%bodies(number))
+        if (part%varies) then
+          changed = change_of_body(part%change, r)
+          change(p, :) = change(p, :) + change_of_momentum(body, changed, fall)
+          h_change(p, :) = h_change(p, :) + change_of_momentum(body, changed, velocity)
+        end if
+      end associate
+      change(p, :) = change(p, :) + crossed(velocity, h_change(p, :))
+    end do
+    call add_turned_wrench(twists(:, :, 0), wrench, change)
+    self%wrench(:, f) = self%wrench(:, f) + wrench
+    self%wrenches(:, :, f) = self%wrenches(:, :, f) + change
+  end subroutine add_body
+
+  !> The inertia of a body in its present position.
+  subroutine place_body(model, number, motion, r, body)
+    type(model_type), intent(in) :: model               !< the model
+    integer, intent(in) :: number                       !< of the body
+    type(varied_motion_type), intent(in) :: motion      !< with the present motion
+    real(wp), intent(out) :: r(3, 3)                    !< rotation of its link
+    type(inertia_type), intent(out) :: body             !< the inertia
+    integer :: f
+
+    associate (given => model%mechanism%bodies(number), plan => motion%plan, state => motion%state)
+      f = plan%frame_of(given%link)
+      r = combine(state%r(:, :, f), plan%link_in_frame(given%link)%r)
+      body%mass = given%mass
+      body%centre = state%p(:, f) + turn(state%r(:, :, f), plan%link_in_frame(given%link)%p) + turn(r, given%centre)
+      body%tensor = inertia_in_axes(r, given%inertia)
+    end associate
+  end subroutine place_body
+
+  !> The change of a body's inertia in fixed axes, with its link held.
+  pure function change_of_body(change, r) result(changed)
+    real(wp), intent(in) :: change(:)            !< (13) of mass, centre and inertia, in the link's axes
+    real(wp), intent(in) :: r(3, 3)              !< rotation of the link
+    type(inertia_type) :: changed
+    real(wp) :: tensor(3, 3)
+
+    tensor = reshape(change(5:13), [3, 3])
+    changed%mass = change(1)
+    changed%centre = turn(r, change(2:4))
+    changed%tensor = inertia_in_axes(r, tensor)
+  end function change_of_body
+
+  !> The change of a momentum with the inertia.
+  pure function change_of_momentum(body, changed, twist) result(h)
+    type(inertia_type), intent(in) :: body      !< the body
+    type(inertia_type), intent(in) :: changed   !< the change of its inertia
+    real(wp), intent(in) :: twist(6)            !< of the body
+    real(wp) :: h(6), p(3)
+
+    p = body%mass*(twist(4:6) + cross(twist(1:3), body%centre))
+    h(4:6) = changed%mass*(twist(4:6) + cross(twist(1:3), body%centre)) + body%mass*cross(twist(1:3), changed%centre)
+    h(1:3) = turn(changed%tensor, twist(1:3)) + cross(changed%centre, p) + cross(body%centre, h(4:6))
+  end function change_of_momentum
+
+  !> Subtract the loads and their derivatives.
+  subroutine add_loads(model, motion, self, err)
+    type(model_type), intent(in) :: model               !< the model
+    type(varied_motion_type), intent(in) :: motion      !< derivatives of its motion
+    type(varied_forces_type), intent(inout) :: self     !< gets the forces
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
+    real(wp) :: twists(motion%n_parameters, 6, 0:2, size(self%loaded)), wrench(6), change(6), place(3)
+    integer :: i, k, p, f
+
+    call sum_loads(model%mechanism, motion%plan, self%acting, self%loaded, motion%state, self%view, self%sum, err)
+    if (allocated(err)) return
+    do i = 1, size(self%loaded)
+      k = self%loaded(i)
+      f = motion%plan%frame_of(k)
+      call link_twists(motion, k, twists(:, :, :, i))
+      place = self%view%links(k)%p - motion%plan%origin
+      wrench = [self%sum%torque(:, k) + cross(place, self%sum%force(:, k)), self%sum%force(:, k)]
+      self%wrench(:, f) = self%wrench(:, f) - wrench
+    end do
+    do p = 1, motion%n_parameters
+      call show_change(p, twists, motion, self)
+      call vary_loads(model, p, motion, self, err)
+      if (allocated(err)) return
+      do i = 1, size(self%loaded)
+        k = self%loaded(i)
+        f = motion%plan%frame_of(k)
+        place = self%view%links(k)%p - motion%plan%origin
+        associate (force => self%sum_change%force(:, k))
+          change = [self%sum_change%torque(:, k) + cross(place, force) + cross(self%change%links(k)%shift, self%sum%force(:, k)), &
+                    force]
+        end associate
+        self%wrenches(p, :, f) = self%wrenches(p, :, f) - change
+      end do
+      self%changes(p, :) = self%changes(p, :) - self%sum_change%generalized
+    end do
+  end subroutine add_loads
+
+  !> The derivatives of all loads by one parameter.
+  subroutine vary_loads(model, p, motion, self, err)
+    type(model_type), intent(in) :: model               !< the model
+    integer, intent(in) :: p                            !< number of the parameter
+    type(varied_motion_type), intent(in) :: motion      !< derivatives of its motion
+    type(varied_forces_type), intent(inout) :: self     !< with the change of the motion; gets the sums
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
+    integer :: i
+
+    call self%sum_change%clear()
+    do i = 1, size(self%acting)
+      associate (load => model%mechanism%loads(i)%load, part => motion%tangents(p)%loads(i))
+        call load%vary(self%view, self%change, self%sum_change, err)
+        if (part%varies .and. .not. allocated(err)) call load%vary_numbers(part%change, self%view, self%sum_change, err)
+      end associate
+      if (allocated(err)) return
+    end do
+  end subroutine vary_loads
+
+  !> The change of the motion by one parameter, as loads read it.
+  subroutine show_change(p, twists, motion, self)
+    integer, intent(in) :: p                             !< number of the parameter
+    real(wp), intent(in) :: twists(:, :, 0:, :)          !< (P,6,0:2,loaded) of the links
+    type(varied_motion_type), intent(in) :: motion       !< derivatives of the motion
+    type(varied_forces_type), intent(inout) :: self      !< gets the change
+    real(wp) :: place(3), twist(6), rate(6)
+    integer :: i, k
+
+    self%change%q = motion%q(p, 0, :)
+    self%change%dq = motion%q(p, 1, :)
+    do i = 1, size(self%loaded)
+      k = self%loaded(i)
+      twist = twists(p, :, 0, i)
+      rate = twists(p, :, 1, i)
+      associate (link => self%view%links(k), change => self%change%links(k))
+        place = link%p - motion%plan%origin
+        change%turn = twist(1:3)
+        change%shift = shift_at(twist, place)
+        change%omega = rate(1:3) + cross(twist(1:3), link%omega)
+        change%v = shift_at(rate, place) + cross(twist(1:3), link%v)
+      end associate
+    end do
+  end subroutine show_change
+
+  !> The forces that the coordinates require, and those of the closed chains.
+  subroutine find_forces(motion, self)
+    type(varied_motion_type), intent(inout) :: motion      !< with the present motion; its blocks serve as scratch
+    type(varied_forces_type), intent(inout) :: self        !< with the wrenches of each frame; gets the forces
+    real(wp) :: sums(6, 0:motion%plan%n_coordinates)
+    integer :: b, s, k
+
+    associate (plan => motion%plan)
+      sums = self%wrench
+      self%forces = 0.0_wp
+      do b = size(plan%blocks), 1, -1
+        do s = plan%blocks(b)%last_step, plan%blocks(b)%first_step, -1
+          k = plan%steps(s)%coordinate
+          self%forces(k) = dot_product(motion%motion%step(:, 0, s), sums(:, s))
+          if (size(self%acting) > 0) self%forces(k) = self%forces(k) - self%sum%generalized(k)
+          sums(:, plan%steps(s)%parent) = sums(:, plan%steps(s)%parent) + sums(:, s)
+        end do
+      end do
+      call eliminate_dependent(plan, motion%state, motion%blocks, self%loops, self%forces)
+      self%loops_held = self%loops
+      call loop_wrenches(plan, motion%state, self%loops, self%chains)
+    end associate
+  end subroutine find_forces
+
+  !> Subtract the forces of the closed chains from those of their frames, and their derivatives.
+  subroutine hold_chains(plan, motion, self)
+    type(plan_type), intent(in) :: plan                  !< the plan of the mechanism, in space
+    type(varied_motion_type), intent(in) :: motion       !< with the present motion
+    type(varied_forces_type), intent(inout) :: self      !< with the forces of the chains; its wrenches change
+    real(wp) :: wrench(6)
+    integer :: b, c
+
+    do b = 1, size(plan%blocks)
+      do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
+        if (plan%closures(c)%coupling > 0) cycle
+        associate (base => plan%closures(c)%base, closing => plan%closures(c)%closing, target => plan%closures(c)%target, &
+                   state => motion%state)
+          wrench(4:6) = turn(state%r(:, :, base), self%chains(c)%force)
+          wrench(1:3) = turn(state%r(:, :, base), self%chains(c)%moment) + cross(state%p(:, base), wrench(4:6))
+          self%wrench(:, closing) = self%wrench(:, closing) - wrench
+          self%wrench(:, target) = self%wrench(:, target) + wrench
+          call add_turned_wrench(motion%twists(:, :, 0, base), -wrench, self%wrenches(:, :, closing))
+          call add_turned_wrench(motion%twists(:, :, 0, base), wrench, self%wrenches(:, :, target))
+        end associate
+      end do
+    end do
+  end subroutine hold_chains
+
+  !> The derivatives of the forces that all coordinates require, with the forces of closed chains held.
+  subroutine vary_required(plan, motion, self)
+    type(plan_type), intent(in) :: plan                  !< the plan of the mechanism, in space
+    type(varied_motion_type), intent(in) :: motion       !< derivatives of the motion
+    type(varied_forces_type), intent(inout) :: self      !< with wrenches and derivatives of each frame; gets `changes`
+    real(wp) :: step_changes(motion%n_parameters, 6)
+    integer :: b, s, k, j
+
+    do b = size(plan%blocks), 1, -1
+      do s = plan%blocks(b)%last_step, plan%blocks(b)%first_step, -1
+        k = plan%steps(s)%coordinate
+        call vary_step(plan, motion, s, motion%twists(:, :, 0, plan%steps(s)%parent), step_changes)
+        do j = 1, 6
+          self%changes(:, k) = self%changes(:, k) + motion%motion%step(j, 0, s)*self%wrenches(:, j, s) &
+                               + step_changes(:, j)*self%wrench(j, s)
+        end do
+        associate (i => plan%steps(s)%parent)
+          self%wrench(:, i) = self%wrench(:, i) + self%wrench(:, s)
+          self%wrenches(:, :, i) = self%wrenches(:, :, i) + self%wrenches(:, :, s)
+        end associate
+      end do
+    end do
+  end subroutine vary_required
+
+  !> The derivatives of the twist of a step per unit rate.
+  subroutine vary_step(plan, motion, s, parent_twists, changes)
+    type(plan_type), intent(in) :: plan                  !< the plan of the mechanism, in space
+    type(varied_motion_type), intent(in) :: motion       !< derivatives of the motion
+    integer, intent(in) :: s                             !< the step
+    real(wp), intent(in) :: parent_twists(:, :)          !< (P,6) of its parent frame
+    real(wp), intent(out) :: changes(:, :)               !< (P,6)
+    real(wp) :: departing(motion%n_parameters, 6), series(6, 0:2), own(6)
+    integer :: p, k
+
+    k = plan%steps(s)%coordinate
+    departing = parent_twists
+    do p = 1, motion%n_parameters
+      if (.not. motion%tangents(p)%moves(k)) cycle
+      call carried(motion%state, motion%motion, plan%steps(s)%parent, motion%tangents(p)%before(:, k), 0, series)
+      departing(p, :) = departing(p, :) + series(:, 0)
+    end do
+    changes = 0.0_wp
+    call add_bracket(departing, motion%motion%step(:, 0, s), changes)
+    associate (state => motion%state)
+      do p = 1, motion%n_parameters
+        changes(p, 4:6) = changes(p, 4:6) + motion%tangents(p)%slide(k)*state%r(:, 3, s)
+      end do
+      if (plan%steps(s)%is_screw) return
+      own(1:3) = state%axis_w_rate(:, s)
+      own(4:6) = state%axis_v_rate(:, s) - cross(own(1:3), state%p(:, s)) - cross(state%axis_w(:, s), state%axis_v(:, s))
+      do p = 1, motion%n_parameters
+        changes(p, :) = changes(p, :) + motion%q(p, 0, k)*own
+      end do
+    end associate
+  end subroutine vary_step
+
+  !> Add the derivatives of the forces of couplings, and hand on those of dependent coordinates to the independent ones.
+  subroutine eliminate_changes(model, plan, motion, self)
+    type(model_type), intent(in) :: model                  !< the model
+    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism, in space
+    type(varied_motion_type), intent(inout) :: motion      !< derivatives of the motion; its blocks serve as scratch
+    type(varied_forces_type), intent(inout) :: self        !< with `changes` of all coordinates
+    real(wp) :: forces(plan%n_coordinates), q(plan%n_coordinates)
+    integer :: p
+
+    if (size(plan%closures) == 0) return
+    do p = 1, motion%n_parameters
+      forces = self%changes(p, :)
+      q = motion%q(p, 0, :)
+      call vary_couplings(plan, motion%state, self%loops_held, q, forces)
+      call vary_coupling_numbers(model, plan, motion, self%loops_held, p, forces)
+      call eliminate_dependent(plan, motion%state, motion%blocks, self%loops, forces)
+      self%changes(p, :) = forces
+    end do
+  end subroutine eliminate_changes
+
+  !> Subtract the changes of the forces of couplings with their own numbers, by one parameter.
+  subroutine vary_coupling_numbers(model, plan, motion, loops, p, forces)
+    type(model_type), intent(in) :: model               !< the model
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism, in space
+    type(varied_motion_type), intent(in) :: motion      !< derivatives of the motion
+    type(loop_forces_type), intent(in) :: loops         !< with the multipliers of the motion
+    integer, intent(in) :: p                            !< number of the parameter
+    real(wp), intent(inout) :: forces(:)                !< (M) derivatives of the forces on the coordinates
+    real(wp) :: multiplier
+    integer :: b, c, i, k
+
+    do b = 1, size(plan%blocks)
+      do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
+        if (plan%closures(c)%coupling == 0) cycle
+        associate (coupling => model%mechanism%couplings(plan%closures(c)%coupling)%coupling, &
+                   part => motion%tangents(p)%couplings(plan%closures(c)%coupling))
+          if (.not. part%varies) cycle
+          multiplier = coupling_multiplier(plan, b, c, loops)
+          do i = 1, size(coupling%coordinates)
+            k = coupling%coordinates(i)
+            forces(k) = forces(k) - plan%closures(c)%weight*multiplier &
+                        *coupling%varied_term(part%change, i, motion%state%q(k), 1)
+          end do
+        end associate
+      end do
+    end do
+  end subroutine vary_coupling_numbers
+end module mech9_varied_forces

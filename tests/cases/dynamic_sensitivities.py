@@ -1,0 +1,307 @@
+"""Derivatives of free motions by parameters: of a double pendulum against eighth-order differences of motions in extended precision;
+of closed chains, through changes of the independent coordinates, with springs, forces and drives, against differences of
+whole runs; identities of scaling, of the start and of driven motions; what is refused, and why.
+
+Compares the program with itself in part: differences of runs at other values of a parameter, and mech9d with mech9k.
+
+usage: dynamic_sensitivities.py MECH9K MECH9D
+"""
+import os
+import sys
+import tempfile
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import Checks, read_table, run
+
+# The promise: derivatives within this many times the tolerance, of the largest of their kind.
+TOLERANCES = 100
+TOLERANCE = 1e-12
+SOLVER = f'&solver relative_tolerance={TOLERANCE!r}, absolute_tolerance={TOLERANCE!r} /\n'
+# Differences of runs that err by some 1e-12 of themselves, over steps of some thousandths, know eight digits.
+BY_RUNS = 1e-7
+WEIGHTS = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
+
+DOUBLE_PENDULUM = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=0,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point={bar!r},0,0, moving_point=0,0,0 /
+&initial coordinate=1, position={first!r}, velocity={rate!r} /
+&initial coordinate=2, position={second!r}, velocity=0 /
+&body link=2, mass={upper!r}, centre={bar!r},0,0 /
+&body link=3, mass={lower!r}, centre={swing!r},0,0 /
+&gravity acceleration=0,{fall!r},0 /
+&time start=0, end=1.5, intervals=6 /
+"""
+# name, its targets, value
+PENDULUM_PARAMETERS = (
+    ('bar', "'pair(2).point(1)','body(1).centre(1)'", 1.0), ('swing', "'body(2).centre(1)'", 0.8),
+    ('upper', "'body(1).mass'", 2.0), ('lower', "'body(2).mass'", 1.0), ('fall', "'gravity.acceleration(2)'", -9.81),
+    ('first', "'initial(1).position'", 0.3), ('second', "'initial(2).position'", 0.4), ('rate', "'initial(1).velocity'", 0.7))
+
+FOUR_BAR = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', point=0.01,0.02,0, axis=0,0,1, moving_point=0,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', point=0.3,0,0, axis=0,0,1, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', point=0.9,0,0, axis=0,0,1, moving_point=0.7,0,0 /
+&pair coordinate=4, links=1,4, kind='revolute', point=1,0,0, axis=0,0,1, moving_point=0,0,0 /
+&initial coordinate=1, position=0.2, velocity=1.0 /
+&initial coordinate=2, position=0.5 /
+&initial coordinate=4, position=1.0 /
+&body link=2, mass=2, centre=0.15,0,0, inertia=0.015,0.015,0.02,0,0,0 /
+&body link=3, mass=1, centre=0.4,0.1,0, inertia=0.03,0.03,0.05,0,0,0 /
+&body link=4, mass=1.5, centre=0.4,0,0, inertia=0.03,0.03,0.04,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&load kind='coordinate', coordinate=4, stiffness=3, rest=0.5, damping=0.2 /
+&load kind='force', link=3, position=0.4,0.2,0, force=1,2,0, law='harmonic', mean=1, amplitude=0.5, angular_frequency=3 /
+&load kind='spring', links=1,3, position=0.2,0.9,0, second_position=0.4,0.1,0, stiffness=12, free_length=0.2, damping=0.3 /
+&point name='P', link=3, position=0.4,0.2,0.1 /
+&time end=0.6, intervals=4 /
+"""
+FOUR_BAR_PARAMETERS = (
+    ('crank', 'pair(2).point(1)', 0.3), ('rocker', 'pair(3).moving_point(1)', 0.7), ('base', 'pair(4).point(2)', 0.0),
+    ('mass', 'body(2).mass', 1.0), ('centre', 'body(2).centre(1)', 0.4), ('inertia', 'body(3).inertia(3)', 0.04),
+    ('sideways', 'gravity.acceleration(1)', 0.0), ('first', 'initial(1).position', 0.2), ('rate', 'initial(1).velocity', 1.0),
+    ('rest', 'load(1).rest', 0.5), ('damper', 'load(1).damping', 0.2), ('often', 'load(2).angular_frequency', 3.0),
+    ('push', 'load(2).force(2)', 2.0), ('at', 'load(2).position(1)', 0.4), ('end', 'load(3).second_position(2)', 0.1),
+    ('stiff', 'load(3).stiffness', 12.0), ('free', 'load(3).free_length', 0.2), ('slow', 'load(3).damping', 0.3))
+
+# A pendulum of 20 kg swings a rocker through its dead points, so that the independent coordinates change.
+PENDULUM_FOUR_BAR = """&structure cq=4 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=0.0, 0.0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.0,-1.0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1.5,-3.0,0 /
+&pair coordinate=4, links=1,4, kind='revolute', axis=0,0,1, point=2.7,-1.4,0 /
+&initial coordinate=1, position=-1.3 /
+&initial coordinate=4, position=-0.55, velocity=0 /
+&body link=2, mass=20, centre=0.0,-1.0,0, inertia=0.5,0.5,0.5,0,0,0 /
+&body link=3, mass=1, centre=0.75,-2.0,0, inertia=0.3,0.3,0.6,0,0,0 /
+&body link=4, mass=1, centre=2.1,-2.2,0, inertia=0.2,0.2,0.4,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&time end=3, intervals=6 /
+"""
+
+# A bead on a hoop that a drive turns: one coordinate is driven, one is free.
+BEAD = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,1,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /
+&drive coordinate=1, kind='{law}' /
+&initial coordinate=2, position=0.8 /
+&body link=3, mass=0.7, centre=0.0,-0.5,0.0 /
+&gravity acceleration=0.0,-9.81,0.0 /
+&point name='P', link=3, position=0.0,-0.5,0.0 /
+&time end=2, intervals=5 /
+"""
+TURNING = BEAD.format(law="polynomial', coefficients=0.0,7.1,-0.3 / !")
+
+# Two crossed axes, a mass beside both: the mechanism is spatial, open, and has a prismatic and a helical pair.
+SPATIAL = """&structure cq=1,2,3 /
+&pair coordinate=1, links=1,2, kind='helical', pitch=0.3, axis=0.1,0.2,1, point=0.1,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=1,0.3,0, point=0.4,0.1,0.2 /
+&pair coordinate=3, links=3,4, kind='prismatic', axis=0,1,0.5, point=0.1,0.2,0.3 /
+&initial coordinate=1, position=0.2, velocity=1.5 /
+&initial coordinate=2, position=0.4, velocity=-0.6 /
+&initial coordinate=3, position=0.1, velocity=0.2 /
+&body link=2, mass=2, centre=0.2,0.1,0, inertia=0.05,0.06,0.07,0.01,0,0 /
+&body link=3, mass=1, centre=0.1,0.2,0.1, inertia=0.03,0.04,0.05,0,0.01,0 /
+&body link=4, mass=1.5, centre=0.3,0,0.1, inertia=0.03,0.03,0.04,0,0,0.01 /
+&gravity acceleration=0,0,-9.81 /
+&load kind='coordinate', coordinate=3, stiffness=60, damping=0.5 /
+&load kind='force', link=4, position=0.1,0.2,0, force=1,2,3, frame='link' /
+&point name='P', link=4, position=0.4,0.2,0.1 /
+&time end=1, intervals=4 /
+"""
+SPATIAL_PARAMETERS = (
+    ('pitch', 'pair(1).pitch', 0.3), ('tilt', 'pair(2).axis(2)', 0.3), ('lift', 'pair(2).point(3)', 0.2),
+    ('slant', 'pair(3).axis(3)', 0.5), ('centre', 'body(3).centre(3)', 0.1), ('product', 'body(1).inertia(4)', 0.01),
+    ('force', 'load(2).force(3)', 3.0), ('mass', 'body(3).mass', 1.5), ('fast', 'initial(2).velocity', -0.6))
+
+
+def declared(parameters):
+    return ''.join(f"&parameter name='{name}', sets={target if target.startswith(chr(39)) else repr(target)}, value={value!r} /\n"
+                   for name, target, value in parameters)
+
+
+class Case:
+    """A directory for files, the programs, and the checks."""
+
+    def __init__(self, checks, directory, mech9k, mech9d):
+        self.checks, self.directory, self.mech9k, self.mech9d = checks, directory, mech9k, mech9d
+
+    def table(self, text, *options, program=None):
+        """The columns of a run by name."""
+        path = os.path.join(self.directory, 'a.nml')
+        with open(path, 'w') as file:
+            file.write(text)
+        done = run(program or self.mech9d, path, '--quiet', '--table', '-', *options)
+        if done.returncode != 0:
+            raise RuntimeError(f'{text}{options} ended with {done.returncode}:\n{done.stderr}')
+        return {name: np.array(column) for name, column in read_table(done.stdout).items()}
+
+    def sensitivities(self, text, parameters, *options, program=None):
+        return self.table(text + declared(parameters) + '&output sensitivities=.true. /\n', *options, program=program)
+
+    def refused(self, text, code, words):
+        path = os.path.join(self.directory, 'a.nml')
+        with open(path, 'w') as file:
+            file.write(text)
+        done = run(self.mech9d, path, '--quiet', '--table', os.path.join(self.directory, 'a.dat'))
+        self.checks.equal(done.returncode, code, f'{words}: code {code}')
+        self.checks.true(words in ' '.join(done.stderr.split()), f'the message says: {words}', done.stderr)
+
+    def close(self, mine, expected, tolerance, why):
+        largest = max(float(np.abs(expected).max()), 1e-3)
+        error = np.abs(mine - expected).max()
+        self.checks.true(error <= tolerance * largest, why, f'error {error:.2e}, largest {largest:.2e}')
+
+    def against_runs(self, text, parameters, why, part=2.0**-9):
+        """Derivatives against differences of runs at other values of the parameters, in steps of a part of them."""
+        found = self.sensitivities(text + SOLVER, parameters)
+        for number, (name, _, value) in enumerate(parameters, 1):
+            step = part * (1.0 if value == 0 else max(abs(value), 0.1))
+            runs = [[self.table(text + SOLVER + declared(parameters), '--set', f'parameter({number}).value={value + sign * i * step!r}')
+                     for sign in (1, -1)] for i in (1, 2, 3, 4)]
+            for column in runs[0][0]:
+                if f'd({column})/d({name})' not in found:
+                    continue
+                expected = sum(weight * (above[column] - below[column]) / step for weight, (above, below) in zip(WEIGHTS, runs))
+                self.close(found[f'd({column})/d({name})'], expected, BY_RUNS, f'{why}: {column} by {name}')
+
+
+def pendulum_accelerations(q, w, values):
+    """Accelerations of both angles of the pendulum, from Lagrange's equations."""
+    bar, swing, upper, lower, fall = values[:5]
+    c1, c12 = np.cos(q[0]), np.cos(q[0] + q[1])
+    s2, c2 = np.sin(q[1]), np.cos(q[1])
+    a11 = (upper + lower) * bar**2 + lower * swing**2 + 2 * lower * bar * swing * c2
+    a12 = lower * swing**2 + lower * bar * swing * c2
+    a22 = lower * swing**2
+    f1 = lower * bar * swing * s2 * (2 * w[0] * w[1] + w[1]**2) + fall * ((upper + lower) * bar * c1 + lower * swing * c12)
+    f2 = -lower * bar * swing * s2 * w[0]**2 + fall * lower * swing * c12
+    det = a11 * a22 - a12**2
+    return np.array([(a22 * f1 - a12 * f2) / det, (a11 * f2 - a12 * f1) / det])
+
+
+def pendulum_motion(values, times):
+    """q, dq and ddq at times, by extrapolation of the midpoint rule (Gragg, Bulirsch and Stoer) in extended precision."""
+    y = np.array([values[5], values[6], values[7], 0], dtype=np.longdouble)
+    rows = []
+
+    def rate(y):
+        return np.concatenate([y[2:], pendulum_accelerations(y[:2], y[2:], values)])
+
+    def step(y, length):
+        counts = [2 * k for k in range(1, 11)]
+        table = []
+        for k, count in enumerate(counts):
+            h = length / count
+            before, here = y, y + h * rate(y)
+            for _ in range(count - 1):
+                before, here = here, before + 2 * h * rate(here)
+            row = [(here + before + h * rate(here)) / 2]
+            for j in range(k):
+                ratio = (np.longdouble(count) / counts[k - 1 - j])**2
+                row.append(row[j] + (row[j] - table[k - 1][j]) / (ratio - 1))
+            table.append(row)
+        return table[-1][-1]
+
+    for i, t in enumerate(times):
+        if i > 0:
+            for _ in range(4):
+                y = step(y, np.longdouble(t - times[i - 1]) / 4)
+        rows.append(np.concatenate([y[:2], y[2:], pendulum_accelerations(y[:2], y[2:], values)]))
+    return np.array(rows)
+
+
+def check_pendulum(case):
+    values = {name: value for name, _, value in PENDULUM_PARAMETERS}
+    found = case.sensitivities(DOUBLE_PENDULUM.format(**values) + SOLVER, PENDULUM_PARAMETERS)
+    exact = [np.longdouble(value) for value in values.values()]
+    for number, name in enumerate(values):
+        step, expected = np.longdouble(2.0**-8), 0
+        for i, weight in enumerate(WEIGHTS, 1):
+            weight = (np.longdouble(4) / 5, -np.longdouble(1) / 5, np.longdouble(4) / 105, -np.longdouble(1) / 280)[i - 1]
+            above, below = (pendulum_motion([v + (sign * i * step if k == number else 0) for k, v in enumerate(exact)], found['t'])
+                            for sign in (1, -1))
+            expected = expected + weight * (above - below) / step
+        for k, column in enumerate(('q1', 'q2', 'dq1', 'dq2', 'ddq1', 'ddq2')):
+            case.close(found[f'd({column})/d({name})'], expected[:, k], TOLERANCES * TOLERANCE, f'double pendulum: {column} by {name}')
+
+
+def check_identities(case):
+    masses = "'body(1).mass','body(2).mass'"
+    parameters = (('all', masses, 1.0),)
+    text = DOUBLE_PENDULUM.format(bar=1.0, swing=0.8, upper=1.0, lower=1.0, fall=-9.81, first=0.3, second=0.4, rate=0.7) + SOLVER
+    found = case.sensitivities(text, parameters)
+    for column, numbers in found.items():
+        if column.startswith('d('):
+            case.checks.true(np.abs(numbers).max() <= 1e-9, f'a factor of all masses changes no motion: {column}', f'{numbers}')
+    lengths = (('size', "'pair(2).point(1)','body(1).centre(1)','body(2).centre(1)','gravity.acceleration(2)'", 1.0),)
+    scaled = text + declared(lengths).replace(' /', ', factors=1,1,0.8,-9.81 /') + '&output sensitivities=.true. /\n'
+    found = case.table(scaled)
+    for column, numbers in found.items():
+        if column.startswith('d('):
+            case.checks.true(np.abs(numbers).max() <= 1e-9, f'a factor of lengths and gravity changes no angle: {column}', f'{numbers}')
+    start = (('first', 'initial(1).position', 0.3), ('rate', 'initial(1).velocity', 0.7))
+    found = case.sensitivities(text, start)
+    for name, expected in (('first', [1, 0, 0, 0]), ('rate', [0, 0, 1, 0])):
+        case.checks.near([found[f'd({q})/d({name})'][0] for q in ('q1', 'q2', 'dq1', 'dq2')], expected, 1e-14, f'at the start, by {name}',
+                         scale=1)
+
+
+def check_driven(case):
+    """Driven motions in mech9d have the derivatives that they have in mech9k."""
+    driven = FOUR_BAR.replace(', velocity=1.0', '') + "&drive coordinate=1, kind='polynomial', coefficients=0.2,3 /\n"
+    parameters = tuple(p for p in FOUR_BAR_PARAMETERS if p[0] not in ('first', 'rate')) + (('speed', 'drive.coefficients(2)', 3.0),)
+    mine, others = (case.sensitivities(driven, parameters, program=program) for program in (case.mech9d, case.mech9k))
+    for column in others:
+        if column.startswith('d('):
+            case.close(mine[column], others[column], 1e-12, f'a driven motion in mech9d: {column}')
+
+
+def check_refusals(case):
+    crank = declared((('crank', 'pair(2).point(1)', 0.3),)) + '&output sensitivities=.true. /\n'
+    motor = "&motor kind='dc', coordinate=1, resistance=1, inductance=0.1, constant=0.1, voltage=1 /\n"
+    case.refused(FOUR_BAR + motor + crank, 3, 'sensitivities are not computed for mechanisms with motors')
+    case.refused(FOUR_BAR + crank.replace('sensitivities', 'reactions=.true., sensitivities'), 3,
+                 'derivatives of forces are not computed; leave out reactions')
+    jumps = BEAD.format(law="segments', times=0,0.5,3, values=0,1,2, laws='constant-velocity','constant-velocity' / !")
+    case.refused(jumps + declared((('centre', 'body.centre(2)', -0.5),)) + '&output sensitivities=.true. /\n', 6,
+                 'derivatives by the parameters are not computed beyond t = 0.5 s, where the rates of drives jump')
+    bent = FOUR_BAR.replace("law='harmonic', mean=1, amplitude=0.5, angular_frequency=3",
+                            "law='segments', times=0,0.2,1, values=0,1,1, laws='harmonic','dwell'")
+    case.refused(bent + declared((('push', 'load(2).values(2)', 1.0),)) + '&output sensitivities=.true. /\n', 3,
+                 "derivatives by the parameter 'push' are not computed")
+    top = """&structure cq=1,2,3 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,1,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1 /
+&initial coordinate=1, position=0, velocity=0 /
+&initial coordinate=2, position=1.0, velocity=3 /
+&initial coordinate=3, position=0, velocity=0.1 /
+&body link=4, mass=1, centre=0,0,0.1, inertia=0.002,0.002,0.001,0,0,0 /
+&gravity acceleration=0,0,-9.81 /
+&time start=0, end=2, intervals=4 /
+&parameter name='mass', sets='body.mass' /
+&output sensitivities=.true. /
+"""
+    case.refused(top, 6, 'the motion goes on in other angles of a ball joint or of a rod than those of the data file')
+
+
+def main():
+    checks = Checks()
+    with tempfile.TemporaryDirectory() as directory:
+        case = Case(checks, directory, *sys.argv[1:3])
+        check_pendulum(case)
+        check_identities(case)
+        check_driven(case)
+        check_refusals(case)
+        case.against_runs(FOUR_BAR, FOUR_BAR_PARAMETERS, 'four-bar with loads', 2.0**-10)
+        case.against_runs(PENDULUM_FOUR_BAR, (('bar', 'pair(2).point(2)', -1.0), ('mass', 'body(1).mass', 20.0),
+                                              ('start', 'initial(2).position', -0.55)), 'through changes of coordinates')
+        case.against_runs(TURNING, (('speed', 'drive.coefficients(2)', 7.1), ('centre', 'body.centre(2)', -0.5)), 'a driven hoop')
+        case.against_runs(SPATIAL, SPATIAL_PARAMETERS, 'in space')
+    checks.finish()
+
+
+if __name__ == '__main__':
+    main()
