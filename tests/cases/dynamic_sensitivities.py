@@ -269,7 +269,7 @@ def check_refusals(case):
                  'derivatives by the parameters are not computed beyond t = 0.5 s, where the rates of drives jump')
     bent = FOUR_BAR.replace("law='harmonic', mean=1, amplitude=0.5, angular_frequency=3",
                             "law='segments', times=0,0.2,1, values=0,1,1, laws='harmonic','dwell'")
-    case.refused(bent + declared((('push', 'load(2).values(2)', 1.0),)) + '&output sensitivities=.true. /\n', 3,
+    case.refused(bent + declared((('push', 'load(2).times(2)', 0.2),)) + '&output sensitivities=.true. /\n', 3,
                  "derivatives by the parameter 'push' are not computed")
     top = """&structure cq=1,2,3 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=1,0,0 /
