@@ -20,8 +20,8 @@ contains
       text = 'derivatives by the parameter '''//failure%name//''' do not exist: its value cannot be changed a little in both '// &
              'directions, because the data file would be wrong. Give a value inside the range that is allowed'
     case (failure_unknown_derivative)
-      text = 'derivatives by the parameter '''//failure%name//''' are not computed: it sets a time of the results. Leave '// &
-             'out the parameter, or sensitivities'
+      text = 'derivatives by the parameter '''//failure%name//''' are not computed: it sets a time of the results, '// &
+             'or another number for which they are not known. Leave out the parameter, or sensitivities'
     case (failure_singular_sensitivity)
       text = 'derivatives by the parameters do not exist at t = '//to_text(failure%t, 10)//' s, in a singular position of '// &
              chain_names(failure%chains)//'. Choose times that leave it out, or leave out sensitivities'

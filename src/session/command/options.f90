@@ -76,7 +76,7 @@ module mech9_options
     option_type('continue', needed_argument, 'FILE.h5', any_text, .false., both, &
                 'make the runs of a study that its HDF5 file does not have yet'), &
     option_type('merge', needed_argument, 'FILE FILE ...', any_text, .false., both, &
-                'join the HDF5 files of parts of a study to that of --hdf5', unlimited_arguments), &
+                'join the HDF5 files of parts of a study to one, that of --hdf5', unlimited_arguments), &
     option_type('optimize', no_argument, '', any_text, .false., 'mech9k', &
                 'find the parameters with which the groups &objective are met best'), &
     option_type('dakota', needed_argument, 'PARAMS RESULTS', any_text, .false., both, &

@@ -74,7 +74,7 @@ contains
       call raise(err, exit_data, path//': second derivatives are asked for, and there are none; use no_hessians or '// &
                  'numerical_hessians')
     else if (request%wants(gradients) .and. program_name == 'mech9d') then
-      call raise(err, exit_data, path//': gradients are asked for, and mech9d has none of quantities; use numerical_gradients')
+      call raise(err, exit_data, path//': gradients are asked for, and mech9d gives none to Dakota; use numerical_gradients')
     end if
   end subroutine match_names
 
