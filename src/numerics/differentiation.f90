@@ -51,8 +51,8 @@ contains
     good = worst <= 64.0_wp*epsilon(h)*maxval(abs(values))/h
   end subroutine offer
 
-  !> The length over which a function of several numbers is expected to change if these go on in a given direction: that in which
-  !> one of them would come to zero.
+  !> The length over which a function of several numbers is expected to change if these go on in a given direction: half of that in
+  !> which one of them would come to zero, so that no stencil reaches zero, where functions may not exist.
   pure real(wp) function length_along(numbers, direction) result(length)
     real(wp), intent(in) :: numbers(:)     !< the numbers
     real(wp), intent(in) :: direction(:)   !< their changes per unit of length, not all zero
@@ -61,7 +61,7 @@ contains
     length = huge(length)
     do i = 1, size(numbers)
       if (.not. abs(direction(i)) > 0.0_wp) cycle
-      length = min(length, merge(abs(numbers(i)), 1.0_wp, abs(numbers(i)) > 0.0_wp)/abs(direction(i)))
+      length = min(length, 0.5_wp*merge(abs(numbers(i)), 1.0_wp, abs(numbers(i)) > 0.0_wp)/abs(direction(i)))
     end do
   end function length_along
 
