@@ -321,12 +321,12 @@ contains
     real(wp), intent(in) :: squares(:, 0:)        !< (targets,0:n) squared difference at each sample
     integer, intent(out) :: at(:)                 !< (targets) sample of each target, from 0
     real(wp) :: least(size(targets), 0:ubound(squares, 2))
-    integer :: from(size(targets), 0:ubound(squares, 2)), g, i, best
-    logical :: is_first
+    integer :: from(size(targets), 0:ubound(squares, 2)), g, i, best, before, after
+    logical :: is_first, is_last
 
     do g = 1, size(targets)
-      is_first = g == 1
-      if (.not. is_first) is_first = targets(g)%objective /= targets(g - 1)%objective
+      before = max(1, g - 1)
+      is_first = g == 1 .or. targets(g)%objective /= targets(before)%objective
       best = -1
       do i = 0, ubound(squares, 2)
         least(g, i) = squares(g, i)
@@ -335,23 +335,23 @@ contains
         if (best < 0) then
           least(g, i) = huge(1.0_wp)
         else
-          least(g, i) = min(huge(1.0_wp), least(g, i) + least(g - 1, best))
+          least(g, i) = min(huge(1.0_wp), least(g, i) + least(before, best))
           from(g, i) = best
         end if
         if (best < 0) then
           best = i
-        else if (least(g - 1, i) < least(g - 1, best)) then
+        else if (least(before, i) < least(before, best)) then
           best = i
         end if
       end do
     end do
     do g = size(targets), 1, -1
-      is_first = g == size(targets)
-      if (.not. is_first) is_first = targets(g)%objective /= targets(g + 1)%objective
-      if (is_first) then
+      after = min(g + 1, size(targets))
+      is_last = g == after .or. targets(g)%objective /= targets(after)%objective
+      if (is_last) then
         at(g) = minloc(least(g, :), dim=1) - 1
       else
-        at(g) = from(g + 1, at(g + 1))
+        at(g) = from(after, at(after))
       end if
     end do
   end subroutine assign_in_order
