@@ -47,6 +47,11 @@ def sliding(groups):
     return slides | {f'C{i}' for i, items in enumerate(couplings, 1) if items['coordinates'][-1] in slides}
 
 
+def groups_of_run(text):
+    """The groups of a data file without those of its parameters: their values would replace the numbers that are converted."""
+    return [(group, items) for group, items in data_file.parse(text) if group not in ('parameter', 'study', 'objective', 'optimum')]
+
+
 def scaled(groups, s):
     """The groups with lengths that are s times as large: kg and s stay, so that forces are s times as large and moments s^2."""
     slides = sliding(groups)
@@ -192,7 +197,7 @@ class Units:
             text = re.sub(r"file='", f"file='{os.path.dirname(path)}/", file.read())
         runs = []
         for s in (1.0, *UNITS):
-            groups = data_file.parse(text)
+            groups = groups_of_run(text)
             slides = scaled(groups, s)
             self.scale_curves(groups, s)
             runs.append(self.look(program, data_file.write(groups), *options))
@@ -200,7 +205,7 @@ class Units:
         for s, other in zip(UNITS, runs[1:]):
             self.compare(f'{os.path.basename(path)}, lengths times {s:g}', runs[0], other,
                          lambda column, s=s: s ** power_of(column, slides))
-        groups = data_file.parse(text)
+        groups = groups_of_run(text)
         if dict(groups)['mechanism'].get('angle_unit') == ['deg']:
             return
         slides = in_degrees(groups)
