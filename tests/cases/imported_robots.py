@@ -381,7 +381,7 @@ def check_command_line(s):
             ('over its input', ['--import', 'robot.xml', '--out', './robot.xml'], 'would overwrite'),
             ('with a data file', ['x.nml', '--import', 'robot.xml'], 'a data file is given beside --import'),
             ('with a run', ['--import', 'robot.xml', '--table', 't.dat'], 'leave --table out'),
-            ('--out alone', ['x.nml', '--out', 'y.nml'], 'give both'),
+            ('--out alone', ['x.nml', '--out', 'y.nml'], 'give one of them, too'),
             ('three files', ['--import', 'robot.xml', 'a', 'b'], 'a data file is given beside --import'),
             ('no file', ['--import'], '--import needs an argument: --import FILE [LOOPS]'),
             ('twice', ['--import', 'robot.xml', '--import', 'robot.xml'], 'more than once')):
