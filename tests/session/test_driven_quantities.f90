@@ -1,5 +1,6 @@
 !> Quantities of a driven motion and their derivatives, without any results: the stroke of a slider-crank.
 program test_driven_quantities
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_source, only: source_from_text
@@ -49,7 +50,7 @@ contains
     call tester%near(numbers(1), 0.5_wp, 1.0e-9_wp, 'the stroke is twice the crank')
     call tester%near(gradient(1, 1), 2.0_wp, 1.0e-9_wp, 'its derivative by the crank')
     call tester%near(gradient(2, 1), 0.0_wp, 1.0e-9_wp, 'its derivative by the rod')
-    call tester%is_true(all(gradient(:, 2) /= gradient(:, 2)), 'the error of closed chains has no derivative')
+    call tester%is_true(all(ieee_is_nan(gradient(:, 2))), 'the error of closed chains has no derivative')
     call varied%at([0.3_wp, 0.25_wp], model, err)
     if (.not. allocated(err)) call find_driven_quantities('mech9k', model, varied, numbers, gradient, err)
     call tester%is_true(allocated(err), 'a rod that is too short fails')
