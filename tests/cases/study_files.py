@@ -117,14 +117,18 @@ def killed(cases, mech9k):
     """Killed at random moments, several times one after the other, then continued: the bits of an undisturbed study. At each moment
     a run is whole in the file, or not made."""
     check = cases.checks
-    text = random_study()
-    start = time.monotonic()
-    cases.study(mech9k, text, '--hdf5', cases.path('whole.h5'), '--table', cases.path('whole.dat'), '--threads', '1', why='whole')
-    length = time.monotonic() - start
+    intervals, length = 40, 0.0
+    # readers see new runs after half a second: the study has to take longer
+    while length < 2.0:
+        intervals *= 2
+        text = random_study().replace('intervals=40', f'intervals={intervals}')
+        start = time.monotonic()
+        cases.study(mech9k, text, '--hdf5', cases.path('whole.h5'), '--table', cases.path('whole.dat'), '--threads', '1', why='whole')
+        length = time.monotonic() - start
     whole = numbers_of(cases.path('whole.h5'))
     random.seed(7)
     partly = 0
-    for i in range(16):
+    for i in range(12):
         # how long a study takes depends on what else the machine does: go on until one was killed in the middle
         if i >= 4 and partly > 0:
             break
