@@ -21,21 +21,21 @@ contains
              'directions, because the data file would be wrong. Give a value inside the range that is allowed'
     case (failure_unknown_derivative)
       text = 'derivatives by the parameter '''//failure%name//''' are not computed: it sets a time of the results, '// &
-             'or another number for which they are not known. Leave out the parameter, or sensitivities'
+             'or another number for which they are not known. Leave out the parameter, or sensitivities and gradients'
     case (failure_singular_sensitivity)
       text = 'derivatives by the parameters do not exist at t = '//to_text(failure%t, 10)//' s, in a singular position of '// &
-             chain_names(failure%chains)//'. Choose times that leave it out, or leave out sensitivities'
+             chain_names(failure%chains)//'. Choose times that leave it out, or leave out sensitivities and gradients'
     case (failure_opening_parameter)
       text = 'derivatives by the parameter '''//failure%name//''' do not exist: '//chain_names(failure%chains)//' would not '// &
              'stay closed if it changed alone. Let the parameter set the other dimensions too that must change with it'
     case (failure_jump_sensitivity)
       text = 'derivatives by the parameters are not computed beyond t = '//to_text(failure%t, 10)//' s, where the rates of '// &
              'drives jump, and those of free coordinates with them. Give drives without jumps of their rates, end the run '// &
-             'before, or leave out sensitivities'
+             'before, or leave out sensitivities and gradients'
     case (failure_angles_sensitivity)
       text = 'derivatives by the parameters are not computed at t = '//to_text(failure%t, 10)//' s, where the motion goes on '// &
              'in other angles of a ball joint or of a rod than those of the data file. End the run before, or leave out '// &
-             'sensitivities'
+             'sensitivities and gradients'
     end select
   end subroutine explain_sensitivity
 end module mech9_sensitivity_words

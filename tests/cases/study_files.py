@@ -303,6 +303,8 @@ def refused(cases, mech9k):
             ('file.h5', text.replace('seed=3', 'seed=4'), (), "it is of another study: there '&study kind='random', runs=30, seed=3,', here '&study"),
             ('file.h5', text.replace('runs=30', 'runs=31'), (), 'it is of another study'),
             ('file.h5', text.replace('0.4, 10', '0.4, 10.5'), (), "here '&drive coordinate=1, kind='polynomial', coefficients=0.4,10.5,'"),
+            ('file.h5', text.replace('zero=0,1,0, moving_point=0,0,0', 'zero=0,1,0, moving_point=0,0,0.00012345678'), (),
+             "moving_point=0,0,0.00012345678,'"),
             ('file.h5', text, ('--set', 'parameter(1).low=0.21'), 'it is of another study'),
             ('file.h5', text.replace("'way'", "'path'"), (), 'it is of another study'),
             ('list.h5', listed, (), "it is of another study: there 'file 1"),

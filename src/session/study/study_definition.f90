@@ -121,22 +121,28 @@ contains
       if (one(i:i) /= other(i:i)) exit
       if (one(i:i) == line_end) first = i + 1
     end do
-    words = name_of_one//' '//line_from(one, first)//', '//name_of_other//' '//line_from(other, first)
+    words = name_of_one//' '//line_from(one, first, i)//', '//name_of_other//' '//line_from(other, first, i)
   end subroutine tell_difference
 
-  !> The line of a text that begins at a place, shortened, in quotes.
-  function line_from(text, first) result(line)
+  !> The line of a text that begins at a place, in quotes; of a long line the letters around another place.
+  function line_from(text, first, middle) result(line)
     character(len=*), intent(in) :: text                     !< of several lines
     integer, intent(in) :: first                             !< place of the first letter of the line
+    integer, intent(in) :: middle                            !< place in the line, or after it
     character(len=:), allocatable :: line
     integer, parameter :: longest = 100
-    integer :: last
+    integer :: from, to, last
 
     line = 'nothing'
     if (first > len(text)) return
     last = first + index(text(first:)//line_end, line_end) - 2
-    line = "'"//text(first:last)//"'"
-    if (last - first + 1 > longest) line = "'"//text(first:first + longest - 1)//" ...'"
+    from = first
+    if (last - first + 1 > longest) from = max(first, min(middle - longest/2, last - longest + 1))
+    to = min(last, from + longest - 1)
+    line = text(from:to)
+    if (from > first) line = '... '//line
+    if (to < last) line = line//' ...'
+    line = "'"//line//"'"
   end function line_from
 
   !> A digest of a text, of 16 hexadecimal digits.
