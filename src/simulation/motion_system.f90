@@ -5,7 +5,7 @@
 !> accepted step: half the cost of closing them in every evaluation, at the same error (docs/design-decisions.md).
 module mech9_motion_system
   use mech9_kinds, only: wp, long
-  use mech9_tolerances, only: trusted_between_steps, trusted_closing
+  use mech9_tolerances, only: trusted_between_steps, trusted_closing, round_off_of_jumps
   use mech9_error, only: error_type, raise, exit_singular, exit_integrator
   use mech9_failure, only: failure_singular_step, failure_unclosed_step, failure_drive_jumps, failure_no_inertia, &
     failure_lost_inertia, failure_infinite_rate, failure_jump_sensitivity
@@ -235,10 +235,12 @@ contains
     real(wp), intent(inout) :: y(:)                     !< the vector there; the rates may change
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp), dimension(self%plan%n_coordinates) :: jump
+    real(wp) :: duration
     integer :: i
 
     call take_vector(self, t, y, err)
     if (allocated(err)) return
+    duration = self%model%request%time%end - self%model%request%time%start
     jump = -self%state%dq
     call self%interval%begin(self%model, t)
     call take_vector(self, t, y, err)
@@ -248,13 +250,11 @@ contains
     elsewhere
       jump = 0.0_wp
     end where
-    if (maxval(abs(jump)) > 0.0_wp) then
-      if (allocated(self%sensitivity)) then
-        call raise(err, exit_singular, failure_jump_sensitivity)
-        err%failure%t = t
-      else
-        call take_impulse(self, jump(self%plan%independent), y, err)
-      end if
+    if (allocated(self%sensitivity) .and. any(abs(jump)*duration > round_off_of_jumps*self%plan%unit_of)) then
+      call raise(err, exit_singular, failure_jump_sensitivity)
+      err%failure%t = t
+    else if (maxval(abs(jump)) > 0.0_wp) then
+      call take_impulse(self, jump(self%plan%independent), y, err)
     end if
     if (allocated(err)) return
     do i = 1, size(self%drives)

@@ -258,6 +258,21 @@ def check_driven(case):
             case.close(mine[column], others[column], 1e-12, f'a driven motion in mech9d: {column}')
 
 
+def check_smooth_joints(case):
+    """Drives that move between rests by smooth laws have no jumps of their rates but round-off: derivatives go on behind the joints."""
+    for law in ('cycloidal', 'polynomial345'):
+        text = f"""&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /
+&drive coordinate=1, kind='segments', times=0,0.2,0.3,0.7, values=0,0,0.05,0, laws='{law}' /
+&initial coordinate=2, position=0.3 /
+&body link=3, mass=5, centre=0,-3,0 /
+&gravity acceleration=0,-9.81,0 /
+&time end=0.7, intervals=7 /
+"""
+        case.against_runs(text, (('depth', 'body(1).centre(2)', -3.0),), f'joints of {law}')
+
+
 def check_refusals(case):
     crank = declared((('crank', 'pair(2).point(1)', 0.3),)) + '&output sensitivities=.true. /\n'
     motor = "&motor kind='dc', coordinate=1, resistance=1, inductance=0.1, constant=0.1, voltage=1 /\n"
@@ -294,6 +309,7 @@ def main():
         check_pendulum(case)
         check_identities(case)
         check_driven(case)
+        check_smooth_joints(case)
         check_refusals(case)
         case.against_runs(FOUR_BAR, FOUR_BAR_PARAMETERS, 'four-bar with loads', 2.0**-10)
         case.against_runs(PENDULUM_FOUR_BAR, (('bar', 'pair(2).point(2)', -1.0), ('mass', 'body(1).mass', 20.0),

@@ -20,7 +20,7 @@ module mech9_tolerances
     trusted_crossing_rates, first_move, doubtful_conditioning, worthwhile_improvement, regular_conditioning, &
     refused_conditioning, trusted_closing, trusted_between_steps, steepest_slope, negligible_inertia, &
     doubtful_margin, lesser_share, lesser_share_near, short_way, third_derivative_step, locked, locked_together, balanced, &
-    balanced_singular, regular_balance, opened_by_parameter
+    balanced_singular, regular_balance, opened_by_parameter, round_off_of_jumps
 
   ! Ranks and singular positions: judged alike by --check, driven motion and dynamics.
 
@@ -222,6 +222,9 @@ module mech9_tolerances
   real(wp), parameter :: trusted_closing = 0.02_wp
   !> The same for a position within a step, which is known as well as the ends of the step.
   real(wp), parameter :: trusted_between_steps = 1.0e-3_wp
+  !> A change of the rate of a drive at a joint of its law is round-off of the law where it moves the coordinate by less than this in
+  !> the whole run, in its unit: laws that come to rest leave some 1e-14 of their greatest rate.
+  real(wp), parameter :: round_off_of_jumps = 1.0e-9_wp
   !> Steepest slope between two neighbouring triple zeros, times their distance, against the height: 3.4.
   real(wp), parameter :: steepest_slope = 4.0_wp
   !> The angles of a ball joint are replaced by others where the sine of the angle between their first and third axis is below
