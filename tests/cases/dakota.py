@@ -3,15 +3,18 @@
 usage: dakota.py MECH9K MECH9D
 """
 import os
+import signal
+import subprocess
 import sys
 import tempfile
+import time
 
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 from mech9_cases import Checks, run, text_of
 
-DONE, USAGE, DATA, FILE = 0, 2, 3, 8
+DONE, USAGE, DATA, FILE, INTERRUPTED = 0, 2, 3, 8, 130
 # The stroke of a slider-crank without offset is twice its crank; at the end of the drive the crank points along the slider.
 SLIDER_CRANK = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
@@ -120,6 +123,18 @@ def failures(cases, mech9k):
         cases.checks.true(done.returncode == DONE and results.split()[0] == 'fail' and 'the run failed' in done.stderr, f'crank {crank}: fail', (results, done.stderr))
 
 
+def interruption(cases, mech9k):
+    """An evaluation that its user ends is none: its program ends as one does, without results."""
+    results = os.path.join(cases.folder, 'none.out')
+    cases.write(standard([('crank', 0.25)], [('far', 1)]), 'params.in')
+    process = subprocess.Popen([mech9k, cases.write(SLIDER_CRANK), '--dakota', 'params.in', results, '--set', 'time.intervals=50000000'],
+                               cwd=cases.folder, stderr=subprocess.DEVNULL)
+    time.sleep(1.5)
+    process.send_signal(signal.SIGINT)
+    cases.checks.equal(process.wait(60), INTERRUPTED, 'Ctrl-C ends the evaluation')
+    cases.checks.true(not os.path.exists(results), 'and there are no results')
+
+
 def mistakes(cases, mech9k):
     check = cases.checks
     good = standard([('crank', 0.25)], [('far', 1)])
@@ -162,6 +177,7 @@ def main():
         values(cases, mech9k, mech9d)
         gradients(cases, mech9k, mech9d)
         failures(cases, mech9k)
+        interruption(cases, mech9k)
         mistakes(cases, mech9k)
     checks.finish()
 

@@ -3,7 +3,7 @@ module mech9_dakota_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_data, exit_singular
+  use mech9_error, only: error_type, raise, exit_data, exit_singular, exit_interrupted
   use mech9_text, only: string_type, nearest_name
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
@@ -129,6 +129,11 @@ contains
     end if
     if (allocated(failure)) then
       call explain(failure)
+      if (failure%code == exit_interrupted) then
+        ! an evaluation that the user ends has no result; Dakota would take a failure for one
+        call move_alloc(failure, err)
+        return
+      end if
       if (.not. quiet) write (error_unit, '(4a)') program_name, ': ', 'the run failed: ', failure%message
       call write_dakota_failure(path, failure%message, err)
     else
