@@ -89,6 +89,8 @@ def summaries(cases):
     check.near(told_quantiles(told['quantities'][0]), np.quantile(ten['place'], [0.05, 0.5, 0.95]), 1e-14, 'ten runs: quantiles')
     check.true('error' not in told['quantities'][0]['quantiles'][0] and 'first_order_shares' not in told['quantities'][0],
                'ten runs: what they do not tell', told)
+    _, told, printed = cases.study(SLIDES + "&study kind='random', runs=1 /\n")
+    check.true('deviation' not in told['quantities'][0] and 'deviation' not in printed, 'one run tells nothing of the scatter', printed)
     cases.write('0.5 0.3 0.3 0.7\n0.6 0.3 0.3 0.7\n', 'designs.dat')
     _, told, printed = cases.study(SLIDES + "&study kind='list', file='designs.dat' /\n")
     check.true('deviation' not in told['quantities'][0] and 'quantiles' not in printed, 'a list does not scatter', told)

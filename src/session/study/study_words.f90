@@ -49,9 +49,9 @@ contains
     if (statistics%drawn) call statistics%shares(shares)
     do i = 1, size(model%request%quantities)
       associate (name => model%request%quantities(i)%name)
-        if (statistics%drawn) call print_moments(unit, name, quantities%unit_of(i), sums, i)
+        if (statistics%drawn .and. sums%done > 1) call print_moments(unit, name, quantities%unit_of(i), sums, i)
         write (unit, '(a)') name//': '//to_text(sums%low(i), 8)//' to '//to_text(sums%high(i), 8)//' '//quantities%unit_of(i)
-        if (statistics%drawn) call print_quantiles(unit, name, quantities%unit_of(i), statistics, i)
+        if (statistics%drawn .and. sums%done > 1) call print_quantiles(unit, name, quantities%unit_of(i), statistics, i)
         if (statistics%drawn) call print_shares(unit, name, model, shares(i))
       end associate
     end do
@@ -156,7 +156,7 @@ contains
       call json%add('name', model%request%quantities(i)%name)
       call json%add('unit', quantities%unit_of(i))
       call add_range(json, sums, i)
-      if (statistics%drawn .and. sums%done > 0) call add_scatter(json, model, sums, statistics, shares(i), i)
+      if (statistics%drawn .and. sums%done > 1) call add_scatter(json, model, sums, statistics, shares(i), i)
       call json%end_object()
     end do
     call json%end_array()
