@@ -53,6 +53,7 @@ contains
     else if (options%has('help-data')) then
       call show_data_help(task, options%argument('help-data'), code)
     else if (options%has('merge')) then
+      call catch_size_limit()
       call merge_studies(task%program_name, options, code)
     else
       call run_file(task, options, options%file, code, team=team)

@@ -5,6 +5,7 @@ usage: study_files.py MECH9K MECH9D
 """
 import os
 import random
+import resource
 import shutil
 import signal
 import subprocess
@@ -277,6 +278,9 @@ def merged(cases, mech9k):
         done = run(mech9k, '--merge', *parts, target, '/dev/full')
         check.true(done.returncode == FILE and 'No space left on device' in done.stderr, f'{target} /dev/full', done.stderr)
     check.true(before == open(joined, 'rb').read(), 'refused: nothing is written over')
+    done = subprocess.run([mech9k, '--merge', *parts, '--hdf5', cases.path('large.h5')], capture_output=True, text=True,
+                          preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000)))
+    check.true(done.returncode == FILE and 'File too large' in done.stderr, 'a file that may not grow', f'{done.returncode}: {done.stderr}')
 
 
 def refused(cases, mech9k):
