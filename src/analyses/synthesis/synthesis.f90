@@ -176,6 +176,6 @@ contains
     class(found_design_type), intent(in) :: b         !< another one
 
     is_same = all(abs(a%x - b%x) <= same_place*(space%high - space%low)) .and. &
-              abs(a%value - b%value) <= same_value*max(a%value, b%value)
+              abs(a%value - b%value) <= same_value*max(a%value, b%value) + round_off
   end function is_same
 end module mech9_synthesis

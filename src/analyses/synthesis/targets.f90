@@ -9,7 +9,7 @@ module mech9_targets
   use mech9_design_space, only: design_type
   implicit none
   private
-  public :: target_type, gather_targets, difference, time_at, are_in_order, outer_times
+  public :: target_type, gather_targets, difference, time_at, are_in_order, meet_in_time, outer_times
 
   !> One target.
   type :: target_type
@@ -24,6 +24,9 @@ module mech9_targets
     real(wp) :: at = 0.0_wp             !< time [s], or value of the driven coordinate [rad, m]
     real(wp) :: factor = 1.0_wp         !< root of the weight
   end type target_type
+
+  !> Times that differ by less than this part of the run are nearly the same.
+  real(wp), parameter :: same_time = 1.0e-3_wp
 
 contains
 
@@ -121,6 +124,21 @@ contains
       are_in_order = are_in_order .and. (times(i) - times(i - 1))*direction > 0.0_wp
     end do
   end function are_in_order
+
+  !> Whether two neighbouring targets with free times are met at nearly the same time: the search does not change their order, and may
+  !> have stopped there.
+  pure logical function meet_in_time(targets, times, duration)
+    type(target_type), intent(in) :: targets(:)   !< all targets
+    real(wp), intent(in) :: times(:)              !< their times [s]
+    real(wp), intent(in) :: duration              !< of the run [s]
+    integer :: i
+
+    meet_in_time = .false.
+    do i = 2, size(targets)
+      if (targets(i)%timing /= timing_free .or. targets(i)%objective /= targets(i - 1)%objective) cycle
+      meet_in_time = meet_in_time .or. abs(times(i) - times(i - 1)) < same_time*abs(duration)
+    end do
+  end function meet_in_time
 
   !> The times of all targets as far as these are not free, and whether each lies within the run.
   subroutine outer_times(targets, design, low, high, times, found)

@@ -8,6 +8,7 @@ module mech9_optimum_words
   use mech9_model, only: model_type
   use mech9_json, only: json_type
   use mech9_run_words, only: duration, begin_report
+  use mech9_targets, only: meet_in_time
   use mech9_synthesis, only: synthesis_type
   implicit none
   private
@@ -24,7 +25,7 @@ contains
     integer :: i
 
     write (unit, '(a)') counted(synthesis%done, 'start')//': '//duration(time)//'; '//to_text(synthesis%reached)// &
-      ' led to designs that move through the whole run, '//to_text(size(synthesis%optima))//' of them distinct'
+      ' led to designs that move through the whole run; distinct designs: '//to_text(size(synthesis%optima))
     if (size(synthesis%optima) == 0) return
     write (unit, '(a)') 'least value: '//to_text(synthesis%optima(1)%value, 8)//', from '// &
       counted(synthesis%optima(1)%starts, 'start')
@@ -33,6 +34,9 @@ contains
         write (unit, '(a)') '  '//parameter%name//' = '//to_text(synthesis%optima(1)%x(i), 12)//at_bound(i)
       end associate
     end do
+    if (meet_in_time(synthesis%targets, synthesis%optima(1)%times, model%request%time%end - model%request%time%start)) &
+      write (unit, '(a)') 'note: this design meets two targets at nearly the same time; since the search keeps their order, '// &
+      'other designs may be better (see docs/synthesis.md)'
   contains
     !> Words for a parameter that is at one of its bounds.
     pure function at_bound(i) result(words)
