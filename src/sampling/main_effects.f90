@@ -47,16 +47,21 @@ contains
     real(wp), intent(in) :: numbers(:, :)                        !< (quantities,runs)
     type(shares_type), allocatable, intent(out) :: shares(:)     !< (quantities)
     type(fit_type) :: fit
+    type(parameter_type), allocatable :: chosen(:)
     integer, allocatable :: varied(:)
     integer :: i
 
     allocate (shares(size(numbers, 1)))
     varied = pack([(i, i=1, size(parameters))], [(.not. is_constant(parameters(i)), i=1, size(parameters))])
     if (size(varied) == 0 .or. size(numbers, 2) == 0) return
-    call factorize_products(parameters(varied), values(varied, :), fit)
+    allocate (chosen(size(varied)))
+    do i = 1, size(varied)
+      chosen(i) = parameters(varied(i))
+    end do
+    call factorize_products(chosen, values(varied, :), fit)
     if (fit%degree == 0) return
-    call find_coefficients(parameters(varied), values(varied, :), numbers, fit)
-    call judge_coefficients(parameters(varied), values(varied, :), numbers, fit)
+    call find_coefficients(chosen, values(varied, :), numbers, fit)
+    call judge_coefficients(chosen, values(varied, :), numbers, fit)
     do i = 1, size(shares)
       call find_shares_of(fit, i, size(numbers, 2), maxval(abs(numbers(i, :))), varied, size(parameters), shares(i))
     end do

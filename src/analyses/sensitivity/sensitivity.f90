@@ -123,14 +123,20 @@ contains
     type(model_type), intent(in) :: model           !< the present model
     type(sensitivity_type), intent(inout) :: self   !< with support and plan; gets forms and lists
     logical :: steps(self%plan%n_coordinates), frames(0:self%plan%n_coordinates)
+    logical :: varies(size(self%plan%blocks))
+    integer, allocatable :: varied(:)
     integer :: b, i, p, n
 
-    allocate (self%blocks(0), self%drives(0), self%points_shift(size(model%mechanism%points)))
+    do b = 1, size(varies)
+      associate (coordinates => self%plan%blocks(b)%coordinates)
+        varies(b) = size(coordinates) > 0 .and. all(self%support%touched(coordinates))
+      end associate
+    end do
+    varied = pack([(b, b=1, size(varies))], varies)
     n = self%n_parameters
-    do b = 1, size(self%plan%blocks)
-      if (size(self%plan%blocks(b)%coordinates) == 0) cycle
-      if (.not. all(self%support%touched(self%plan%blocks(b)%coordinates))) cycle
-      self%blocks = [self%blocks, new_varied_block(self%plan, self%support, b, n, self%in_plane, self%highest)]
+    allocate (self%blocks(size(varied)), self%drives(0), self%points_shift(size(model%mechanism%points)))
+    do b = 1, size(varied)
+      self%blocks(b) = new_varied_block(self%plan, self%support, varied(b), n, self%in_plane, self%highest)
     end do
     do p = 1, n
       do i = 1, size(model%problem%drives)
