@@ -8,6 +8,7 @@ option(MECH9_LINE_EDITING "edit lines at the terminal by libedit, where it is fo
 option(MECH9_THREADS "make the runs of a study in threads by OpenMP, where it is found" ON)
 option(MECH9_MPI "build mech9k-mpi and mech9d-mpi, studies in several processes, where MPI is found" ON)
 option(MECH9_IMPORT "import robots from XML by expat, where it is found" ON)
+option(MECH9_LIMITS "keep limits and find what is not a sum of squares by NLopt, where it is found" ON)
 
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "kind of build" FORCE)

@@ -83,6 +83,17 @@ if(MECH9_IMPORT)
   endif()
 endif()
 
+# NLopt finds what is not a sum of squares in --optimize, and keeps limits; without it a program says so.
+if(MECH9_LIMITS)
+  find_library(MECH9_NLOPT NAMES libnlopt.a nlopt DOC "NLopt (Debian: libnlopt-dev)")
+  mark_as_advanced(MECH9_NLOPT)
+  if(MECH9_NLOPT)
+    set(MECH9_NLOPT_LIBRARY "${MECH9_NLOPT}")
+  else()
+    message(STATUS "NLopt was not found: --optimize without limits, and for sums of squares only")
+  endif()
+endif()
+
 # OpenMP makes the runs of a study in threads; without it a study takes one core. The run-time check of recursion takes two threads
 # in one procedure for one, and the sanitizers know nothing of the OpenMP library: builds with these go without.
 if(MECH9_THREADS AND NOT CMAKE_BUILD_TYPE MATCHES "^(Debug|Sanitize|Threads)$")
@@ -108,4 +119,5 @@ endif()
 
 # The same libraries as files or linker options, for mech9-link, which works without CMake.
 set(MECH9_LINK_LIBRARIES ${MECH9_HDF5_LIBRARIES} ${MECH9_SUNDIALS_LIBRARIES} ${LAPACK_LIBRARIES} ${LAPACK_LINKER_FLAGS}
-  ${MECH9_LINE_EDITING_LIBRARIES} ${MECH9_XML_LIBRARY} ${MECH9_OPENMP_LIBRARIES})
+  ${MECH9_LINE_EDITING_LIBRARIES} ${MECH9_XML_LIBRARY} ${MECH9_NLOPT_LIBRARY}
+  ${MECH9_OPENMP_LIBRARIES})

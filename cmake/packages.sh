@@ -5,7 +5,7 @@
 # The lists: what a build needs, what draws the pictures, what the tests need besides, and the browser that shows them
 # pages, without which those are not tested. libc6-dev is only a recommendation of gcc, so that a minimal system can have
 # a compiler that cannot link.
-packages_build="gfortran libc6-dev cmake ninja-build liblapack-dev libsundials-dev libsundials-fortran-dev libedit-dev libhdf5-dev libexpat1-dev"
+packages_build="gfortran libc6-dev cmake ninja-build liblapack-dev libsundials-dev libsundials-fortran-dev libedit-dev libhdf5-dev libexpat1-dev libnlopt-dev"
 packages_pictures="gnuplot-nox graphviz"
 packages_tests="python3 python3-numpy python3-h5py python3-xarray python3-h5netcdf python3-pandas hdf5-tools groff-base libopenmpi-dev openmpi-bin"
 packages_browser="chromium"

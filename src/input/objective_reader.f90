@@ -1,4 +1,5 @@
-!> The groups &objective and &optimum of a checked document: targets that a motion should meet, and the search for the best design.
+!> The groups &objective and &optimum of a checked document: targets that a motion should meet, quantities that should be small, and
+!> the search for the best design.
 module mech9_objective_reader
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -7,15 +8,16 @@ module mech9_objective_reader
   use mech9_source, only: source_type, span_type, read_source
   use mech9_numeral, only: numeral_type, read_numeral
   use mech9_document, only: document_type, group_type
-  use mech9_lookup, only: groups_named, group_or_empty, get_integer, get_real, get_text, span_of
+  use mech9_lookup, only: groups_named, group_or_empty, has_name, get_integer, get_real, get_text, span_of
   use mech9_diagnostics, only: diagnostics_type, printable
   use mech9_table_file, only: beside
   use mech9_model, only: model_type
   use mech9_result_units, only: unit_of
-  use mech9_objective, only: objective_type, path_objective, function_objective, timing_given, timing_free, timing_over
+  use mech9_objective, only: objective_type, path_objective, function_objective, pose_objective, quantity_objective, &
+    timing_given, timing_free, timing_over
   implicit none
   private
-  public :: read_objectives
+  public :: read_objectives, find_quantity
 
   character(len=*), parameter :: gaps = ' ,;'//achar(9)//achar(13)
 
@@ -36,16 +38,25 @@ contains
     search = group_or_empty(document, 'optimum')
     model%request%optimum%starts = get_integer(search, 'starts')
     model%request%optimum%seed = get_integer(search, 'seed')
+    model%request%optimum%method = get_text(search, 'method')
+    model%request%optimum%place = diagnostics%place(span_of(search, 'method', 1))
     if (diagnostics%failed()) return             ! points and coordinates may not be known
     do i = 1, size(numbers)
       associate (group => document%groups(numbers(i)), objective => model%request%objectives(i))
         objective%place = diagnostics%place(group%span)
         objective%weight = get_real(group, 'weight')
-        if (get_text(group, 'kind') == 'path') then
+        select case (get_text(group, 'kind'))
+        case ('path')
           call read_path(document, group, model, objective, diagnostics)
-        else
+        case ('function')
           call read_function(document, group, model, objective, diagnostics)
-        end if
+        case ('pose')
+          call read_poses(document, group, model, objective, diagnostics)
+        case ('quantity')
+          call read_quantity(group, model, objective, diagnostics)
+        end select
+        if (.not. allocated(objective%targets)) allocate (objective%targets(3, 0), objective%at(0))
+        if (.not. allocated(objective%turns)) allocate (objective%turns(3, size(objective%at)), source=0.0_wp)
       end associate
     end do
   end subroutine read_objectives
@@ -118,7 +129,7 @@ contains
         call diagnostics%add(span_of(group, 'over', 1), 'the variable of the function must be t or a coordinate with a drive')
       end if
     end if
-    call read_rows(document, group, [2, 2], 'the variable and the value of the function', rows, diagnostics)
+    call read_rows(document, group, [2], 'the variable and the value of the function', rows, diagnostics)
     if (size(rows, 2) == 0 .or. objective%coordinate == 0) return
     if (objective%timing == timing_over .and. objective%over == 0) return
     allocate (objective%targets(3, size(rows, 2)), objective%at(size(rows, 2)), source=0.0_wp)
@@ -131,6 +142,88 @@ contains
     end if
   end subroutine read_function
 
+  !> Read the poses of a link. Angles are compared with distances by a length, which by default is the largest distance between two
+  !> poses.
+  subroutine read_poses(document, group, model, objective, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(group_type), intent(in) :: group                 !< the group of the objective
+    type(model_type), intent(in) :: model                 !< with the structure
+    type(objective_type), intent(inout) :: objective      !< gets the targets
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    real(wp), allocatable :: rows(:, :)
+    integer :: i, j, n, first
+
+    objective%kind = pose_objective
+    objective%timing = merge(timing_given, timing_free, get_text(group, 'timing') == 'given')
+    objective%link = get_integer(group, 'link')
+    associate (n_links => model%mechanism%structure%shown_links())
+      if (objective%link > n_links) &
+        call diagnostics%add(span_of(group, 'link', 1), 'there is no link '//to_text(objective%link)//'; the mechanism has '// &
+                             counted(n_links, 'link'))
+    end associate
+    if (objective%link == 1) call diagnostics%add(span_of(group, 'link', 1), 'link 1 is the frame, whose pose never changes')
+    if (objective%timing == timing_free) then
+      call read_rows(document, group, [3, 6], 'a pose: x, y and an angle, or x, y, z and the three components of a rotation '// &
+                     'vector', rows, diagnostics)
+    else
+      call read_rows(document, group, [4, 7], 'the time of a pose and the pose: x, y and an angle, or x, y, z and the three '// &
+                     'components of a rotation vector', rows, diagnostics)
+    end if
+    n = size(rows, 2)
+    if (n == 0) return
+    first = merge(1, 0, objective%timing == timing_given)
+    objective%components = (size(rows, 1) - first)/2 + modulo(size(rows, 1) - first, 2)
+    allocate (objective%targets(3, n), objective%turns(3, n), objective%at(n), source=0.0_wp)
+    objective%targets(:objective%components, :) = rows(first + 1:first + objective%components, :)
+    j = size(rows, 1) - first - objective%components
+    objective%turns(4 - j:, :) = rows(size(rows, 1) - j + 1:, :)*model%mechanism%angle_unit
+    if (first == 1) objective%at = rows(1, :)
+    if (first == 1) call check_times(group, model, objective%at, diagnostics)
+    objective%length = 0.0_wp
+    do i = 1, n
+      do j = 1, i - 1
+        objective%length = max(objective%length, norm2(objective%targets(:, i) - objective%targets(:, j)))
+      end do
+    end do
+    if (has_name(group, 'length')) objective%length = get_real(group, 'length')
+    if (.not. objective%length > 0.0_wp) &
+      call diagnostics%add(span_of(group, 'file', 1), 'all poses are at one place, so that the weight of angles against '// &
+                           'distances does not follow from them; give ''length'', the distance that counts as much as 1 rad')
+  end subroutine read_poses
+
+  !> Read what a quantity should be.
+  pure subroutine read_quantity(group, model, objective, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the objective
+    type(model_type), intent(in) :: model                 !< with the quantities
+    type(objective_type), intent(inout) :: objective      !< gets the quantity
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+
+    objective%kind = quantity_objective
+    call find_quantity(group, model, objective%quantity, diagnostics)
+    objective%has_goal = has_name(group, 'goal')
+    if (objective%has_goal) objective%goal = get_real(group, 'goal')
+    if (get_text(group, 'make') == 'largest') objective%direction = -1.0_wp
+    if (objective%has_goal .and. has_name(group, 'make')) &
+      call diagnostics%add(span_of(group, 'make', 1), '''make'' asks for the least or the largest value, and ''goal'' '// &
+                           'for a value; leave one of them out')
+  end subroutine read_quantity
+
+  !> Find the quantity that a group names with `of`.
+  pure subroutine find_quantity(group, model, number, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the objective or the limit
+    type(model_type), intent(in) :: model                 !< with the quantities
+    integer, intent(out) :: number                        !< of the quantity; 0: there is none
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the error
+    character(len=40) :: names(size(model%request%quantities))
+    integer :: i
+
+    do i = 1, size(names)
+      names(i) = model%request%quantities(i)%name
+    end do
+    number = findloc(names, get_text(group, 'of'), dim=1)
+    if (number == 0) call refuse_name(group, 'of', 'there is no &quantity '''//get_text(group, 'of')//'''', names, diagnostics)
+  end subroutine find_quantity
+
   !> Report a name that does not exist.
   pure subroutine refuse_name(group, item, sentence, names, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the objective
@@ -141,6 +234,8 @@ contains
 
     if (size(names) == 0) then
       call diagnostics%add(span_of(group, item, 1), sentence)
+    else if (size(names) == 1) then
+      call diagnostics%add(span_of(group, item, 1), sentence//'; the only one is '//trim(names(1)))
     else if (size(names) <= 12) then
       call diagnostics%add(span_of(group, item, 1), sentence//'; there are '//trim(listed(names)))
     else
@@ -171,7 +266,7 @@ contains
   subroutine read_rows(document, group, columns, meaning, rows, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(group_type), intent(in) :: group                 !< the group of the objective
-    integer, intent(in) :: columns(2)                     !< fewest and most numbers in a line
+    integer, intent(in) :: columns(:)                     !< numbers that a line may have, in increasing order
     character(len=*), intent(in) :: meaning               !< of the numbers, for messages
     real(wp), allocatable, intent(out) :: rows(:, :)      !< (columns,lines); no lines where errors are reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
@@ -190,7 +285,7 @@ contains
     call diagnostics%add_source(source, number)
     found = diagnostics%count
     deallocate (rows)
-    allocate (rows(columns(2), size(source%line_start)))
+    allocate (rows(columns(size(columns)), size(source%line_start)))
     n = 0
     width = 0
     do line = 1, size(source%line_start)
@@ -207,7 +302,7 @@ contains
     type(source_type), intent(in) :: source               !< the text of the file
     integer, intent(in) :: number                         !< number of the file as a source, for spans
     integer, intent(in) :: line                           !< number of the line, from 1
-    integer, intent(in) :: columns(2)                     !< fewest and most numbers in a line
+    integer, intent(in) :: columns(:)                     !< numbers that a line may have, in increasing order
     character(len=*), intent(in) :: meaning               !< of the numbers, for messages
     integer, intent(inout) :: width                       !< numbers in the first line that has any; 0: there was none
     real(wp), intent(inout) :: rows(:, :)                 !< (columns,lines) gets the numbers
@@ -234,11 +329,11 @@ contains
                              numeral%problem)
         return
       end if
-      if (count <= columns(2)) rows(count, n + 1) = numeral%number
+      if (count <= columns(size(columns))) rows(count, n + 1) = numeral%number
       at = at + length
     end do
     if (count == 0) return
-    if (width == 0 .and. count >= columns(1) .and. count <= columns(2)) width = count
+    if (width == 0 .and. any(columns == count)) width = count
     if (count /= width) then
       call diagnostics%add(span_type(number, first, max(first, last)), 'each line holds '//meaning//'; this one has '// &
                            counted(count, 'number'))

@@ -25,6 +25,7 @@ module mech9_reader
   use mech9_study_reader, only: read_study
   use mech9_quantity_reader, only: read_quantities
   use mech9_objective_reader, only: read_objectives
+  use mech9_limit_reader, only: read_limits
   use mech9_cam_reader, only: read_cams
   use mech9_diagnostics, only: diagnostics_type
   implicit none
@@ -69,6 +70,7 @@ contains
     if (.not. diagnostics%failed()) call hold_idle_rods(needs_drives, model)
     call read_study(checked, model%parameters, model%request%study, diagnostics)
     call read_objectives(checked, model, diagnostics)
+    call read_limits(checked, model, diagnostics)
   end subroutine read_model
 
   !> The model of a document that is checked and in which the parameters have set their numbers; see read_model. Idle rods are not

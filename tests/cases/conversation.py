@@ -454,7 +454,7 @@ def forces_of_drives(talks):
             table = read_table(text_of(os.path.join(folder, 'bar.dat')))
             talks.checks.near(table['F1'], 2 * 9.81 * 0.5 - 3, 1e-14, f'forces {why}: the torque of the drive')
     with tempfile.TemporaryDirectory() as folder:
-        done = talks.pipe(talks.mech9k, BAR + plain + [('all is right', 'add body'), ('What can be added: point, parameter, quantity, objective;', 'quit')],
+        done = talks.pipe(talks.mech9k, BAR + plain + [('all is right', 'add body'), ('What can be added: point, parameter, quantity, objective, limit;', 'quit')],
                           'without forces', folder=folder)
         talks.checks.true(not any(word in done.stderr for word in ('Bodies', 'Gravity', 'Loads')), 'no masses without forces',
                           done.stderr)

@@ -195,7 +195,7 @@ def mistakes(cases):
     cases.refused(good + LENGTHS, 'this file has none', USAGE)
     cases.refused(good + path, "give 'low' and 'high' in at least one &parameter")
     cases.refused(good + LENGTHS.replace(', high=0.8', '') + path, "both 'low' and 'high'")
-    cases.refused(good + LENGTHS + path.replace("'P'", "'Q'"), "there is no &point 'Q'; there are P")
+    cases.refused(good + LENGTHS + path.replace("'P'", "'Q'"), "there is no &point 'Q'; the only one is P")
     cases.refused(good + LENGTHS + path.replace('targets', 'missing'), 'the targets', FILE)
     cases.refused(good + LENGTHS + path, '--study and --optimize are different tasks', USAGE, '--study')
     cases.refused(good + LENGTHS + path, 'leave --animate out', USAGE, '--animate', 'a.html')

@@ -86,6 +86,8 @@ contains
     character(len=10), parameter :: pairs(4) = [character(len=10) :: 'revolute', 'prismatic', 'helical', 'user']
     character(len=10), parameter :: loads(5) = [character(len=10) :: 'force', 'torque', 'spring', 'coordinate', 'user']
     character(len=6), parameter :: couplings(7) = [character(len=6) :: 'gear', 'rack', 'belt', 'screw', 'linear', 'table', 'user']
+    character(len=8), parameter :: objectives(4) = [character(len=8) :: 'path', 'function', 'pose', 'quantity']
+    character(len=12), parameter :: limits(4) = [character(len=12) :: 'quantity', 'assembles', 'crank', 'transmission']
     character(len=6), parameter :: links(4) = ['1, 2', '2, 3', '3, 4', '4, 1']
     character(len=1) :: number
     integer :: i
@@ -127,7 +129,12 @@ contains
     call draft%give('parameter', 1, 'name', '''crank''')
     call draft%give('quantity', 1, 'name', '''stroke''')
     if (program_name == 'mech9k') then
-      call draft%give('objective', 1, 'kind', trim(merge('''path''    ', '''function''', drive == 'table')))
+      do i = 1, size(objectives)
+        call draft%give('objective', i, 'kind', ''''//trim(objectives(i))//'''')
+      end do
+      do i = 1, size(limits)
+        call draft%give('limit', i, 'kind', ''''//trim(limits(i))//'''')
+      end do
       call draft%give('optimum', 1, 'starts', '10')
     end if
     call draft%give('study', 1, 'kind', trim(merge('''list''  ', '''random''', drive == 'table')))

@@ -120,7 +120,7 @@ contains
         call append(questions, count, question_type(kind=ask_guesses, topic=topic, group_row=group_row))
     else if (any(item_table(rows)%seldom) .and. group /= 'mechanism' .and. &
              (all(group /= ['load     ', 'motor    ', 'cam      ', 'coupling ', 'parameter', 'quantity ', &
-                           'objective']) .or. &
+                           'objective', 'limit    ']) .or. &
               draft%count_of(group) > 0)) then
       ! a conversation does not begin with rarely used names; those of the mechanism can be changed by their names, and
       ! those of loads, motors, cams, couplings, parameters and quantities are for the ones that are there

@@ -77,25 +77,59 @@ module mech9_run_explanations
                   'Each line of this file has the values of all parameters, in the order of the parameters.', 'designs.dat'), &
     explanation_type('objective', 'kind', '', &
                   'With the option --optimize the program finds the values of the parameters, between their low and high, with '// &
-                  'which a point follows a path, or a coordinate a function, as well as possible.', 'path'), &
+                  'which a point follows a path, a coordinate a function, a link poses, or a quantity a value, as well as '// &
+                  'possible.', 'path'), &
     explanation_type('objective', 'point', 'path', &
                   'The point must be one of the groups &point. Its distances from the targets are made small.', 'P'), &
+    explanation_type('objective', 'link', 'pose', &
+                  'The link goes through the poses: its origin comes near the places, and its axes near the directions.', '3'), &
     explanation_type('objective', 'of', 'function', &
                   'The coordinate follows the function: q6 is coordinate 6.', 'q6'), &
+    explanation_type('objective', 'of', 'quantity', &
+                  'The quantity must be one of the groups &quantity.', 'stroke'), &
     explanation_type('objective', 'over', 'function', &
                   'The function is one of time, t, or of a coordinate with a drive, such as q5.', 'q5'), &
-    explanation_type('objective', 'file', '', &
+    explanation_type('objective', 'file', 'path function', &
                   'Each line of this file is a target. For a path it holds x and y, or x, y and z, in m; with given times '// &
                   'the time stands before them. For a function it holds the variable and the value.', 'path.dat'), &
-    explanation_type('objective', 'timing', 'path', &
-                  'With free the point meets the targets one after the other at times that the search finds; with given it '// &
-                  'meets each target at the time in its line.', 'free'), &
+    explanation_type('objective', 'file', 'pose', &
+                  'Each line of this file is a pose: x, y and an angle, or x, y, z and a rotation vector, whose length is the '// &
+                  'angle. With given times the time stands before them.', 'poses.dat'), &
+    explanation_type('objective', 'timing', 'path pose', &
+                  'With free the targets are met one after the other at times that the search finds; with given each is met '// &
+                  'at the time in its line.', 'free'), &
+    explanation_type('objective', 'length', 'pose', &
+                  'Distances and angles are added. An angle of 1 rad counts as much as a distance of this length.', '0.1'), &
+    explanation_type('objective', 'goal', 'quantity', &
+                  'The difference of the quantity from this value is made small. Without it the quantity is made least or '// &
+                  'largest.', '0.3'), &
+    explanation_type('objective', 'make', 'quantity', &
+                  'The quantity itself is made as small as possible, or as large, where it has no goal.', 'least'), &
     explanation_type('objective', 'weight', '', &
-                  'Where there are several objectives, their sums of squares are added with these factors.', '10'), &
+                  'Where there are several objectives, they are added with these factors.', '10'), &
+    explanation_type('limit', 'kind', '', &
+                  'A design that breaks a limit is never the result. Limits are ranges of quantities, assembly through the '// &
+                  'whole run, drives that can turn fully, and transmission angles.', 'quantity'), &
+    explanation_type('limit', 'of', 'quantity', &
+                  'The quantity must be one of the groups &quantity.', 'stroke'), &
+    explanation_type('limit', 'low', 'quantity', &
+                  'The quantity must not be smaller.', '0.1'), &
+    explanation_type('limit', 'high', 'quantity', &
+                  'The quantity must not be larger.', '0.4'), &
+    explanation_type('limit', 'coordinate', 'crank', &
+                  'From its value at the start this angle must be able to turn fully, while all other drives stand still.', '1'), &
+    explanation_type('limit', 'coordinate', 'transmission', &
+                  'At the pair of this coordinate the transmission angle is measured, for instance between coupler and rocker.', &
+                  '3'), &
+    explanation_type('limit', 'at_least', 'transmission', &
+                  'The transmission angle must not be smaller at any time of the run. Some 40 degrees are usual.', '0.7'), &
     explanation_type('optimum', 'starts', '', &
                   'Each start leads to the best design near it. More starts find the best one of all more surely.', '1000'), &
     explanation_type('optimum', 'seed', '', &
-                  'The same seed gives the same starts. Another one gives others.', '2')]
+                  'The same seed gives the same starts. Another one gives others.', '2'), &
+    explanation_type('optimum', 'method', '', &
+                  'The method of Levenberg and Marquardt is for sums of squares without limits; the others come from the '// &
+                  'library NLopt.', 'auto')]
 
   type(explanation_type), parameter :: run_texts(*) = [ &
     explanation_type('time', 'start', '', &

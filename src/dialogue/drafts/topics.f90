@@ -43,8 +43,9 @@ module mech9_topics
     topic_type('Quantities', 'quantity', 'A quantity is one number from the whole run, such as the stroke of a slider. '// &
                'A quantity begun by mistake is left out by remove.'), &
     topic_type('Study', 'study', ''), &
-    topic_type('Objectives', 'objective optimum', 'An objective is a path or a function that the mechanism should follow. '// &
-               'An objective begun by mistake is left out by remove.'), &
+    topic_type('Objectives', 'objective limit optimum', 'An objective is a path, a function, poses or a quantity that the '// &
+               'mechanism should have. A limit is a condition that it must meet. '// &
+               'What was begun by mistake is left out by remove.'), &
     topic_type('Further data', '', '')]
 
 contains
@@ -86,7 +87,7 @@ contains
   pure logical function is_on_request(group_row)
     integer, intent(in) :: group_row  !< row of the group in group_table
 
-    is_on_request = any(group_table(group_row)%name == ['parameter', 'quantity ', 'objective'])
+    is_on_request = any(group_table(group_row)%name == ['parameter', 'quantity ', 'objective', 'limit    '])
   end function is_on_request
 
   !> Whether there can be any number of groups of a name, which the user begins one by one. In mech9d, drives are among them:

@@ -43,7 +43,9 @@ module mech9_grammar
     group_row_type('study', .false., '', 'both', &
                    'the sets of parameter values for which --study makes runs'), &
     group_row_type('objective', .true., '', 'mech9k', &
-                   'a path or a function that the mechanism should follow, for --optimize'), &
+                   'a path, a function, poses or a quantity that the mechanism should have, for --optimize'), &
+    group_row_type('limit', .true., '', 'mech9k', &
+                   'a condition that the designs of --optimize must meet'), &
     group_row_type('optimum', .false., '', 'mech9k', &
                    'the search of --optimize for the values of the parameters that meet the objectives best'), &
     group_row_type('time', .false., '', 'both', &

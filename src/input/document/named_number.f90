@@ -29,7 +29,8 @@ module mech9_named_number
   end type number_place_type
 
   !> Groups whose numbers describe studies, not a mechanism and its motion.
-  character(len=9), parameter :: closed_groups(5) = [character(len=9) :: 'parameter', 'quantity', 'study', 'objective', 'optimum']
+  character(len=9), parameter :: closed_groups(6) = [character(len=9) :: 'parameter', 'quantity', 'study', 'objective', &
+                                                                   'limit', 'optimum']
 
 contains
 

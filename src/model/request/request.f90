@@ -5,7 +5,7 @@ module mech9_request
   use mech9_error, only: place_type
   use mech9_quantity, only: quantity_type
   use mech9_study, only: study_type
-  use mech9_objective, only: objective_type, optimum_type
+  use mech9_objective, only: objective_type, limit_type, optimum_type
   implicit none
   private
   public :: request_type, time_grid_type, solver_settings_type, output_settings_type, cam_request_type
@@ -79,6 +79,7 @@ module mech9_request
     type(quantity_type), allocatable :: quantities(:)   !< in the order of the data file
     type(study_type) :: study
     type(objective_type), allocatable :: objectives(:)  !< in the order of the data file; for --optimize
+    type(limit_type), allocatable :: limits(:)          !< in the order of the data file; for --optimize
     type(optimum_type) :: optimum
     type(cam_request_type), allocatable :: cams(:)   !< in the order of the data file
   end type request_type

@@ -10,6 +10,7 @@ module mech9_optimum_task
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
+  use mech9_objective, only: pose_objective, quantity_objective
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -82,6 +83,9 @@ contains
 
     if (size(model%request%objectives) == 0) then
       call raise(err, exit_usage, '--optimize meets the groups &objective as well as possible, and this file has none')
+    else if (any(model%request%objectives%kind == pose_objective .or. model%request%objectives%kind == quantity_objective) .or. &
+             size(model%request%limits) > 0) then
+      call raise(err, exit_usage, 'this version searches for paths and functions without limits only')
     else if (.not. any(model%parameters%has_range)) then
       call raise(err, exit_data, 'no parameter is varied: give ''low'' and ''high'' in at least one &parameter', &
                  model%request%objectives(1)%place)
