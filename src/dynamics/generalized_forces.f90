@@ -12,7 +12,7 @@ module mech9_generalized_forces
   use mech9_frame_motion, only: link_motion
   implicit none
   private
-  public :: collect_loads, sum_loads, collect_forces, add_generalized, show_state
+  public :: collect_loads, sum_loads, collect_forces, add_generalized, show_state, show_links
 
 contains
 

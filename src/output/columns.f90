@@ -35,6 +35,8 @@ module mech9_columns
     integer :: couplings = 0                !< how many couplings have columns of their forces, after those of pairs
     integer :: motors = 0                   !< how many columns belong to motors, after those of forces
     real(wp), allocatable :: motor_factors(:)   !< (motors) factors from the program's units to those of the results
+    integer :: energies = 0                 !< how many columns belong to energies, after those of motors
+    integer :: varied = 0                   !< how many columns, from the second one on, have derivatives by parameters
     integer :: sensitivities = 0            !< how many columns, the last ones, are derivatives by parameters
     type(string_type), allocatable :: parameters(:)   !< names of these parameters
     type(poses_type) :: poses               !< columns after the others, if they were requested
@@ -46,8 +48,10 @@ module mech9_columns
     procedure :: fill_forces
     procedure :: append_motors
     procedure :: fill_motors
+    procedure :: append_energies
     procedure :: append_sensitivities
     procedure :: fill_sensitivities
+    procedure :: fill_beyond_motion
     procedure :: derivatives_of
     procedure :: width
     procedure :: family_of
@@ -201,8 +205,18 @@ contains
     end do
   end subroutine fill_motors
 
-  !> Append the derivatives of all columns of the motion but time, by each parameter. Those that are not recorded stand after the
-  !> poses, without names.
+  !> Append the columns of energies.
+  pure subroutine append_energies(self)
+    class(columns_type), intent(inout) :: self       !< the columns
+
+    call self%append('E.kinetic', 'J', 'kinetic energy')
+    call self%append('E.potential', 'J', 'potential energy of gravity and springs')
+    call self%append('E.total', 'J', 'kinetic and potential energy')
+    self%energies = 3
+  end subroutine append_energies
+
+  !> Append the derivatives of the columns of motion, forces and energies, but for time, by each parameter. Those that are not
+  !> recorded stand after the poses, without names.
   pure subroutine append_sensitivities(self, parameters, recorded)
     class(columns_type), intent(inout) :: self       !< the columns
     type(string_type), intent(in) :: parameters(:)   !< names of the parameters
@@ -211,13 +225,14 @@ contains
     integer :: p, i
 
     self%parameters = parameters
+    self%varied = self%motion - 1 + self%forces() + self%energies
     if (.not. recorded) then
-      self%unrecorded = size(parameters)*(self%motion - 1)
+      self%unrecorded = size(parameters)*self%varied
       return
     end if
-    self%sensitivities = size(parameters)*(self%motion - 1)
+    self%sensitivities = size(parameters)*self%varied
     do p = 1, size(parameters)
-      do i = 2, self%motion
+      do i = 2, self%varied + 1
         name = self%names(i)%text
         unit = self%units(i)%text
         call self%append('d('//name//')/d('//parameters(p)%text//')', unit//'/'//parameters(p)%text, &
@@ -242,11 +257,11 @@ contains
     integer :: p
 
     columns = 0
-    if (column < 2 .or. column > self%motion) return
-    columns = [(before_sensitivities(self) + (p - 1)*(self%motion - 1) + column - 1, p=1, size(columns))]
+    if (column < 2 .or. column > self%varied + 1) return
+    columns = [(before_sensitivities(self) + (p - 1)*self%varied + column - 1, p=1, size(columns))]
   end function derivatives_of
 
-  !> Fill the columns of the derivatives by parameters in a row.
+  !> Fill the columns of the derivatives of the motion by parameters in a row.
   pure subroutine fill_sensitivities(self, sensitivity, row)
     class(columns_type), intent(in) :: self               !< the columns
     type(sensitivity_type), intent(in) :: sensitivity     !< the derivatives
@@ -255,13 +270,26 @@ contains
     associate (before => before_sensitivities(self), n => self%sensitivities + self%unrecorded)
       call put_derivatives(size(self%parameters), size(self%coordinates), self%coordinates, self%factors, self%derivatives, &
                            size(sensitivity%q, 3), sensitivity%q, size(sensitivity%points, 4), sensitivity%points, &
-                           row(before + 1:before + n))
+                           self%varied, row(before + 1:before + n))
     end associate
   end subroutine fill_sensitivities
 
+  !> Fill the columns of the derivatives of forces and energies by parameters in a row.
+  pure subroutine fill_beyond_motion(self, values, row)
+    class(columns_type), intent(in) :: self        !< the columns
+    real(wp), intent(in) :: values(:, :)           !< (P,columns) derivatives, in the order of these columns
+    real(wp), intent(inout) :: row(:)              !< numbers of one row, one for each column
+    integer :: p, at
+
+    do p = 1, size(values, 1)
+      at = before_sensitivities(self) + (p - 1)*self%varied + self%motion - 1
+      row(at + 1:at + size(values, 2)) = values(p, :)
+    end do
+  end subroutine fill_beyond_motion
+
   !> Put derivatives by parameters in the order of columns: all by the first parameter first. The arrays have known shapes, so that
   !> the compiler keeps their addresses in registers.
-  pure subroutine put_derivatives(n, n_coordinates, coordinates, factors, highest, m, q, n_points, points, row)
+  pure subroutine put_derivatives(n, n_coordinates, coordinates, factors, highest, m, q, n_points, points, each, row)
     integer, intent(in) :: n                            !< number of parameters
     integer, intent(in) :: n_coordinates                !< number of recorded coordinates
     integer, intent(in) :: coordinates(n_coordinates)   !< their numbers
@@ -271,7 +299,8 @@ contains
     real(wp), intent(in) :: q(n, 0:2, m)                !< derivatives of coordinates
     integer, intent(in) :: n_points                     !< number of points
     real(wp), intent(in) :: points(n, 3, 0:2, n_points) !< derivatives of points
-    real(wp), intent(inout) :: row((highest + 1)*(n_coordinates + 3*n_points), n)   !< gets the derivatives
+    integer, intent(in) :: each                         !< number of columns for each parameter, those beyond the motion included
+    real(wp), intent(inout) :: row(each, n)             !< gets the derivatives of the motion
     integer :: at, p, order, i
 
     at = 0

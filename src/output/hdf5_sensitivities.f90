@@ -7,12 +7,12 @@ module mech9_hdf5_sensitivities
   private
   public :: quantities_of_sensitivity, add_sensitivities, put_parameters
 
-  !> Number of data sets: coordinates and points with their derivatives in time.
-  integer, parameter :: quantities_of_sensitivity = 6
+  !> Number of data sets: coordinates and points with their derivatives in time, forces, energies.
+  integer, parameter :: quantities_of_sensitivity = 6 + 4 + 3
 
 contains
 
-  !> Add the derivatives of coordinates and points. The parameter is the last dimension.
+  !> Add the derivatives of coordinates, points and energies. The parameter is the last dimension.
   subroutine add_sensitivities(series, columns)
     type(hdf5_series_type), intent(inout) :: series   !< the quantities of the file
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
@@ -21,8 +21,9 @@ contains
     integer :: order, n, points, each, before, i, k, p
 
     n = size(columns%coordinates)
-    each = columns%motion - 1
-    points = each/(columns%derivatives + 1) - n
+    each = columns%varied
+    points = (columns%motion - 1)/(columns%derivatives + 1) - n
+    call add_energies(series, columns)
     do order = 0, columns%derivatives
       before = columns%count - columns%sensitivities + order*n
       call series%add('sensitivity/'//trim(names(order)), &
@@ -41,6 +42,24 @@ contains
                       ['/time     ', '/point    ', '/axis     ', '/parameter'])
     end do
   end subroutine add_sensitivities
+
+  !> Add the derivatives of energies.
+  subroutine add_energies(series, columns)
+    type(hdf5_series_type), intent(inout) :: series   !< the quantities of the file
+    type(columns_type), intent(in) :: columns         !< columns of the rows to come
+    integer :: i, p, at, point
+
+    do i = columns%varied + 2 - columns%energies, columns%varied + 1
+      associate (name => columns%names(i)%text)
+        at = columns%count - columns%sensitivities + i - 1
+        point = index(name, '.')
+        call series%add('sensitivity/'//name(:point - 1)//'_'//name(point + 1:), &
+                        [(at + (p - 1)*columns%varied, p=1, size(columns%parameters))], [size(columns%parameters)], &
+                        'derivatives of the '//columns%long_names(i)%text//' by the parameters', unit_of_all(columns, i, 1), &
+                        ['/time     ', '/parameter'])
+      end associate
+    end do
+  end subroutine add_energies
 
   !> The unit of some columns, per unit of a parameter in the data file.
   pure function unit_of_all(columns, first, n) result(text)

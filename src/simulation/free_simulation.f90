@@ -25,6 +25,7 @@ module mech9_free_simulation
   use mech9_stopped_motion, only: name_cause, name_cause_at_start
   use mech9_variable_model, only: variable_model_type
   use mech9_sensitivity, only: sensitivity_type
+  use mech9_varied_motion, only: varied_motion_type
   use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type
   implicit none
   private
@@ -43,6 +44,8 @@ module mech9_free_simulation
     procedure :: present_for_forces
     procedure :: begin_sensitivity
     procedure :: show_sensitivity
+    procedure :: begin_varied_motion
+    procedure :: show_varied_motion
     procedure :: present_closure
     procedure :: watch_conditioning
     procedure :: energies
@@ -411,6 +414,23 @@ contains
     sensitivity%q = self%motion%system%sensitivity%motion%q
     sensitivity%points = self%motion%system%sensitivity%motion%points
   end subroutine show_sensitivity
+
+  !> Prepare the derivatives of all frames by all parameters. The integration finds them in any case.
+  subroutine begin_varied_motion(self, variable, err)
+    class(free_simulation_type), intent(inout) :: self                 !< the simulation, after begin_sensitivity
+    class(variable_model_type), intent(inout), target :: variable      !< the model as a function of its parameters
+    type(error_type), allocatable, intent(out) :: err                  !< never allocated
+
+  end subroutine begin_varied_motion
+
+  !> The derivatives of all frames in the present motion, after show_sensitivity for it.
+  subroutine show_varied_motion(self, motion, err)
+    class(free_simulation_type), intent(inout), target :: self       !< the simulation
+    type(varied_motion_type), pointer, intent(out) :: motion         !< the derivatives; they change with the next time
+    type(error_type), allocatable, intent(out) :: err                !< never allocated
+
+    motion => self%motion%system%sensitivity%motion
+  end subroutine show_varied_motion
 
   !> Largest closure error of the present position [m].
   real(wp) function present_closure(self)

@@ -10,6 +10,7 @@ module mech9_simulation
   use mech9_closure_guard, only: check_closure
   use mech9_variable_model, only: variable_model_type
   use mech9_sensitivity, only: sensitivity_type, new_sensitivity, find_sensitivities
+  use mech9_varied_motion, only: varied_motion_type, new_varied_motion, find_varied_motion
   implicit none
   private
   public :: simulation_type, interruption_type, simulation_statistics_type, coordinate_change_type
@@ -69,6 +70,7 @@ module mech9_simulation
     type(coordinate_change_type), allocatable :: events(:)   !< changes of the independent coordinates so far
     integer(long), private :: positions = 0        !< positions that were worked out
     real(wp), private :: direction = 1.0_wp        !< 1, or -1 where time runs backwards
+    type(varied_motion_type), allocatable, private :: varied   !< derivatives of all frames by the parameters, where they are wanted
     class(interruption_type), allocatable, private :: interruption
   contains
     procedure :: start
@@ -80,6 +82,8 @@ module mech9_simulation
     procedure :: present_for_forces => present_as_shown
     procedure :: begin_sensitivity
     procedure :: show_sensitivity
+    procedure :: begin_varied_motion
+    procedure :: show_varied_motion
     procedure(position_interface), deferred :: begin
     procedure(position_interface), deferred :: go_to
     procedure(present_interface), deferred :: present
@@ -307,6 +311,33 @@ contains
     call self%present(plan, state)
     call find_sensitivities(self%model, state, sensitivity, err)
   end subroutine show_sensitivity
+
+  !> Prepare the derivatives of all frames by all parameters, from which those of energies and forces follow, after
+  !> begin_sensitivity. Fails as this does. This procedure is for motions that drives determine.
+  subroutine begin_varied_motion(self, variable, err)
+    class(simulation_type), intent(inout) :: self                      !< the simulation
+    class(variable_model_type), intent(inout), target :: variable      !< the model as a function of its parameters; outlives it
+    type(error_type), allocatable, intent(out) :: err                  !< allocated if it failed
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    call self%present(plan, state)
+    allocate (self%varied)
+    call new_varied_motion(variable, self%model, plan, self%varied, err)
+  end subroutine begin_varied_motion
+
+  !> Find the derivatives of all frames in the present motion, after show_sensitivity for it.
+  subroutine show_varied_motion(self, motion, err)
+    class(simulation_type), intent(inout), target :: self            !< the simulation
+    type(varied_motion_type), pointer, intent(out) :: motion         !< the derivatives; they change with the next time
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    call self%present(plan, state)
+    call find_varied_motion(self%model, state, self%varied, err)
+    motion => self%varied
+  end subroutine show_varied_motion
 
   !> The plan and the state from which forces in the pairs are found. They are those that are presented, unless angles of ball
   !> joints are singular in these.

@@ -181,8 +181,17 @@ def pendulum_accelerations(q, w, values):
     return np.array([(a22 * f1 - a12 * f2) / det, (a11 * f2 - a12 * f1) / det])
 
 
+def pendulum_energies(q, w, values):
+    """Kinetic, potential and total energy of the pendulum, whose centres turn about the z axis."""
+    bar, swing, upper, lower, fall = values[:5]
+    square = (bar * w[0])**2 + (swing * (w[0] + w[1]))**2 + 2 * bar * swing * w[0] * (w[0] + w[1]) * np.cos(q[1])
+    kinetic = (upper * (bar * w[0])**2 + lower * square) / 2
+    potential = -fall * ((upper + lower) * bar * np.sin(q[0]) + lower * swing * np.sin(q[0] + q[1]))
+    return np.array([kinetic, potential, kinetic + potential])
+
+
 def pendulum_motion(values, times):
-    """q, dq and ddq at times, by extrapolation of the midpoint rule (Gragg, Bulirsch and Stoer) in extended precision."""
+    """q, dq, ddq and energies at times, by extrapolation of the midpoint rule (Gragg, Bulirsch and Stoer) in extended precision."""
     y = np.array([values[5], values[6], values[7], 0], dtype=np.longdouble)
     rows = []
 
@@ -208,7 +217,7 @@ def pendulum_motion(values, times):
         if i > 0:
             for _ in range(4):
                 y = step(y, np.longdouble(t - times[i - 1]) / 4)
-        rows.append(np.concatenate([y[:2], y[2:], pendulum_accelerations(y[:2], y[2:], values)]))
+        rows.append(np.concatenate([y[:2], y[2:], pendulum_accelerations(y[:2], y[2:], values), pendulum_energies(y[:2], y[2:], values)]))
     return np.array(rows)
 
 
@@ -223,7 +232,7 @@ def check_pendulum(case):
             above, below = (pendulum_motion([v + (sign * i * step if k == number else 0) for k, v in enumerate(exact)], found['t'])
                             for sign in (1, -1))
             expected = expected + weight * (above - below) / step
-        for k, column in enumerate(('q1', 'q2', 'dq1', 'dq2', 'ddq1', 'ddq2')):
+        for k, column in enumerate(('q1', 'q2', 'dq1', 'dq2', 'ddq1', 'ddq2', 'E.kinetic', 'E.potential', 'E.total')):
             case.close(found[f'd({column})/d({name})'], expected[:, k], TOLERANCES * TOLERANCE, f'double pendulum: {column} by {name}')
 
 
@@ -233,13 +242,18 @@ def check_identities(case):
     text = DOUBLE_PENDULUM.format(bar=1.0, swing=0.8, upper=1.0, lower=1.0, fall=-9.81, first=0.3, second=0.4, rate=0.7) + SOLVER
     found = case.sensitivities(text, parameters)
     for column, numbers in found.items():
-        if column.startswith('d('):
+        if column.startswith('d(E'):
+            # this factor is 1, and energies are in proportion to it
+            case.close(numbers, found[column[2:column.index(')')]], 1e-9, f'a factor of all masses changes energies alike: {column}')
+        elif column.startswith('d('):
             case.checks.true(np.abs(numbers).max() <= 1e-9, f'a factor of all masses changes no motion: {column}', f'{numbers}')
     lengths = (('size', "'pair(2).point(1)','body(1).centre(1)','body(2).centre(1)','gravity.acceleration(2)'", 1.0),)
     scaled = text + declared(lengths).replace(' /', ', factors=1,1,0.8,-9.81 /') + '&output sensitivities=.true. /\n'
     found = case.table(scaled)
     for column, numbers in found.items():
-        if column.startswith('d('):
+        if column.startswith('d(E'):
+            case.close(numbers, 2 * found[column[2:column.index(')')]], 1e-9, f'energies are in proportion to its square: {column}')
+        elif column.startswith('d('):
             case.checks.true(np.abs(numbers).max() <= 1e-9, f'a factor of lengths and gravity changes no angle: {column}', f'{numbers}')
     start = (('first', 'initial(1).position', 0.3), ('rate', 'initial(1).velocity', 0.7))
     found = case.sensitivities(text, start)
@@ -256,6 +270,24 @@ def check_driven(case):
     for column in others:
         if column.startswith('d('):
             case.close(mine[column], others[column], 1e-12, f'a driven motion in mech9d: {column}')
+    case.against_runs(driven, parameters, 'a driven motion in mech9d')
+
+
+def check_hdf5(case):
+    """Derivatives of energies in the HDF5 file are those of the table."""
+    try:
+        import h5py
+    except ImportError:
+        case.checks.left_out('h5py is not installed (Debian: python3-h5py)')
+        return
+    path = os.path.join(case.directory, 'a.h5')
+    found = case.sensitivities(FOUR_BAR, FOUR_BAR_PARAMETERS[:3], '--hdf5', path)
+    with h5py.File(path) as file:
+        for part in ('kinetic', 'potential', 'total'):
+            data = file[f'sensitivity/E_{part}']
+            case.checks.equal((data.shape, data.dims[1][0].name), ((5, 3), '/parameter'), f'shape and scale of E_{part}')
+            for p, (name, _, _) in enumerate(FOUR_BAR_PARAMETERS[:3]):
+                case.checks.true((data[:, p] == found[f'd(E.{part})/d({name})']).all(), f'E_{part} by {name}')
 
 
 def check_smooth_joints(case):
@@ -309,6 +341,7 @@ def main():
         check_pendulum(case)
         check_identities(case)
         check_driven(case)
+        check_hdf5(case)
         check_smooth_joints(case)
         check_refusals(case)
         case.against_runs(FOUR_BAR, FOUR_BAR_PARAMETERS, 'four-bar with loads', 2.0**-10)

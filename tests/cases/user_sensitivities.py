@@ -117,6 +117,10 @@ def main():
         text = sample('trammel', 10).replace('links=1,2, kind', 'links=2,1, kind') + "&parameter name='p1', sets='user.parameters(1)', value=0.5 /\n"
         program = os.path.join(folder, 'trammel_k')
         compare(checks, rows_of(program, directory, text), 'p1', differences(program, directory, text, (0.5,), 0), TAYLOR, 'reversed pair')
+        # energies of a driven motion
+        text += '&body link=2, mass=2, centre=0.1,0.2,0, inertia=0.1,0.1,0.2,0,0,0 /\n&gravity acceleration=1,-9.81,0 /\n'
+        program = os.path.join(folder, 'trammel_d')
+        compare(checks, rows_of(program, directory, text), 'p1', differences(program, directory, text, (0.5,), 0), TAYLOR, 'energies')
     checks.finish()
 
 

@@ -11,6 +11,7 @@ module mech9_motion_sensitivity
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_known_derivatives, only: check_known
   use mech9_varied_motion, only: varied_motion_type, new_varied_motion, find_varied_motion, find_varied_points
   use mech9_varied_forces, only: varied_forces_type, new_varied_forces, find_varied_forces
   implicit none
@@ -45,6 +46,7 @@ contains
     integer :: p
 
     call new_varied_motion(variable, model, plan, self%motion, err)
+    if (.not. allocated(err)) call check_known(model, self%motion%tangents, .true., err)
     if (allocated(err)) return
     call new_varied_forces(model, self%motion, self%forces)
     associate (n => self%motion%n_parameters)

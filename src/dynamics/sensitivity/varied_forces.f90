@@ -7,8 +7,7 @@
 module mech9_varied_forces
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_rotation, only: turn, cross, combine
-  use mech9_inertia, only: inertia_in_axes
+  use mech9_rotation, only: turn, cross
   use mech9_motion_view, only: motion_view_type
   use mech9_motion_change, only: motion_change_type, new_motion_change
   use mech9_force_sum, only: force_sum_type, new_force_sum
@@ -21,9 +20,10 @@ module mech9_varied_forces
   use mech9_twists, only: carried, shift_at
   use mech9_varied_motion, only: varied_motion_type, link_twists
   use mech9_parameter_twists, only: inertia_type, momentum, momenta, crossed, add_bracket, add_turned_wrench
+  use mech9_varied_bodies, only: place_body, change_of_body, change_of_momentum
   implicit none
   private
-  public :: varied_forces_type, new_varied_forces, find_varied_forces
+  public :: varied_forces_type, new_varied_forces, find_varied_forces, show_change
 
   !> The forces and their derivatives. The first index of derivatives is the parameter.
   type :: varied_forces_type
@@ -148,49 +148,6 @@ contains
     self%wrenches(:, :, f) = self%wrenches(:, :, f) + change
   end subroutine add_body
 
-  !> The inertia of a body in its present position.
-  subroutine place_body(model, number, motion, r, body)
-    type(model_type), intent(in) :: model               !< the model
-    integer, intent(in) :: number                       !< of the body
-    type(varied_motion_type), intent(in) :: motion      !< with the present motion
-    real(wp), intent(out) :: r(3, 3)                    !< rotation of its link
-    type(inertia_type), intent(out) :: body             !< the inertia
-    integer :: f
-
-    associate (given => model%mechanism%bodies(number), plan => motion%plan, state => motion%state)
-      f = plan%frame_of(given%link)
-      r = combine(state%r(:, :, f), plan%link_in_frame(given%link)%r)
-      body%mass = given%mass
-      body%centre = state%p(:, f) + turn(state%r(:, :, f), plan%link_in_frame(given%link)%p) + turn(r, given%centre)
-      body%tensor = inertia_in_axes(r, given%inertia)
-    end associate
-  end subroutine place_body
-
-  !> The change of a body's inertia in fixed axes, with its link held.
-  pure function change_of_body(change, r) result(changed)
-    real(wp), intent(in) :: change(:)            !< (13) of mass, centre and inertia, in the link's axes
-    real(wp), intent(in) :: r(3, 3)              !< rotation of the link
-    type(inertia_type) :: changed
-    real(wp) :: tensor(3, 3)
-
-    tensor = reshape(change(5:13), [3, 3])
-    changed%mass = change(1)
-    changed%centre = turn(r, change(2:4))
-    changed%tensor = inertia_in_axes(r, tensor)
-  end function change_of_body
-
-  !> The change of a momentum with the inertia.
-  pure function change_of_momentum(body, changed, twist) result(h)
-    type(inertia_type), intent(in) :: body      !< the body
-    type(inertia_type), intent(in) :: changed   !< the change of its inertia
-    real(wp), intent(in) :: twist(6)            !< of the body
-    real(wp) :: h(6), p(3)
-
-    p = body%mass*(twist(4:6) + cross(twist(1:3), body%centre))
-    h(4:6) = changed%mass*(twist(4:6) + cross(twist(1:3), body%centre)) + body%mass*cross(twist(1:3), changed%centre)
-    h(1:3) = turn(changed%tensor, twist(1:3)) + cross(changed%centre, p) + cross(body%centre, h(4:6))
-  end function change_of_momentum
-
   !> Subtract the loads and their derivatives.
   subroutine add_loads(model, motion, self, err)
     type(model_type), intent(in) :: model               !< the model
@@ -211,7 +168,7 @@ contains
       self%wrench(:, f) = self%wrench(:, f) - wrench
     end do
     do p = 1, motion%n_parameters
-      call show_change(p, twists, motion, self)
+      call show_change(p, twists, motion, self%loaded, self%view, self%change)
       call vary_loads(model, p, motion, self, err)
       if (allocated(err)) return
       do i = 1, size(self%loaded)
@@ -248,26 +205,27 @@ contains
   end subroutine vary_loads
 
   !> The change of the motion by one parameter, as loads read it.
-  subroutine show_change(p, twists, motion, self)
+  subroutine show_change(p, twists, motion, loaded, view, change)
     integer, intent(in) :: p                             !< number of the parameter
     real(wp), intent(in) :: twists(:, :, 0:, :)          !< (P,6,0:2,loaded) of the links
     type(varied_motion_type), intent(in) :: motion       !< derivatives of the motion
-    type(varied_forces_type), intent(inout) :: self      !< gets the change
+    integer, intent(in) :: loaded(:)                     !< links whose motion is read
+    type(motion_view_type), intent(in) :: view           !< their motion
+    type(motion_change_type), intent(inout) :: change    !< gets the change of coordinates and these links
     real(wp) :: place(3), twist(6), rate(6)
-    integer :: i, k
+    integer :: i
 
-    self%change%q = motion%q(p, 0, :)
-    self%change%dq = motion%q(p, 1, :)
-    do i = 1, size(self%loaded)
-      k = self%loaded(i)
+    change%q = motion%q(p, 0, :)
+    change%dq = motion%q(p, 1, :)
+    do i = 1, size(loaded)
       twist = twists(p, :, 0, i)
       rate = twists(p, :, 1, i)
-      associate (link => self%view%links(k), change => self%change%links(k))
+      associate (link => view%links(loaded(i)), varied => change%links(loaded(i)))
         place = link%p - motion%plan%origin
-        change%turn = twist(1:3)
-        change%shift = shift_at(twist, place)
-        change%omega = rate(1:3) + cross(twist(1:3), link%omega)
-        change%v = shift_at(rate, place) + cross(twist(1:3), link%v)
+        varied%turn = twist(1:3)
+        varied%shift = shift_at(twist, place)
+        varied%omega = rate(1:3) + cross(twist(1:3), link%omega)
+        varied%v = shift_at(rate, place) + cross(twist(1:3), link%v)
       end associate
     end do
   end subroutine show_change

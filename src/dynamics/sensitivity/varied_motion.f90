@@ -6,8 +6,7 @@ module mech9_varied_motion
   use mech9_kinds, only: wp
   use mech9_tolerances, only: singular_conditioning, opened_by_parameter, inexact_dimensions
   use mech9_error, only: error_type, raise, exit_data, exit_singular
-  use mech9_failure, only: failure_singular_sensitivity, failure_opening_parameter, failure_unknown_derivative
-  use mech9_law, only: law_type
+  use mech9_failure, only: failure_singular_sensitivity, failure_opening_parameter
   use mech9_rotation, only: turn, cross
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
@@ -20,9 +19,17 @@ module mech9_varied_motion
   use mech9_frame_variation, only: third_derivatives_type, new_third_derivatives, find_third_derivatives
   use mech9_twists, only: frame_twists_type, new_frame_twists, find_frame_twists, find_step_twists, carried, shift_at
   use mech9_tangent, only: tangent_type, find_tangent
+  use mech9_pair_changes, only: find_pair_change
   implicit none
   private
   public :: varied_motion_type, new_varied_motion, find_varied_motion, find_varied_points, link_twists
+
+  !> A user's pair whose procedure receives numbers that a parameter changes.
+  type :: varied_pair_type
+    integer :: step = 0                      !< of the plan
+    integer :: parameter = 0                 !< number of the parameter
+    real(wp) :: twists(6, 0:2) = 0.0_wp      !< by which the frame of the step moves with the parameter, and derivatives in time
+  end type varied_pair_type
 
   !> The derivatives and what finds them. The first index is the parameter, which counts in its unit in the data file.
   type :: varied_motion_type
@@ -37,6 +44,7 @@ module mech9_varied_motion
     type(frame_twists_type) :: motion               !< twists of this motion
     type(third_derivatives_type) :: third           !< of pairs without a fixed axis, and of couplings
     type(block_work_type), allocatable :: blocks(:) !< factors of the closed chains
+    type(varied_pair_type), allocatable, private :: pairs(:)   !< of the user, by each parameter that changes their numbers
     integer, allocatable, private :: numbers(:)     !< (M+1) of all frames, from 0 on
   end type varied_motion_type
 
@@ -46,7 +54,7 @@ module mech9_varied_motion
 contains
 
   !> Prepare the derivatives by all parameters of a model. Fails where the model does not exist beside the present values, and where
-  !> a parameter sets numbers whose derivatives are not known.
+  !> a parameter sets numbers by which no motion has known derivatives.
   subroutine new_varied_motion(variable, model, plan, self, err)
     class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the present model
@@ -62,12 +70,6 @@ contains
     do i = 1, n
       call find_tangent(variable, model, plan, i, self%tangents(i), err)
       if (allocated(err)) return
-      if (.not. is_known(model, i, self%tangents(i))) then
-        call raise(err, exit_data, failure_unknown_derivative)
-        err%failure%name = model%parameters(i)%name
-        err%place = model%parameters(i)%place
-        return
-      end if
     end do
     self%plan = plan
     self%plan%blocks%arithmetic = 1
@@ -82,50 +84,23 @@ contains
       self%blocks(i) = new_block_work(self%plan%blocks(i))
     end do
     self%numbers = [(i, i=0, m)]
+    call list_pairs(self)
     allocate (self%q(n, 0:2, m), self%twists(n, 6, 0:2, 0:m), self%points(n, 3, 0:2, size(model%mechanism%points)), &
               self%given(n, 0:2, size(plan%free)), source=0.0_wp)
   end subroutine new_varied_motion
 
-  !> Whether the derivatives of a free motion by a parameter are known: numbers of loads must be, those of users' pairs must not vary, and
-  !> a law whose numbers vary must not have joints, since the times of these may vary, and rates jump there.
-  logical function is_known(model, number, tangent)
-    type(model_type), intent(in) :: model        !< the present model
-    integer, intent(in) :: number                !< of the parameter
-    type(tangent_type), intent(in) :: tangent    !< derivatives by the parameter
-    real(wp), allocatable :: values(:)
-    logical :: sets_loads
-    integer :: i
+  !> The users' pairs whose numbers parameters change.
+  subroutine list_pairs(self)
+    type(varied_motion_type), intent(inout) :: self   !< with plan and tangents; gets the list
+    integer :: s, p
 
-    is_known = .not. any(tangent%pairs%varies)
-    sets_loads = .false.
-    do i = 1, size(model%parameters(number)%targets)
-      associate (group => model%parameters(number)%targets(i)%group)
-        sets_loads = sets_loads .or. group == 'load' .or. group == 'user'
-      end associate
+    allocate (self%pairs(0))
+    do p = 1, self%n_parameters
+      do s = 1, self%plan%n_coordinates
+        if (self%tangents(p)%pairs(self%plan%steps(s)%coordinate)%varies) self%pairs = [self%pairs, varied_pair_type(s, p)]
+      end do
     end do
-    do i = 1, size(model%mechanism%loads)
-      associate (load => model%mechanism%loads(i)%load)
-        call load%constants(values)
-        if (sets_loads .and. .not. allocated(values)) is_known = .false.
-        if (.not. (tangent%loads(i)%varies .and. allocated(load%law))) cycle
-        call load%numbers(values)
-        if (any(abs(tangent%loads(i)%change(size(values) + 1:)) > 0.0_wp)) is_known = is_known .and. .not. has_joints(load%law)
-      end associate
-    end do
-    do i = 1, size(model%problem%drives)
-      if (tangent%drives(i)%varies) is_known = is_known .and. .not. has_joints(model%problem%drives(i)%drive)
-    end do
-  contains
-
-    !> Whether the pieces of a law join at some time.
-    pure logical function has_joints(law)
-      class(law_type), intent(in) :: law   !< the law
-
-      associate (t => model%request%time%start)
-        has_joints = abs(law%next_joint(t, 1.0_wp)) < huge(t) .or. abs(law%next_joint(t, -1.0_wp)) < huge(t)
-      end associate
-    end function has_joints
-  end function is_known
+  end subroutine list_pairs
 
   !> Find the derivatives of the coordinates and frames of the present motion. Fails with exit_singular where closed chains are in a
   !> singular position, and with exit_data where a change of a parameter would open a closed chain.
@@ -172,6 +147,7 @@ contains
     type(state_type), intent(in) :: present               !< the present motion
     type(varied_motion_type), intent(inout) :: self       !< gets its frames
     type(error_type), allocatable, intent(out) :: err     !< allocated if a pair has no pose
+    integer :: i
 
     self%state%t = present%t
     self%state%q = present%q
@@ -185,6 +161,11 @@ contains
     if (allocated(err)) return
     call find_frame_twists(self%state, self%numbers, 2, self%motion)
     call find_step_twists(self%plan, self%state, self%third, self%numbers(2:), 2, self%motion)
+    do i = 1, size(self%pairs)
+      associate (pair => self%pairs(i))
+        call find_pair_change(self%plan, self%state, self%motion, self%tangents(pair%parameter), pair%step, 2, pair%twists)
+      end associate
+    end do
   end subroutine place_motion
 
   !> Fail because of the chains of a block.
@@ -274,6 +255,12 @@ contains
       do p = 1, self%n_parameters
         if (self%tangents(p)%moves(k) .or. abs(self%tangents(p)%slide(k)) > 0.0_wp) &
           call add_constants(self%tangents(p), self%plan, self%state, self%motion, s, order, p, self%twists(:, :, order, s))
+      end do
+      do p = 1, size(self%pairs)
+        associate (pair => self%pairs(p))
+          if (pair%step == s) self%twists(pair%parameter, :, order, s) = self%twists(pair%parameter, :, order, s) &
+                                                                         + pair%twists(:, order)
+        end associate
       end do
     end do
   end subroutine vary_frames

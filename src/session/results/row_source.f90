@@ -13,6 +13,7 @@ module mech9_row_source
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_film, only: film_type
   use mech9_force_record, only: force_record_type
+  use mech9_varied_record, only: varied_record_type
   use mech9_quantity_record, only: quantity_record_type
   implicit none
   private
@@ -24,6 +25,7 @@ module mech9_row_source
     type(columns_type) :: columns
     type(force_record_type) :: forces      !< computes the forces that are recorded
     type(sensitivity_type), allocatable :: sensitivity   !< finds derivatives by parameters, where it is allocated
+    type(varied_record_type) :: varied     !< finds those of forces and energies
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
     type(quantity_record_type) :: quantities   !< of the whole run
     real(wp), allocatable, private :: between(:)   !< a row between two outputs
@@ -63,11 +65,7 @@ contains
     columns = kinematic_columns(model%mechanism, model%request%output)
     call forces%begin(model, columns)
     call columns%append_motors(model%mechanism)
-    if (with_energies) then
-      call columns%append('E.kinetic', 'J', 'kinetic energy')
-      call columns%append('E.potential', 'J', 'potential energy of gravity and springs')
-      call columns%append('E.total', 'J', 'kinetic and potential energy')
-    end if
+    if (with_energies) call columns%append_energies()
     call columns%append('closure', 'm', 'largest error of a closed chain')
     if (model%request%output%conditioning) call columns%append('conditioning', '1', 'least singular value of the worst chains')
     if (with_error) call columns%append('error', 'rad,m', 'estimated error of the coordinates and points')
@@ -87,8 +85,9 @@ contains
     end do
     allocate (self%sensitivity)
     call self%simulation%begin_sensitivity(variable, self%columns%derivatives, self%sensitivity, err)
-    if (.not. allocated(err)) &
-      call self%columns%append_sensitivities(names, self%simulation%model%request%output%sensitivities)
+    if (allocated(err)) return
+    call self%columns%append_sensitivities(names, self%simulation%model%request%output%sensitivities)
+    call self%varied%begin(self%simulation, variable, self%columns, err)
   end subroutine add_sensitivities
 
   !> Find the columns of the quantities that the model requests. Fails with exit_data where one is not recorded.
@@ -180,6 +179,8 @@ contains
       call self%simulation%show_sensitivity(self%sensitivity, err)
       if (allocated(err)) return
       call self%columns%fill_sensitivities(self%sensitivity, row)
+      if (self%varied%wanted) call self%varied%find(self%simulation, err)
+      if (self%varied%wanted .and. .not. allocated(err)) call self%columns%fill_beyond_motion(self%varied%values, row)
     end if
   end subroutine fill_row
 
