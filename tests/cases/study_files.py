@@ -329,7 +329,7 @@ def refused(cases, mech9k):
     # blanks, comments and the names of results do not make another study
     same = '! a comment\n' + text.replace('runs=30', ' runs = 30') + "&output table='kept.dat', compression=3 /\n"
     cases.study(mech9k, same, '--continue', cases.path('file.h5'), '--table', cases.path('kept.dat'), why='the same study')
-    for words, code, message in ((('--continue', 'file.h5'), USAGE, 'of --study that the file does not have yet; give both'),
+    for words, code, message in ((('--continue', 'file.h5'), USAGE, 'or the starts of --optimize, that the file does not have yet; give one of them, too'),
                                  (('--study', '--continue', 'file.h5', '--hdf5', 'x.h5'), USAGE, 'leave --hdf5 and --no-write out'),
                                  (('--study', '--continue', 'file.h5', '--no-write'), USAGE, 'leave --hdf5 and --no-write out'),
                                  (('--study', '--hdf5', 'full.h5', '--table', 'full.h5'), USAGE, 'cannot both be'),

@@ -21,7 +21,7 @@ module mech9_design_search
   use mech9_exact_fit, only: exact_fit_type, new_exact_fit, follow
   implicit none
   private
-  public :: search_type, found_design_type, new_search, search_from
+  public :: search_type, found_design_type, new_search, search_from, most_assemblies
 
   !> A design to which a search led.
   type :: found_design_type

@@ -34,6 +34,7 @@ module mech9_synthesis
     procedure :: make_start
     procedure :: add
     procedure :: keep_verified
+    procedure :: values_of
   end type synthesis_type
 
   !> Designs are the same where their parameters differ by less than this part of their ranges,
@@ -111,6 +112,16 @@ contains
     end do
     self%optima = pack_optima(self%optima, holds)
   end subroutine keep_verified
+
+  !> The values of all parameters of an optimum.
+  pure function values_of(self, number) result(values)
+    class(synthesis_type), intent(in) :: self      !< the synthesis
+    integer, intent(in) :: number                  !< of the optimum, from 1, the best one
+    real(wp) :: values(size(self%space%values))
+
+    values = self%space%values
+    values(self%space%varied) = self%optima(number)%x
+  end function values_of
 
   !> The optima that hold.
   pure function pack_optima(optima, holds) result(kept)

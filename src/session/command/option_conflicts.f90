@@ -63,8 +63,9 @@ contains
       call raise(err, exit_usage, '--part K/N is a part of --study; give both')
     else if (has('threads') .and. .not. (has('study') .or. has('optimize'))) then
       call raise(err, exit_usage, '--threads N is the number of threads of --study or --optimize; give one of them, too')
-    else if (has('continue') .and. .not. has('study')) then
-      call raise(err, exit_usage, '--continue FILE.h5 makes the runs of --study that the file does not have yet; give both')
+    else if (has('continue') .and. .not. (has('study') .or. has('optimize'))) then
+      call raise(err, exit_usage, '--continue FILE.h5 makes the runs of --study, or the starts of --optimize, that the '// &
+                 'file does not have yet; give one of them, too')
     else if (has('continue') .and. (has('hdf5') .or. has('no-write'))) then
       call raise(err, exit_usage, '--continue FILE.h5 writes to its own file; leave --hdf5 and --no-write out')
     else if (has('quiet') .and. has('verbose')) then
@@ -158,7 +159,7 @@ contains
     type(error_type), allocatable, intent(out) :: err  !< allocated if there is one
     character(len=:), allocatable :: other
 
-    other = first_of([answers, [character(len=11) :: 'plot', 'sketch', 'animate', 'view', 'hdf5', 'verbose']], given)
+    other = first_of([answers, [character(len=11) :: 'plot', 'sketch', 'animate', 'view', 'verbose']], given)
     if (other /= '') call raise(err, exit_usage, '--optimize searches for a design and writes a table with a row for each one '// &
                                 'that it finds; leave --'//other//' out, and give it to a run of the design')
   end subroutine judge_optimum

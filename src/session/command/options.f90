@@ -74,7 +74,7 @@ module mech9_options
     option_type('threads', needed_argument, 'N', whole_number, .false., both, &
                 'make a study or a search in N threads; without it one for each core'), &
     option_type('continue', needed_argument, 'FILE.h5', any_text, .false., both, &
-                'make the runs of a study that its HDF5 file does not have yet'), &
+                'make what the HDF5 file of a study or search does not have yet'), &
     option_type('merge', needed_argument, 'FILE FILE ...', any_text, .false., both, &
                 'join the HDF5 files of parts of a study to one, that of --hdf5', unlimited_arguments), &
     option_type('optimize', no_argument, '', any_text, .false., 'mech9k', &

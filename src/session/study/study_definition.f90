@@ -15,13 +15,15 @@ module mech9_study_definition
   !> Names of &output that tell where and how results are kept, and change none of them.
   character(len=*), parameter :: places(*) = [character(len=12) :: 'table', 'hdf5', 'sketch', 'animation', 'view', 'compression', &
                                               'poses', 'force_arrows']
+  !> Groups that change no numbers where nothing else stands in them.
+  character(len=*), parameter :: groups_of_places(*) = [character(len=7) :: 'output', 'optimum']
   !> The polynomial of the cyclic redundancy check of 64 bits (ECMA-182), its bits in reverse order, in two halves.
   integer(long), parameter :: polynomial = ior(shiftl(int(z'C96C5795', long), 32), int(z'D7870F42', long))
 
 contains
 
   !> The program, the groups of the data file with the changes by --set, and a digest of each file that the groups name: one line
-  !> for each. Blanks, comments and the files of the results do not matter. Fails with exit_file where a file cannot be read.
+  !> for each. Blanks, comments, the files of the results and the number of starts do not matter. Fails with exit_file where a file cannot be read.
   subroutine define_study(program_name, document, text, err)
     character(len=*), intent(in) :: program_name             !< mech9k or mech9d
     type(document_type), intent(in) :: document              !< the data file as groups and items, with the changes by --set
@@ -55,6 +57,8 @@ contains
       do i = 1, size(group%items)
         associate (item => group%items(i))
           if (group%name == 'output' .and. any(places == item%name)) cycle
+          ! a search with more starts begins with the same ones
+          if (group%name == 'optimum' .and. item%name == 'starts') cycle
           line = line//' '//item%name
           do j = 1, size(item%subscripts)
             line = line//'('//to_text(item%subscripts(j)%first)//':'//to_text(item%subscripts(j)%last)//')'
@@ -66,7 +70,7 @@ contains
         end associate
       end do
     end if
-    if (line /= '' .or. group%name /= 'output') line = '&'//group%name//line//line_end
+    if (line /= '' .or. all(groups_of_places /= group%name)) line = '&'//group%name//line//line_end
   end subroutine write_group
 
   !> Append a value to a line.

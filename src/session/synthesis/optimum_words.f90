@@ -78,8 +78,7 @@ contains
     call begin_report(json, program_name, model, diagnostics, table_path)
     call json%add('distinct', size(synthesis%optima))
     if (size(synthesis%optima) > 0) then
-      values = synthesis%space%values
-      values(synthesis%space%varied) = synthesis%optima(1)%x
+      values = synthesis%values_of(1)
       call json%begin_object('optimum')
       call json%add('value', synthesis%optima(1)%value)
       call json%begin_array('parameters')

@@ -1,0 +1,100 @@
+!> The distinct designs of a synthesis in its HDF5 file: the group `optimum`.
+module mech9_optimum_group
+  use mech9_kinds, only: wp
+  use mech9_text, only: string_type
+  use mech9_model, only: model_type
+  use mech9_result_units, only: unit_of
+  use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_synthesis, only: synthesis_type
+  implicit none
+  private
+  public :: write_optima
+
+contains
+
+  !> Write the distinct designs, best first, with how many starts were made. Failures are those of the file.
+  subroutine write_optima(file, model, synthesis)
+    type(hdf5_file_type), intent(inout) :: file        !< the open file, with the scales of coordinates and targets
+    type(model_type), intent(in) :: model              !< the model
+    type(synthesis_type), intent(in) :: synthesis      !< with its optima, best first
+    type(string_type) :: names(size(model%parameters))
+    real(wp), allocatable :: values(:, :)
+    integer :: i, n
+
+    n = size(synthesis%optima)
+    call file%put('optimum/made', synthesis%done, 'starts that were made')
+    call file%put('optimum/reached', synthesis%reached, 'starts that led to a design')
+    call write_targets(file, synthesis)
+    call file%put('design', [(i, i=1, n)], 'number of the distinct design, the best one first')
+    call file%make_scale('design')
+    call put_over_designs('value', [(synthesis%optima(i)%value, i=1, n)], 'value of the objectives')
+    call file%put('optimum/starts', [(synthesis%optima(i)%starts, i=1, n)], 'starts that led to the design')
+    call file%attach_scales('optimum/starts', ['/design'])
+    allocate (values(n, size(model%parameters)))
+    do i = 1, n
+      values(i, :) = synthesis%values_of(i)
+    end do
+    do i = 1, size(model%parameters)
+      names(i)%text = model%parameters(i)%name
+      call put_over_designs('parameters/'//model%parameters(i)%name, values(:, i), 'parameter '//model%parameters(i)%name)
+    end do
+    call file%put('parameter', names, 'names of the parameters in their order')
+    call file%make_scale('parameter')
+    call write_positions(file, model, synthesis)
+  contains
+    !> Write one number of each design.
+    subroutine put_over_designs(name, numbers, long_name)
+      character(len=*), intent(in) :: name         !< in the group
+      real(wp), intent(in) :: numbers(:)           !< (designs)
+      character(len=*), intent(in) :: long_name    !< a few words that describe it
+
+      call file%put('optimum/'//name, numbers, long_name, '')
+      call file%attach_scales('optimum/'//name, ['/design'])
+    end subroutine put_over_designs
+  end subroutine write_optima
+
+  !> Write the coordinates of the designs at the start of the run, and the times of their targets.
+  subroutine write_positions(file, model, synthesis)
+    type(hdf5_file_type), intent(inout) :: file        !< the open file
+    type(model_type), intent(in) :: model              !< the model
+    type(synthesis_type), intent(in) :: synthesis      !< with its optima
+    real(wp) :: q(synthesis%space%plan%n_coordinates, size(synthesis%optima))
+    real(wp) :: times(size(synthesis%targets), size(synthesis%optima))
+    integer :: i, k
+
+    do i = 1, size(synthesis%optima)
+      q(:, i) = synthesis%optima(i)%q/[(unit_of(model%mechanism, k), k=1, size(q, 1))]
+      times(:, i) = synthesis%optima(i)%times
+    end do
+    call file%put('optimum/coordinates', q, 'coordinates of its assembly at the start of the run, each in its unit')
+    call file%attach_scales('optimum/coordinates', ['/design    ', '/coordinate'])
+    if (size(times, 1) == 0) return
+    call file%put('optimum/times', times, 'times at which it meets its targets', 's')
+    call file%attach_scales('optimum/times', ['/design', '/target'])
+  end subroutine write_positions
+
+  !> Write the targets.
+  subroutine write_targets(file, synthesis)
+    type(hdf5_file_type), intent(inout) :: file        !< the open file
+    type(synthesis_type), intent(in) :: synthesis      !< with its targets
+    character(len=*), parameter :: axis_names = 'xyz'
+    type(string_type) :: axes(3)
+    real(wp) :: places(3, size(synthesis%targets))
+    integer :: i
+
+    if (size(synthesis%targets) == 0) return
+    do i = 1, 3
+      axes(i)%text = axis_names(i:i)
+    end do
+    call file%put('axis', axes, 'axis of the fixed frame')
+    call file%make_scale('axis')
+    do i = 1, size(synthesis%targets)
+      places(:, i) = synthesis%targets(i)%place
+    end do
+    call file%put('targets/objective', [(synthesis%targets(i)%objective, i=1, size(synthesis%targets))], &
+                  'number of the objective to which the target belongs')
+    call file%attach_scales('targets/objective', ['/target'])
+    call file%put('targets/place', places, 'place of the target, or its value of a function in the first number', 'rad,m')
+    call file%attach_scales('targets/place', ['/target', '/axis  '])
+  end subroutine write_targets
+end module mech9_optimum_group

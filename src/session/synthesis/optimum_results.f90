@@ -1,0 +1,156 @@
+!> The files of a synthesis: a table with a row for each distinct design, an HDF5 file with the starts and the designs, and the data
+!> file of the best design.
+module mech9_optimum_results
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_version, only: version
+  use mech9_command_line, only: command_line_type
+  use mech9_document, only: document_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_model, only: model_type
+  use mech9_columns, only: columns_type
+  use mech9_table, only: table_type
+  use mech9_text_file, only: replace_text
+  use mech9_written_files, only: result_paths_type, find_result_paths, standard_output_path
+  use mech9_hdf5_record, only: write_provenance
+  use mech9_study_definition, only: define_study
+  use mech9_synthesis, only: synthesis_type
+  use mech9_starts, only: starts_type
+  use mech9_starts_file, only: read_starts
+  use mech9_optimum_group, only: write_optima
+  use mech9_design_file, only: text_of_design
+  use mech9_optimum_words, only: history_of_design
+  implicit none
+  private
+  public :: open_starts, write_results, table_of
+
+contains
+
+  !> Make room for all starts, read those that were made before, and open the HDF5 file, where one is asked for. A file that is
+  !> continued is written anew, with all places and with the starts that it has; until that is done it stays as it is.
+  subroutine open_starts(program_name, options, document, model, synthesis, starts, err)
+    character(len=*), intent(in) :: program_name            !< mech9k
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(document_type), intent(in) :: document             !< the data file as groups and items, with the changes by --set
+    type(model_type), intent(in) :: model                   !< the model
+    type(synthesis_type), intent(in) :: synthesis           !< prepared
+    type(starts_type), intent(inout) :: starts              !< gets room, and the open file
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(result_paths_type) :: paths
+    character(len=:), allocatable :: definition
+    integer :: i
+
+    allocate (starts%made(model%request%optimum%starts))
+    call find_result_paths(options, model%request%output, paths)
+    if (paths%hdf5 == '') return
+    call define_study(program_name, document, definition, err)
+    if (.not. allocated(err) .and. options%has('continue')) &
+      call read_starts(paths%hdf5, model, synthesis, definition, starts%made, err)
+    if (.not. allocated(err)) call starts%file%create(paths%hdf5, model, synthesis, definition, err)
+    if (allocated(err)) return
+    call write_provenance(starts%file%file, program_name, options, model, document%source%text)
+    do i = 1, size(starts%made)
+      if (allocated(starts%made(i)%found)) call starts%file%write_start(i, starts%made(i)%found)
+    end do
+    call starts%file%publish(err)
+  end subroutine open_starts
+
+  !> The path of the table; '-' is standard output; empty: no table.
+  function table_of(options, model) result(path)
+    type(command_line_type), intent(in) :: options   !< the command line
+    type(model_type), intent(in) :: model            !< the model
+    character(len=:), allocatable :: path
+    type(result_paths_type) :: paths
+
+    call find_result_paths(options, model%request%output, paths)
+    path = paths%table
+  end function table_of
+
+  !> Write the table and the HDF5 data of the distinct designs, and the data file of the best one.
+  subroutine write_results(program_name, options, document, model, synthesis, starts, diagnostics)
+    character(len=*), intent(in) :: program_name            !< mech9k
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(document_type), intent(in) :: document             !< the data file
+    type(model_type), intent(in) :: model                   !< the model
+    type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
+    type(starts_type), intent(inout) :: starts              !< with the open file, which is closed
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
+    character(len=:), allocatable :: path, text
+    type(error_type), allocatable :: err
+
+    path = table_of(options, model)
+    if (path /= '') call write_table(path, program_name, model, synthesis, err)
+    call tell(err, 'table', path)
+    path = ''
+    if (starts%file%is_open()) path = starts%file%file%path
+    if (path /= '') call write_optima(starts%file%file, model, synthesis)
+    call starts%file%close(err)
+    call tell(err, 'HDF5 file', path)
+    if (.not. options%has('out') .or. size(synthesis%optima) == 0) return
+    call text_of_best(program_name, document, model, synthesis, text)
+    path = options%argument('out')
+    call replace_text(path, text, err)
+    call tell(err, 'best design', path)
+  contains
+    !> Tell where a result is, or add the error.
+    subroutine tell(failure, name, place)
+      type(error_type), allocatable, intent(in) :: failure  !< allocated if it could not be written
+      character(len=*), intent(in) :: name                  !< of the result
+      character(len=*), intent(in) :: place                 !< its path; empty where there is none
+
+      if (allocated(failure)) then
+        call diagnostics%add_error(failure)
+      else if (place /= '' .and. place /= standard_output_path .and. .not. options%has('quiet')) then
+        write (error_unit, '(3a)') name, ': ', place
+      end if
+    end subroutine tell
+  end subroutine write_results
+
+  !> The data file of the best design.
+  subroutine text_of_best(program_name, document, model, synthesis, text)
+    character(len=*), intent(in) :: program_name            !< mech9k
+    type(document_type), intent(in) :: document             !< the data file
+    type(model_type), intent(in) :: model                   !< the model
+    type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
+    character(len=:), allocatable, intent(out) :: text      !< of the data file
+    character(len=:), allocatable :: history
+
+    call history_of_design(program_name//' '//version, model, synthesis, history)
+    call text_of_design(document, model, synthesis%values_of(1), synthesis%optima(1)%q, history, text)
+  end subroutine text_of_best
+
+  !> Write a row for each distinct design, best first.
+  subroutine write_table(path, program_name, model, synthesis, err)
+    character(len=*), intent(in) :: path                    !< of the table; '-' is standard output
+    character(len=*), intent(in) :: program_name            !< mech9k
+    type(model_type), intent(in) :: model                   !< the model
+    type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(error_type), allocatable :: at_close
+    type(columns_type) :: columns
+    type(table_type) :: table
+    real(wp) :: row(size(model%parameters) + 2)
+    integer :: i, n
+
+    n = size(model%parameters)
+    allocate (columns%names(0), columns%units(0), columns%long_names(0))
+    call columns%append('value', '')
+    do i = 1, n
+      call columns%append(model%parameters(i)%name, '')
+    end do
+    call columns%append('starts', '')
+    call table%open(path, model%mechanism%title, program_name//' '//version, columns%names(:columns%count), &
+                    columns%units(:columns%count), err)
+    if (allocated(err)) return
+    do i = 1, size(synthesis%optima)
+      row(1) = synthesis%optima(i)%value
+      row(2:n + 1) = synthesis%values_of(i)
+      row(n + 2) = synthesis%optima(i)%starts
+      call table%write_row(row, err)
+      if (allocated(err)) exit
+    end do
+    call table%close(at_close)
+    if (.not. allocated(err)) call move_alloc(at_close, err)
+  end subroutine write_table
+end module mech9_optimum_results
