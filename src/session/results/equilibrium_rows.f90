@@ -12,7 +12,7 @@ module mech9_equilibrium_rows
   use mech9_result_units, only: unit_of, unit_name
   use mech9_columns, only: columns_type
   use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_hdf5_sink, only: put_force_scales, common_unit
+  use mech9_hdf5_scales, only: put_force_scales, common_unit
   use mech9_hdf5_record, only: write_uniqueness
   use mech9_force_record, only: force_record_type
   use mech9_linearised_equilibrium, only: equilibrium_type
