@@ -29,6 +29,7 @@ contains
     output%animation = get_text(group, 'animation')
     output%view = get_text(group, 'view')
     output%poses = get_logical(group, 'poses')
+    output%hdf5_runs = get_logical(group, 'hdf5_runs')
     output%compression = get_integer(group, 'compression')
     output%conditioning = get_logical(group, 'conditioning')
     output%coordinates = get_integers(group, 'coordinates')

@@ -5,8 +5,8 @@
 !> of a flush: hence the lengths of all data sets stand side by side, in one piece of metadata that is written
 !> at once, and chunks are so large that their index seldom changes, for most runs never.
 !>
-!> Data sets over runs have all their rows from the beginning, which are NaN (-1 for whole numbers) until they are written. Then no
-!> metadata change, and rows go to the file in the order in which they are written, the last quantity last.
+!> Data sets over runs have places for all their rows from the beginning. No metadata change when these are written, and rows go to
+!> the file in the order in which they are written, the last quantity last.
 module mech9_hdf5_series
   use, intrinsic :: iso_c_binding, only: c_ptr, c_loc
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
@@ -18,6 +18,7 @@ module mech9_hdf5_series
                   h5dopen_f, h5dwrite_f, h5dread_f, h5dclose_f, h5sget_simple_extent_ndims_f, h5sget_simple_extent_dims_f, &
                   h5t_ieee_f64le, h5t_std_i32le, h5t_native_double, h5t_native_integer
   use mech9_kinds, only: wp, long
+  use mech9_text, only: string_type
   use mech9_hdf5_file, only: hdf5_file_type
   implicit none
   private
@@ -59,6 +60,7 @@ module mech9_hdf5_series
     procedure :: add
     procedure :: create
     procedure :: open => open_series
+    procedure :: list_names
     procedure :: attach
     procedure :: append_rows
     procedure :: write_row_at
@@ -91,18 +93,18 @@ contains
   end subroutine start
 
   !> Set the number of rows and the size of buffers, in place of `start`, for data sets with all their rows from the beginning.
-  subroutine start_fixed(self, n_quantities, n_columns, rows, only_read)
+  subroutine start_fixed(self, n_quantities, n_columns, rows, one_by_one)
     class(hdf5_series_type), intent(inout) :: self  !< the quantities over runs
     integer, intent(in) :: n_quantities             !< most quantities
     integer, intent(in) :: n_columns                !< most columns of the rows
     integer, intent(in) :: rows                     !< number of rows
-    logical, intent(in) :: only_read                !< no rows are going to be written
+    logical, intent(in) :: one_by_one               !< rows do not wait for others in a buffer
 
     allocate (self%quantities(n_quantities))
     self%fixed = .true.
     self%rows = rows
     self%capacity = min(most_buffered, rows_within(buffer_size, n_columns))
-    if (only_read) self%capacity = 1
+    if (one_by_one) self%capacity = 1
   end subroutine start_fixed
 
   !> The number of rows that fit into a memory of the given size; at least one.
@@ -136,6 +138,18 @@ contains
       allocate (quantity%buffer(size(columns), self%capacity), source=0.0_wp)
     end associate
   end subroutine add
+
+  !> The paths of all data sets.
+  pure subroutine list_names(self, names)
+    class(hdf5_series_type), intent(in) :: self                    !< the quantities
+    type(string_type), allocatable, intent(out) :: names(:)        !< their paths
+    integer :: i
+
+    allocate (names(self%count))
+    do i = 1, self%count
+      names(i)%text = self%quantities(i)%name
+    end do
+  end subroutine list_names
 
   !> Make all data sets first and name them afterwards. This is called before anything else is written to
   !> the file, so that one page of memory holds the lengths of all of them.
@@ -230,7 +244,7 @@ contains
     call h5pclose_f(creation, status)
   end subroutine create_data_set
 
-  !> Make a data set with all its rows, without a name. Its space is taken and filled at once: nothing but numbers changes later.
+  !> Make a data set with places for all its rows, without a name. They have no numbers yet: the caller fills all of them.
   subroutine create_fixed(self, quantity, file)
     class(hdf5_series_type), intent(in) :: self     !< the quantities over runs
     type(quantity_type), intent(inout) :: quantity  !< the quantity, which gets its data set
@@ -245,6 +259,7 @@ contains
       call h5pset_fill_value_f(creation, h5t_native_double, ieee_value(1.0_wp, ieee_quiet_nan), status)
     end if
     call h5pset_alloc_time_f(creation, h5d_alloc_time_early_f, status)
+    call h5pset_fill_time_f(creation, h5d_fill_time_never_f, status)
     call file%check(status)
     call h5screate_simple_f(size(quantity%extents) + 1, [quantity%extents, self%rows], space, status)
     call h5dcreate_anon_f(file%id, merge(h5t_std_i32le, h5t_ieee_f64le, quantity%whole), space, quantity%data_set, &

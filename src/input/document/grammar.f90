@@ -397,6 +397,9 @@ module mech9_grammar
     item_row_type('output', 'poses', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'the HDF5 file holds the poses of all links too, and an .xdmf file beside it shows them in ParaView', '.true.', &
                   seldom=.true.), &
+    item_row_type('output', 'hdf5_runs', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
+                  'the HDF5 file of a study holds all columns of all its runs too, over the runs and time', '.true.', &
+                  seldom=.true.), &
     item_row_type('output', 'compression', 'integer', 1, 1, '', optional, '0', '>=0', '', '', &
                   'compression of the HDF5 file: from 0, none (the fastest), to 9 (the smallest)', '4', seldom=.true.), &
     item_row_type('output', 'conditioning', 'logical', 1, 1, '', optional, '.false.', '', '', '', &

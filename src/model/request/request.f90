@@ -36,6 +36,7 @@ module mech9_request
     character(len=:), allocatable :: animation   !< name of the film's file
     character(len=:), allocatable :: view        !< direction of view of both; empty: the best one
     logical :: poses = .false.                   !< the HDF5 file holds the poses of links
+    logical :: hdf5_runs = .false.               !< the HDF5 file of a study holds the columns of all its runs
     integer :: compression = 0                   !< of the HDF5 file, from 0 (none) to 9 (most)
     logical :: conditioning = .false.            !< the least singular value has a column
     integer, allocatable :: coordinates(:)       !< coordinates that have columns; none listed: all

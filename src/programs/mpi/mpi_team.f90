@@ -22,8 +22,9 @@ module mech9_mpi_team
   private
   public :: mpi_team_type
 
-  !> Tags of the messages: numbers of runs from the first process; codes, quantities and texts of runs to it.
-  integer, parameter :: of_numbers = 1, of_codes = 2, of_quantities = 3, of_texts = 4
+  !> Tags of the messages: numbers of runs from the first process; codes, quantities and texts of runs to it, and the columns of
+  !> each run, if they are kept.
+  integer, parameter :: of_numbers = 1, of_codes = 2, of_quantities = 3, of_texts = 4, of_rows = 5
   !> Numbers that are sent of each run beside its quantities: its number, exit code, line, column, and letters of its message.
   integer, parameter :: codes_per_run = 5
   integer, parameter :: batches = 2                     !< for each process at a time
@@ -76,7 +77,7 @@ contains
     waiting = 0
     batch = 1
     do
-      call take_results(model, waiting, runs)
+      call take_results(model, maker%shape_of_rows(), waiting, runs)
       call feed_all(batch, waiting, runs)
       number = runs%hand_out()
       if (number == all_handed_out .and. all(waiting == 0)) exit
@@ -117,8 +118,9 @@ contains
   end subroutine feed_all
 
   !> Take the results of all batches that have arrived.
-  subroutine take_results(model, waiting, runs)
+  subroutine take_results(model, shape_of_rows, waiting, runs)
     type(model_type), intent(in) :: model             !< the model with the values of the data file
+    integer, intent(in) :: shape_of_rows(2)           !< columns and outputs of a run; 0 where they are not kept
     integer, intent(inout) :: waiting(:)              !< (other processes) batches that each has
     type(study_runs_type), intent(inout) :: runs      !< of the study
     type(MPI_Status) :: status
@@ -140,24 +142,28 @@ contains
         allocate (character(len=sum(codes(codes_per_run, :))) :: texts)
         call MPI_Recv(texts, len(texts), MPI_CHARACTER, other, of_texts, MPI_COMM_WORLD, status)
         waiting(other) = waiting(other) - 1
+        call take_batch(model, codes, quantities, texts, other, shape_of_rows, runs)
       end associate
-      call take_batch(model, codes, quantities, texts, runs)
       deallocate (codes, quantities, texts)
     end do
   end subroutine take_results
 
   !> Give the runs of a batch back. Their values of the parameters follow from their numbers.
-  subroutine take_batch(model, codes, quantities, texts, runs)
+  subroutine take_batch(model, codes, quantities, texts, sender, shape_of_rows, runs)
     type(model_type), intent(in) :: model             !< the model with the values of the data file
     integer, intent(in) :: codes(:, :)                !< (codes_per_run,runs)
     real(wp), intent(in) :: quantities(:, :)          !< (quantities,runs)
     character(len=*), intent(in) :: texts             !< messages of failed runs, one behind the other
+    integer, intent(in) :: sender                     !< rank of the process that made them
+    integer, intent(in) :: shape_of_rows(2)           !< columns and outputs of a run; 0 where they are not kept
     type(study_runs_type), intent(inout) :: runs      !< of the study
     type(made_run_type) :: run
+    type(MPI_Status) :: status
     integer :: i, at
 
     at = 0
     allocate (run%values(size(model%parameters)))
+    if (all(shape_of_rows > 0)) allocate (run%rows(shape_of_rows(1), shape_of_rows(2)))
     do i = 1, size(codes, 2)
       run%number = codes(1, i)
       run%exit_code = codes(2, i)
@@ -170,6 +176,8 @@ contains
         run%failure%place%column = codes(4, i)
       end if
       at = at + codes(5, i)
+      if (allocated(run%rows)) &
+        call MPI_Recv(run%rows, size(run%rows), MPI_DOUBLE_PRECISION, sender, of_rows, MPI_COMM_WORLD, status)
       call runs%take(run)
     end do
   end subroutine take_batch
@@ -204,7 +212,7 @@ contains
     type(run_maker_type), intent(inout) :: maker   !< of this process
     integer, intent(in) :: numbers(:)              !< of the runs
     integer, intent(in) :: n_quantities            !< how many quantities a run has
-    type(made_run_type) :: run
+    type(made_run_type) :: made(size(numbers))
     integer :: codes(codes_per_run, size(numbers)), i
     real(wp) :: quantities(n_quantities, size(numbers))
     character(len=:), allocatable :: texts
@@ -212,16 +220,22 @@ contains
     texts = ''
     codes = 0
     do i = 1, size(numbers)
-      call maker%make(numbers(i), run)
-      codes(:2, i) = [run%number, run%exit_code]
-      quantities(:, i) = run%quantities
-      if (.not. allocated(run%failure)) cycle
-      call explain(run%failure)
-      codes(3:, i) = [run%failure%place%line, run%failure%place%column, len(run%failure%message)]
-      texts = texts//run%failure%message
+      associate (run => made(i))
+        call maker%make(numbers(i), run)
+        codes(:2, i) = [run%number, run%exit_code]
+        quantities(:, i) = run%quantities
+        if (.not. allocated(run%failure)) cycle
+        call explain(run%failure)
+        codes(3:, i) = [run%failure%place%line, run%failure%place%column, len(run%failure%message)]
+        texts = texts//run%failure%message
+      end associate
     end do
     call MPI_Send(codes, size(codes), MPI_INTEGER, 0, of_codes, MPI_COMM_WORLD)
     call MPI_Send(quantities, size(quantities), MPI_DOUBLE_PRECISION, 0, of_quantities, MPI_COMM_WORLD)
     call MPI_Send(texts, len(texts), MPI_CHARACTER, 0, of_texts, MPI_COMM_WORLD)
+    do i = 1, size(numbers)
+      if (allocated(made(i)%rows)) &
+        call MPI_Send(made(i)%rows, size(made(i)%rows), MPI_DOUBLE_PRECISION, 0, of_rows, MPI_COMM_WORLD)
+    end do
   end subroutine make_batch
 end module mech9_mpi_team

@@ -1,4 +1,4 @@
-!> One run of a study: the quantities of a motion, without any results beside them.
+!> One run of a study: the quantities of a motion, and its columns where they are wanted, without any files.
 module mech9_design_run
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -17,17 +17,19 @@ module mech9_design_run
   use mech9_quantity_record, only: quantity_record_type
   implicit none
   private
-  public :: run_design, begin_design, find_quantities
+  public :: run_design, begin_design, find_quantities, columns_of_runs
 
 contains
 
-  !> Make the motion of a model and take its quantities. Fails as a run would; the quantities are then NaN.
-  subroutine run_design(program_name, model, source, numbers, err)
+  !> Make the motion of a model and take its quantities. Fails as a run would; the quantities are then of no use, and rows have
+  !> their numbers up to the failure.
+  subroutine run_design(program_name, model, source, numbers, err, rows)
     character(len=*), intent(in) :: program_name          !< mech9k or mech9d
     type(model_type), intent(inout), target :: model      !< gets the tolerances where an accuracy is requested
     type(row_source_type), intent(inout) :: source        !< rows of the run; made anew
     real(wp), intent(out) :: numbers(:)                   !< (quantities)
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    real(wp), intent(inout), optional :: rows(:, :)       !< (columns,outputs) gets the columns of all outputs that are reached
     type(driven_simulation_type), target :: driven
     type(free_simulation_type), target :: free
     type(plan_type) :: plan
@@ -37,13 +39,13 @@ contains
       call assemble_driven_start(model, plan, start, err)
       if (allocated(err)) return
       call new_driven_simulation(model, plan, start, driven, .false., program_name == 'mech9d')
-      call take_quantities(program_name, model, driven, source, numbers, err)
+      call take_quantities(program_name, model, driven, source, numbers, err, rows)
     else
       call assemble_free_start(model, plan, start, err)
       if (.not. allocated(err)) call new_free_simulation(model, plan, start, free, err)
       if (.not. allocated(err) .and. free%with_error) &
         call find_accuracy(model, plan, start, free%errors, err, interruption=signal_interruption_type())
-      if (.not. allocated(err)) call take_quantities(program_name, model, free, source, numbers, err)
+      if (.not. allocated(err)) call take_quantities(program_name, model, free, source, numbers, err, rows)
       call free%close()
     end if
   end subroutine run_design
@@ -63,12 +65,21 @@ contains
     type(quantity_record_type), intent(out) :: quantities   !< with their columns
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(columns_type) :: columns
+
+    call columns_of_runs(program_name, model, columns)
+    call quantities%begin(model, columns, err)
+  end subroutine find_quantities
+
+  !> Find the columns that the runs of a model will have.
+  subroutine columns_of_runs(program_name, model, columns)
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+    type(model_type), intent(in) :: model                   !< the model
+    type(columns_type), intent(out) :: columns              !< of each run
     type(force_record_type) :: forces
 
     call find_columns(model, program_name == 'mech9d' .and. model%request%output%energies, &
                       model%request%solver%accuracy > 0.0_wp .and. .not. is_driven(program_name, model), columns, forces)
-    call quantities%begin(model, columns, err)
-  end subroutine find_quantities
+  end subroutine columns_of_runs
 
   !> Begin the rows of a simulation, with their quantities.
   subroutine begin_design(program_name, simulation, source, err)
@@ -82,15 +93,16 @@ contains
   end subroutine begin_design
 
   !> Go through all outputs of a simulation.
-  subroutine take_quantities(program_name, model, simulation, source, numbers, err)
+  subroutine take_quantities(program_name, model, simulation, source, numbers, err, rows)
     character(len=*), intent(in) :: program_name                   !< mech9k or mech9d
     type(model_type), intent(in) :: model                          !< the model
     class(simulation_type), intent(inout), target :: simulation    !< about to start
     type(row_source_type), intent(inout) :: source                 !< rows of the run; made anew
     real(wp), intent(out) :: numbers(:)                            !< (quantities)
     type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
+    real(wp), intent(inout), optional :: rows(:, :)                !< (columns,outputs) gets the columns of all outputs
     real(wp), allocatable :: row(:)
-    integer :: i
+    integer :: i, n
 
     call begin_design(program_name, simulation, source, err)
     if (allocated(err)) return
@@ -98,6 +110,10 @@ contains
     do i = 0, model%request%time%intervals
       call source%row_at(model%request%time%time(i), row, err)
       if (allocated(err)) return
+      if (.not. present(rows)) cycle
+      ! a parameter that sets the accuracy may add or take away the last column
+      n = min(size(row), size(rows, 1))
+      rows(:n, i + 1) = row(:n)
     end do
     if (size(numbers) == 0) return
     call source%quantities%finish()

@@ -9,7 +9,8 @@ module mech9_run_maker
   use mech9_variable_model, only: variable_model_type
   use mech9_study_values, only: values_of_run
   use mech9_row_source, only: row_source_type
-  use mech9_design_run, only: run_design
+  use mech9_columns, only: columns_type
+  use mech9_design_run, only: run_design, columns_of_runs
   implicit none
   private
   public :: made_run_type, run_maker_type
@@ -19,6 +20,7 @@ module mech9_run_maker
     integer :: number = 0                           !< in the whole study, from 1
     real(wp), allocatable :: values(:)              !< (parameters) in the units of the file
     real(wp), allocatable :: quantities(:)          !< (quantities) NaN where the run failed
+    real(wp), allocatable :: rows(:, :)             !< (columns,outputs) where they are kept; NaN from a failure on
     integer :: exit_code = exit_done                !< with which a single run of these values ends
     type(error_type), allocatable :: failure        !< of a run that failed; not explained yet
   end type made_run_type
@@ -30,9 +32,12 @@ module mech9_run_maker
     type(parameter_type), allocatable :: parameters(:)
     class(variable_model_type), allocatable :: varied            !< the model as a function of its parameters
     integer :: n_quantities = 0
+    integer :: n_columns = 0                                     !< of the rows that are kept; 0: none are kept
+    integer :: n_outputs = 0                                     !< rows of a run
   contains
     procedure :: begin
     procedure :: make
+    procedure :: shape_of_rows
   end type run_maker_type
 
 contains
@@ -43,13 +48,26 @@ contains
     character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied        !< the model as a function of its parameters; copied
+    type(columns_type) :: columns
 
     self%program_name = program_name
     self%study = model%request%study
     self%parameters = model%parameters
     self%n_quantities = size(model%request%quantities)
     allocate (self%varied, source=varied)
+    if (.not. model%request%output%hdf5_runs) return
+    call columns_of_runs(program_name, model, columns)
+    self%n_columns = columns%width()
+    self%n_outputs = model%request%time%intervals + 1
   end subroutine begin
+
+  !> How many columns and outputs the rows of a run have; 0 where they are not kept.
+  pure function shape_of_rows(self)
+    class(run_maker_type), intent(in) :: self   !< the maker
+    integer :: shape_of_rows(2)
+
+    shape_of_rows = [self%n_columns, self%n_outputs]
+  end function shape_of_rows
 
   !> Make a run. Its numbers depend on the number of the run alone, not on the runs that were made before.
   subroutine make(self, number, run)
@@ -63,8 +81,11 @@ contains
     allocate (run%values(size(self%parameters)))
     allocate (run%quantities(self%n_quantities), source=ieee_value(1.0_wp, ieee_quiet_nan))
     call values_of_run(self%study, self%parameters, number, run%values)
+    if (self%n_columns > 0) &
+      allocate (run%rows(self%n_columns, self%n_outputs), source=ieee_value(1.0_wp, ieee_quiet_nan))
     call self%varied%at(run%values, model, run%failure)
-    if (.not. allocated(run%failure)) call run_design(self%program_name, model, source, run%quantities, run%failure)
+    if (.not. allocated(run%failure)) &
+      call run_design(self%program_name, model, source, run%quantities, run%failure, run%rows)
     if (.not. allocated(run%failure)) return
     run%exit_code = run%failure%code
     run%quantities = ieee_value(1.0_wp, ieee_quiet_nan)

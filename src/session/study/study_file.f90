@@ -1,15 +1,20 @@
 !> The HDF5 file of a study. It has a place for every run of the part from the beginning, which is NaN, with the exit code -1, until
-!> the run is made; so a program that is killed at any moment leaves a file whose runs are either whole or not made.
+!> the run is made; so a program that is killed at any moment leaves a file whose runs are either whole or not made. Columns of a run,
+!> where the file has them, are written before its exit code.
 module mech9_study_file
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_clock, only: pacer_type
+  use mech9_model, only: model_type
+  use mech9_columns, only: columns_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_series, only: hdf5_series_type
   use mech9_hdf5_reading, only: open_existing
   use mech9_run_maker, only: made_run_type
   use mech9_study_definition, only: digest_of, tell_difference
   use mech9_study_layout, only: study_layout_type, write_layout, read_layout
+  use mech9_study_filling, only: fill_rows
+  use mech9_study_columns, only: study_columns_type
   implicit none
   private
   public :: study_file_type, not_made
@@ -25,6 +30,7 @@ module mech9_study_file
     type(hdf5_file_type) :: file
     type(study_layout_type) :: layout                      !< names and units of what it holds
     type(hdf5_series_type), private :: outcomes            !< parameters, quantities and exit code over the runs
+    type(study_columns_type) :: columns                    !< of all runs over time, where the file has them
     type(pacer_type), private :: pacer
     real(wp), allocatable, private :: row(:)               !< parameters, quantities and exit code of a run
     real(wp), allocatable, private :: block(:, :)          !< (as `row`, runs) runs that were read
@@ -32,8 +38,11 @@ module mech9_study_file
     logical, private :: reported = .false.                 !< whether the failure of the file was reported
   contains
     procedure :: create
+    procedure :: create_columns
+    procedure :: copy_columns
     procedure :: publish
     procedure :: open
+    procedure :: open_columns
     procedure :: is_open
     procedure :: code_of
     procedure :: read_run
@@ -42,7 +51,7 @@ module mech9_study_file
     procedure :: write_row
     procedure :: close => close_file
     procedure, private :: begin_outcomes
-    procedure, private :: tell
+    procedure :: tell
   end type study_file_type
 
 contains
@@ -65,12 +74,45 @@ contains
     call self%outcomes%create(self%file)
     call self%outcomes%attach(self%file)
     call write_numbers(self, numbers)
+    call fill_rows(self%outcomes, self%file, size(self%row), layout%runs_of_part(), not_made)
     call write_layout(self%file, layout)
     call self%file%put('study/digest', digest_of(layout%definition), 'cyclic redundancy check of the definition')
     call self%pacer%start(longest_wait)
     call self%tell(err)
     if (allocated(err)) call self%file%close()
   end subroutine create
+
+  !> Give a file that was created, and has no name yet, the columns of the runs of a model.
+  subroutine create_columns(self, columns, model, err)
+    class(study_file_type), intent(inout) :: self             !< the file
+    type(columns_type), intent(in) :: columns                 !< of a run
+    type(model_type), intent(in) :: model                     !< the model with the values of the data file
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+
+    call self%columns%create(self%file, columns, model, self%layout%runs_of_part())
+    call self%tell(err)
+  end subroutine create_columns
+
+  !> Give a file that was created, and has no name yet, the columns that a part has.
+  subroutine copy_columns(self, part, err)
+    class(study_file_type), intent(inout) :: self             !< the file
+    type(study_file_type), intent(inout) :: part              !< the open file of the part
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+
+    call self%columns%create_like(self%file, part%layout%columns, part%file, self%layout%runs_of_part())
+    call self%tell(err)
+  end subroutine copy_columns
+
+  !> Open the columns of a file that is continued. Fails with exit_file where they are not those of the runs of the model.
+  subroutine open_columns(self, columns, model, err)
+    class(study_file_type), intent(inout) :: self             !< the file
+    type(columns_type), intent(in) :: columns                 !< of a run
+    type(model_type), intent(in) :: model                     !< the model with the values of the data file
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+
+    call self%columns%open(self%file, columns, model, self%layout%runs_of_part())
+    call self%tell(err)
+  end subroutine open_columns
 
   !> Give a file that was created its name.
   subroutine publish(self, err)
@@ -140,10 +182,12 @@ contains
     if (.not. allocated(self%file%failure)) then
       call self%begin_outcomes(.not. writable)
       call self%outcomes%open(self%file)
+      if (.not. writable) call self%columns%open_unknown(self%file, self%layout%columns, self%layout%runs_of_part())
     end if
     call self%pacer%start(longest_wait)
     call self%tell(err)
     if (.not. allocated(err)) return
+    call self%columns%close(self%file)
     call self%outcomes%close(self%file)
     call self%file%close()
   end subroutine open
@@ -208,7 +252,7 @@ contains
     call self%outcomes%read_rows(self%file, first, self%block(:, :min(n, self%layout%runs_of_part() - first + 1)))
   end subroutine go_to
 
-  !> Write a run that is made.
+  !> Write a run that is made, with its columns where the file has them.
   subroutine write_run(self, place, run, err)
     class(study_file_type), intent(inout) :: self       !< the file
     integer, intent(in) :: place                        !< of the run in the part, from 1
@@ -216,6 +260,7 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it cannot be written
     integer :: n
 
+    if (self%columns%are_there()) call self%columns%write_run(self%file, place, run%rows)
     n = size(run%values)
     self%row(:n) = run%values
     self%row(n + 1:n + size(run%quantities)) = run%quantities
@@ -241,6 +286,7 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it cannot be written
 
     if (.not. self%is_open()) return
+    call self%columns%close(self%file)
     call self%outcomes%close(self%file)
     call self%file%close()
     call self%tell(err)

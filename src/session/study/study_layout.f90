@@ -3,7 +3,7 @@ module mech9_study_layout
   use mech9_text, only: string_type
   use mech9_model, only: model_type
   use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_hdf5_reading, only: read_text, read_texts, read_integer
+  use mech9_hdf5_reading, only: read_text, read_texts, read_integer, has_data_set
   use mech9_quantity_record, only: quantity_record_type
   implicit none
   private
@@ -19,6 +19,7 @@ module mech9_study_layout
     type(string_type), allocatable :: quantities(:)      !< their names
     type(string_type), allocatable :: units(:)           !< (quantities)
     type(string_type), allocatable :: meanings(:)        !< (quantities) a few words that describe each
+    type(string_type), allocatable :: columns(:)         !< paths of the data sets over runs and time; none: the file has none
   contains
     procedure :: runs_of_part
   end type study_layout_type
@@ -47,6 +48,7 @@ contains
     layout%definition = definition
     layout%runs = model%request%study%runs
     layout%part = part
+    allocate (layout%columns(0))
     allocate (layout%parameters(size(model%parameters)))
     do i = 1, size(layout%parameters)
       layout%parameters(i)%text = model%parameters(i)%name
@@ -93,6 +95,8 @@ contains
     call read_texts(file, 'study/quantities', layout%quantities)
     call read_texts(file, 'study/units', layout%units)
     call read_texts(file, 'study/meanings', layout%meanings)
+    allocate (layout%columns(0))
+    if (has_data_set(file, 'study/columns')) call read_texts(file, 'study/columns', layout%columns)
     if (allocated(file%failure)) return
     if (layout%runs < 0 .or. any(layout%part < 1) .or. layout%part(1) > layout%part(2)) &
       call file%fail('the numbers of its runs and parts make no sense')

@@ -75,6 +75,8 @@ contains
       if (allocated(err)) return
       call tell_difference(files(1)%layout%definition, files(i)%layout%definition, difference, &
                            'in the first one', 'in the second one')
+      if (difference == '' .and. files(i)%columns%numbers_of_run() /= files(1)%columns%numbers_of_run()) &
+        difference = 'their columns are not the same'
       if (difference == '') cycle
       call raise(err, exit_file, "'"//paths(1)%text//"' and '"//paths(i)%text//"' are of different studies: "//difference)
       return
@@ -94,7 +96,7 @@ contains
     type(table_type) :: table
     type(error_type), allocatable :: at_close
     real(wp), allocatable :: rows(:, :)
-    integer :: first, n, i
+    integer :: source(runs_together), first, n, i
 
     call open_results(program_name, options, files(1), whole, table, err)
     if (allocated(err)) return
@@ -103,12 +105,12 @@ contains
     first = 1
     do while (first <= files(1)%layout%runs .and. .not. allocated(err))
       n = min(runs_together, files(1)%layout%runs - first + 1)
-      call gather(paths, files, first, rows(:, :n), overlap, err)
+      call gather(paths, files, first, rows(:, :n), source(:n), overlap, err)
       do i = 1, n
         if (allocated(err)) exit
         if (nint(rows(size(rows, 1), i)) == not_made) cycle
         call count_run(first + i - 1, nint(rows(size(rows, 1), i)), sums)
-        if (whole%is_open()) call whole%write_row(first + i - 1, rows(:, i), err)
+        if (whole%is_open()) call write_whole(files(source(i)), whole, first + i - 1, rows(:, i), err)
         if (options%has('table') .and. .not. allocated(err)) &
           call table%write_row([real(first + i - 1, wp), rows(:, i)], err)
       end do
@@ -120,6 +122,35 @@ contains
     call table%close(at_close)
     if (.not. allocated(err)) call move_alloc(at_close, err)
   end subroutine join
+
+  !> Write a run to the HDF5 file of the whole study, with its columns where the parts have them.
+  subroutine write_whole(part, whole, run, row, err)
+    type(study_file_type), intent(inout) :: part            !< the file of a part that has the run
+    type(study_file_type), intent(inout) :: whole           !< the file of the whole study
+    integer, intent(in) :: run                              !< number of the run
+    real(wp), intent(in) :: row(:)                          !< parameters, quantities and exit code
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp), allocatable :: numbers(:, :)
+
+    if (whole%columns%are_there()) then
+      call read_columns(part, run, numbers, err)
+      if (allocated(err)) return
+      call whole%columns%write_run(whole%file, run, numbers)
+    end if
+    call whole%write_row(run, row, err)
+  end subroutine write_whole
+
+  !> Read the columns of a run in the file of a part.
+  subroutine read_columns(part, run, numbers, err)
+    type(study_file_type), intent(inout) :: part              !< the file
+    integer, intent(in) :: run                                !< number of the run in the whole study
+    real(wp), allocatable, intent(out) :: numbers(:, :)       !< (numbers of a run,1)
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+
+    allocate (numbers(part%columns%numbers_of_run(), 1), source=0.0_wp)
+    call part%columns%read_run(part%file, 1 + (run - part%layout%part(1))/part%layout%part(2), numbers)
+    call part%tell(err)
+  end subroutine read_columns
 
   !> Create the files of the whole study. The HDF5 file gets its name when it is whole.
   subroutine open_results(program_name, options, part, whole, table, err)
@@ -138,8 +169,10 @@ contains
       call whole%create(options%argument('hdf5'), layout, err)
       if (allocated(err)) return
       call copy_provenance(part%file, whole%file)
+      if (size(layout%columns) > 0) call whole%copy_columns(part, err)
     end if
-    if (options%has('table')) call open_table(program_name, options%argument('table'), layout, table, err)
+    if (options%has('table') .and. .not. allocated(err)) &
+      call open_table(program_name, options%argument('table'), layout, table, err)
     if (allocated(err)) call whole%close(at_close)
   end subroutine open_results
 
@@ -189,16 +222,17 @@ contains
 
   !> Gather runs that follow each other from the files; not made where none has them. Fails with exit_file where two files have
   !> different numbers for one run.
-  subroutine gather(paths, files, first, rows, overlap, err)
+  subroutine gather(paths, files, first, rows, source, overlap, err)
     type(string_type), intent(in) :: paths(:)               !< of the files
     type(study_file_type), intent(inout) :: files(:)        !< the files
     integer, intent(in) :: first                            !< number of the first run
     real(wp), intent(out) :: rows(:, :)                     !< (parameters, quantities, exit code; runs)
+    integer, intent(out) :: source(:)                       !< (runs) number of a file that has each; 0: none has
     type(overlap_type), intent(inout) :: overlap            !< runs that more than one file has
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     real(wp) :: row(size(rows, 1))
     integer(long) :: run
-    integer :: source(size(rows, 2)), i, j, place
+    integer :: i, j, place
 
     rows = ieee_value(1.0_wp, ieee_quiet_nan)
     rows(size(rows, 1), :) = not_made
@@ -213,7 +247,7 @@ contains
           call files(i)%read_row(place, row, err)
           if (allocated(err)) return
           j = int(run - first) + 1
-          if (nint(row(size(row))) /= not_made) call take_row(paths, i, int(run), row, rows(:, j), source(j), overlap, err)
+          if (nint(row(size(row))) /= not_made) call take_row(paths, files, i, int(run), row, rows(:, j), source(j), overlap, err)
           if (allocated(err)) return
           run = run + part(2)
         end do
@@ -222,8 +256,9 @@ contains
   end subroutine gather
 
   !> Take the row of a run, or compare it with that of another file.
-  subroutine take_row(paths, file, run, row, taken, source, overlap, err)
+  subroutine take_row(paths, files, file, run, row, taken, source, overlap, err)
     type(string_type), intent(in) :: paths(:)               !< of the files
+    type(study_file_type), intent(inout) :: files(:)        !< the files
     integer, intent(in) :: file                             !< number of the file that has the row
     integer, intent(in) :: run                              !< number of the run
     real(wp), intent(in) :: row(:)                          !< the row
@@ -231,6 +266,8 @@ contains
     integer, intent(inout) :: source                        !< number of the file from which it is taken; 0: none yet
     type(overlap_type), intent(inout) :: overlap            !< runs that more than one file has
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp), allocatable :: one(:, :), other(:, :)
+    logical :: same
 
     if (source == 0) then
       taken = row
@@ -240,7 +277,12 @@ contains
     overlap%runs = overlap%runs + 1
     if (overlap%runs == 1) overlap%first = run
     if (overlap%runs == 1) overlap%files = [source, file]
-    if (all(transfer(row, [0_long]) == transfer(taken, [0_long]))) return
+    call read_columns(files(source), run, one, err)
+    if (.not. allocated(err)) call read_columns(files(file), run, other, err)
+    if (allocated(err)) return
+    same = all(transfer(row, [0_long]) == transfer(taken, [0_long]))
+    if (same) same = all(transfer(one, [0_long]) == transfer(other, [0_long]))
+    if (same) return
     call raise(err, exit_file, "'"//paths(source)%text//"' and '"//paths(file)%text//"' have different numbers for run "// &
                to_text(run)//'; make it anew by the same version of the program')
   end subroutine take_row

@@ -15,6 +15,7 @@ module mech9_study_results
   use mech9_study_definition, only: define_study
   use mech9_study_file, only: study_file_type, not_made
   use mech9_study_layout, only: study_layout_type, layout_of
+  use mech9_design_run, only: columns_of_runs
   use mech9_hdf5_record, only: write_provenance
   implicit none
   private
@@ -64,7 +65,11 @@ contains
         call self%file%create(self%paths%hdf5, layout, err)
         if (.not. allocated(err)) call write_provenance(self%file%file, program_name, options, model, document%source%text)
       end if
-      if (allocated(err)) return
+      if (.not. allocated(err) .and. model%request%output%hdf5_runs) call begin_columns(self, program_name, options, model, err)
+      if (allocated(err)) then
+        call self%close(at_close)
+        return
+      end if
     end if
     columns = columns_of_study(model, quantities)
     allocate (self%row(columns%count), source=0.0_wp)
@@ -74,6 +79,23 @@ contains
     if (.not. allocated(err) .and. self%paths%hdf5 /= '' .and. .not. options%has('continue')) call self%file%publish(err)
     if (allocated(err)) call self%close(at_close)
   end subroutine open_results
+
+  !> Begin the columns of all runs in the HDF5 file, which is new or continued.
+  subroutine begin_columns(self, program_name, options, model, err)
+    class(study_results_type), intent(inout) :: self          !< the files
+    character(len=*), intent(in) :: program_name              !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options            !< the command line
+    type(model_type), intent(in) :: model                     !< the model with the values of the data file
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    type(columns_type) :: columns
+
+    call columns_of_runs(program_name, model, columns)
+    if (options%has('continue')) then
+      call self%file%open_columns(columns, model, err)
+    else
+      call self%file%create_columns(columns, model, err)
+    end if
+  end subroutine begin_columns
 
   !> Open the file that is continued, of the part that it knows itself.
   subroutine continue_file(self, options, definition, err)

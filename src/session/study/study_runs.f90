@@ -103,10 +103,23 @@ contains
     if (run%exit_code == exit_interrupted) call stop_here(self)
     if (allocated(self%stopped)) return
     place = 1 + (run%number - self%first)/self%step
-    self%made(modulo(place, size(self%made))) = run
+    call keep(run, self%made(modulo(place, size(self%made))))
     call self%results%write_run(place, run, self%stopped)
     call write_ready(self)
   end subroutine take
+
+  !> Keep a run until its turn comes, without its rows, which may be large.
+  subroutine keep(run, kept)
+    type(made_run_type), intent(in) :: run         !< the run
+    type(made_run_type), intent(inout) :: kept     !< its place; its arrays are allocated
+
+    kept%number = run%number
+    kept%values = run%values
+    kept%quantities = run%quantities
+    kept%exit_code = run%exit_code
+    if (allocated(kept%failure)) deallocate (kept%failure)
+    if (allocated(run%failure)) kept%failure = run%failure
+  end subroutine keep
 
   !> Show and add up the runs whose turn has come.
   subroutine write_ready(self)

@@ -15,6 +15,7 @@ module mech9_study_task
   use mech9_quantity_record, only: quantity_record_type
   use mech9_design_run, only: find_quantities
   use mech9_study_runs, only: study_runs_type
+  use mech9_study_columns, only: refuse_varied_times
   use mech9_study_plots, only: study_plots_type
   use mech9_user_calls, only: calls_user_procedures
   use mech9_study_team, only: study_team_type
@@ -44,27 +45,29 @@ contains
     type(quantity_record_type) :: quantities
     type(study_runs_type) :: runs
     type(study_plots_type) :: plots
+    type(model_type), allocatable :: used
     type(error_type), allocatable :: err
 
     reported = .false.
-    call check_study(program_name, options, model, quantities, err)
+    used = model
+    call check_study(program_name, options, used, quantities, err)
     if (present(team)) call agree_on(team, err)
     if (present(team) .and. .not. allocated(err)) then
       if (.not. team%is_first) then
         call agree_on(team, err)
-        if (.not. allocated(err)) call team%follow(program_name, model, varied)
+        if (.not. allocated(err)) call team%follow(program_name, used, varied)
         reported = .true.
         return
       end if
     end if
     if (.not. allocated(err)) then
-      call open_files(program_name, options, document, model, quantities, runs, plots, err)
+      call open_files(program_name, options, document, used, quantities, runs, plots, err)
       if (present(team)) call agree_on(team, err)
     end if
     if (allocated(err)) then
       call diagnostics%add_error(err)
     else
-      call carry_out(program_name, options, varied, model, quantities, runs, plots, diagnostics, reported, team)
+      call carry_out(program_name, options, varied, used, quantities, runs, plots, diagnostics, reported, team)
     end if
   end subroutine work_on_study
 
@@ -100,14 +103,18 @@ contains
     call runs%results%open(program_name, options, document, model, quantities, err)
   end subroutine open_files
 
-  !> Report a study that cannot be carried out, and find the columns of its quantities.
+  !> Report a study that cannot be carried out, and find the columns of its quantities. Runs keep their columns only where a file
+  !> gets them.
   subroutine check_study(program_name, options, model, quantities, err)
     character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     type(command_line_type), intent(in) :: options          !< the command line
-    type(model_type), intent(in) :: model                   !< the model with the values of the data file
+    type(model_type), intent(inout) :: model                !< the model with the values of the data file
     type(quantity_record_type), intent(out) :: quantities   !< with their columns
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(result_paths_type) :: paths
 
+    call find_result_paths(options, model%request%output, paths)
+    if (paths%hdf5 == '') model%request%output%hdf5_runs = .false.
     if (options%number('threads', 1) > most_threads) then
       call raise(err, exit_usage, '--threads takes at most '//to_text(most_threads))
     else if (model%request%study%kind == '') then
@@ -118,7 +125,8 @@ contains
                  ': leave out '//trim(merge('sensitivities', 'gradients    ', model%request%output%sensitivities))//' in &output', &
                  model%request%output%sensitivities_place)
     else
-      call find_quantities(program_name, model, quantities, err)
+      if (model%request%output%hdf5_runs) call refuse_varied_times(model, err)
+      if (.not. allocated(err)) call find_quantities(program_name, model, quantities, err)
     end if
   end subroutine check_study
 
