@@ -198,7 +198,7 @@ def mistakes(cases):
     cases.refused(good + LENGTHS + path.replace("'P'", "'Q'"), "there is no &point 'Q'; the only one is P")
     cases.refused(good + LENGTHS + path.replace('targets', 'missing'), 'the targets', FILE)
     cases.refused(good + LENGTHS + path, '--study and --optimize are different tasks', USAGE, '--study')
-    cases.refused(good + LENGTHS + path, 'leave --animate out', USAGE, '--animate', 'a.html')
+    cases.refused(good + LENGTHS + path, 'leave --verbose out', USAGE, '--verbose')
     cases.refused(good + LENGTHS + path, 'would not have the changes by --set', USAGE, '--out', 'x.nml', '--set', 'time.end=11')
     function = "&objective kind='function', of='q4', over='q1', file='targets.dat' /\n"
     cases.refused(good + LENGTHS + function, 'each line holds the variable and the value of the function; this one has 3 numbers')

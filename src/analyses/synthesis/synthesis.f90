@@ -139,10 +139,11 @@ contains
     end do
   end function pack_optima
 
-  !> Follow the motion of an optimum with a plan of its own, and compare its value.
+  !> Follow the motion of an optimum with a plan of its own, and compare its value. The search knows the start and the times of the
+  !> last design that it tried; those of the optimum itself are found here.
   subroutine verify(self, optimum, holds)
     class(synthesis_type), intent(inout) :: self             !< the synthesis
-    type(optimum_design_type), intent(in) :: optimum         !< the optimum
+    type(optimum_design_type), intent(inout) :: optimum      !< the optimum; gets its coordinates at the start and its times
     logical, intent(out) :: holds                            !< its motion has the value that was found
     type(design_space_type), target :: alone
     type(design_type) :: design
@@ -177,7 +178,10 @@ contains
     if (fit%own > 0) y(1, :) = (optimum%times - fit%start)/(fit%end - fit%start)
     allocate (values%r(3, fit%groups))
     call fit%evaluate((optimum%x - alone%low)/(alone%high - alone%low), y, .false., values, holds)
-    if (holds) holds = abs(sum(values%r**2) - optimum%value) <= same_value*optimum%value + round_off*sum(values%r**2 + 1.0_wp)
+    if (.not. holds) return
+    optimum%q = fit%q_start
+    optimum%times = fit%times
+    holds = abs(sum(values%r**2) - optimum%value) <= same_value*optimum%value + round_off*sum(values%r**2 + 1.0_wp)
   end subroutine verify
 
   !> Whether two designs are the same but for small differences.

@@ -2,11 +2,11 @@
 module mech9_study_script
   use mech9_kinds, only: wp
   use mech9_text, only: string_type, to_text
-  use mech9_number_format, only: number_format_type, number_width
   use mech9_printable, only: printable
   use mech9_gnuplot, only: quoted, quoted_lines, quoted_path
   use mech9_plot_style, only: plot_style, picture_terminal, picture_title, axis_format, first_colour, second_colour
   use mech9_plot_panels, only: axis_label
+  use mech9_plot_blocks, only: block_of, find_layout
   use mech9_study_request, only: panel_type
   use mech9_study_figures, only: histogram_type, effect_type, map_type, find_histogram, find_effect, find_map
   implicit none
@@ -14,11 +14,8 @@ module mech9_study_script
   public :: study_script, study_terminal_script
 
   character, parameter :: line_end = achar(10)
-  character(len=*), parameter :: data_end = 'end_of_data'
   !> Points of a scatter plot: more would hide each other and make large files.
   integer, parameter :: most_points = 2000
-  !> Sides of a picture with one panel, and of each panel of several [px].
-  integer, parameter :: single(2) = [800, 540], one_of_many(2) = [560, 400]
 
 contains
 
@@ -81,20 +78,6 @@ contains
       text = text//line_end
     end do
   end function study_terminal_script
-
-  !> The places of the panels and the size of the picture.
-  pure subroutine find_layout(panels, across, down, width, height)
-    integer, intent(in) :: panels    !< how many there are
-    integer, intent(out) :: across   !< panels in a row
-    integer, intent(out) :: down     !< rows
-    integer, intent(out) :: width    !< of the picture [px]
-    integer, intent(out) :: height   !< of the picture [px]
-
-    across = min(panels, 1 + merge(1, 0, panels > 1) + merge(1, 0, panels > 4))
-    down = (panels + across - 1)/across
-    width = merge(single(1), across*one_of_many(1), panels == 1)
-    height = merge(single(2), 40 + down*one_of_many(2), panels == 1)
-  end subroutine find_layout
 
   !> The name of the block of data of a panel.
   pure function block_name(i) result(name)
@@ -161,28 +144,6 @@ contains
       end do
     end do
   end function rectangles_of
-
-  !> Numbers as a block of data of a script.
-  pure function block_of(name, numbers) result(text)
-    character(len=*), intent(in) :: name          !< of the block
-    real(wp), intent(in) :: numbers(:, :)         !< (lines,numbers of a line)
-    character(len=:), allocatable :: text, lines
-    type(number_format_type) :: format
-    integer :: i, j, at
-
-    format = number_format_type()
-    allocate (character(len=size(numbers, 1)*(size(numbers, 2)*number_width + 1)) :: lines)
-    at = 0
-    do j = 1, size(numbers, 1)
-      do i = 1, size(numbers, 2)
-        call format%put(numbers(j, i), lines(at + 1:at + number_width))
-        at = at + number_width
-      end do
-      at = at + 1
-      lines(at:at) = line_end
-    end do
-    text = name//' << '//data_end//line_end//lines//data_end//line_end
-  end function block_of
 
   !> The commands for one panel of a picture.
   pure function panel_commands(i, panel, names, units, rows) result(text)

@@ -159,7 +159,7 @@ contains
     type(error_type), allocatable, intent(out) :: err  !< allocated if there is one
     character(len=:), allocatable :: other
 
-    other = first_of([answers, [character(len=11) :: 'plot', 'sketch', 'animate', 'view', 'verbose']], given)
+    other = first_of([answers, [character(len=11) :: 'verbose']], given)
     if (other /= '') call raise(err, exit_usage, '--optimize searches for a design and writes a table with a row for each one '// &
                                 'that it finds; leave --'//other//' out, and give it to a run of the design')
   end subroutine judge_optimum

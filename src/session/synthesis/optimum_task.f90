@@ -21,6 +21,7 @@ module mech9_optimum_task
   use mech9_starts, only: starts_type
   use mech9_synthesis, only: synthesis_type, new_synthesis
   use mech9_optimum_results, only: open_starts, write_results, table_of
+  use mech9_optimum_pictures, only: optimum_pictures_type
   use mech9_optimum_words, only: print_optimum, save_optimum_report
   implicit none
   private
@@ -41,6 +42,7 @@ contains
     logical, intent(out) :: reported                                !< a report was asked for, and it is written
     type(synthesis_type), allocatable, target :: synthesis
     type(starts_type) :: starts
+    type(optimum_pictures_type) :: pictures
     type(plan_type) :: plan
     type(state_type) :: start
     type(error_type), allocatable :: err
@@ -50,6 +52,7 @@ contains
     allocate (synthesis)
     clock = seconds()
     call check_request(options, model, err)
+    if (.not. allocated(err)) call pictures%open(program_name, options, model, err)
     if (.not. allocated(err)) call assemble_driven_start(model, plan, start, err)
     if (.not. allocated(err)) call new_synthesis(variable, model, plan, synthesis, err)
     if (.not. allocated(err)) call open_starts(program_name, options, document, model, synthesis, starts, err)
@@ -66,6 +69,7 @@ contains
                  'give more starts in &optimum, or other ranges of the parameters')
     if (allocated(err)) call diagnostics%add_error(err)
     call write_results(program_name, options, document, model, synthesis, starts, diagnostics)
+    call pictures%draw(options, variable, synthesis, diagnostics)
     if (.not. options%has('report')) return
     call save_optimum_report(options%argument('report'), program_name, model, synthesis, table_of(options, model), diagnostics, err)
     reported = .true.

@@ -10,6 +10,7 @@ module mech9_starts_file
   use mech9_hdf5_series, only: hdf5_series_type
   use mech9_hdf5_reading, only: open_existing, read_text, read_integer, has_data_set
   use mech9_hdf5_record, only: write_coordinates
+  use mech9_study_filling, only: fill_rows
   use mech9_study_definition, only: digest_of, tell_difference
   use mech9_design_search, only: found_design_type, most_assemblies
   use mech9_synthesis, only: synthesis_type
@@ -95,6 +96,7 @@ contains
     call self%series%create(self%file)
     call write_scales(self%file, model, self%layout)
     call self%series%attach(self%file)
+    call fill_rows(self%series, self%file, size(self%row), model%request%optimum%starts, not_made)
     call self%file%put('optimum/definition', definition, 'text that determines the search but for the number of starts')
     call self%file%put('optimum/digest', digest_of(definition), 'cyclic redundancy check of the definition')
     call self%file%put('optimum/seed', model%request%optimum%seed, 'seed of the starts')

@@ -1,0 +1,162 @@
+!> The script with which gnuplot draws targets and the design that meets them best.
+module mech9_fit_script
+  use mech9_kinds, only: wp
+  use mech9_text, only: string_type, to_text
+  use mech9_printable, only: printable
+  use mech9_gnuplot, only: quoted, quoted_lines, quoted_path
+  use mech9_plot_style, only: plot_style, picture_terminal, picture_title, axis_format, first_colour, second_colour
+  use mech9_plot_blocks, only: block_of, find_layout
+  implicit none
+  private
+  public :: fit_panel_type, fit_script, fit_terminal_script
+
+  !> One panel. Targets and places have directions where these count: those of the x axis of a link.
+  type :: fit_panel_type
+    character(len=:), allocatable :: title         !< of the panel
+    character(len=:), allocatable :: x_label       !< of the axis to the right
+    character(len=:), allocatable :: y_label       !< of the axis upwards
+    logical :: equal_scales = .false.              !< both axes are lengths
+    logical :: is_error = .false.                  !< differences are shown, as lines from zero
+    real(wp), allocatable :: curve(:, :)           !< (n,2) motion of the design; not used for differences
+    real(wp), allocatable :: targets(:, :)         !< (m,4) places of the targets, and directions; the differences in column 2
+    real(wp), allocatable :: reached(:, :)         !< (m,4) places of the design at the times of the targets, and directions
+  end type fit_panel_type
+
+  character, parameter :: line_end = achar(10)
+  !> Most targets that are numbered.
+  integer, parameter :: most_numbers = 60
+  !> Length of a direction in parts of the size of the targets.
+  real(wp), parameter :: arrow = 0.08_wp
+
+contains
+
+  !> The script of a picture. Users can run it again, and its first line tells how.
+  pure function fit_script(title, panels, picture, script) result(text)
+    character(len=*), intent(in) :: title              !< title of the mechanism
+    type(fit_panel_type), intent(in) :: panels(:)      !< at least one
+    character(len=*), intent(in) :: picture            !< name of the file of the picture, without its folder
+    character(len=*), intent(in) :: script             !< name of the file of the script, without its folder
+    character(len=:), allocatable :: text
+    type(string_type), allocatable :: lines(:)
+    integer :: i, across, down, width, height
+
+    call find_layout(size(panels), across, down, width, height)
+    lines = picture_title(title, picture, width)
+    text = '# gnuplot '//printable(script)//' draws '//printable(picture)//line_end//'set encoding utf8'//line_end// &
+           picture_terminal(picture, width, height)//line_end//'set output '//quoted_path(picture)//line_end//plot_style()
+    do i = 1, size(panels)
+      text = text//blocks_of(i, panels(i))
+    end do
+    if (size(panels) == 1) then
+      text = text//'set title '//quoted_lines(lines)//line_end
+    else
+      text = text//'set multiplot layout '//to_text(down)//','//to_text(across)//' title '//quoted_lines(lines)//line_end
+    end if
+    do i = 1, size(panels)
+      if (size(panels) > 1) text = text//'set title '//quoted(panels(i)%title)//line_end
+      text = text//axes_of(panels(i))//curves_of(i, panels(i))
+    end do
+    if (size(panels) > 1) text = text//'unset multiplot'//line_end
+    text = text//'unset output'//line_end
+  end function fit_script
+
+  !> The script of panels in letters, one below the other.
+  pure function fit_terminal_script(panels, columns, lines) result(text)
+    type(fit_panel_type), intent(in) :: panels(:)      !< at least one
+    integer, intent(in) :: columns                     !< width of each panel in letters
+    integer, intent(in) :: lines                       !< height of each panel in lines
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = 'set encoding utf8'//line_end//'set terminal dumb mono noenhanced size '//to_text(columns)//','//to_text(lines)// &
+           line_end//'unset key'//line_end//'set tics nomirror'//line_end
+    do i = 1, size(panels)
+      text = text//blocks_of(i, panels(i))//'set title '//quoted(panels(i)%title)//line_end//'plot '
+      if (.not. panels(i)%is_error) text = text//name_of('curve', i)//' using 1:2 with lines, '
+      text = text//name_of('targets', i)//' using 1:2 with points pt 15'//line_end
+    end do
+  end function fit_terminal_script
+
+  !> The name of a block of data of a panel.
+  pure function name_of(kind, i) result(name)
+    character(len=*), intent(in) :: kind   !< of the block
+    integer, intent(in) :: i               !< number of the panel
+    character(len=:), allocatable :: name
+
+    name = '$'//kind//to_text(i)
+  end function name_of
+
+  !> The numbers of a panel: the curve; the targets with their directions and numbers, and so the places reached; the gaps between
+  !> both.
+  pure function blocks_of(i, panel) result(text)
+    integer, intent(in) :: i                      !< number of the panel
+    type(fit_panel_type), intent(in) :: panel     !< the panel
+    character(len=:), allocatable :: text
+    integer :: k, m
+    real(wp) :: size_of_targets
+
+    m = size(panel%targets, 1)
+    text = ''
+    if (.not. panel%is_error) text = block_of(name_of('curve', i), panel%curve)
+    size_of_targets = norm2([maxval(panel%targets(:, 1)) - minval(panel%targets(:, 1)), &
+                             maxval(panel%targets(:, 2)) - minval(panel%targets(:, 2))])
+    text = text//block_of(name_of('targets', i), reshape([panel%targets(:, :2), arrow*size_of_targets*panel%targets(:, 3:), &
+                                                          reshape([(real(k, wp), k=1, m)], [m, 1])], [m, 5]))
+    if (panel%is_error) return
+    text = text//block_of(name_of('reached', i), reshape([panel%reached(:, :2), arrow*size_of_targets*panel%reached(:, 3:)], &
+                                                         [m, 4]))// &
+           block_of(name_of('gaps', i), reshape([panel%targets(:, :2), panel%reached(:, :2) - panel%targets(:, :2)], [m, 4]))
+  end function blocks_of
+
+  !> The commands for the axes of a panel.
+  pure function axes_of(panel) result(text)
+    type(fit_panel_type), intent(in) :: panel     !< the panel
+    character(len=:), allocatable :: text
+
+    text = 'set xlabel '//quoted(panel%x_label)//line_end//'set ylabel '//quoted(panel%y_label)//line_end// &
+           'set format x '//axis_format(ends_of(panel, 1))//line_end//'set format y '//axis_format(ends_of(panel, 2))//line_end// &
+           'set key outside below center horizontal Left reverse samplen 2'//line_end
+    if (panel%equal_scales) then
+      text = text//'set size ratio -1'//line_end
+    else
+      text = text//'set size noratio'//line_end
+    end if
+  end function axes_of
+
+  !> Least and greatest number on an axis.
+  pure function ends_of(panel, axis) result(ends)
+    type(fit_panel_type), intent(in) :: panel     !< the panel
+    integer, intent(in) :: axis                   !< 1 or 2
+    real(wp) :: ends(2)
+
+    ends = [minval(panel%targets(:, axis)), maxval(panel%targets(:, axis))]
+    if (panel%is_error) return
+    ends = [min(ends(1), minval(panel%curve(:, axis))), max(ends(2), maxval(panel%curve(:, axis)))]
+  end function ends_of
+
+  !> The command that draws a panel.
+  pure function curves_of(i, panel) result(text)
+    integer, intent(in) :: i                      !< number of the panel
+    type(fit_panel_type), intent(in) :: panel     !< the panel
+    character(len=:), allocatable :: text
+    character(len=*), parameter :: next = ', \'//line_end//'     '
+
+    if (panel%is_error) then
+      text = 'plot '//name_of('targets', i)//' using 1:2 with impulses lw 1.5 lc rgb '''//first_colour//''' notitle'//next// &
+             name_of('targets', i)//' using 1:2 with points pt 7 ps 0.5 lc rgb '''//first_colour// &
+             ''' title ''best design less target'''//line_end
+      return
+    end if
+    text = 'plot '//name_of('curve', i)//' using 1:2 with lines lw 2 lc rgb '''//first_colour//''' title ''best design'''//next// &
+           name_of('gaps', i)//' using 1:2:3:4 with vectors nohead lw 1 lc rgb ''#404040'' notitle'//next// &
+           name_of('reached', i)//' using 1:2 with points pt 6 ps 0.6 lc rgb '''//first_colour//''' notitle'//next// &
+           name_of('targets', i)//' using 1:2 with points pt 7 ps 0.6 lc rgb '''//second_colour//''' title ''targets'''
+    if (any(abs(panel%targets(:, 3:)) > 0.0_wp)) &
+      text = text//next//name_of('reached', i)//' using 1:2:3:4 with vectors nohead lw 2 lc rgb '''//first_colour//''' notitle'// &
+             next//name_of('targets', i)//' using 1:2:3:4 with vectors nohead lw 2 lc rgb '''//second_colour//''' notitle'
+    if (size(panel%targets, 1) <= most_numbers) &
+      text = text//next//name_of('targets', i)// &
+             ' using 1:2:(sprintf(''%.0f'', $5)) with labels offset character 1,0.5 font '',10'' tc rgb ''#404040'' notitle'
+    text = text//line_end
+  end function curves_of
+end module mech9_fit_script
