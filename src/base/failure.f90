@@ -22,7 +22,8 @@ module mech9_failure
     failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve, &
     failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, failure_open_coupling, failure_coupled, &
     failure_off_table, failure_no_neighbours, failure_unknown_derivative, failure_singular_sensitivity, &
-    failure_opening_parameter, failure_jump_sensitivity, failure_angles_sensitivity, last_failure
+    failure_opening_parameter, failure_jump_sensitivity, failure_angles_sensitivity, failure_shared_force, &
+    failure_unknown_forces, last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
@@ -186,7 +187,11 @@ module mech9_failure
   integer, parameter :: failure_jump_sensitivity = 69
   !> Other angles are integrated in place of those of the data file, whose derivatives are not known: t.
   integer, parameter :: failure_angles_sensitivity = 70
-  integer, parameter :: last_failure = failure_angles_sensitivity
+  !> Equilibrium does not determine the force of a coupling, whose derivatives are not known: number (of the coupling).
+  integer, parameter :: failure_shared_force = 71
+  !> A parameter sets numbers by which derivatives of forces are not known: name.
+  integer, parameter :: failure_unknown_forces = 72
+  integer, parameter :: last_failure = failure_unknown_forces
 
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type

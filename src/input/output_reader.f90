@@ -88,7 +88,6 @@ contains
                              'and there are none; give a group &quantity for each')
       end if
     end do
-    if (get_logical(group, 'sensitivities')) call check_forces(group, diagnostics)
     if (.not. (get_logical(group, 'sensitivities') .or. get_logical(group, 'gradients'))) return
     do i = 1, size(quantities)
       if (get_text(document%groups(quantities(i)), 'name') == 'gradient') &
@@ -96,23 +95,6 @@ contains
                              'name ''gradient'' in the HDF5 file; choose another name')
     end do
   end subroutine check_sensitivities
-
-  !> Report forces that are recorded beside sensitivities.
-  pure subroutine check_forces(group, diagnostics)
-    type(group_type), intent(in) :: group                 !< of the output settings
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
-    character(len=14), parameter :: forces(3) = ['reactions     ', 'reaction_pairs', 'drive_forces  ']
-    integer :: i
-
-    do i = 1, size(forces)
-      if (.not. has_name(group, trim(forces(i)))) cycle
-      if (i /= 2) then
-        if (.not. get_logical(group, trim(forces(i)))) cycle
-      end if
-      call diagnostics%add(span_of(group, trim(forces(i))), 'derivatives of forces are not computed; leave out '// &
-                           trim(forces(i))//', or sensitivities')
-    end do
-  end subroutine check_forces
 
   !> Report recorded coordinates, or pairs, that do not exist or are named twice.
   pure subroutine check_coordinates(group, name, counted, n_coordinates, coordinates, diagnostics)

@@ -12,7 +12,7 @@ module mech9_hdf5_sensitivities
 
 contains
 
-  !> Add the derivatives of coordinates, points and energies. The parameter is the last dimension.
+  !> Add the derivatives of coordinates, points, forces and energies. The parameter is the last dimension.
   subroutine add_sensitivities(series, columns)
     type(hdf5_series_type), intent(inout) :: series   !< the quantities of the file
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
@@ -23,6 +23,7 @@ contains
     n = size(columns%coordinates)
     each = columns%varied
     points = (columns%motion - 1)/(columns%derivatives + 1) - n
+    call add_forces(series, columns)
     call add_energies(series, columns)
     do order = 0, columns%derivatives
       before = columns%count - columns%sensitivities + order*n
@@ -43,18 +44,54 @@ contains
     end do
   end subroutine add_sensitivities
 
+  !> Add the derivatives of the forces of drives, of those in pairs, and of those of couplings.
+  subroutine add_forces(series, columns)
+    type(hdf5_series_type), intent(inout) :: series   !< the quantities of the file
+    type(columns_type), intent(in) :: columns         !< columns of the rows to come
+    integer :: n, parameters, at, i, k
+
+    if (columns%forces() == 0) return
+    parameters = size(columns%parameters)
+    n = size(columns%drives)
+    at = columns%motion
+    if (n > 0) call series%add('sensitivity/drive_force', [(places(columns, at + i), i=1, n)], [parameters, n], &
+                               'derivatives of drive_force by the parameters', unit_of_all(columns, at + 1, n), &
+                               ['/time     ', '/driven   ', '/parameter'])
+    at = at + n
+    n = size(columns%reacting)
+    if (n == 0) return
+    call series%add('sensitivity/reaction_force', [((places(columns, at + 6*(i - 1) + k), k=1, 3), i=1, n)], [parameters, 3, n], &
+                    'derivatives of reaction_force by the parameters', unit_of_all(columns, at + 1, 1), &
+                    ['/time     ', '/pair     ', '/axis     ', '/parameter'])
+    call series%add('sensitivity/reaction_moment', [((places(columns, at + 6*(i - 1) + 3 + k), k=1, 3), i=1, n)], &
+                    [parameters, 3, n], 'derivatives of reaction_moment by the parameters', unit_of_all(columns, at + 4, 1), &
+                    ['/time     ', '/pair     ', '/axis     ', '/parameter'])
+    at = at + 6*n
+    n = columns%couplings
+    if (n > 0) call series%add('sensitivity/coupling_force', [(places(columns, at + i), i=1, n)], [parameters, n], &
+                               'derivatives of coupling_force by the parameters', unit_of_all(columns, at + 1, n), &
+                               ['/time     ', '/coupling ', '/parameter'])
+  end subroutine add_forces
+
+  !> The columns of the derivatives of a column by each parameter.
+  pure function places(columns, column)
+    type(columns_type), intent(in) :: columns         !< the columns, with derivatives in the results
+    integer, intent(in) :: column                     !< number of a column
+    integer :: places(size(columns%parameters))
+
+    places = columns%derivatives_of(column)
+  end function places
+
   !> Add the derivatives of energies.
   subroutine add_energies(series, columns)
     type(hdf5_series_type), intent(inout) :: series   !< the quantities of the file
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
-    integer :: i, p, at, point
+    integer :: i, point
 
     do i = columns%varied + 2 - columns%energies, columns%varied + 1
       associate (name => columns%names(i)%text)
-        at = columns%count - columns%sensitivities + i - 1
         point = index(name, '.')
-        call series%add('sensitivity/'//name(:point - 1)//'_'//name(point + 1:), &
-                        [(at + (p - 1)*columns%varied, p=1, size(columns%parameters))], [size(columns%parameters)], &
+        call series%add('sensitivity/'//name(:point - 1)//'_'//name(point + 1:), places(columns, i), [size(columns%parameters)], &
                         'derivatives of the '//columns%long_names(i)%text//' by the parameters', unit_of_all(columns, i, 1), &
                         ['/time     ', '/parameter'])
       end associate

@@ -2,7 +2,7 @@
 module mech9_sensitivity_words
   use mech9_text, only: to_text
   use mech9_failure, only: failure_type, failure_no_neighbours, failure_unknown_derivative, failure_singular_sensitivity, &
-    failure_opening_parameter, failure_jump_sensitivity, failure_angles_sensitivity
+    failure_opening_parameter, failure_jump_sensitivity, failure_angles_sensitivity, failure_shared_force, failure_unknown_forces
   use mech9_block_names, only: chain_names
   implicit none
   private
@@ -36,6 +36,12 @@ contains
       text = 'derivatives by the parameters are not computed at t = '//to_text(failure%t, 10)//' s, where the motion goes on '// &
              'in other angles of a ball joint or of a rod than those of the data file. End the run before, or leave out '// &
              'sensitivities and gradients'
+    case (failure_shared_force)
+      text = 'derivatives of forces in the pairs are not computed, because equilibrium does not determine the force of '// &
+             'coupling '//to_text(failure%number)//'. Leave out reactions, or sensitivities and gradients'
+    case (failure_unknown_forces)
+      text = 'derivatives of forces by the parameter '''//failure%name//''' are not computed: it sets numbers of the user''s '// &
+             'loads. Leave out the parameter, reactions and drive_forces, or sensitivities and gradients'
     end select
   end subroutine explain_sensitivity
 end module mech9_sensitivity_words

@@ -38,6 +38,7 @@ UNREACHABLE = {
     'lost_angles': 'positions within a step that was made are always found',
     'not_started': 'the programs start each motion',
     'backwards': 'the times of a data file are in order',
+    'unknown_forces': 'numbers of a load of the user lead to it: user_sensitivities.py',
     'interrupted': 'a signal leads to it: interrupted_run.py',
     'interrupted_starts': 'a signal leads to it: interrupted_run.py',
 }
@@ -338,6 +339,9 @@ def driven_cases():
          ['derivatives by the parameters do not exist at t = 1 s, in a singular position of closed chain 1']),
         ('opening_parameter', sensitive('pair(2).axis(1)', turned(60), drive(1, '60')), (), DATA,
          ["derivatives by the parameter 'number' do not exist: closed chain 1 would not stay closed"]),
+        ('shared_force', GEARS + "&coupling kind='gear', coordinates=1,2, ratio=2 /\n&body link=3, mass=1, centre=0.1,0,0 /\n"
+         "&parameter name='mass', sets='body.mass' /\n&output sensitivities=.true., reactions=.true. /\n", (), DATA,
+         ['derivatives of forces in the pairs are not computed, because equilibrium does not determine the force of coupling']),
     ]
 
 

@@ -332,8 +332,6 @@ def check_refusals(case):
     crank = "&parameter name='crank', sets='{}' /\n"
     case.refused(FOUR_BAR, 3, 'sensitivities are derivatives by the parameters, and there are none')
     case.refused(FOUR_BAR + crank.format('time.end'), 3, "derivatives by the parameter 'crank' are not computed")
-    case.refused(FOUR_BAR.replace('sensitivities', 'drive_forces=.true., sensitivities') + crank.format('pair(2).point(1)'), 3,
-                 'derivatives of forces are not computed; leave out drive_forces')
     case.refused('&mechanism title=\'a\' /\n' + FOUR_BAR + crank.format('mechanism.data_tolerance'), 3, 'its value cannot be changed a little in both directions')
 
 

@@ -1,5 +1,5 @@
 """Derivatives by the numbers that users' procedures receive: a pair, a drive and a coupling, each in both forms, against closed forms
-and against differences of runs.
+and against differences of runs; energies, forces and free motions by those of a pair; a load, which has none.
 
 Compares the program with itself in part: differences of runs at other values of a parameter.
 
@@ -118,9 +118,24 @@ def main():
         program = os.path.join(folder, 'trammel_k')
         compare(checks, rows_of(program, directory, text), 'p1', differences(program, directory, text, (0.5,), 0), TAYLOR, 'reversed pair')
         # energies of a driven motion
-        text += '&body link=2, mass=2, centre=0.1,0.2,0, inertia=0.1,0.1,0.2,0,0,0 /\n&gravity acceleration=1,-9.81,0 /\n'
+        text += '&body link=2, mass=2, centre=0.1,0.2,0, inertia=0.1,0.1,0.2,0,0,0 /\n&body link=4, mass=3 /\n&gravity acceleration=1,-9.81,0 /\n'
         program = os.path.join(folder, 'trammel_d')
-        compare(checks, rows_of(program, directory, text), 'p1', differences(program, directory, text, (0.5,), 0), TAYLOR, 'energies')
+        text = text.replace('sensitivities=.true.', 'sensitivities=.true., reactions=.true., drive_forces=.true.')
+        compare(checks, rows_of(program, directory, text), 'p1', differences(program, directory, text, (0.5,), 0), TAYLOR, 'energies and forces')
+        free = ' '.join(line for line in text.splitlines(keepends=True) if not line.startswith(('&drive', '&time')))
+        free += ('&initial coordinate=1, position=0.3, velocity=2 /\n&time end=0.5, intervals=4 /\n'
+                 '&solver relative_tolerance=1e-12, absolute_tolerance=1e-12 /\n')
+        # differences of runs at tolerances of 1e-12 know seven digits
+        compare(checks, rows_of(program, directory, free), 'p1', differences(program, directory, free, (0.5,), 0), PLAIN, 'a free motion')
+        load = os.path.join(directory, 'load.nml')
+        drag = ("&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /\n&load kind='user' /\n"
+                "&drive coordinate=1, kind='polynomial', coefficients=0,1 /\n&user parameters=2,0,0,0,0.1 /\n&body link=2, mass=2 /\n"
+                "&parameter name='k', sets='user.parameters(5)' /\n&output sensitivities=.true., drive_forces=.true. /\n")
+        with open(load, 'w', encoding='utf-8') as file:
+            file.write(drag)
+        done = run(os.path.join(folder, 'air_drag_k'), load, '--quiet', '--no-write')
+        checks.equal(done.returncode, 3, 'forces of a load of the user by its numbers: the exit code')
+        checks.true("derivatives of forces by the parameter 'k' are not computed" in done.stderr, 'and the message', done.stderr)
     checks.finish()
 
 

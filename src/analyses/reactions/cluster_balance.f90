@@ -12,6 +12,7 @@
 !> the joint counts once. All turns of such a joint are about lines through this point, so that the moments about them stay the same.
 module mech9_cluster_balance
   use mech9_kinds, only: wp
+  use mech9_tolerances, only: balanced
   use mech9_rotation, only: cross
   use mech9_block_cholesky, only: block_cholesky_type, new_block_cholesky, clearly_positive
   use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type
@@ -32,7 +33,9 @@ module mech9_cluster_balance
   contains
     procedure :: set_position
     procedure :: spread
+    procedure :: find_motion
     procedure :: find_lacking
+    procedure :: complete
   end type cluster_balance_type
 
 contains
@@ -149,21 +152,63 @@ contains
     real(wp), intent(in) :: y(:, :)                       !< (6,nodes) displacements, scaled
     real(wp), intent(inout), contiguous :: wrenches(:, :) !< (6,pairs) scaled
     real(wp) :: motion(6)
-    integer :: i, side
+    integer :: i
 
     do i = 1, size(cluster%pairs)
-      motion = 0.0_wp
-      do side = 1, 2
-        if (cluster%nodes(side, i) == 0) cycle
-        associate (d => y(:, cluster%nodes(side, i)), sign => 3 - 2*side)
-          motion(1:3) = motion(1:3) + sign*(d(1:3) + cross(d(4:6), self%arm(:, side, i)))
-          motion(4:6) = motion(4:6) + sign*d(4:6)
-        end associate
-      end do
+      motion = self%find_motion(cluster, i, y)
       if (self%held(i)) motion = motion - dot_product(self%axis(:, i), motion)*self%axis(:, i)
       wrenches(:, i) = wrenches(:, i) + self%parts(i)*motion
     end do
   end subroutine spread
+
+  !> The motion of the moving link of a pair in its reference link at the point of the pair, for displacements y of the links.
+  pure function find_motion(self, cluster, i, y) result(motion)
+    class(cluster_balance_type), intent(in) :: self       !< the equations of a position
+    type(joined_cluster_type), intent(in) :: cluster      !< the cluster
+    integer, intent(in) :: i                              !< place of the pair in the cluster
+    real(wp), intent(in) :: y(:, :)                       !< (6,nodes) displacements, scaled
+    real(wp) :: motion(6)
+    integer :: side
+
+    motion = 0.0_wp
+    do side = 1, 2
+      if (cluster%nodes(side, i) == 0) cycle
+      associate (d => y(:, cluster%nodes(side, i)), sign => 3 - 2*side)
+        motion(1:3) = motion(1:3) + sign*(d(1:3) + cross(d(4:6), self%arm(:, side, i)))
+        motion(4:6) = motion(4:6) + sign*d(4:6)
+      end associate
+    end do
+  end function find_motion
+
+  !> Complete the wrenches in a regular position. `converged` is false where corrections do not lead to balance.
+  pure subroutine complete(self, cluster, required, wrenches, lacking, converged, displacements)
+    class(cluster_balance_type), intent(inout) :: self       !< the equations, factorized
+    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
+    real(wp), intent(in), contiguous :: required(:, :)       !< (6,nodes) scaled
+    real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled: those that are given; complete
+    real(wp), intent(inout), contiguous :: lacking(:, :)     !< (6,nodes) scratch
+    logical, intent(out) :: converged                        !< the links are in balance
+    real(wp), intent(out), optional :: displacements(:, :)   !< (6,nodes) y of all corrections together, scaled
+    integer, parameter :: most_corrections = 12
+    real(wp) :: error, before, largest
+    integer :: i
+
+    before = huge(before)
+    if (present(displacements)) displacements = 0.0_wp
+    do i = 0, most_corrections
+      call self%find_lacking(cluster, required, wrenches, lacking)
+      error = maxval(abs(lacking))
+      largest = max(maxval(abs(wrenches)), maxval(abs(required)))
+      converged = error <= 32.0_wp*epsilon(error)*largest
+      ! the balance does not improve any more when it is round-off
+      if (converged .or. (i > 1 .and. .not. error < 0.5_wp*before)) exit
+      before = error
+      call self%factors%solve(lacking)
+      call self%spread(cluster, lacking, wrenches)
+      if (present(displacements)) displacements = displacements + lacking
+    end do
+    converged = error <= balanced*largest
+  end subroutine complete
 
   !> The wrench about its place that each link requires beside those that it receives from its pairs.
   pure subroutine find_lacking(self, cluster, required, wrenches, lacking)

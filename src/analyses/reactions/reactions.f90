@@ -312,7 +312,7 @@ contains
     end do
     call hold_loads(cluster, balance, self)
     associate (wrenches => self%wrenches(:, :m), required => self%required(:, :n), lacking => self%lacking(:, :n))
-      if (regular) call solve_regular(cluster, balance, required, wrenches, lacking, regular)
+      if (regular) call balance%complete(cluster, required, wrenches, lacking, regular)
       if (.not. regular) then
         call hold_loads(cluster, balance, self)
         call decompose_cluster(cluster, balance, rank_tolerance_for(plan%data_tolerance), singular)
@@ -350,33 +350,6 @@ contains
         self%wrenches(:, i) = (self%sum%generalized(k)/self%geometry%length(k))*self%geometry%axis(:, k)
     end do
   end subroutine hold_loads
-
-  !> Complete the wrenches in a regular position. `converged` is false where corrections do not lead to balance.
-  pure subroutine solve_regular(cluster, balance, required, wrenches, lacking, converged)
-    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
-    type(cluster_balance_type), intent(inout) :: balance     !< its equations, factorized
-    real(wp), intent(in), contiguous :: required(:, :)       !< (6,nodes) scaled
-    real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled: of the loads on dependent coordinates; complete
-    real(wp), intent(inout), contiguous :: lacking(:, :)     !< (6,nodes) scratch
-    logical, intent(out) :: converged                        !< the links are in balance
-    integer, parameter :: most_corrections = 12
-    real(wp) :: error, before, largest
-    integer :: i
-
-    before = huge(before)
-    do i = 0, most_corrections
-      call balance%find_lacking(cluster, required, wrenches, lacking)
-      error = maxval(abs(lacking))
-      largest = max(maxval(abs(wrenches)), maxval(abs(required)))
-      converged = error <= 32.0_wp*epsilon(error)*largest
-      ! the balance does not improve any more when it is round-off
-      if (converged .or. (i > 1 .and. .not. error < 0.5_wp*before)) exit
-      before = error
-      call balance%factors%solve(lacking)
-      call balance%spread(cluster, lacking, wrenches)
-    end do
-    converged = error <= balanced*largest
-  end subroutine solve_regular
 
   !> The generalized forces that independent coordinates need beside the loads on them.
   pure subroutine find_needed(plan, reactions, self)

@@ -5,6 +5,7 @@
 module mech9_singular_cluster
   use mech9_kinds, only: wp
   use mech9_lapack, only: dgesvd
+  use mech9_tolerances, only: balanced_singular
   use mech9_reaction_plan, only: joined_cluster_type
   use mech9_cluster_balance, only: cluster_balance_type
   implicit none
@@ -20,6 +21,7 @@ module mech9_singular_cluster
     real(wp), allocatable :: root(:)         !< (pairs) by which wrenches are divided for the norm to count joints once
   contains
     procedure :: solve
+    procedure :: complete
     procedure :: remove_determined
   end type singular_cluster_type
 
@@ -71,6 +73,35 @@ contains
       wrenches(:, i) = self%root(i)*wrenches(:, i)
     end do
   end subroutine solve
+
+  !> Complete the wrenches as far as they can balance the links. `converged` is false where something is left.
+  subroutine complete(self, balance, cluster, required, wrenches, converged, displacements)
+    class(singular_cluster_type), intent(in) :: self         !< singular values and vectors
+    type(cluster_balance_type), intent(in) :: balance        !< the equations of the position
+    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
+    real(wp), intent(in), contiguous :: required(:, :)       !< (6,nodes) scaled
+    real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled: those that are given; complete
+    logical, intent(out) :: converged                        !< the links are in balance
+    real(wp), intent(out), optional :: displacements(:, :)   !< (6,nodes) of least norm that belong to the wrenches, scaled
+    real(wp) :: lacking(size(required, 1), size(required, 2)), changes(size(wrenches, 1), size(wrenches, 2))
+    real(wp) :: parts(self%rank)
+    integer :: i, round
+
+    if (present(displacements)) displacements = 0.0_wp
+    ! the second round removes the round-off of the first
+    do round = 1, 2
+      call balance%find_lacking(cluster, required, wrenches, lacking)
+      call self%solve(lacking, changes)
+      wrenches = wrenches + changes
+      if (.not. present(displacements)) cycle
+      do i = 1, self%rank
+        parts(i) = dot_product(self%forces(:, i), reshape(lacking, [size(lacking)]))/self%values(i)**2
+      end do
+      displacements = displacements + reshape(matmul(self%forces(:, :self%rank), parts), shape(displacements))
+    end do
+    call balance%find_lacking(cluster, required, wrenches, lacking)
+    converged = maxval(abs(lacking)) <= balanced_singular*max(maxval(abs(wrenches)), maxval(abs(required)))
+  end subroutine complete
 
   !> Remove from wrenches the part that the balance of the links determines.
   pure subroutine remove_determined(self, wrenches)

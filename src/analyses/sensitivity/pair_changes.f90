@@ -24,7 +24,7 @@ module mech9_pair_changes
 contains
 
   !> The twist of the step of a user's pair by a parameter, with its derivatives in time.
-  subroutine find_pair_change(plan, state, motion, tangent, s, highest, series)
+  subroutine find_pair_change(plan, state, motion, tangent, s, highest, series, slope)
     type(plan_type), intent(in) :: plan              !< the plan of the mechanism, in space
     type(state_type), intent(in) :: state            !< the motion
     type(frame_twists_type), intent(in) :: motion    !< its twists
@@ -32,6 +32,7 @@ contains
     integer, intent(in) :: s                         !< the step
     integer, intent(in) :: highest                   !< order of the highest derivative in time
     real(wp), intent(inout) :: series(6, 0:2)        !< gets the twist in frame 0, up to this derivative
+    real(wp), intent(out), optional :: slope(6)      !< its derivative in the coordinate, with the frame before at rest
     real(wp) :: own(6, 0:2)
     integer :: k
 
@@ -40,6 +41,7 @@ contains
     type is (procedure_pair_type)
       call find_own(pair, tangent%pairs(k)%change, state%q(k), plan%steps(s)%reversed, own)
       call find_series(plan, state, motion, s, own, highest, series)
+      if (present(slope)) slope = in_frame_0(plan, state, s, own(:, 1))
     end select
   end subroutine find_pair_change
 
@@ -107,16 +109,13 @@ contains
     real(wp), intent(in) :: own(6, 0:2)              !< the twist and two derivatives in the coordinate, in the frame of the pair
     integer, intent(in) :: highest                   !< order of the highest derivative in time
     real(wp), intent(inout) :: series(6, 0:2)        !< the twist and its derivatives in time
-    real(wp) :: departing(3, 3), place(3), seen(6, 0:2)
+    real(wp) :: seen(6, 0:2)
     integer :: i, j
 
     associate (step => plan%steps(s), dq => state%dq(plan%steps(s)%coordinate), ddq => state%ddq(plan%steps(s)%coordinate))
       i = step%parent
-      departing = combine(state%r(:, :, i), step%before%r)
-      place = state%p(:, i) + turn(state%r(:, :, i), step%before%p)
       do j = 0, 2
-        seen(1:3, j) = turn(departing, own(1:3, j))
-        seen(4:6, j) = turn(departing, own(4:6, j)) + cross(place, seen(1:3, j))
+        seen(:, j) = in_frame_0(plan, state, s, own(:, j))
       end do
       series(:, 0) = seen(:, 0)
       if (highest < 1) return
@@ -126,4 +125,20 @@ contains
                      + dq*bracket(motion%velocity(:, i), seen(:, 1)) + ddq*seen(:, 1) + dq**2*seen(:, 2)
     end associate
   end subroutine find_series
+
+  !> A twist in the frame from which a step departs as a twist in frame 0.
+  pure function in_frame_0(plan, state, s, own) result(seen)
+    type(plan_type), intent(in) :: plan              !< the plan of the mechanism, in space
+    type(state_type), intent(in) :: state            !< with the poses of the frames
+    integer, intent(in) :: s                         !< the step
+    real(wp), intent(in) :: own(6)                   !< the twist in the frame of the pair
+    real(wp) :: seen(6), departing(3, 3), place(3)
+
+    associate (i => plan%steps(s)%parent, before => plan%steps(s)%before)
+      departing = combine(state%r(:, :, i), before%r)
+      place = state%p(:, i) + turn(state%r(:, :, i), before%p)
+      seen(1:3) = turn(departing, own(1:3))
+      seen(4:6) = turn(departing, own(4:6)) + cross(place, seen(1:3))
+    end associate
+  end function in_frame_0
 end module mech9_pair_changes

@@ -2,7 +2,7 @@
 module mech9_known_derivatives
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_failure, only: failure_unknown_derivative
+  use mech9_failure, only: failure_unknown_derivative, failure_unknown_forces
   use mech9_law, only: law_type
   use mech9_model, only: model_type
   use mech9_tangent, only: tangent_type
@@ -22,26 +22,25 @@ contains
     integer :: i
 
     do i = 1, size(tangents)
-      if (knows_forces(model, i, tangents(i))) then
+      if (knows_forces(model, i)) then
         if (.not. integrated .or. is_smooth(model, tangents(i))) cycle
       end if
-      call raise(err, exit_data, failure_unknown_derivative)
+      call raise(err, exit_data, merge(failure_unknown_derivative, failure_unknown_forces, integrated))
       err%failure%name = model%parameters(i)%name
       err%place = model%parameters(i)%place
       return
     end do
   end subroutine check_known
 
-  !> Whether the derivatives of forces by a parameter are known: numbers of loads must be, and those of users' pairs must not vary.
-  pure logical function knows_forces(model, number, tangent) result(known)
+  !> Whether the derivatives of forces by a parameter are known: numbers of loads must be.
+  pure logical function knows_forces(model, number) result(known)
     type(model_type), intent(in) :: model        !< the model
     integer, intent(in) :: number                !< of the parameter
-    type(tangent_type), intent(in) :: tangent    !< derivatives by the parameter
     real(wp), allocatable :: values(:)
     logical :: sets_loads
     integer :: i
 
-    known = .not. any(tangent%pairs%varies)
+    known = .true.
     sets_loads = .false.
     do i = 1, size(model%parameters(number)%targets)
       associate (group => model%parameters(number)%targets(i)%group)

@@ -15,20 +15,21 @@ module mech9_varied_forces
   use mech9_plan, only: plan_type
   use mech9_generalized_forces, only: sum_loads
   use mech9_tree_forces, only: loop_wrench_type
-  use mech9_loop_forces, only: loop_forces_type, new_loop_forces, eliminate_dependent, loop_wrenches, vary_couplings, &
-    coupling_multiplier
-  use mech9_twists, only: carried, shift_at
+  use mech9_loop_forces, only: loop_forces_type, new_loop_forces, eliminate_dependent, loop_wrenches, vary_couplings
+  use mech9_twists, only: bracket, carried, shift_at
   use mech9_varied_motion, only: varied_motion_type, link_twists
   use mech9_parameter_twists, only: inertia_type, momentum, momenta, crossed, add_bracket, add_turned_wrench
+  use mech9_link_requirements, only: link_requirements_type, vary_coupling_numbers, keep_couplings, add_couplings
   use mech9_varied_bodies, only: place_body, change_of_body, change_of_momentum
   implicit none
   private
-  public :: varied_forces_type, new_varied_forces, find_varied_forces, show_change
+  public :: varied_forces_type, new_varied_forces, find_varied_forces, show_change, vary_step, departing_twists
 
   !> The forces and their derivatives. The first index of derivatives is the parameter.
   type :: varied_forces_type
     real(wp), allocatable :: forces(:)           !< (M) required along the independent coordinates; zero for others [N m, N]
     real(wp), allocatable :: changes(:, :)       !< (P,M) their derivatives
+    type(link_requirements_type), allocatable :: links   !< kept where wrenches of pairs are wanted
     integer, allocatable, private :: acting(:)            !< numbers of the loads
     integer, allocatable, private :: loaded(:)            !< links on which they act or whose motion they read
     type(motion_view_type), private :: view               !< the motion as loads read it
@@ -43,10 +44,11 @@ module mech9_varied_forces
 contains
 
   !> Room for the forces of a model and their derivatives.
-  subroutine new_varied_forces(model, motion, self)
+  subroutine new_varied_forces(model, motion, self, with_links)
     type(model_type), intent(in) :: model               !< the model
     type(varied_motion_type), intent(in) :: motion      !< derivatives of its motion
     type(varied_forces_type), intent(out) :: self       !< gets its room
+    logical, intent(in), optional :: with_links         !< wrenches that links require are kept; not unless given
     logical :: marked(motion%plan%n_links)
     integer :: i, m, n, links
 
@@ -66,6 +68,11 @@ contains
     self%loops = new_loop_forces(motion%plan)
     allocate (self%chains(size(motion%plan%closures)))
     allocate (self%forces(m), self%changes(n, m), self%wrench(6, 0:m), self%wrenches(n, 6, 0:m), source=0.0_wp)
+    if (.not. present(with_links)) return
+    if (.not. with_links) return
+    allocate (self%links)
+    allocate (self%links%wrench(6, links), self%links%wrenches(n, 6, links), self%links%along(m), self%links%alongs(n, m), &
+              self%links%coupling(n, size(motion%plan%couplings)), source=0.0_wp)
   end subroutine new_varied_forces
 
   !> The forces of the present motion and their derivatives, after find_varied_motion for this motion. Fails where a load does.
@@ -81,11 +88,27 @@ contains
     call add_bodies(model, motion, self)
     if (size(self%acting) > 0) call add_loads(model, motion, self, err)
     if (allocated(err)) return
+    if (allocated(self%links)) call keep_required(motion%plan, self)
     call find_forces(motion, self)
     call hold_chains(motion%plan, motion, self)
     call vary_required(motion%plan, motion, self)
     call eliminate_changes(model, motion%plan, motion, self)
   end subroutine find_varied_forces
+
+  !> Keep what links require, and the loads on coordinates.
+  subroutine keep_required(plan, self)
+    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism, in space
+    type(varied_forces_type), intent(inout) :: self        !< with the wrenches of each frame
+    integer :: i
+
+    do i = 1, plan%n_links
+      self%links%wrench(:, i) = self%wrench(:, plan%frame_of(i))
+      self%links%wrenches(:, :, i) = self%wrenches(:, :, plan%frame_of(i))
+    end do
+    self%links%along = 0.0_wp
+    if (size(self%acting) > 0) self%links%along = self%sum%generalized
+    self%links%alongs = -self%changes
+  end subroutine keep_required
 
   !> Add the inertial forces of all bodies, less their weights, and the derivatives.
   subroutine add_bodies(model, motion, self)
@@ -309,16 +332,11 @@ contains
     integer, intent(in) :: s                             !< the step
     real(wp), intent(in) :: parent_twists(:, :)          !< (P,6) of its parent frame
     real(wp), intent(out) :: changes(:, :)               !< (P,6)
-    real(wp) :: departing(motion%n_parameters, 6), series(6, 0:2), own(6)
+    real(wp) :: departing(motion%n_parameters, 6), own(6)
     integer :: p, k
 
     k = plan%steps(s)%coordinate
-    departing = parent_twists
-    do p = 1, motion%n_parameters
-      if (.not. motion%tangents(p)%moves(k)) cycle
-      call carried(motion%state, motion%motion, plan%steps(s)%parent, motion%tangents(p)%before(:, k), 0, series)
-      departing(p, :) = departing(p, :) + series(:, 0)
-    end do
+    departing = departing_twists(plan, motion, s, parent_twists)
     changes = 0.0_wp
     call add_bracket(departing, motion%motion%step(:, 0, s), changes)
     associate (state => motion%state)
@@ -332,7 +350,32 @@ contains
         changes(p, :) = changes(p, :) + motion%q(p, 0, k)*own
       end do
     end associate
+    do p = 1, size(motion%pairs)
+      associate (pair => motion%pairs(p))
+        if (pair%step == s) changes(pair%parameter, :) = changes(pair%parameter, :) + pair%slope &
+                                                         + bracket(pair%twists(:, 0), motion%motion%step(:, 0, s))
+      end associate
+    end do
   end subroutine vary_step
+
+  !> The twists of the frame from which a step departs, with the axis of its pair.
+  function departing_twists(plan, motion, s, parent_twists) result(twists)
+    type(plan_type), intent(in) :: plan                  !< the plan of the mechanism, in space
+    type(varied_motion_type), intent(in) :: motion       !< derivatives of the motion
+    integer, intent(in) :: s                             !< the step
+    real(wp), intent(in) :: parent_twists(:, :)          !< (P,6) of its parent frame
+    real(wp) :: twists(motion%n_parameters, 6), series(6, 0:2)
+    integer :: p
+
+    twists = parent_twists
+    associate (step => plan%steps(s))
+      do p = 1, motion%n_parameters
+        if (.not. motion%tangents(p)%moves(step%coordinate)) cycle
+        call carried(motion%state, motion%motion, step%parent, motion%tangents(p)%before(:, step%coordinate), 0, series)
+        twists(p, :) = twists(p, :) + series(:, 0)
+      end do
+    end associate
+  end function departing_twists
 
   !> Add the derivatives of the forces of couplings, and hand on those of dependent coordinates to the independent ones.
   subroutine eliminate_changes(model, plan, motion, self)
@@ -351,34 +394,9 @@ contains
       call vary_coupling_numbers(model, plan, motion, self%loops_held, p, forces)
       call eliminate_dependent(plan, motion%state, motion%blocks, self%loops, forces)
       self%changes(p, :) = forces
+      if (allocated(self%links)) call keep_couplings(model, motion, p, self%loops_held, self%loops, self%links)
     end do
+    if (allocated(self%links)) call add_couplings(plan, motion%state, self%loops_held, self%links)
   end subroutine eliminate_changes
 
-  !> Subtract the changes of the forces of couplings with their own numbers, by one parameter.
-  subroutine vary_coupling_numbers(model, plan, motion, loops, p, forces)
-    type(model_type), intent(in) :: model               !< the model
-    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism, in space
-    type(varied_motion_type), intent(in) :: motion      !< derivatives of the motion
-    type(loop_forces_type), intent(in) :: loops         !< with the multipliers of the motion
-    integer, intent(in) :: p                            !< number of the parameter
-    real(wp), intent(inout) :: forces(:)                !< (M) derivatives of the forces on the coordinates
-    real(wp) :: multiplier
-    integer :: b, c, i, k
-
-    do b = 1, size(plan%blocks)
-      do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
-        if (plan%closures(c)%coupling == 0) cycle
-        associate (coupling => model%mechanism%couplings(plan%closures(c)%coupling)%coupling, &
-                   part => motion%tangents(p)%couplings(plan%closures(c)%coupling))
-          if (.not. part%varies) cycle
-          multiplier = coupling_multiplier(plan, b, c, loops)
-          do i = 1, size(coupling%coordinates)
-            k = coupling%coordinates(i)
-            forces(k) = forces(k) - plan%closures(c)%weight*multiplier &
-                        *coupling%varied_term(part%change, i, motion%state%q(k), 1)
-          end do
-        end associate
-      end do
-    end do
-  end subroutine vary_coupling_numbers
 end module mech9_varied_forces

@@ -29,6 +29,7 @@ module mech9_varied_motion
     integer :: step = 0                      !< of the plan
     integer :: parameter = 0                 !< number of the parameter
     real(wp) :: twists(6, 0:2) = 0.0_wp      !< by which the frame of the step moves with the parameter, and derivatives in time
+    real(wp) :: slope(6) = 0.0_wp            !< derivative of the first one in the coordinate, with the parent frame at rest
   end type varied_pair_type
 
   !> The derivatives and what finds them. The first index is the parameter, which counts in its unit in the data file.
@@ -44,7 +45,7 @@ module mech9_varied_motion
     type(frame_twists_type) :: motion               !< twists of this motion
     type(third_derivatives_type) :: third           !< of pairs without a fixed axis, and of couplings
     type(block_work_type), allocatable :: blocks(:) !< factors of the closed chains
-    type(varied_pair_type), allocatable, private :: pairs(:)   !< of the user, by each parameter that changes their numbers
+    type(varied_pair_type), allocatable :: pairs(:) !< of the user, by each parameter that changes their numbers
     integer, allocatable, private :: numbers(:)     !< (M+1) of all frames, from 0 on
   end type varied_motion_type
 
@@ -163,7 +164,8 @@ contains
     call find_step_twists(self%plan, self%state, self%third, self%numbers(2:), 2, self%motion)
     do i = 1, size(self%pairs)
       associate (pair => self%pairs(i))
-        call find_pair_change(self%plan, self%state, self%motion, self%tangents(pair%parameter), pair%step, 2, pair%twists)
+        call find_pair_change(self%plan, self%state, self%motion, self%tangents(pair%parameter), pair%step, 2, pair%twists, &
+                              pair%slope)
       end associate
     end do
   end subroutine place_motion

@@ -20,7 +20,7 @@ module mech9_tolerances
     trusted_crossing_rates, first_move, doubtful_conditioning, worthwhile_improvement, regular_conditioning, &
     refused_conditioning, trusted_closing, trusted_between_steps, steepest_slope, negligible_inertia, &
     doubtful_margin, lesser_share, lesser_share_near, short_way, third_derivative_step, locked, locked_together, balanced, &
-    balanced_singular, regular_balance, opened_by_parameter, round_off_of_jumps
+    equal_lengths, balanced_singular, regular_balance, opened_by_parameter, round_off_of_jumps
 
   ! Ranks and singular positions: judged alike by --check, driven motion and dynamics.
 
@@ -246,6 +246,9 @@ module mech9_tolerances
   !> Wrenches of pairs balance the links if what remains is below this part of the largest wrench: a thousand times the round-off
   !> of the sums.
   real(wp), parameter :: balanced = 1.0e-12_wp
+  !> Lengths of links, and their changes with a parameter, are equal if they differ by less than this part: a thousand times the
+  !> round-off of positions and of their derivatives.
+  real(wp), parameter :: equal_lengths = 1.0e-10_wp
   !> The same beside a singular position, where wrenches are large against what the links require.
   real(wp), parameter :: balanced_singular = 1.0e-9_wp
   !> Transposed equations of motion give the wrenches where the least pivot is above this part of the largest; in worse positions the

@@ -179,7 +179,7 @@ contains
       call self%simulation%show_sensitivity(self%sensitivity, err)
       if (allocated(err)) return
       call self%columns%fill_sensitivities(self%sensitivity, row)
-      if (self%varied%wanted) call self%varied%find(self%simulation, err)
+      if (self%varied%wanted) call self%varied%find(self%simulation, self%columns, err)
       if (self%varied%wanted .and. .not. allocated(err)) call self%columns%fill_beyond_motion(self%varied%values, row)
     end if
   end subroutine fill_row

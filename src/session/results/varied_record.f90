@@ -1,21 +1,29 @@
-!> The derivatives of energies by the parameters that a run records, from the present state of its simulation.
+!> The derivatives of forces and energies by the parameters that a run records, from the present state of its simulation.
 module mech9_varied_record
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_variable_model, only: variable_model_type
   use mech9_simulation, only: simulation_type
+  use mech9_known_derivatives, only: check_known
   use mech9_varied_motion, only: varied_motion_type
+  use mech9_varied_forces, only: varied_forces_type, new_varied_forces, find_varied_forces
   use mech9_varied_energy, only: varied_energy_type, new_varied_energy, find_varied_energy
+  use mech9_varied_reactions, only: varied_reactions_type, new_varied_reactions, find_varied_reactions
   use mech9_columns, only: columns_type
   implicit none
   private
   public :: varied_record_type
 
   type :: varied_record_type
-    logical :: wanted = .false.                    !< some of these derivatives are recorded, or quantities need them
-    real(wp), allocatable :: values(:, :)          !< (P,columns) derivatives of the columns beyond the motion
-    type(varied_energy_type), private :: energy    !< of the present state
-    integer, private :: events = -1                !< changes of coordinates of the simulation until room was made; -1: none was
+    logical :: wanted = .false.                       !< some of these derivatives are recorded, or quantities need them
+    real(wp), allocatable :: values(:, :)             !< (P,columns) derivatives of the columns beyond the motion
+    logical, private :: with_forces = .false.         !< those of forces are wanted
+    logical, private :: with_reactions = .false.      !< those of pairs and couplings, too
+    logical, private :: with_energies = .false.       !< those of energies are wanted
+    type(varied_forces_type), private :: forces       !< of the present state
+    type(varied_reactions_type), private :: reactions !< of the present state
+    type(varied_energy_type), private :: energy       !< of the present state
+    integer, private :: events = -1                   !< changes of coordinates of the simulation until room was made; -1: none was
   contains
     procedure :: begin
     procedure :: find
@@ -32,47 +40,96 @@ contains
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
     integer :: i
 
-    if (columns%sensitivities > 0) self%wanted = columns%varied > columns%motion - 1
-    if (allocated(simulation%model%request%quantities)) then
-      do i = 1, size(simulation%model%request%quantities)
-        self%wanted = self%wanted .or. is_beyond_motion(simulation%model%request%quantities(i)%column, columns)
-      end do
-    end if
-    if (.not. self%wanted) return
-    allocate (self%values(size(columns%parameters), columns%varied + 1 - columns%motion), source=0.0_wp)
+    associate (first => columns%motion + 1, forces => columns%forces(), last => columns%varied + 1)
+      self%with_forces = forces > 0
+      self%with_energies = columns%energies > 0
+      if (columns%sensitivities == 0) then
+        self%with_forces = is_asked_for(first, first + forces - 1)
+        self%with_energies = is_asked_for(first + forces, last)
+      end if
+      if (self%with_forces) self%with_reactions = size(columns%reacting) > 0
+      self%wanted = self%with_forces .or. self%with_energies
+      if (.not. self%wanted) return
+      allocate (self%values(size(columns%parameters), last - columns%motion), source=0.0_wp)
+    end associate
     call simulation%begin_varied_motion(variable, err)
+  contains
+
+    !> Whether a quantity is of one of some columns.
+    logical function is_asked_for(from, to) result(asked)
+      integer, intent(in) :: from   !< the first one
+      integer, intent(in) :: to     !< the last one
+      integer :: j
+
+      asked = .false.
+      if (.not. allocated(simulation%model%request%quantities)) return
+      do j = 1, size(simulation%model%request%quantities)
+        do i = from, to
+          asked = asked .or. columns%names(i)%text == simulation%model%request%quantities(j)%column
+        end do
+      end do
+    end function is_asked_for
   end subroutine begin
 
-  !> Whether a column with derivatives stands after those of the motion.
-  pure logical function is_beyond_motion(name, columns) result(is_beyond)
-    character(len=*), intent(in) :: name         !< heading of the column
-    type(columns_type), intent(in) :: columns    !< the columns
-    integer :: i
-
-    is_beyond = .false.
-    do i = columns%motion + 1, columns%varied + 1
-      is_beyond = is_beyond .or. columns%names(i)%text == name
-    end do
-  end function is_beyond_motion
-
-  !> The derivatives in the present state of a simulation, after its show_sensitivity.
-  subroutine find(self, simulation, err)
+  !> The derivatives in the present state of a simulation, after its show_sensitivity. Fails where they do not exist.
+  subroutine find(self, simulation, columns, err)
     class(varied_record_type), intent(inout) :: self              !< the record; gets the derivatives
     class(simulation_type), intent(inout), target :: simulation   !< the motion
+    type(columns_type), intent(in) :: columns                     !< of the run
     type(error_type), allocatable, intent(out) :: err             !< allocated if it failed
     type(varied_motion_type), pointer :: motion
-    integer :: n
+    integer :: at
 
     call simulation%show_varied_motion(motion, err)
     if (allocated(err)) return
-    if (self%events /= size(simulation%events)) then
-      call new_varied_energy(simulation%model, motion, self%energy)
-      self%events = size(simulation%events)
+    if (self%events /= size(simulation%events)) call make_room(self, simulation, motion, err)
+    if (allocated(err)) return
+    if (self%with_forces) then
+      call find_varied_forces(simulation%model, motion, self%forces, err)
+      if (self%with_reactions .and. .not. allocated(err)) &
+        call find_varied_reactions(simulation%model, motion, self%forces%links, self%reactions, err)
+      if (allocated(err)) return
+      call put_forces(self, columns)
     end if
+    if (.not. self%with_energies) return
     call find_varied_energy(simulation%model, motion, self%energy)
-    n = size(self%values, 2)
-    self%values(:, n - 2) = self%energy%kinetic
-    self%values(:, n - 1) = self%energy%potential
-    self%values(:, n) = self%energy%kinetic + self%energy%potential
+    at = size(self%values, 2) - 3
+    self%values(:, at + 1) = self%energy%kinetic
+    self%values(:, at + 2) = self%energy%potential
+    self%values(:, at + 3) = self%energy%kinetic + self%energy%potential
   end subroutine find
+
+  !> Make room in the present coordinates of a simulation.
+  subroutine make_room(self, simulation, motion, err)
+    type(varied_record_type), intent(inout) :: self          !< the record
+    class(simulation_type), intent(in) :: simulation         !< the motion
+    type(varied_motion_type), intent(in) :: motion           !< its derivatives
+    type(error_type), allocatable, intent(out) :: err        !< allocated where derivatives are not known
+
+    if (self%with_energies) call new_varied_energy(simulation%model, motion, self%energy)
+    if (self%with_forces) then
+      call check_known(simulation%model, motion%tangents, .false., err)
+      if (allocated(err)) return
+      call new_varied_forces(simulation%model, motion, self%forces, self%with_reactions)
+    end if
+    if (self%with_reactions) call new_varied_reactions(simulation%model, motion, self%reactions, err)
+    self%events = size(simulation%events)
+  end subroutine make_room
+
+  !> Put the derivatives of forces in the order of their columns.
+  subroutine put_forces(self, columns)
+    type(varied_record_type), intent(inout) :: self          !< the record, with the derivatives
+    type(columns_type), intent(in) :: columns                !< of the run
+    integer :: at, i, k
+
+    at = size(columns%drives)
+    self%values(:, :at) = self%forces%changes(:, columns%drives)
+    do i = 1, size(columns%reacting)
+      k = columns%reacting(i)
+      self%values(:, at + 1:at + 3) = self%reactions%force(:, :, k)
+      self%values(:, at + 4:at + 6) = self%reactions%moment(:, :, k)
+      at = at + 6
+    end do
+    if (columns%couplings > 0) self%values(:, at + 1:at + columns%couplings) = self%forces%links%coupling
+  end subroutine put_forces
 end module mech9_varied_record

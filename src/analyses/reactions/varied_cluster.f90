@@ -1,0 +1,278 @@
+!> The derivatives by all parameters of the wrenches of a cluster of closed chains, unique or of least norm.
+!>
+!> The wrenches r of least norm satisfy B r = b, N r = c and r = P (B^T y + N^T m), see mech9_cluster_balance: the balance of the links,
+!> the loads along dependent coordinates, and displacements y of the links with forces m along the coordinates (P: the number of pairs
+!> that count as one). In a regular position the rows of B and N are independent, before and after a change, so that all three
+!> equations can be differentiated: r' has the same equations, with right-hand sides b' - B' r, c' - N' r and P (B'^T y + N'^T m).
+!> Components that equilibrium determines depend on the first two alone.
+module mech9_varied_cluster
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use mech9_kinds, only: wp
+  use mech9_tolerances, only: equal_lengths
+  use mech9_rotation, only: cross
+  use mech9_link_requirements, only: link_requirements_type
+  use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type
+  use mech9_joint_geometry, only: joint_geometry_type
+  use mech9_cluster_balance, only: cluster_balance_type, new_cluster_balance
+  use mech9_singular_cluster, only: singular_cluster_type, decompose_cluster
+  use mech9_varied_geometry, only: varied_geometry_type
+  implicit none
+  private
+  public :: equations_type, new_equations, vary_cluster
+
+  !> The equations of one cluster in one position. Those of a cluster with couplings are singular, since its links can move where the
+  !> coordinates do not satisfy the couplings; the forces of these are known, and count as loads.
+  type :: equations_type
+    type(cluster_balance_type) :: balance
+    type(singular_cluster_type), allocatable, private :: singular   !< allocated if the equations are singular
+  contains
+    procedure :: set_position
+    procedure :: complete
+  end type equations_type
+
+  !> The wrenches of a cluster in one position, and what belongs to them. Scaled: force, then moment over the length.
+  type :: balanced_type
+    real(wp), allocatable :: wrenches(:, :)   !< (6,pairs) about the points of the pairs
+    real(wp), allocatable :: motions(:, :)    !< (6,pairs) B^T y: motion of the moving link in the reference link
+    real(wp), allocatable :: along(:)         !< (pairs) m, the force along a dependent coordinate; zero for others
+  end type balanced_type
+
+contains
+
+  !> Room for the equations of a cluster.
+  pure function new_equations(reactions, cluster) result(self)
+    type(reaction_plan_type), intent(in) :: reactions   !< the plan of inverse dynamics
+    type(joined_cluster_type), intent(in) :: cluster    !< the cluster
+    type(equations_type) :: self
+
+    self%balance = new_cluster_balance(reactions, cluster)
+  end function new_equations
+
+  !> The equations of a position, factorized.
+  subroutine set_position(self, reactions, cluster, geometry, tolerance)
+    class(equations_type), intent(inout) :: self          !< gets the factors
+    type(reaction_plan_type), intent(in) :: reactions     !< the plan of inverse dynamics
+    type(joined_cluster_type), intent(in) :: cluster      !< the cluster
+    type(joint_geometry_type), intent(in) :: geometry     !< of the position
+    real(wp), intent(in) :: tolerance                     !< of ranks
+    logical :: regular
+
+    if (allocated(self%singular)) deallocate (self%singular)
+    call self%balance%set_position(cluster, geometry, reactions, reactions%length, regular)
+    if (regular) return
+    allocate (self%singular)
+    call decompose_cluster(cluster, self%balance, tolerance, self%singular)
+  end subroutine set_position
+
+  !> Complete wrenches so that the links are in balance; `balanced` is false where they cannot be.
+  subroutine complete(self, cluster, required, wrenches, balanced, displacements)
+    class(equations_type), intent(inout) :: self             !< the equations
+    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
+    real(wp), intent(in), contiguous :: required(:, :)       !< (6,nodes) scaled
+    real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled
+    logical, intent(out) :: balanced                         !< the links are in balance
+    real(wp), intent(out), optional :: displacements(:, :)   !< (6,nodes) that belong to the wrenches, scaled
+    real(wp) :: lacking(size(required, 1), size(required, 2))
+
+    if (allocated(self%singular)) then
+      call self%singular%complete(self%balance, cluster, required, wrenches, balanced, displacements)
+    else
+      call self%balance%complete(cluster, required, wrenches, lacking, balanced, displacements)
+    end if
+  end subroutine complete
+
+  !> Find the derivatives of the wrenches of a cluster. `regular` is false beside a singular position.
+  subroutine vary_cluster(reactions, cluster, geometry, varied, links, tolerance, equations, force, moment, regular)
+    type(reaction_plan_type), intent(in) :: reactions        !< the plan of inverse dynamics
+    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
+    type(joint_geometry_type), intent(in) :: geometry        !< of the position
+    type(varied_geometry_type), intent(in) :: varied         !< its derivatives
+    type(link_requirements_type), intent(in) :: links        !< requirements of its links, with all that stands on them, and loads
+    real(wp), intent(in) :: tolerance                        !< of ranks
+    type(equations_type), intent(inout) :: equations         !< of the cluster; gets those of the position
+    real(wp), intent(inout) :: force(:, :, :)                !< (P,3,M) gets the derivatives of the cluster's pairs [N per unit]
+    real(wp), intent(inout) :: moment(:, :, :)               !< (P,3,M) about the points of the joints' last pairs [N m per unit]
+    logical, intent(out) :: regular                          !< the wrenches have derivatives
+    type(balanced_type) :: present
+    real(wp), dimension(6, size(cluster%pairs)) :: changes, others
+    integer :: p, i
+
+    call equations%set_position(reactions, cluster, geometry, tolerance)
+    call find_balance(reactions, cluster, geometry, varied, links, equations, present, regular)
+    do p = 1, size(links%alongs, 1)
+      if (.not. regular) return
+      call vary_balance(reactions, cluster, geometry, varied, links, p, varied%length(p), present, equations, changes, regular)
+      if (abs(varied%other_length(p) - varied%length(p)) > equal_lengths*abs(varied%length(p))) then
+        call vary_balance(reactions, cluster, geometry, varied, links, p, varied%other_length(p), present, equations, others, &
+                          regular)
+        call keep_common(others, changes)
+      end if
+      do i = 1, size(cluster%pairs)
+        force(p, :, cluster%pairs(i)) = changes(1:3, i)
+        moment(p, :, cluster%pairs(i)) = changes(4:6, i)
+      end do
+    end do
+  end subroutine vary_cluster
+
+  !> The wrenches, displacements and forces in the present position.
+  subroutine find_balance(reactions, cluster, geometry, varied, links, equations, present, regular)
+    type(reaction_plan_type), intent(in) :: reactions        !< the plan of inverse dynamics
+    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
+    type(joint_geometry_type), intent(in) :: geometry        !< of the position
+    type(varied_geometry_type), intent(in) :: varied         !< with the screws of the pairs
+    type(link_requirements_type), intent(in) :: links        !< requirements of its links, and loads
+    type(equations_type), intent(inout) :: equations         !< of the position
+    type(balanced_type), intent(out) :: present              !< gets the balance
+    logical, intent(out) :: regular                          !< the links are in balance
+    real(wp), dimension(6, size(cluster%links)) :: required, displacements
+    integer :: i
+
+    allocate (present%wrenches(6, size(cluster%pairs)), present%motions(6, size(cluster%pairs)), &
+              present%along(size(cluster%pairs)), source=0.0_wp)
+    do i = 1, size(cluster%links)
+      required(:, i) = at_place(links%wrench(:, cluster%links(i)), geometry%place(:, cluster%links(i)), reactions%length)
+    end do
+    associate (balance => equations%balance)
+      do i = 1, size(cluster%pairs)
+        if (balance%held(i)) present%wrenches(:, i) = links%along(cluster%pairs(i))/length_of(i)*balance%axis(:, i)
+      end do
+      call equations%complete(cluster, required, present%wrenches, regular, displacements)
+      do i = 1, size(cluster%pairs)
+        present%motions(:, i) = balance%find_motion(cluster, i, displacements)
+        if (balance%held(i)) present%along(i) = dot_product(balance%axis(:, i), present%wrenches(:, i)/balance%parts(i) &
+                                                            - present%motions(:, i))
+      end do
+    end associate
+  contains
+
+    !> The length of the screw of a pair [m per unit].
+    pure real(wp) function length_of(number)
+      integer, intent(in) :: number   !< place of the pair in the cluster
+
+      associate (screw => varied%screw(:, cluster%pairs(number)))
+        length_of = norm2([screw(1:3), reactions%length*screw(4:6)])
+      end associate
+    end function length_of
+  end subroutine find_balance
+
+  !> The derivatives of the wrenches by one parameter, for one change of the length by which moments are divided.
+  subroutine vary_balance(reactions, cluster, geometry, varied, links, p, longer, present, equations, changes, regular)
+    type(reaction_plan_type), intent(in) :: reactions        !< the plan of inverse dynamics
+    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
+    type(joint_geometry_type), intent(in) :: geometry        !< of the position
+    type(varied_geometry_type), intent(in) :: varied         !< its derivatives
+    type(link_requirements_type), intent(in) :: links        !< requirements of its links, and loads
+    integer, intent(in) :: p                                 !< number of the parameter
+    real(wp), intent(in) :: longer                           !< derivative of the length [m per unit]
+    type(balanced_type), intent(in) :: present               !< the balance of the position
+    type(equations_type), intent(inout) :: equations         !< of the position
+    real(wp), intent(out) :: changes(:, :)                   !< (6,pairs) forces [N per unit] and moments [N m per unit]
+    logical, intent(out) :: regular                          !< the derivatives are found
+    real(wp), dimension(6, size(cluster%pairs)) :: wrenches
+    real(wp), dimension(6, size(cluster%links)) :: required
+    real(wp) :: lever(3)
+    integer :: i, k
+
+    call vary_lacking(reactions, cluster, geometry, varied, links, p, longer, present, required)
+    do i = 1, size(cluster%pairs)
+      k = cluster%pairs(i)
+      ! B'^T y: the point of the pair moves, and moments are divided by another length
+      lever = varied%point(p, :, reactions%pairs(k)%last)
+      wrenches(1:3, i) = cross(present%motions(4:6, i), lever)/reactions%length
+      wrenches(4:6, i) = longer/reactions%length*present%motions(4:6, i)
+      associate (balance => equations%balance)
+        if (balance%held(i)) then
+          call vary_held(reactions, varied, links, p, longer, k, present%wrenches(:, i), present%along(i), balance%axis(:, i), &
+                         balance%parts(i), wrenches(:, i))
+        else
+          wrenches(:, i) = balance%parts(i)*wrenches(:, i)
+        end if
+      end associate
+    end do
+    call equations%complete(cluster, required, wrenches, regular)
+    changes(1:3, :) = wrenches(1:3, :)
+    changes(4:6, :) = reactions%length*wrenches(4:6, :) + longer*present%wrenches(4:6, :)
+  end subroutine vary_balance
+
+  !> The wrench b' - B' r that each link requires from the changes of the wrenches, scaled.
+  pure subroutine vary_lacking(reactions, cluster, geometry, varied, links, p, longer, present, required)
+    type(reaction_plan_type), intent(in) :: reactions        !< the plan of inverse dynamics
+    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
+    type(joint_geometry_type), intent(in) :: geometry        !< of the position
+    type(varied_geometry_type), intent(in) :: varied         !< its derivatives
+    type(link_requirements_type), intent(in) :: links        !< requirements of its links
+    integer, intent(in) :: p                                 !< number of the parameter
+    real(wp), intent(in) :: longer                           !< derivative of the length [m per unit]
+    type(balanced_type), intent(in) :: present               !< the balance of the position
+    real(wp), intent(out) :: required(:, :)                  !< (6,nodes)
+    real(wp) :: sums(6, size(cluster%links)), point(3), moment(3)
+    integer :: i, side
+
+    do i = 1, size(cluster%links)
+      sums(:, i) = links%wrenches(p, :, cluster%links(i))
+    end do
+    do i = 1, size(cluster%pairs)
+      ! a wrench of the same scaled numbers changes about the origin as its point moves and the length changes
+      point = varied%point(p, :, reactions%pairs(cluster%pairs(i))%last)
+      moment = longer*present%wrenches(4:6, i) + cross(point, present%wrenches(1:3, i))
+      do side = 1, 2
+        if (cluster%nodes(side, i) == 0) cycle
+        associate (sum => sums(1:3, cluster%nodes(side, i)))
+          sum = sum + (2*side - 3)*moment
+        end associate
+      end do
+    end do
+    do i = 1, size(cluster%links)
+      required(:, i) = at_place(sums(:, i), geometry%place(:, cluster%links(i)), reactions%length)
+    end do
+  end subroutine vary_lacking
+
+  !> The part of the change of a wrench that the load on its dependent coordinate determines, with the right-hand side across its axis.
+  pure subroutine vary_held(reactions, varied, links, p, longer, k, wrench, along, axis, parts, change)
+    type(reaction_plan_type), intent(in) :: reactions        !< the plan of inverse dynamics
+    type(varied_geometry_type), intent(in) :: varied         !< derivatives of the screws
+    type(link_requirements_type), intent(in) :: links        !< with the loads
+    integer, intent(in) :: p                                 !< number of the parameter
+    real(wp), intent(in) :: longer                           !< derivative of the length [m per unit]
+    integer, intent(in) :: k                                 !< coordinate of the pair
+    real(wp), intent(in) :: wrench(6)                        !< r, scaled
+    real(wp), intent(in) :: along                            !< m
+    real(wp), intent(in) :: axis(6)                          !< N: the screw, of length 1
+    real(wp), intent(in) :: parts                            !< number of pairs that count as one
+    real(wp), intent(inout) :: change(6)                     !< B'^T y; gets the change, as far as it is known
+    real(wp) :: screw_change(6), axis_change(6), length, length_change, held
+
+    associate (screw => varied%screw(:, k))
+      length = norm2([screw(1:3), reactions%length*screw(4:6)])
+      screw_change(1:3) = varied%screw_change(p, 1:3, k)
+      screw_change(4:6) = reactions%length*varied%screw_change(p, 4:6, k) + longer*screw(4:6)
+    end associate
+    length_change = dot_product(axis, screw_change)
+    axis_change = (screw_change - length_change*axis)/length
+    held = (links%alongs(p, k) - links%along(k)*length_change/length)/length - dot_product(axis_change, wrench)
+    change = change + along*axis_change
+    change = held*axis + parts*(change - dot_product(axis, change)*axis)
+  end subroutine vary_held
+
+  !> A wrench about the origin of frame 0 as a scaled one about a place: force, then moment over the length.
+  pure function at_place(wrench, place, length) result(scaled)
+    real(wp), intent(in) :: wrench(6)   !< moment, force [N m, N]
+    real(wp), intent(in) :: place(3)    !< from the origin of frame 0 [m]
+    real(wp), intent(in) :: length      !< by which moments are divided [m]
+    real(wp) :: scaled(6)
+
+    scaled(1:3) = wrench(4:6)
+    scaled(4:6) = (wrench(1:3) - cross(place, wrench(4:6)))/length
+  end function at_place
+
+  !> Keep the components on which two results agree. The others have no derivative: NaN.
+  subroutine keep_common(others, changes)
+    real(wp), intent(in) :: others(:, :)       !< (6,pairs)
+    real(wp), intent(inout) :: changes(:, :)   !< (6,pairs)
+    real(wp) :: largest(6)
+
+    largest(1:3) = maxval(abs(changes(1:3, :)))
+    largest(4:6) = maxval(abs(changes(4:6, :)))
+    where (abs(others - changes) > equal_lengths*spread(largest, 2, size(changes, 2))) changes = ieee_value(1.0_wp, ieee_quiet_nan)
+  end subroutine keep_common
+end module mech9_varied_cluster
