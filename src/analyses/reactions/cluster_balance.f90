@@ -181,7 +181,7 @@ contains
   end function find_motion
 
   !> Complete the wrenches in a regular position. `converged` is false where corrections do not lead to balance.
-  pure subroutine complete(self, cluster, required, wrenches, lacking, converged, displacements)
+  pure subroutine complete(self, cluster, required, wrenches, lacking, converged, displacements, size_of_all)
     class(cluster_balance_type), intent(inout) :: self       !< the equations, factorized
     type(joined_cluster_type), intent(in) :: cluster         !< the cluster
     real(wp), intent(in), contiguous :: required(:, :)       !< (6,nodes) scaled
@@ -189,6 +189,7 @@ contains
     real(wp), intent(inout), contiguous :: lacking(:, :)     !< (6,nodes) scratch
     logical, intent(out) :: converged                        !< the links are in balance
     real(wp), intent(out), optional :: displacements(:, :)   !< (6,nodes) y of all corrections together, scaled
+    real(wp), intent(in), optional :: size_of_all            !< by which balance is judged where wrenches are smaller; 0 unless given
     integer, parameter :: most_corrections = 12
     real(wp) :: error, before, largest
     integer :: i
@@ -207,6 +208,7 @@ contains
       call self%spread(cluster, lacking, wrenches)
       if (present(displacements)) displacements = displacements + lacking
     end do
+    if (present(size_of_all)) largest = max(largest, size_of_all)
     converged = error <= balanced*largest
   end subroutine complete
 

@@ -75,7 +75,7 @@ contains
   end subroutine solve
 
   !> Complete the wrenches as far as they can balance the links. `converged` is false where something is left.
-  subroutine complete(self, balance, cluster, required, wrenches, converged, displacements)
+  subroutine complete(self, balance, cluster, required, wrenches, converged, displacements, size_of_all)
     class(singular_cluster_type), intent(in) :: self         !< singular values and vectors
     type(cluster_balance_type), intent(in) :: balance        !< the equations of the position
     type(joined_cluster_type), intent(in) :: cluster         !< the cluster
@@ -83,8 +83,9 @@ contains
     real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled: those that are given; complete
     logical, intent(out) :: converged                        !< the links are in balance
     real(wp), intent(out), optional :: displacements(:, :)   !< (6,nodes) of least norm that belong to the wrenches, scaled
+    real(wp), intent(in), optional :: size_of_all            !< by which balance is judged where wrenches are smaller; 0 unless given
     real(wp) :: lacking(size(required, 1), size(required, 2)), changes(size(wrenches, 1), size(wrenches, 2))
-    real(wp) :: parts(self%rank)
+    real(wp) :: parts(self%rank), largest
     integer :: i, round
 
     if (present(displacements)) displacements = 0.0_wp
@@ -100,7 +101,9 @@ contains
       displacements = displacements + reshape(matmul(self%forces(:, :self%rank), parts), shape(displacements))
     end do
     call balance%find_lacking(cluster, required, wrenches, lacking)
-    converged = maxval(abs(lacking)) <= balanced_singular*max(maxval(abs(wrenches)), maxval(abs(required)))
+    largest = max(maxval(abs(wrenches)), maxval(abs(required)))
+    if (present(size_of_all)) largest = max(largest, size_of_all)
+    converged = maxval(abs(lacking)) <= balanced_singular*largest
   end subroutine complete
 
   !> Remove from wrenches the part that the balance of the links determines.

@@ -65,29 +65,31 @@ contains
   end subroutine set_position
 
   !> Complete wrenches so that the links are in balance; `balanced` is false where they cannot be.
-  subroutine complete(self, cluster, required, wrenches, balanced, displacements)
+  subroutine complete(self, cluster, required, wrenches, balanced, displacements, size_of_all)
     class(equations_type), intent(inout) :: self             !< the equations
     type(joined_cluster_type), intent(in) :: cluster         !< the cluster
     real(wp), intent(in), contiguous :: required(:, :)       !< (6,nodes) scaled
     real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled
     logical, intent(out) :: balanced                         !< the links are in balance
     real(wp), intent(out), optional :: displacements(:, :)   !< (6,nodes) that belong to the wrenches, scaled
+    real(wp), intent(in), optional :: size_of_all            !< by which balance is judged where wrenches are smaller
     real(wp) :: lacking(size(required, 1), size(required, 2))
 
     if (allocated(self%singular)) then
-      call self%singular%complete(self%balance, cluster, required, wrenches, balanced, displacements)
+      call self%singular%complete(self%balance, cluster, required, wrenches, balanced, displacements, size_of_all)
     else
-      call self%balance%complete(cluster, required, wrenches, lacking, balanced, displacements)
+      call self%balance%complete(cluster, required, wrenches, lacking, balanced, displacements, size_of_all)
     end if
   end subroutine complete
 
   !> Find the derivatives of the wrenches of a cluster. `regular` is false beside a singular position.
-  subroutine vary_cluster(reactions, cluster, geometry, varied, links, tolerance, equations, force, moment, regular)
+  subroutine vary_cluster(reactions, cluster, geometry, varied, links, sizes, tolerance, equations, force, moment, regular)
     type(reaction_plan_type), intent(in) :: reactions        !< the plan of inverse dynamics
     type(joined_cluster_type), intent(in) :: cluster         !< the cluster
     type(joint_geometry_type), intent(in) :: geometry        !< of the position
     type(varied_geometry_type), intent(in) :: varied         !< its derivatives
     type(link_requirements_type), intent(in) :: links        !< requirements of its links, with all that stands on them, and loads
+    real(wp), intent(in) :: sizes(:)                         !< (P) change of the constants by each parameter, as a part of them
     real(wp), intent(in) :: tolerance                        !< of ranks
     type(equations_type), intent(inout) :: equations         !< of the cluster; gets those of the position
     real(wp), intent(inout) :: force(:, :, :)                !< (P,3,M) gets the derivatives of the cluster's pairs [N per unit]
@@ -101,10 +103,11 @@ contains
     call find_balance(reactions, cluster, geometry, varied, links, equations, present, regular)
     do p = 1, size(links%alongs, 1)
       if (.not. regular) return
-      call vary_balance(reactions, cluster, geometry, varied, links, p, varied%length(p), present, equations, changes, regular)
+      call vary_balance(reactions, cluster, geometry, varied, links, sizes, p, varied%length(p), present, equations, changes, &
+                        regular)
       if (abs(varied%other_length(p) - varied%length(p)) > equal_lengths*abs(varied%length(p))) then
-        call vary_balance(reactions, cluster, geometry, varied, links, p, varied%other_length(p), present, equations, others, &
-                          regular)
+        call vary_balance(reactions, cluster, geometry, varied, links, sizes, p, varied%other_length(p), present, equations, &
+                          others, regular)
         call keep_common(others, changes)
       end if
       do i = 1, size(cluster%pairs)
@@ -156,12 +159,13 @@ contains
   end subroutine find_balance
 
   !> The derivatives of the wrenches by one parameter, for one change of the length by which moments are divided.
-  subroutine vary_balance(reactions, cluster, geometry, varied, links, p, longer, present, equations, changes, regular)
+  subroutine vary_balance(reactions, cluster, geometry, varied, links, sizes, p, longer, present, equations, changes, regular)
     type(reaction_plan_type), intent(in) :: reactions        !< the plan of inverse dynamics
     type(joined_cluster_type), intent(in) :: cluster         !< the cluster
     type(joint_geometry_type), intent(in) :: geometry        !< of the position
     type(varied_geometry_type), intent(in) :: varied         !< its derivatives
     type(link_requirements_type), intent(in) :: links        !< requirements of its links, and loads
+    real(wp), intent(in) :: sizes(:)                         !< (P) change of the constants by each parameter, as a part of them
     integer, intent(in) :: p                                 !< number of the parameter
     real(wp), intent(in) :: longer                           !< derivative of the length [m per unit]
     type(balanced_type), intent(in) :: present               !< the balance of the position
@@ -189,7 +193,8 @@ contains
         end if
       end associate
     end do
-    call equations%complete(cluster, required, wrenches, regular)
+    ! derivatives by a parameter that hardly matters are round-off of the wrenches
+    call equations%complete(cluster, required, wrenches, regular, size_of_all=sizes(p)*maxval(abs(present%wrenches)))
     changes(1:3, :) = wrenches(1:3, :)
     changes(4:6, :) = reactions%length*wrenches(4:6, :) + longer*present%wrenches(4:6, :)
   end subroutine vary_balance

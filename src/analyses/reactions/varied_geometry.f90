@@ -16,8 +16,9 @@ module mech9_varied_geometry
   !> frame 0, in its axes.
   type :: varied_geometry_type
     real(wp), allocatable :: point(:, :, :)         !< (P,3,M) of the points of the pairs [m per unit of the parameter]
-    real(wp), allocatable :: screw(:, :)            !< (6,M) motion of the moving link in the reference link per unit of the coordinate:
-                                                    !< shift of the point of the joint's last pair, then rotation
+    !> (6,M) Motion of the moving link in the reference link per unit of the coordinate: shift of the point of the joint's last pair,
+    !> then rotation.
+    real(wp), allocatable :: screw(:, :)
     real(wp), allocatable :: screw_change(:, :, :)  !< (P,6,M) its derivatives
     real(wp), allocatable :: length(:)              !< (P) of the length
     !> (P) The same; it differs from `length` where several distances are the largest, and their derivatives are different.

@@ -26,7 +26,7 @@ module mech9_varied_reactions
   !> The derivatives, and what finds them. Components are along the axes of link 1.
   type :: varied_reactions_type
     real(wp), allocatable :: force(:, :, :)    !< (P,3,M) of the force in each pair [N per unit of the parameter]
-    real(wp), allocatable :: moment(:, :, :)   !< (P,3,M) of its moment about the origin of its frame in the moving link [N m per unit]
+    real(wp), allocatable :: moment(:, :, :)   !< (P,3,M) of its moment, about the origin of its frame in the moving link [N m per unit]
     type(reaction_plan_type), private :: plan                          !< of inverse dynamics, in space
     type(joint_geometry_type), private :: geometry                     !< of the position
     type(varied_geometry_type), private :: varied                      !< its derivatives
@@ -89,7 +89,7 @@ contains
     links = required
     call carry_inwards(motion, links, self)
     do c = 1, size(self%equations)
-      call vary_cluster(self%plan, self%plan%clusters(c), self%geometry, self%varied, links, &
+      call vary_cluster(self%plan, self%plan%clusters(c), self%geometry, self%varied, links, motion%tangents%size, &
                         rank_tolerance_for(motion%plan%data_tolerance), self%equations(c), self%force, self%moment, regular)
       if (regular) cycle
       call raise(err, exit_singular, failure_singular_sensitivity)
