@@ -65,6 +65,9 @@ contains
     else if (limit%low > limit%high) then
       call diagnostics%add(span_of(group, 'high', 1), 'no value is at least '//to_text(limit%low)//' and at most '// &
                            to_text(limit%high)//'; exchange ''low'' and ''high''')
+    else if (.not. limit%low < limit%high) then
+      call diagnostics%add(span_of(group, 'high', 1), 'round-off would break a limit to one value; give a range, or an '// &
+                           '&objective with this value as its ''goal''')
     end if
   end subroutine read_range
 

@@ -38,8 +38,10 @@ contains
     search = group_or_empty(document, 'optimum')
     model%request%optimum%starts = get_integer(search, 'starts')
     model%request%optimum%seed = get_integer(search, 'seed')
-    model%request%optimum%method = get_text(search, 'method')
-    model%request%optimum%place = diagnostics%place(span_of(search, 'method', 1))
+    if (has_name(search, 'method')) then
+      model%request%optimum%method = get_text(search, 'method')
+      model%request%optimum%place = diagnostics%place(span_of(search, 'method', 1))
+    end if
     if (diagnostics%failed()) return             ! points and coordinates may not be known
     do i = 1, size(numbers)
       associate (group => document%groups(numbers(i)), objective => model%request%objectives(i))

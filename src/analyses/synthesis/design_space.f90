@@ -17,10 +17,11 @@ module mech9_design_space
   use mech9_counted_random, only: uniform_at
   use mech9_mechanism_constants, only: gather_constants, align_axes, constants_of_coordinate, constants_of_pose
   use mech9_tangent, only: tangent_type, find_tangent
+  use mech9_quantity_evaluator, only: quantity_evaluator_type
   implicit none
   private
   public :: design_space_type, design_type, new_design_space, new_design, place_design, find_tangents, drive_changes, &
-    fix_design_space
+    fix_design_space, all_values
 
   !> The data that all designs share. A copy needs a model as a function of its own.
   type :: design_space_type
@@ -37,6 +38,7 @@ module mech9_design_space
     real(wp), allocatable :: slopes(:, :)           !< (constants,varied) their derivatives, where they are affine
     type(tangent_type), allocatable :: tangents(:)  !< (varied) the same as tangents
     integer :: drives_at = 0                        !< number of constants before those of the drives
+    class(quantity_evaluator_type), allocatable :: evaluator   !< makes the runs from which quantities are taken
   end type design_space_type
 
   !> One design.

@@ -1,43 +1,55 @@
 !> The fit of a design whose chains are closed: the branch of its start is followed through the whole run, and the differences from
-!> the targets follow. A design that cannot be assembled near the last one, or whose motion does not come to the end of the run, has
-!> no value.
+!> the targets and from the goals of quantities follow. A design that cannot be assembled near the last one, or whose motion does
+!> not come to the end of the run, has no value.
 module mech9_exact_fit
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type
-  use mech9_reflections, only: triangulate, solve_upper
+  use mech9_system, only: interrupted
   use mech9_bounded_least_squares, only: residuals_type, residual_values_type
   use mech9_plan, only: new_state
   use mech9_state, only: state_type
-  use mech9_block_solver, only: new_block_work, block_work_type, newton_outcome_type, close_block
-  use mech9_frame_motion, only: place_all
   use mech9_branch_stepping, only: set_inputs
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
-  use mech9_objective, only: timing_free, timing_over
-  use mech9_design_space, only: design_space_type, design_type, place_design, find_tangents, drive_changes
+  use mech9_objective, only: timing_free, timing_over, quantity_objective, crank_limit
+  use mech9_design_space, only: design_space_type, design_type, place_design, find_tangents, all_values
   use mech9_open_position, only: open_position_type, find_openings, find_derivatives
-  use mech9_targets, only: target_type, difference, are_in_order, outer_times
+  use mech9_closed_changes, only: closed_changes_type, find_closed_changes
+  use mech9_branch, only: close_near, follow_turn
+  use mech9_free_times, only: free_times_type, new_free_times, parts_of, part_by_gap, are_in_order
+  use mech9_targets, only: target_type, components_of, difference, difference_derivatives, outer_times
   implicit none
   private
-  public :: exact_fit_type, new_exact_fit, follow, close_near
+  public :: exact_fit_type, new_exact_fit, place_at
 
   !> Steps of the motions of one search. A search that creeps along the edge of the designs that can move takes many more, and ends.
   integer(long), parameter :: most_work = 60000
 
-  !> The shared unknowns are the parameters, each as a part of its range; the unknown of a target is its time, as a part of the run.
+  !> The unknowns are the parameters, each as a part of its range, and the gaps between free times, as parts of the run. A residual
+  !> group belongs to each target, and the last ones hold the differences of quantities from their goals.
   type, extends(residuals_type) :: exact_fit_type
     type(design_space_type), pointer :: space => null()
     type(design_type) :: design
     type(open_position_type) :: position                    !< scratch
     type(target_type), allocatable :: targets(:)
-    integer, allocatable :: dependent(:)                    !< numbers of the dependent coordinates
+    type(free_times_type) :: free                           !< free times of targets
+    integer :: varied = 0                                   !< number of parameters that are varied
+    integer, allocatable :: goals(:)                        !< numbers of the objectives that are goals of quantities
+    integer, allocatable :: cranks(:)                       !< coordinates that must be able to turn fully
+    logical :: with_quantities = .false.                    !< objectives or limits need quantities
     real(wp) :: start = 0.0_wp, end = 1.0_wp                !< times of the run [s]
-    real(wp), allocatable :: q_start(:)                     !< (M) the start of the last design with a value [rad, m]
+    real(wp), allocatable :: q_start(:)                     !< (M) the start of the last design with derivatives [rad, m]
+    real(wp), allocatable :: q_trial(:)                     !< (M) the start of the last design with a value [rad, m]
     real(wp), allocatable :: q(:, :)                        !< (M,targets) its coordinates at the targets [rad, m]
     real(wp), allocatable :: times(:)                       !< (targets) times of the targets [s]
+    real(wp), allocatable :: quantities(:)                  !< values of the quantities of the last design with a value
+    real(wp), allocatable :: gradient(:, :)                 !< (parameters,quantities) their derivatives by all parameters
     integer(long) :: work = 0                               !< steps of all motions that were followed
+    logical :: heeds_interruption = .true.                  !< designs have no value after the user has interrupted
+    logical :: was_cut = .false.                            !< a design had no value for this reason
   contains
     procedure :: evaluate
     procedure :: has_derivatives
+    procedure :: quantity_slopes
   end type exact_fit_type
 
 contains
@@ -49,35 +61,40 @@ contains
     type(open_position_type), intent(in) :: position         !< any position
     type(target_type), intent(in) :: targets(:)              !< the targets
     type(exact_fit_type), intent(out) :: fit                 !< ready but for its start
-    integer :: i
-    logical :: independent(space%plan%n_coordinates)
+    integer :: i, m
 
     fit%space => space
     fit%design = design
     fit%position = position
     fit%targets = targets
-    independent = .false.
-    independent(space%plan%independent) = .true.
-    fit%dependent = pack([(i, i=1, size(independent))], .not. independent)
-    fit%start = space%model%request%time%start
-    fit%end = space%model%request%time%end
-    fit%n = size(space%varied)
-    fit%groups = size(targets)
-    fit%own = merge(1, 0, any(targets%timing == timing_free))
-    fit%rows = 3
-    allocate (fit%q_start(size(independent)), fit%q(size(independent), size(targets)), fit%times(size(targets)), source=0.0_wp)
+    call new_free_times(targets, fit%free)
+    associate (request => space%model%request)
+      fit%goals = pack([(i, i=1, size(request%objectives))], request%objectives%has_goal)
+      fit%cranks = pack(request%limits%coordinate, request%limits%kind == crank_limit)
+      fit%with_quantities = any(request%objectives%kind == quantity_objective) .or. any(request%limits%quantity > 0)
+      fit%start = request%time%start
+      fit%end = request%time%end
+    end associate
+    fit%varied = size(space%varied)
+    fit%n = fit%varied + fit%free%n
+    fit%rows = components_of(targets)
+    fit%groups = size(targets) + (size(fit%goals) + fit%rows - 1)/fit%rows
+    m = space%plan%n_coordinates
+    allocate (fit%q_start(m), fit%q_trial(m), fit%q(m, size(targets)), fit%times(size(targets)), source=0.0_wp)
+    allocate (fit%quantities(size(space%model%request%quantities)), source=0.0_wp)
+    allocate (fit%gradient(size(space%values), size(fit%quantities)), source=0.0_wp)
   end subroutine new_exact_fit
 
-  !> The differences from the targets.
+  !> The differences from the targets and goals.
   subroutine evaluate(self, x, y, with_derivatives, values, has_value)
     class(exact_fit_type), intent(inout) :: self            !< the fit
-    real(wp), intent(in) :: x(:)                            !< (n) parameters as parts of their ranges
-    real(wp), intent(in) :: y(:, :)                         !< (own,targets) times
+    real(wp), intent(in) :: x(:)                            !< (n) parameters as parts of their ranges, gaps of free times
+    real(wp), intent(in) :: y(:, :)                         !< (0,targets) no target has unknowns of its own
     logical, intent(in) :: with_derivatives                 !< derivatives are asked for, at the place asked for last
     type(residual_values_type), intent(inout) :: values     !< gets the residuals
     logical, intent(out) :: has_value                       !< the residuals have a value here
     type(error_type), allocatable :: err
-    real(wp) :: q_start(size(self%q_start)), by_q(3, size(self%q_start)), by_x(3, size(x))
+    real(wp) :: q_start(size(self%q_start)), quantities(size(self%quantities)), gradient(size(self%gradient, 1), size(quantities))
     integer :: g
 
     if (with_derivatives) then
@@ -85,36 +102,88 @@ contains
       return
     end if
     has_value = .false.
-    call place_design(self%space, self%space%low + x*(self%space%high - self%space%low), self%design, err)
-    if (allocated(err)) return
-    if (self%own > 0) self%times = self%start + y(1, :)*(self%end - self%start)
-    call outer_times(self%targets, self%design, min(self%start, self%end), max(self%start, self%end), self%times, has_value)
-    has_value = has_value .and. are_in_order(self%targets, self%times, self%end - self%start)
+    if (self%heeds_interruption) self%was_cut = self%was_cut .or. interrupted()
+    if (self%work >= most_work .or. self%was_cut) return
+    associate (space => self%space, v => self%varied)
+      call place_design(space, space%low + x(:v)*(space%high - space%low), self%design, err)
+      if (allocated(err)) return
+      call find_times(self, x(v + 1:), has_value)
+      if (.not. has_value) return
+      q_start = self%q_start
+      call follow_targets(self, q_start, has_value)
+      if (has_value .and. self%with_quantities) &
+        call space%evaluator%evaluate(all_values(space, self%design%x), q_start, .false., quantities, gradient, has_value)
+    end associate
+    ! a run for quantities may have been interrupted
+    if (.not. has_value .and. self%with_quantities .and. self%heeds_interruption) self%was_cut = self%was_cut .or. interrupted()
     if (.not. has_value) return
-    q_start = self%q_start
-    has_value = self%work < most_work
-    if (has_value) call follow_targets(self, q_start, has_value)
-    if (.not. has_value) return
-    do g = 1, self%groups
-      call place_at(self, g, err)
+    values%r = 0.0_wp
+    do g = 1, size(self%targets)
+      call place_at(self, self%times(g), self%q(:, g), err)
       has_value = .not. allocated(err)
       if (.not. has_value) return
-      call difference(self%targets(g), self%design, self%position, values%r(:, g), by_q, by_x)
+      call difference(self%targets(g), self%design, self%position%state, values%r(:, g))
     end do
-    self%q_start = q_start
+    self%q_trial = q_start
+    if (self%with_quantities) self%quantities = quantities
+    call add_goals(self, values)
   end subroutine evaluate
 
-  !> Place the frames in space at a target.
-  subroutine place_at(self, g, err)
-    class(exact_fit_type), intent(inout) :: self            !< the fit
-    integer, intent(in) :: g                                !< number of the target
-    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: q(size(self%q_start))
+  !> The times of all targets.
+  subroutine find_times(self, gaps, found)
+    class(exact_fit_type), intent(inout) :: self            !< the fit, with its design placed; gets the times
+    real(wp), intent(in) :: gaps(:)                         !< between free times, as parts of the run
+    logical, intent(out) :: found                           !< all lie within the run, and free ones are in order
+    real(wp) :: parts(size(gaps))
 
-    self%position%state%t = self%times(g)
-    self%position%state%q = self%q(:, g)
-    q = self%q(:, g)
-    call set_inputs(self%design%drives, self%times(g), q, self%position%state%dq, self%position%state%ddq, err)
+    parts = parts_of(gaps, self%free)
+    self%times(self%free%target) = self%start + parts*(self%end - self%start)
+    call outer_times(self%targets, self%design, min(self%start, self%end), max(self%start, self%end), self%times, found)
+    found = found .and. are_in_order(parts, self%free)
+  end subroutine find_times
+
+  !> Add the differences of quantities from their goals.
+  pure subroutine add_goals(self, values)
+    class(exact_fit_type), intent(in) :: self               !< the fit, with the quantities
+    type(residual_values_type), intent(inout) :: values     !< gets the residuals
+    integer :: i
+
+    do i = 1, size(self%goals)
+      associate (objective => self%space%model%request%objectives(self%goals(i)))
+        values%r(row_of_goal(self, i), group_of_goal(self, i)) = sqrt(objective%weight) &
+                                                                 *(self%quantities(objective%quantity) - objective%goal)
+      end associate
+    end do
+  end subroutine add_goals
+
+  !> The row of a goal in its group.
+  pure integer function row_of_goal(self, i)
+    class(exact_fit_type), intent(in) :: self   !< the fit
+    integer, intent(in) :: i                    !< number of the goal
+
+    row_of_goal = 1 + modulo(i - 1, self%rows)
+  end function row_of_goal
+
+  !> The group of a goal.
+  pure integer function group_of_goal(self, i)
+    class(exact_fit_type), intent(in) :: self   !< the fit
+    integer, intent(in) :: i                    !< number of the goal
+
+    group_of_goal = size(self%targets) + 1 + (i - 1)/self%rows
+  end function group_of_goal
+
+  !> Place the frames in space at a position of the design.
+  subroutine place_at(self, t, q, err)
+    class(exact_fit_type), intent(inout) :: self            !< the fit
+    real(wp), intent(in) :: t                               !< time [s]
+    real(wp), intent(in) :: q(:)                            !< (M) coordinates [rad, m]
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp) :: driven(size(q))
+
+    self%position%state%t = t
+    self%position%state%q = q
+    driven = q
+    call set_inputs(self%design%drives, t, driven, self%position%state%dq, self%position%state%ddq, err)
     if (.not. allocated(err)) call find_openings(self%design, self%position, err)
   end subroutine place_at
 
@@ -122,11 +191,11 @@ contains
   subroutine follow_targets(self, q_start, has_value)
     class(exact_fit_type), intent(inout) :: self            !< the fit; gets the coordinates at the targets
     real(wp), intent(inout) :: q_start(:)                   !< (M) coordinates near the start, then those of the start [rad, m]
-    logical, intent(out) :: has_value                       !< the motion comes to the end of the run
+    logical, intent(out) :: has_value                       !< the motion comes to the end of the run, and cranks turn fully
     type(driven_motion_type) :: driven
     type(state_type) :: state
     type(error_type), allocatable :: err
-    integer :: order(self%groups), i
+    integer :: order(size(self%targets)), i
 
     state = new_state(self%design%plan)
     state%q = q_start
@@ -135,61 +204,17 @@ contains
     q_start = state%q
     call start_driven_motion(self%design%drives, self%design%plan, state, self%start, driven, err, derivatives=0)
     call sort_times(self%times, self%end - self%start, order)
-    do i = 1, self%groups
+    do i = 1, size(order)
       if (.not. allocated(err)) call advance(self%design%drives, self%design%plan, driven, self%times(order(i)), err)
       if (.not. allocated(err)) self%q(:, order(i)) = driven%state%q
     end do
     if (.not. allocated(err)) call advance(self%design%drives, self%design%plan, driven, self%end, err)
     has_value = .not. allocated(err)
     self%work = self%work + driven%steps + driven%halvings
-  end subroutine follow_targets
-
-  !> Follow the branch of a position from one time to another; `came` tells whether the motion comes there.
-  subroutine follow(design, from, to, q, came)
-    type(design_type), intent(in) :: design   !< placed
-    real(wp), intent(in) :: from              !< time of the position [s]
-    real(wp), intent(in) :: to                !< time to go to [s]
-    real(wp), intent(inout) :: q(:)           !< (M) coordinates near the position, then those at the end [rad, m]
-    logical, intent(out) :: came              !< the motion comes there
-    type(driven_motion_type) :: driven
-    type(state_type) :: state
-    type(error_type), allocatable :: err
-
-    state = new_state(design%plan)
-    state%q = q
-    call close_near(design, from, state, came)
-    if (.not. came) return
-    q = state%q
-    if (.not. abs(to - from) > 0.0_wp) return
-    call start_driven_motion(design%drives, design%plan, state, from, driven, err, derivatives=0)
-    if (.not. allocated(err)) call advance(design%drives, design%plan, driven, to, err)
-    came = .not. allocated(err)
-    if (came) q = driven%state%q
-  end subroutine follow
-
-  !> Close all chains near the coordinates in the state by Newton's method.
-  subroutine close_near(design, t, state, closed)
-    type(design_type), intent(in) :: design       !< placed
-    real(wp), intent(in) :: t                     !< time [s]
-    type(state_type), intent(inout) :: state      !< with coordinates nearby; closed
-    logical, intent(out) :: closed                !< whether it converged
-    type(block_work_type) :: work
-    type(newton_outcome_type) :: newton
-    type(error_type), allocatable :: err
-    integer :: b
-
-    state%t = t
-    closed = .false.
-    call set_inputs(design%drives, t, state%q, state%dq, state%ddq, err)
-    if (.not. allocated(err)) call place_all(design%plan, state, err)
-    if (allocated(err)) return
-    do b = 1, size(design%plan%blocks)
-      work = new_block_work(design%plan%blocks(b), design%plan)
-      call close_block(design%plan, design%plan%blocks(b), state, work, newton, err)
-      if (allocated(err) .or. .not. newton%converged) return
+    do i = 1, size(self%cranks)
+      if (has_value) call follow_turn(self%design, q_start, self%cranks(i), has_value, self%work)
     end do
-    closed = .true.
-  end subroutine close_near
+  end subroutine follow_targets
 
   !> The order of times in the direction of the run.
   pure subroutine sort_times(times, direction, order)
@@ -217,65 +242,64 @@ contains
     type(residual_values_type), intent(inout) :: values     !< gets the derivatives
     logical, intent(out) :: has_value                       !< they exist
     type(error_type), allocatable :: err
-    real(wp), dimension(size(self%q_start), self%n + 1) :: change
-    real(wp) :: by_q(3, size(self%q_start)), by_x(3, self%n), r(3), t_by_x(self%n)
-    integer :: g, i
+    integer :: g
 
+    ! derivatives are asked for where a search goes on from: other trials start from this assembly
+    self%q_start = self%q_trial
     call find_tangents(self%space, self%design, err)
     has_value = .not. allocated(err)
-    if (.not. has_value) return
-    do g = 1, self%groups
-      call place_at(self, g, err)
-      has_value = .not. allocated(err)
-      if (.not. has_value) return
-      call find_derivatives(self%design, self%position)
-      call difference(self%targets(g), self%design, self%position, r, by_q, by_x)
-      call find_changes(self, self%targets(g), change, t_by_x)
-      values%by_x(:, :, g) = by_x + matmul(by_q, change(:, :self%n))
-      do i = 1, 3
-        values%by_x(i, :, g) = values%by_x(i, :, g) + dot_product(by_q(i, :), change(:, self%n + 1))*t_by_x
-      end do
-      do i = 1, self%n
-        values%by_x(:, i, g) = values%by_x(:, i, g)*(self%space%high(i) - self%space%low(i))
-      end do
-      if (self%own == 0) cycle
-      values%by_y(:, 1, g) = 0.0_wp
-      if (self%targets(g)%timing == timing_free) values%by_y(:, 1, g) = matmul(by_q, change(:, self%n + 1))*(self%end - self%start)
+    if (has_value) values%by_x = 0.0_wp
+    do g = 1, size(self%targets)
+      if (has_value) call differentiate_target(self, g, values%by_x(:, :, g), has_value)
+    end do
+    if (.not. (has_value .and. self%with_quantities)) return
+    call self%space%evaluator%evaluate(all_values(self%space, self%design%x), self%q_start, .true., self%quantities, &
+                                       self%gradient, has_value)
+    do g = 1, size(self%goals)
+      associate (objective => self%space%model%request%objectives(self%goals(g)))
+        values%by_x(row_of_goal(self, g), :self%varied, group_of_goal(self, g)) &
+          = sqrt(objective%weight)*self%quantity_slopes(objective%quantity)
+      end associate
     end do
   end subroutine has_derivatives
 
-  !> The derivatives of all coordinates of a closed position by the parameters, and by the time, in the units of the coordinates.
-  subroutine find_changes(self, target, change, t_by_x)
-    class(exact_fit_type), intent(in) :: self          !< the fit, with the derivatives of the chains
-    type(target_type), intent(in) :: target            !< the target
-    real(wp), intent(out) :: change(:, :)              !< (M,n+1) the derivatives; the last column is that by the time
-    real(wp), intent(out) :: t_by_x(:)                 !< (n) derivatives of the time of the target
-    real(wp) :: a(self%position%equations, size(self%dependent) + self%n + 1), drive(self%n)
-    real(wp) :: solution(size(self%dependent))
-    integer :: i, j, k, n, m
+  !> The derivatives of a quantity by the varied parameters, as parts of their ranges.
+  pure function quantity_slopes(self, number) result(slopes)
+    class(exact_fit_type), intent(in) :: self   !< the fit, with the derivatives of the quantities
+    integer, intent(in) :: number               !< of the quantity
+    real(wp) :: slopes(self%varied)
 
-    n = self%n
-    m = size(self%dependent)
-    change = 0.0_wp
-    t_by_x = 0.0_wp
-    associate (position => self%position, plan => self%design%in_space)
-      do i = 1, size(self%design%drives)
-        k = self%design%drives(i)%drive%coordinate
-        call drive_changes(self%design, i, position%state%t, drive)
-        change(k, :n) = drive/plan%unit_of(k)
-        change(k, n + 1) = position%state%dq(k)/plan%unit_of(k)
-        if (target%timing == timing_over .and. target%over == k .and. abs(position%state%dq(k)) > 0.0_wp) &
-          t_by_x = -drive/position%state%dq(k)
-      end do
-      a(:, :m) = position%by_q(:, self%dependent)
-      a(:, m + 1:m + n) = -position%by_x
-      a(:, m + n + 1) = 0.0_wp
-      a(:, m + 1:) = a(:, m + 1:) - matmul(position%by_q, change)
-      call triangulate(a, m)
-      do j = 1, n + 1
-        call solve_upper(a(:m, :m), a(:m, m + j), solution)
-        change(self%dependent, j) = solution
-      end do
-    end associate
-  end subroutine find_changes
+    slopes = self%gradient(self%space%varied, number)*(self%space%high - self%space%low)
+  end function quantity_slopes
+
+  !> The derivatives of the difference from one target.
+  subroutine differentiate_target(self, g, by_unknown, has_value)
+    class(exact_fit_type), intent(inout) :: self            !< the fit
+    integer, intent(in) :: g                                !< number of the target
+    real(wp), intent(inout) :: by_unknown(:, :)             !< (rows,n) the derivatives
+    logical, intent(out) :: has_value                       !< they exist
+    type(closed_changes_type) :: changes
+    type(error_type), allocatable :: err
+    real(wp) :: by_q(self%rows, size(self%q_start)), by_x(self%rows, self%varied), by_t(self%rows)
+    integer :: i, j
+
+    call place_at(self, self%times(g), self%q(:, g), err)
+    has_value = .not. allocated(err)
+    if (.not. has_value) return
+    call find_derivatives(self%design, self%position)
+    call difference_derivatives(self%targets(g), self%design, self%position, by_q, by_x)
+    call find_closed_changes(self%design, self%position, changes)
+    by_t = matmul(by_q, changes%by_t)
+    by_x = by_x + matmul(by_q, changes%by_x)
+    if (self%targets(g)%timing == timing_over) by_x = by_x + spread(by_t, 2, self%varied) &
+                                                      *spread(changes%delay(self%targets(g)%over, self%position), 1, self%rows)
+    do i = 1, self%varied
+      by_unknown(:, i) = by_x(:, i)*(self%space%high(i) - self%space%low(i))
+    end do
+    if (self%targets(g)%timing /= timing_free) return
+    i = findloc(self%free%target, g, dim=1)
+    do j = 1, self%free%n
+      by_unknown(:, self%varied + j) = by_t*(self%end - self%start)*part_by_gap(self%free, i, j)
+    end do
+  end subroutine differentiate_target
 end module mech9_exact_fit

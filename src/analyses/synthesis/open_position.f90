@@ -5,15 +5,16 @@
 module mech9_open_position
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_rotation, only: turn, cross
-  use mech9_plan, only: new_state
+  use mech9_rotation, only: turn, combine, cross
+  use mech9_plan, only: plan_type, new_state
   use mech9_state, only: state_type
   use mech9_frame_motion, only: place_all, point_motion
   use mech9_twists, only: shift_at
   use mech9_design_space, only: design_type
   implicit none
   private
-  public :: open_position_type, new_open_position, find_openings, find_derivatives, point_derivatives
+  public :: open_position_type, new_open_position, find_openings, find_derivatives, point_derivatives, &
+    turn_derivatives, frame_derivatives
 
   type :: open_position_type
     type(state_type) :: state                !< the position, in space
@@ -144,34 +145,106 @@ contains
     end associate
   end subroutine open_by_parameter
 
-  !> A point and its derivatives by coordinates and parameters.
+  !> A point and its derivatives by coordinates and parameters. Without a number it is the origin of the link.
   subroutine point_derivatives(design, position, number, link, place, by_q, by_x)
     type(design_type), intent(in) :: design                !< placed, with its tangents
     type(open_position_type), intent(in) :: position       !< with the twists of its frames
-    integer, intent(in) :: number                          !< of the point
+    integer, intent(in) :: number                          !< of the point; 0: the origin of the link
     integer, intent(in) :: link                            !< its link
     real(wp), intent(out) :: place(3)                      !< in the system of link 1 [m]
     real(wp), intent(out) :: by_q(:, :)                    !< (3,M) by the coordinates, each in its unit
     real(wp), intent(out) :: by_x(:, :)                    !< (3,P) by the parameters
     real(wp) :: constant(6), twist(6), arm(3)
-    integer :: s, p
+    integer :: p
 
     associate (plan => design%in_space, state => position%state)
-      call point_motion(plan, state, link, design%places(:, number), place)
+      if (number == 0) then
+        call point_motion(plan, state, link, [0.0_wp, 0.0_wp, 0.0_wp], place)
+      else
+        call point_motion(plan, state, link, design%places(:, number), place)
+      end if
       arm = place - plan%origin
-      by_q = 0.0_wp
-      s = plan%frame_of(link)
-      do while (s > 0)
-        by_q(:, plan%steps(s)%coordinate) = plan%unit_of(plan%steps(s)%coordinate) &
-                                            *(state%axis_v(:, s) + cross(state%axis_w(:, s), arm - state%p(:, s)))
-        s = plan%steps(s)%parent
-      end do
+      call shifts_by_steps(plan, state, plan%frame_of(link), arm, by_q)
       do p = 1, size(design%x)
         constant = design%tangents(p)%link(:, link)
-        constant(4:6) = constant(4:6) + turn(plan%link_in_frame(link)%r, design%tangents(p)%points(:, number))
+        if (number > 0) &
+          constant(4:6) = constant(4:6) + turn(plan%link_in_frame(link)%r, design%tangents(p)%points(:, number))
         twist = position%frames(:, p, plan%frame_of(link)) + carried(state, plan%frame_of(link), constant)
         by_x(:, p) = shift_at(twist, arm)
       end do
     end associate
   end subroutine point_derivatives
+
+  !> The shifts of a point of a frame by unit changes of the coordinates.
+  pure subroutine shifts_by_steps(plan, state, frame, arm, by_q)
+    type(plan_type), intent(in) :: plan        !< the plan of the design, in space
+    type(state_type), intent(in) :: state      !< with the poses of the frames and the screws of the steps
+    integer, intent(in) :: frame               !< the frame
+    real(wp), intent(in) :: arm(3)             !< the point, from the origin of frame 0 [m]
+    real(wp), intent(out) :: by_q(:, :)        !< (3,M) by the coordinates, each in its unit
+    integer :: s
+
+    by_q = 0.0_wp
+    s = frame
+    do while (s > 0)
+      by_q(:, plan%steps(s)%coordinate) = plan%unit_of(plan%steps(s)%coordinate) &
+                                          *(state%axis_v(:, s) + cross(state%axis_w(:, s), arm - state%p(:, s)))
+      s = plan%steps(s)%parent
+    end do
+  end subroutine shifts_by_steps
+
+  !> The rotation of a link and its derivatives by coordinates and parameters, as small rotations in the axes of link 1.
+  subroutine turn_derivatives(design, position, link, r, by_q, by_x)
+    type(design_type), intent(in) :: design                !< placed, with its tangents
+    type(open_position_type), intent(in) :: position       !< with the twists of its frames
+    integer, intent(in) :: link                            !< number of the link
+    real(wp), intent(out) :: r(3, 3)                       !< rotation from the link's axes to those of link 1
+    real(wp), intent(out) :: by_q(:, :)                    !< (3,M) by the coordinates, each in its unit
+    real(wp), intent(out) :: by_x(:, :)                    !< (3,P) by the parameters
+    integer :: s, p
+
+    associate (plan => design%in_space, state => position%state)
+      r = combine(state%r(:, :, plan%frame_of(link)), plan%link_in_frame(link)%r)
+      call turns_by_steps(plan, state, plan%frame_of(link), by_q)
+      do p = 1, size(design%x)
+        s = plan%frame_of(link)
+        by_x(:, p) = position%frames(1:3, p, s) + turn(state%r(:, :, s), design%tangents(p)%link(1:3, link))
+      end do
+    end associate
+  end subroutine turn_derivatives
+
+  !> The rotations of a frame by unit changes of the coordinates.
+  pure subroutine turns_by_steps(plan, state, frame, by_q)
+    type(plan_type), intent(in) :: plan        !< the plan of the design, in space
+    type(state_type), intent(in) :: state      !< with the screws of the steps
+    integer, intent(in) :: frame               !< the frame
+    real(wp), intent(out) :: by_q(:, :)        !< (3,M) by the coordinates, each in its unit
+    integer :: s
+
+    by_q = 0.0_wp
+    s = frame
+    do while (s > 0)
+      by_q(:, plan%steps(s)%coordinate) = plan%unit_of(plan%steps(s)%coordinate)*state%axis_w(:, s)
+      s = plan%steps(s)%parent
+    end do
+  end subroutine turns_by_steps
+
+  !> The shift of a frame's origin and the rotation of the frame, by coordinates and parameters.
+  subroutine frame_derivatives(design, position, s, shift_by_q, shift_by_x, turn_by_q, turn_by_x)
+    type(design_type), intent(in) :: design                !< placed, with its tangents
+    type(open_position_type), intent(in) :: position       !< with the twists of its frames
+    integer, intent(in) :: s                               !< number of the frame
+    real(wp), intent(out) :: shift_by_q(:, :)              !< (3,M) by the coordinates, each in its unit
+    real(wp), intent(out) :: shift_by_x(:, :)              !< (3,P) by the parameters
+    real(wp), intent(out) :: turn_by_q(:, :)               !< (3,M) by the coordinates, each in its unit
+    real(wp), intent(out) :: turn_by_x(:, :)               !< (3,P) by the parameters
+    integer :: p
+
+    call shifts_by_steps(design%in_space, position%state, s, position%state%p(:, s), shift_by_q)
+    call turns_by_steps(design%in_space, position%state, s, turn_by_q)
+    do p = 1, size(design%x)
+      shift_by_x(:, p) = shift_at(position%frames(:, p, s), position%state%p(:, s))
+      turn_by_x(:, p) = position%frames(1:3, p, s)
+    end do
+  end subroutine frame_derivatives
 end module mech9_open_position

@@ -9,10 +9,11 @@ module mech9_relaxed_fit
   use mech9_objective, only: timing_free, timing_over
   use mech9_design_space, only: design_space_type, design_type, place_design, find_tangents, drive_changes
   use mech9_open_position, only: open_position_type, find_openings, find_derivatives
-  use mech9_targets, only: target_type, difference, are_in_order, outer_times
+  use mech9_free_times, only: free_times_type, new_free_times, are_in_order
+  use mech9_targets, only: target_type, components_of, difference, difference_derivatives, outer_times
   implicit none
   private
-  public :: relaxed_fit_type, new_relaxed_fit
+  public :: relaxed_fit_type, new_relaxed_fit, turn_on
 
   !> The shared unknowns are the parameters, each as a part of its range; those of a target are the dependent coordinates, in their
   !> units, and the time, as a part of the run.
@@ -20,7 +21,8 @@ module mech9_relaxed_fit
     type(design_space_type), pointer :: space => null()
     type(design_type) :: design
     type(open_position_type), allocatable :: positions(:)   !< (targets)
-    type(target_type), allocatable :: targets(:)
+    type(target_type), allocatable :: targets(:)            !< targets, and positions at which chains must be closed
+    type(free_times_type) :: free                           !< free times of targets
     integer, allocatable :: dependent(:)                    !< numbers of the dependent coordinates
     real(wp) :: start = 0.0_wp, end = 1.0_wp                !< times of the run [s]
     real(wp) :: scale = 1.0_wp                              !< length by which differences are divided [m]
@@ -57,7 +59,8 @@ contains
     fit%n = size(space%varied)
     fit%groups = size(targets)
     fit%own = size(fit%dependent) + 1
-    fit%rows = position%equations + 3
+    call new_free_times(targets, fit%free)
+    fit%rows = position%equations + components_of(targets)
   end subroutine new_relaxed_fit
 
   !> The openings of all chains, and the differences from the targets.
@@ -69,9 +72,7 @@ contains
     type(residual_values_type), intent(inout) :: values     !< gets the residuals
     logical, intent(out) :: has_value                       !< the residuals have a value here
     type(error_type), allocatable :: err
-    real(wp) :: times(size(self%targets)), rates(size(self%positions(1)%state%q))
-    real(wp), dimension(3, size(rates)) :: by_q
-    real(wp) :: by_x(3, size(x))
+    real(wp) :: times(size(self%targets))
     integer :: g
 
     if (with_derivatives) then
@@ -83,22 +84,31 @@ contains
     if (allocated(err)) return
     times = self%start + y(self%own, :)*(self%end - self%start)
     call outer_times(self%targets, self%design, min(self%start, self%end), max(self%start, self%end), times, has_value)
-    has_value = has_value .and. are_in_order(self%targets, times, self%end - self%start)
+    has_value = has_value .and. are_in_order(y(self%own, self%free%target), self%free)
     if (.not. has_value) return
     do g = 1, self%groups
       associate (position => self%positions(g), plan => self%design%in_space)
         position%state%t = times(g)
         position%state%q(self%dependent) = y(:self%own - 1, g)*plan%unit_of(self%dependent)
         call set_inputs(self%design%drives, times(g), position%state%q, position%state%dq, position%state%ddq, err)
+        call turn_on(self%targets(g), position%state%q)
         if (.not. allocated(err)) call find_openings(self%design, position, err)
         has_value = .not. allocated(err)
         if (.not. has_value) return
         values%r(:position%equations, g) = self%closing*position%opening
-        call difference(self%targets(g), self%design, position, values%r(position%equations + 1:, g), by_q, by_x)
+        call difference(self%targets(g), self%design, position%state, values%r(position%equations + 1:, g))
         values%r(position%equations + 1:, g) = values%r(position%equations + 1:, g)/self%scale
       end associate
     end do
   end subroutine evaluate
+
+  !> Turn on a driven angle where a position is in the full turn of a crank.
+  pure subroutine turn_on(target, q)
+    type(target_type), intent(in) :: target   !< the position
+    real(wp), intent(inout) :: q(:)           !< (M) coordinates [rad, m]
+
+    if (target%turned > 0) q(target%turned) = q(target%turned) + target%place(1)
+  end subroutine turn_on
 
   !> The derivatives at the place that was evaluated last.
   subroutine has_derivatives(self, values, has_value)
@@ -106,7 +116,7 @@ contains
     type(residual_values_type), intent(inout) :: values     !< gets the derivatives
     logical, intent(out) :: has_value                       !< they exist
     type(error_type), allocatable :: err
-    real(wp) :: by_q(self%rows, size(self%positions(1)%state%q)), by_t(self%rows), r(3), change(self%n), rate, t_by_x(self%n)
+    real(wp) :: by_q(self%rows, size(self%positions(1)%state%q)), by_t(self%rows), change(self%n), rate, t_by_x(self%n)
     integer :: g, e, i, k
 
     call find_tangents(self%space, self%design, err)
@@ -119,7 +129,7 @@ contains
         call find_derivatives(self%design, position)
         by_q(:e, :) = self%closing*position%by_q
         by_x(:e, :) = self%closing*position%by_x
-        call difference(target, self%design, position, r, by_q(e + 1:, :), by_x(e + 1:, :))
+        call difference_derivatives(target, self%design, position, by_q(e + 1:, :), by_x(e + 1:, :))
         by_q(e + 1:, :) = by_q(e + 1:, :)/self%scale
         by_x(e + 1:, :) = by_x(e + 1:, :)/self%scale
         by_y(:, :self%own - 1) = by_q(:, self%dependent)

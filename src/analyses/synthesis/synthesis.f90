@@ -2,17 +2,21 @@
 module mech9_synthesis
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_system, only: interrupted
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_bounded_least_squares, only: residual_values_type
   use mech9_design_space, only: design_space_type, design_type, new_design_space, new_design, fix_design_space
   use mech9_open_position, only: open_position_type, new_open_position
   use mech9_exact_fit, only: exact_fit_type, new_exact_fit
+  use mech9_design_limits, only: design_limits_type, new_design_limits, find_limits
+  use mech9_limited_fit, only: limited_fit_type, new_limited_fit, find_value
+  use mech9_free_times, only: choose_pivots, gaps_of
+  use mech9_closed_search, only: found_design_type
   use mech9_targets, only: target_type, gather_targets
-  use mech9_design_search, only: search_type, found_design_type, new_search, search_from
+  use mech9_design_search, only: search_type, new_search, search_from
   implicit none
   private
   public :: synthesis_type, optimum_design_type, new_synthesis
@@ -66,7 +70,8 @@ contains
     type(design_space_type), intent(inout), target :: space            !< its designs, of the calling thread
     integer, intent(in) :: seed                                        !< another seed gives other starts
     integer, intent(in) :: start                                       !< number of the start, from 1
-    type(found_design_type), allocatable, intent(out) :: found(:)      !< designs to which it led
+    type(found_design_type), allocatable, intent(out) :: found(:)      !< designs to which it led; not allocated where the
+                                                                       !< user interrupted it
     type(search_type), allocatable :: search
 
     allocate (search)
@@ -148,21 +153,25 @@ contains
     type(design_space_type), target :: alone
     type(design_type) :: design
     type(open_position_type) :: position
-    type(exact_fit_type) :: fit
-    type(residual_values_type) :: values
+    type(exact_fit_type), target :: fit
+    type(design_limits_type) :: limits
+    type(limited_fit_type) :: limited
     type(state_type) :: start
     type(error_type), allocatable :: err
-    real(wp), allocatable :: y(:, :)
-    real(wp) :: all(size(self%space%values))
+    real(wp), allocatable :: at(:), parts(:), numbers(:), slopes(:, :)
+    real(wp) :: all(size(self%space%values)), value
 
-    holds = .false.
+    ! quantities come from runs that are made anew; none are made any more after an interruption
+    holds = allocated(self%space%evaluator) .and. interrupted()
+    if (holds) return
     all = self%space%values
     all(self%space%varied) = optimum%x
     call self%space%variable%at(all, alone%model, err)
     if (allocated(err)) return
     call make_plan(alone%model%mechanism, alone%model%problem%partition, optimum%q, alone%plan, start, err)
     if (allocated(err)) return
-    alone%model%request%time = self%space%model%request%time
+    alone%model%request = self%space%model%request
+    if (allocated(self%space%evaluator)) alone%evaluator = self%space%evaluator
     alone%values = all
     alone%varied = self%space%varied
     alone%low = self%space%low
@@ -173,15 +182,21 @@ contains
     call new_open_position(design, position)
     call new_exact_fit(alone, design, position, self%targets, fit)
     fit%q_start = start%q
-    fit%times = optimum%times
-    allocate (y(fit%own, fit%groups))
-    if (fit%own > 0) y(1, :) = (optimum%times - fit%start)/(fit%end - fit%start)
-    allocate (values%r(3, fit%groups))
-    call fit%evaluate((optimum%x - alone%low)/(alone%high - alone%low), y, .false., values, holds)
+    fit%heeds_interruption = .false.
+    parts = (optimum%times(fit%free%target) - fit%start)/(fit%end - fit%start)
+    call choose_pivots(parts, fit%free)
+    at = [(optimum%x - alone%low)/(alone%high - alone%low), gaps_of(parts, fit%free)]
+    call new_design_limits(alone%plan, alone%model%request%limits, limits)
+    call new_limited_fit(fit, limits, limited)
+    allocate (numbers(limits%n), slopes(fit%n, limits%n))
+    call find_value(limited, at, value, holds)
     if (.not. holds) return
-    optimum%q = fit%q_start
+    optimum%q = fit%q_trial
     optimum%times = fit%times
-    holds = abs(sum(values%r**2) - optimum%value) <= same_value*optimum%value + round_off*sum(values%r**2 + 1.0_wp)
+    holds = abs(value - optimum%value) <= same_value*abs(optimum%value) + round_off*(abs(value) + 1.0_wp)
+    if (.not. holds .or. limits%n == 0) return
+    call find_limits(limits, fit, numbers, slopes, holds)
+    if (holds) holds = .not. any(numbers < 0.0_wp)
   end subroutine verify
 
   !> Whether two designs are the same but for small differences.
@@ -191,6 +206,6 @@ contains
     class(found_design_type), intent(in) :: b         !< another one
 
     is_same = all(abs(a%x - b%x) <= same_place*(space%high - space%low)) .and. &
-              abs(a%value - b%value) <= same_value*max(a%value, b%value) + round_off
+              abs(a%value - b%value) <= same_value*max(abs(a%value), abs(b%value)) + round_off
   end function is_same
 end module mech9_synthesis

@@ -9,7 +9,6 @@ module mech9_optimum_task
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
-  use mech9_objective, only: pose_objective, quantity_objective
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -20,6 +19,7 @@ module mech9_optimum_task
   use mech9_start_threads, only: make_in_threads
   use mech9_starts, only: starts_type
   use mech9_synthesis, only: synthesis_type, new_synthesis
+  use mech9_optimum_check, only: check_synthesis
   use mech9_optimum_results, only: open_starts, write_results, table_of
   use mech9_optimum_pictures, only: optimum_pictures_type
   use mech9_optimum_words, only: print_optimum, save_optimum_report
@@ -55,6 +55,7 @@ contains
     if (.not. allocated(err)) call pictures%open(program_name, options, model, err)
     if (.not. allocated(err)) call assemble_driven_start(model, plan, start, err)
     if (.not. allocated(err)) call new_synthesis(variable, model, plan, synthesis, err)
+    if (.not. allocated(err)) call check_synthesis(program_name, variable, model, start, synthesis, err)
     if (.not. allocated(err)) call open_starts(program_name, options, document, model, synthesis, starts, err)
     if (allocated(err)) then
       call explain(err)
@@ -84,9 +85,6 @@ contains
 
     if (size(model%request%objectives) == 0) then
       call raise(err, exit_usage, '--optimize meets the groups &objective as well as possible, and this file has none')
-    else if (any(model%request%objectives%kind == pose_objective .or. model%request%objectives%kind == quantity_objective) .or. &
-             size(model%request%limits) > 0) then
-      call raise(err, exit_usage, 'this version searches for paths and functions without limits only')
     else if (.not. any(model%parameters%has_range)) then
       call raise(err, exit_data, 'no parameter is varied: give ''low'' and ''high'' in at least one &parameter', &
                  model%request%objectives(1)%place)

@@ -8,7 +8,6 @@ module mech9_optimum_words
   use mech9_model, only: model_type
   use mech9_json, only: json_type
   use mech9_run_words, only: duration, begin_report
-  use mech9_targets, only: meet_in_time
   use mech9_synthesis, only: synthesis_type
   implicit none
   private
@@ -34,9 +33,6 @@ contains
         write (unit, '(a)') '  '//parameter%name//' = '//to_text(synthesis%optima(1)%x(i), 12)//at_bound(i)
       end associate
     end do
-    if (meet_in_time(synthesis%targets, synthesis%optima(1)%times, model%request%time%end - model%request%time%start)) &
-      write (unit, '(a)') 'note: this design meets two targets at nearly the same time; since the search keeps their order, '// &
-      'other designs may be better (see docs/synthesis.md)'
   contains
     !> Words for a parameter that is at one of its bounds.
     pure function at_bound(i) result(words)

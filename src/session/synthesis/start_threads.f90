@@ -52,10 +52,9 @@ contains
     type(found_design_type), allocatable :: found(:)
     integer :: number
 
-    number = all_handed_out
     do
       !$omp critical (starts_of_synthesis)
-      if (number /= all_handed_out) call starts%take(number, found)
+      if (allocated(found)) call starts%take(number, found)
       number = starts%hand_out()
       !$omp end critical (starts_of_synthesis)
       if (number == all_handed_out) exit

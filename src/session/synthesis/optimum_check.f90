@@ -1,0 +1,82 @@
+!> Judges before a search begins whether it can be made: its methods, its quantities, its limits.
+module mech9_optimum_check
+  use mech9_text, only: to_text
+  use mech9_error, only: error_type, raise, exit_data
+  use mech9_model, only: model_type
+  use mech9_variable_model, only: variable_model_type
+  use mech9_state, only: state_type
+  use mech9_objective, only: transmission_limit
+  use mech9_limited_minimum, only: has_limited_minimum
+  use mech9_quantity_record, only: quantity_record_type
+  use mech9_design_run, only: find_quantities
+  use mech9_synthesis, only: synthesis_type
+  use mech9_closed_search, only: is_least_squares
+  use mech9_transmission, only: has_transmission_angle
+  use mech9_run_evaluator, only: run_evaluator_type, new_run_evaluator, used_quantities
+  implicit none
+  private
+  public :: check_synthesis
+
+contains
+
+  !> Report what no search can find, and prepare the runs for quantities.
+  subroutine check_synthesis(program_name, variable, model, start, synthesis, err)
+    character(len=*), intent(in) :: program_name            !< mech9k
+    class(variable_model_type), intent(in) :: variable      !< the model as a function of its parameters
+    type(model_type), intent(in) :: model                   !< the model with the values of the data file
+    type(state_type), intent(in) :: start                   !< its assembled position
+    type(synthesis_type), intent(inout) :: synthesis        !< gets the runs
+    type(error_type), allocatable, intent(out) :: err       !< allocated if no search can be made
+    type(quantity_record_type) :: quantities
+    type(run_evaluator_type) :: evaluator
+    type(model_type) :: asked
+
+    call check_method(model, err)
+    if (.not. allocated(err)) call check_transmissions(model, synthesis, start, err)
+    if (allocated(err) .or. size(used_quantities(model)) == 0) return
+    asked = model
+    asked%request%quantities = model%request%quantities(used_quantities(model))
+    call find_quantities(program_name, asked, quantities, err)
+    if (allocated(err)) return
+    call new_run_evaluator(program_name, variable, model, evaluator)
+    allocate (synthesis%space%evaluator, source=evaluator)
+  end subroutine check_synthesis
+
+  !> Report a method that cannot find what is asked for, or that this build does not have.
+  subroutine check_method(model, err)
+    type(model_type), intent(in) :: model                 !< the model
+    type(error_type), allocatable, intent(out) :: err     !< allocated if there is none
+
+    associate (optimum => model%request%optimum)
+      if (optimum%method == 'levenberg-marquardt' .and. .not. is_least_squares(model)) then
+        call raise(err, exit_data, 'levenberg-marquardt finds the least sum of squares only, without limits of quantities and '// &
+                   'transmission angles and without quantities that should be least or largest; leave ''method'' out', &
+                   optimum%place)
+      else if (.not. has_limited_minimum .and. (.not. is_least_squares(model) .or. &
+               all(optimum%method /= [character(len=20) :: 'auto', 'levenberg-marquardt']))) then
+        call raise(err, exit_data, 'this program was built without NLopt, the library that keeps limits and finds what is '// &
+                   'not a sum of squares; install it (Debian: libnlopt-dev) and build the program again', &
+                   model%request%objectives(1)%place)
+      end if
+    end associate
+  end subroutine check_method
+
+  !> Report transmission angles that do not exist.
+  subroutine check_transmissions(model, synthesis, start, err)
+    type(model_type), intent(in) :: model                 !< the model
+    type(synthesis_type), intent(in) :: synthesis         !< its designs
+    type(state_type), intent(in) :: start                 !< the assembled position
+    type(error_type), allocatable, intent(out) :: err     !< allocated if one does not
+    integer :: i
+
+    do i = 1, size(model%request%limits)
+      associate (limit => model%request%limits(i))
+        if (limit%kind /= transmission_limit) cycle
+        if (has_transmission_angle(synthesis%space, start%q, limit%coordinate)) cycle
+        call raise(err, exit_data, 'there is no transmission angle at q'//to_text(limit%coordinate)//': it is measured at a '// &
+                   'turning pair, in a plane chain that gives three coordinates, of which at most one is a slide', limit%place)
+        return
+      end associate
+    end do
+  end subroutine check_transmissions
+end module mech9_optimum_check
