@@ -48,8 +48,13 @@ def sliding(groups):
 
 
 def groups_of_run(text):
-    """The groups of a data file without those of its parameters: their values would replace the numbers that are converted."""
-    return [(group, items) for group, items in data_file.parse(text) if group not in ('parameter', 'study', 'objective', 'optimum')]
+    """The groups of a data file without those of its parameters, and without derivatives by them: their values would replace the numbers
+    that are converted."""
+    groups = [(group, items) for group, items in data_file.parse(text) if group not in ('parameter', 'study', 'objective', 'limit', 'optimum')]
+    for _, items in groups:
+        for name in ('sensitivities', 'gradients'):
+            items.pop(name, None)
+    return groups
 
 
 def scaled(groups, s):
