@@ -205,7 +205,7 @@ contains
     type(pose_type) :: reference, moving
     type(span_type), allocatable :: spans(:)
     real(wp), allocatable :: points(:, :)
-    real(wp) :: axis(3), zero(3)
+    real(wp) :: axis(3), zero(3), scale
     integer :: found
     logical :: ok
 
@@ -218,8 +218,12 @@ contains
     call make_frame(group, 'moving_', real_or(group, 'moving_point', [0.0_wp, 0.0_wp, 0.0_wp]), axis, zero, moving, diagnostics)
     call read_curve_file(beside(data_file, get_text(group, 'file')), span_of(group, 'file', 1), get_integers(group, 'columns'), &
                          points, spans, ok, diagnostics)
-    if (ok) call read_curve(group, points, spans, curve, diagnostics)
-    if (diagnostics%count == found) pair = path_pair(curve, get_text(group, 'orientation') == 'tangent', reference, moving)
+    scale = get_real(group, 'scale')
+    if (ok) then
+      points = scale*points
+      call read_curve(group, points, spans, curve, diagnostics)
+    end if
+    if (diagnostics%count == found) pair = path_pair(curve, scale, get_text(group, 'orientation') == 'tangent', reference, moving)
   end subroutine read_path
 
   !> The curve through points. Points that repeat their neighbour, and ends that do not meet though they should, are reported.

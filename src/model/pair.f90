@@ -3,6 +3,8 @@
 !> A pair is any one-parameter motion of a frame of its moving link in a frame of its reference link. Most pairs turn
 !> about or slide along one fixed axis, or both in proportion: `as_screw` tells their axis,
 !> and the plan then never calls `evaluate` for them. Others may lead the moving link along a curve: `guide` tells it.
+!> A pair without a fixed axis may depend on numbers beside those of its frames: `constants` tells them, and `vary` the motion by a
+!> change of them.
 module mech9_pair
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_type
@@ -64,6 +66,8 @@ module mech9_pair
     procedure(calls_interface), deferred :: user_calls
     procedure :: guide => no_guide
     procedure :: thirds => unknown_thirds
+    procedure :: constants => no_constants
+    procedure :: vary => held
   end type pair_type
 
   !> One of several pairs of different kinds.
@@ -120,6 +124,25 @@ contains
     real(wp), intent(in) :: q                       !< value of the coordinate
     type(pair_thirds_type), intent(out) :: thirds   !< not known
   end subroutine unknown_thirds
+
+  !> The numbers of a pair whose motion depends on its frames alone.
+  pure subroutine no_constants(self, values)
+    class(pair_type), intent(in) :: self               !< the pair
+    real(wp), allocatable, intent(out) :: values(:)    !< none
+
+    allocate (values(0))
+  end subroutine no_constants
+
+  !> The motion of such a pair by a change of its numbers: none.
+  subroutine held(self, change, q, twist)
+    class(pair_type), intent(in) :: self       !< the pair
+    real(wp), intent(in) :: change(:)          !< derivatives of its numbers by a parameter
+    real(wp), intent(in) :: q                  !< value of the coordinate
+    real(wp), intent(out) :: twist(6, 0:2)     !< rotation, and shift of the origin, of the moving frame in the reference frame by the
+                                               !< parameter [rad, m], and two derivatives in q
+
+    twist = 0.0_wp
+  end subroutine held
 
   !> The third derivatives of the motion of the reference link in the moving link.
   pure function reversed_thirds(motion, thirds) result(back)

@@ -18,7 +18,8 @@ module mech9_path_pair
     type(pose_type) :: before        !< pose of the curve's axes in the reference link
     type(pose_type) :: after         !< pose of the moving link in the pair's frame
     logical :: along = .false.       !< the moving link turns with the tangent
-    type(space_curve_type) :: curve  !< the curve, in its axes
+    real(wp) :: scale = 1.0_wp       !< size of the curve, as a multiple of that in its file
+    type(space_curve_type) :: curve  !< the curve in this size, in its axes
   contains
     procedure :: evaluate
     procedure :: as_screw
@@ -26,6 +27,8 @@ module mech9_path_pair
     procedure :: user_calls
     procedure :: guide => find_guide
     procedure :: thirds => find_thirds
+    procedure :: constants
+    procedure :: vary
   end type path_pair_type
 
   integer, parameter :: places_per_part = 4   !< places of the guide for each part of the curve
@@ -33,8 +36,9 @@ module mech9_path_pair
 contains
 
   !> A pair along a curve in its reference link.
-  pure function path_pair(curve, along, frame_in_reference, frame_in_moving) result(pair)
+  pure function path_pair(curve, scale, along, frame_in_reference, frame_in_moving) result(pair)
     type(space_curve_type), intent(in) :: curve          !< the curve
+    real(wp), intent(in) :: scale                        !< its size, as a multiple of that in its file
     logical, intent(in) :: along                         !< the moving link turns with the tangent
     type(pose_type), intent(in) :: frame_in_reference    !< pose of the curve's axes in the reference link
     type(pose_type), intent(in) :: frame_in_moving       !< pose of the frame that follows the curve, in the moving link
@@ -42,6 +46,7 @@ contains
 
     pair%angular = .false.
     pair%curve = curve
+    pair%scale = scale
     pair%along = along
     pair%before = frame_in_reference
     pair%after = inverse(frame_in_moving)
@@ -111,6 +116,41 @@ contains
     thirds%w = cross(place%curvature, place%curvature_rate) + cross(place%tangent, self%curve%second_curvature_rate(place)) &
                   + self%curve%twist*place%curvature_rate
   end subroutine find_thirds
+
+  !> The number on which the motion along the curve depends: the size of the curve.
+  pure subroutine constants(self, values)
+    class(path_pair_type), intent(in) :: self          !< the pair
+    real(wp), allocatable, intent(out) :: values(:)    !< (1) the multiple of the size in the file
+
+    values = [self%scale]
+  end subroutine constants
+
+  !> The motion by a change of the curve's size, at a held arc length. A curve of size a is c(s) = a c1(s/a), and its frame turns with
+  !> s/a: the derivatives of a place by a are (c - s c')/a, those of the frame a rotation by -s/a times its rate.
+  subroutine vary(self, change, q, twist)
+    class(path_pair_type), intent(in) :: self   !< the pair
+    real(wp), intent(in) :: change(:)           !< (1) derivative of the size by a parameter
+    real(wp), intent(in) :: q                   !< arc length from the first point [m]
+    real(wp), intent(out) :: twist(6, 0:2)      !< rotation, and shift of the origin, of the moving frame by the parameter [rad, m],
+                                                !< and two derivatives in q
+    type(pair_motion_type) :: motion
+    type(pair_thirds_type) :: thirds
+    type(error_type), allocatable :: err
+
+    ! the motion has been evaluated at this arc length: it is not beyond an end
+    call self%evaluate(q, motion, err)
+    call self%thirds(q, thirds)
+    associate (p => motion%pose%p, w => motion%w, v => motion%v, w_rate => motion%w_rate, v_rate => motion%v_rate)
+      twist(1:3, 0) = -q*w
+      twist(1:3, 1) = -(w + q*w_rate)
+      twist(1:3, 2) = -(2.0_wp*w_rate + q*thirds%w)
+      twist(4:6, 0) = p - q*v - cross(twist(1:3, 0), p)
+      twist(4:6, 1) = -q*v_rate - cross(twist(1:3, 1), p) - cross(twist(1:3, 0), v)
+      twist(4:6, 2) = -(v_rate + q*thirds%v) - cross(twist(1:3, 2), p) - 2.0_wp*cross(twist(1:3, 1), v) &
+                      - cross(twist(1:3, 0), v_rate)
+    end associate
+    twist = change(1)/self%scale*twist
+  end subroutine vary
 
   !> The curve as many places on it.
   pure subroutine find_guide(self, guide)

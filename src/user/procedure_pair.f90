@@ -1,12 +1,13 @@
 !> A pair given by a user's procedure, in either form.
 module mech9_procedure_pair
-  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
   use mech9_text, only: to_text
   use mech9_taylor, only: taylor, variable, sqrt, operator(+), operator(-), operator(*), operator(/)
-  use mech9_differentiation, only: half_width, stencil_size, step_count, trial_step, derivatives_from_stencil
-  use mech9_rotation, only: axial_vector
+  use mech9_differentiation, only: half_width, stencil_size, step_count, trial_step, derivatives_from_stencil, best_slopes_type, &
+    length_along
+  use mech9_rotation, only: axial_vector, cross
   use mech9_pose, only: pose_type, pose_from_points
   use mech9_pair, only: pair_type, pair_motion_type, screw_factors_type, kind_name_length
   use mech9_not_linked, only: not_linked
@@ -25,7 +26,12 @@ module mech9_procedure_pair
     procedure :: as_screw
     procedure :: kind_name
     procedure :: user_calls
+    procedure :: constants
+    procedure :: vary
   end type procedure_pair_type
+
+  !> Numbers of a motion: rotation by columns, origin, angular rate, rate, and their derivatives in the coordinate.
+  integer, parameter :: numbers_of_motion = 24
 
 contains
 
@@ -212,4 +218,63 @@ contains
 
     user_calls = merge(stencil_size, 1, self%plain_values)
   end function user_calls
+
+  !> The numbers that the procedure receives.
+  pure subroutine constants(self, values)
+    class(procedure_pair_type), intent(in) :: self     !< the procedure pair
+    real(wp), allocatable, intent(out) :: values(:)    !< numbers of the group &user
+
+    values = self%parameters
+  end subroutine constants
+
+  !> The motion by a change of these numbers. The procedure knows nothing of derivatives by them: they come from differences over wide
+  !> stencils, to near round-off. They are NaN where the procedure has no pose beside the present numbers.
+  subroutine vary(self, change, q, twist)
+    class(procedure_pair_type), intent(in) :: self   !< the procedure pair
+    real(wp), intent(in) :: change(:)                !< derivatives of its numbers by a parameter
+    real(wp), intent(in) :: q                        !< value of the coordinate, in the user's unit
+    real(wp), intent(out) :: twist(6, 0:2)           !< rotation, and shift of the origin, of the moving link by the parameter [rad, m],
+                                                     !< and two derivatives in q
+    type(procedure_pair_type) :: beside
+    type(pair_motion_type) :: motion
+    type(best_slopes_type) :: best
+    real(wp) :: values(numbers_of_motion, -half_width:half_width), h
+    integer :: number, i
+    logical :: good
+
+    twist = ieee_value(q, ieee_quiet_nan)
+    beside = self
+    do number = 1, step_count
+      h = trial_step(number, length_along(self%parameters, change))
+      do i = -half_width, half_width
+        beside%parameters = self%parameters + i*h*change
+        call sample(beside, q, motion, values(:, i))
+      end do
+      call best%offer(values, h, good)
+      if (good) exit
+    end do
+    if (.not. allocated(best%slopes)) return
+    call sample(self, q, motion, values(:, 0))
+    associate (slopes => best%slopes, p => motion%pose%p, w => motion%w, v => motion%v)
+      twist(1:3, 0) = axial_vector(matmul(reshape(slopes(1:9), [3, 3]), transpose(motion%pose%r)))
+      twist(1:3, 1) = slopes(13:15) + cross(w, twist(1:3, 0))
+      twist(1:3, 2) = slopes(19:21) + cross(motion%w_rate, twist(1:3, 0)) + cross(w, twist(1:3, 1))
+      twist(4:6, 0) = slopes(10:12) - cross(twist(1:3, 0), p)
+      twist(4:6, 1) = slopes(16:18) - cross(twist(1:3, 1), p) - cross(twist(1:3, 0), v)
+      twist(4:6, 2) = slopes(22:24) - cross(twist(1:3, 2), p) - 2.0_wp*cross(twist(1:3, 1), v) - cross(twist(1:3, 0), motion%v_rate)
+    end associate
+  end subroutine vary
+
+  !> The motion of a pair, and its numbers in a row; NaN where there is none.
+  subroutine sample(pair, q, motion, values)
+    type(procedure_pair_type), intent(in) :: pair     !< the pair
+    real(wp), intent(in) :: q                         !< its coordinate
+    type(pair_motion_type), intent(out) :: motion     !< the motion
+    real(wp), intent(out) :: values(:)                !< its numbers
+    type(error_type), allocatable :: err
+
+    call pair%evaluate(q, motion, err)
+    values = [reshape(motion%pose%r, [9]), motion%pose%p, motion%w, motion%v, motion%w_rate, motion%v_rate]
+    if (allocated(err)) values = ieee_value(q, ieee_quiet_nan)
+  end subroutine sample
 end module mech9_procedure_pair

@@ -63,8 +63,28 @@ def check_paths(case):
             file.write(f'{float(x)!r} {float(y) if abs(y) > 1e-12 else 0.0!r}\n')
     for orientation in ('fixed', 'tangent'):
         case.against_runs(PATH.format(orientation), (('rod', 'pair(3).point(1)', 0.9), ('place', 'pair(4).point(2)', 0.05),
-                                                     ('tilt', 'pair(4).zero(2)', 0.0), ('off', 'pair(4).moving_point(2)', 0.0)),
+                                                     ('tilt', 'pair(4).zero(2)', 0.0), ('off', 'pair(4).moving_point(2)', 0.0),
+                                                     ('scale', 'pair(4).scale', 1.0)),
                           f'path, {orientation}', 1e-7, 2.0**-10)
+        for links in ('1,4', '4,1'):
+            check_size(case, PATH.format(orientation).replace('links=1,4', f'links={links}'), f'{orientation}, links {links}')
+
+
+def check_size(case, text, why):
+    """All lengths and the curve grow by the same factor: angles stay, arc lengths and places grow by this factor."""
+    lengths = (('pair(1).point(1)', 0.02), ('pair(1).point(2)', 0.01), ('pair(2).point(1)', 0.25), ('pair(3).point(1)', 0.9),
+               ('pair(4).point(1)', 0.1), ('pair(4).point(2)', 0.05), ('pair(4).scale', 1.0), ('point.position(1)', 0.1),
+               ('point.position(2)', 0.2))
+    sets = ','.join(f"'{name}'" for name, _ in lengths)
+    factors = ','.join(str(number) for _, number in lengths)
+    names, rows = case.table(text + f"&parameter name='size', value=1, sets={sets}, factors={factors} /\n")
+    for kind, columns in of_motion(names).items():
+        for i in columns:
+            found = rows[:, names.index(f'd({names[i]})/d(size)')]
+            grows = names[i].startswith('P.') or names[i].endswith('q4')
+            expected = rows[:, i] if grows else 0 * found
+            # round-off of positions, which the curvatures of the curve enlarge in accelerations
+            case.checks.near(found, expected, 1e-10, f'everything grows: {names[i]}, {why}', scale=max(1.0, float(np.abs(rows[:, columns]).max())))
 
 
 def check_gimbal_lock(case):

@@ -34,7 +34,7 @@ contains
     call curve_through(points, closed)
     call build_curve(points, closed, curve, err)
     call test%no_error(err, 'a random curve is accepted')
-    pair = path_pair(curve, along, identity_pose, identity_pose)
+    pair = path_pair(curve, 1.0_wp, along, identity_pose, identity_pose)
     do i = 1, size(curve%piece)
       ! the middle of a part is no point of the curve
       q = 0.5_wp*(curve%s(i - 1) + curve%s(i))

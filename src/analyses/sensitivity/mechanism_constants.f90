@@ -1,5 +1,5 @@
-!> The numbers of a mechanism on which its motion depends, in one row: constant poses, offsets, points, laws of drives, couplings, users'
-!> pairs.
+!> The numbers of a mechanism on which its motion depends, in one row: constant poses, offsets, points, laws of drives, couplings, pairs
+!> without a fixed axis.
 !>
 !> The order of the row does not depend on the numbers, so that rows of mechanisms which differ in numbers only can be subtracted.
 module mech9_mechanism_constants
@@ -7,7 +7,6 @@ module mech9_mechanism_constants
   use mech9_rotation, only: about_z
   use mech9_pose, only: pose_type, compose
   use mech9_screw_pair, only: screw_pair_type
-  use mech9_procedure_pair, only: procedure_pair_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_spanning_tree, only: lay_out_frames, renew_frames
@@ -25,7 +24,7 @@ module mech9_mechanism_constants
 contains
 
   !> The numbers of a model, each link's poses in its frames included: 26 for each coordinate, 12 for each link, 3 for each point;
-  !> then the numbers of the drives, couplings, users' pairs and loads that are known; 13 for each body, gravity, and the start of
+  !> then the numbers of the drives, couplings, pairs and loads that are known; 13 for each body, gravity, and the start of
   !> each coordinate.
   subroutine gather_constants(model, length, origin, values)
     type(model_type), intent(in) :: model            !< the model
@@ -82,7 +81,7 @@ contains
     call append_masses(model, values)
   end subroutine take_constants
 
-  !> Append the numbers of drives, couplings, users' pairs and loads, as far as they are known.
+  !> Append the numbers of drives, couplings, pairs without a fixed axis and loads, as far as they are known.
   subroutine append_laws(model, values)
     type(model_type), intent(in) :: model                !< the model
     real(wp), allocatable, intent(inout) :: values(:)    !< the row so far
@@ -100,10 +99,8 @@ contains
       end do
     end if
     do i = 1, size(model%mechanism%pairs)
-      select type (pair => model%mechanism%pairs(i)%pair)
-      type is (procedure_pair_type)
-        values = [values, pair%parameters]
-      end select
+      call model%mechanism%pairs(i)%pair%constants(more)
+      values = [values, more]
     end do
     do i = 1, size(model%mechanism%loads)
       call model%mechanism%loads(i)%load%constants(more)

@@ -1,15 +1,11 @@
-!> The twists by which users' pairs move when a parameter changes the numbers that their procedures receive.
-!>
-!> The procedures know nothing of derivatives by these numbers: they come from differences over wide stencils, to near round-off. The
-!> derivatives in time follow exactly, since the procedures, or differences of them, give those in the coordinate.
+!> The twists by which pairs without a fixed axis move when a parameter changes numbers beside those of their frames, such as the
+!> size of a curve or the numbers that a user's procedure receives. The derivatives in time follow from those in the coordinate, which
+!> the pair gives.
 module mech9_pair_changes
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_differentiation, only: half_width, step_count, trial_step, best_slopes_type, length_along
-  use mech9_rotation, only: turn, cross, combine, axial_vector
-  use mech9_pair, only: pair_motion_type, reversed_motion
-  use mech9_procedure_pair, only: procedure_pair_type
+  use mech9_rotation, only: turn, cross, combine
+  use mech9_pair, only: pair_type, pair_motion_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_twists, only: frame_twists_type, bracket
@@ -18,12 +14,9 @@ module mech9_pair_changes
   private
   public :: find_pair_change
 
-  !> Numbers of a motion: rotation by columns, origin, angular rate, rate, and their derivatives in the coordinate.
-  integer, parameter :: numbers_of_motion = 24
-
 contains
 
-  !> The twist of the step of a user's pair by a parameter, with its derivatives in time.
+  !> The twist of the step of a pair by a parameter, with its derivatives in time.
   subroutine find_pair_change(plan, state, motion, tangent, s, highest, series, slope)
     type(plan_type), intent(in) :: plan              !< the plan of the mechanism, in space
     type(state_type), intent(in) :: state            !< the motion
@@ -37,68 +30,48 @@ contains
     integer :: k
 
     k = plan%steps(s)%coordinate
-    select type (pair => plan%pairs(k)%pair)
-    type is (procedure_pair_type)
-      call find_own(pair, tangent%pairs(k)%change, state%q(k), plan%steps(s)%reversed, own)
-      call find_series(plan, state, motion, s, own, highest, series)
-      if (present(slope)) slope = in_frame_0(plan, state, s, own(:, 1))
-    end select
+    call find_own(plan%pairs(k)%pair, tangent%pairs(k)%change, state%q(k), plan%steps(s)%reversed, own)
+    call find_series(plan, state, motion, s, own, highest, series)
+    if (present(slope)) slope = in_frame_0(plan, state, s, own(:, 1))
   end subroutine find_pair_change
 
-  !> The twist of a pair by a parameter in its frame in the link that it departs from, and its derivatives in the coordinate. It is NaN
-  !> where the procedure has no pose beside the present numbers.
+  !> The twist of a pair by a parameter in its frame in the link that the step departs from, and its derivatives in the coordinate.
   subroutine find_own(pair, change, q, reversed, own)
-    type(procedure_pair_type), intent(in) :: pair   !< the pair
+    class(pair_type), intent(in) :: pair            !< the pair
     real(wp), intent(in) :: change(:)               !< derivatives of its numbers
     real(wp), intent(in) :: q                       !< its coordinate
     logical, intent(in) :: reversed                 !< the step leads from the moving link to the reference link
     real(wp), intent(out) :: own(6, 0:2)            !< the twist [rad, m] and two derivatives in q
-    type(procedure_pair_type) :: beside
     type(pair_motion_type) :: motion
-    type(best_slopes_type) :: best
-    real(wp) :: values(numbers_of_motion, -half_width:half_width), h, r(3, 3), varied(3, 3)
-    integer :: number, i
-    logical :: good
-
-    own = ieee_value(q, ieee_quiet_nan)
-    beside = pair
-    do number = 1, step_count
-      h = trial_step(number, length_along(pair%parameters, change))
-      do i = -half_width, half_width
-        beside%parameters = pair%parameters + i*h*change
-        call sample(beside, q, reversed, motion, values(:, i))
-      end do
-      call best%offer(values, h, good)
-      if (good) exit
-    end do
-    if (.not. allocated(best%slopes)) return
-    call sample(pair, q, reversed, motion, values(:, 0))
-    associate (slopes => best%slopes, p => motion%pose%p, w => motion%w, v => motion%v, w_rate => motion%w_rate)
-      r = transpose(motion%pose%r)
-      varied = reshape(slopes(1:9), [3, 3])
-      own(1:3, 0) = axial_vector(matmul(varied, r))
-      own(1:3, 1) = slopes(13:15) + cross(w, own(1:3, 0))
-      own(1:3, 2) = slopes(19:21) + cross(w_rate, own(1:3, 0)) + cross(w, own(1:3, 1))
-      own(4:6, 0) = slopes(10:12) - cross(own(1:3, 0), p)
-      own(4:6, 1) = slopes(16:18) - cross(own(1:3, 1), p) - cross(own(1:3, 0), v)
-      own(4:6, 2) = slopes(22:24) - cross(own(1:3, 2), p) - 2.0_wp*cross(own(1:3, 1), v) - cross(own(1:3, 0), motion%v_rate)
-    end associate
-  end subroutine find_own
-
-  !> The motion of a pair, and its numbers in a row; NaN where there is none.
-  subroutine sample(pair, q, reversed, motion, values)
-    type(procedure_pair_type), intent(in) :: pair     !< the pair
-    real(wp), intent(in) :: q                         !< its coordinate
-    logical, intent(in) :: reversed                   !< the motion of the reference link in the moving link is meant
-    type(pair_motion_type), intent(out) :: motion     !< the motion
-    real(wp), intent(out) :: values(:)                !< its numbers
     type(error_type), allocatable :: err
 
+    call pair%vary(change, q, own)
+    if (.not. reversed) return
+    ! the pair had this pose when the position was found
     call pair%evaluate(q, motion, err)
-    if (reversed .and. .not. allocated(err)) motion = reversed_motion(motion)
-    values = [reshape(motion%pose%r, [9]), motion%pose%p, motion%w, motion%v, motion%w_rate, motion%v_rate]
-    if (allocated(err)) values = ieee_value(q, ieee_quiet_nan)
-  end subroutine sample
+    own = reversed_twist(motion, own)
+  end subroutine find_own
+
+  !> The twist of the reference link by a change of the pair, seen from the moving link.
+  pure function reversed_twist(motion, twist) result(back)
+    type(pair_motion_type), intent(in) :: motion   !< motion of the moving link in the reference link
+    real(wp), intent(in) :: twist(6, 0:2)          !< twist of the moving link in the reference link, and two derivatives in q
+    real(wp) :: back(6, 0:2), rate(6), second(6), seen(6, 0:2)
+    integer :: j
+
+    rate(1:3) = motion%w
+    rate(4:6) = motion%v - cross(motion%w, motion%pose%p)
+    second(1:3) = motion%w_rate
+    second(4:6) = motion%v_rate - cross(motion%w_rate, motion%pose%p) - cross(motion%w, motion%v)
+    ! derivatives seen by an observer in the moving link
+    seen(:, 0) = twist(:, 0)
+    seen(:, 1) = twist(:, 1) - bracket(rate, twist(:, 0))
+    seen(:, 2) = twist(:, 2) - bracket(rate, twist(:, 1)) - bracket(second, twist(:, 0)) - bracket(rate, seen(:, 1))
+    do j = 0, 2
+      back(1:3, j) = -matmul(transpose(motion%pose%r), seen(1:3, j))
+      back(4:6, j) = -matmul(transpose(motion%pose%r), seen(4:6, j) + cross(seen(1:3, j), motion%pose%p))
+    end do
+  end function reversed_twist
 
   !> A twist in the frame of a pair, seen in frame 0, with its first two derivatives in time.
   pure subroutine find_series(plan, state, motion, s, own, highest, series)

@@ -19,7 +19,7 @@ module mech9_parameter_support
     integer :: closure = 0              !< closure whose target pose moves by the twist; 0: none
     integer :: point = 0                !< point of the mechanism that moves by the twist; 0: none
     integer :: stretched_by = 0         !< coordinate whose value, with its offset, multiplies the twist; 0: none
-    logical :: by_user = .false.        !< a user's pair moves otherwise; its twist is found for each position
+    logical :: by_pair = .false.        !< a pair without a fixed axis moves otherwise; its twist is found for each position
     real(wp) :: twist(6) = 0.0_wp       !< rotation, and shift of the point at the frame's origin, in its axes [rad, m]
     real(wp) :: size = 0.0_wp           !< its largest number [rad, lengths of the mechanism]
   end type varied_constant_type
@@ -62,13 +62,13 @@ contains
     real(wp), intent(in) :: length                       !< the mechanism's size [m]
     type(support_type), intent(inout) :: support         !< gets the twist
 
-    if (.not. (constant%by_user .or. any(abs(constant%twist) > 0.0_wp))) return
+    if (.not. (constant%by_pair .or. any(abs(constant%twist) > 0.0_wp))) return
     support%count = support%count + 1
     support%constants(support%count) = constant
     support%constants(support%count)%size = max(maxval(abs(constant%twist(1:3))), maxval(abs(constant%twist(4:6)))/length)
   end subroutine append
 
-  !> Add the twists of steps: of the pose of the axis, of the offset of the coordinate, of the advance, and of users' pairs.
+  !> Add the twists of steps: of the pose of the axis, of the offset of the coordinate, of the advance, and of pairs without a fixed axis.
   pure subroutine add_steps(plan, tangent, p, support)
     type(plan_type), intent(in) :: plan            !< the plan
     type(tangent_type), intent(in) :: tangent      !< derivatives of the constants by a parameter
@@ -90,7 +90,7 @@ contains
         along(4:6) = tangent%slide(k)*step%before%r(:, 3)
         call append(varied_constant_type(parameter=p, frame=step%parent, step=s, stretched_by=k, twist=along), plan%length, &
                     support)
-        if (tangent%pairs(k)%varies) call append(varied_constant_type(parameter=p, frame=step%parent, step=s, by_user=.true.), &
+        if (tangent%pairs(k)%varies) call append(varied_constant_type(parameter=p, frame=step%parent, step=s, by_pair=.true.), &
                                                  plan%length, support)
       end associate
     end do

@@ -100,7 +100,7 @@ contains
     m = plan%n_coordinates
     allocate (self%q(n, 0:2, m), self%points(n, 3, 0:2, size(model%mechanism%points)), source=0.0_wp)
     self%plan = plan
-    if (plan%planar%used .and. .not. any(self%support%constants%by_user)) &
+    if (plan%planar%used .and. .not. any(self%support%constants%by_pair)) &
       call put_in_plane(plan, model%problem%initial%position, self%support, self%in_plane)
     if (self%in_plane) then
       self%own_frames = self%highest > 0 .and. any(plan%blocks%last_moved < plan%blocks%last_step)
@@ -269,7 +269,7 @@ contains
       self%is_carried = .true.
       do i = 1, n
         associate (constant => self%support%constants(i))
-          if (constant%by_user) call find_pair_change(self%plan, state, self%motion, self%tangents(constant%parameter), &
+          if (constant%by_pair) call find_pair_change(self%plan, state, self%motion, self%tangents(constant%parameter), &
                                                       constant%step, self%highest, self%series(:, :, i))
         end associate
       end do

@@ -12,7 +12,6 @@ module mech9_tangent
   use mech9_rotation, only: cross
   use mech9_pose, only: pose_type
   use mech9_parameter, only: parameter_type
-  use mech9_procedure_pair, only: procedure_pair_type
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
@@ -40,7 +39,7 @@ module mech9_tangent
     real(wp), allocatable :: points(:, :)      !< (3,P) of the positions of points in their links [m]
     type(law_tangent_type), allocatable :: drives(:)      !< in the order of the drives
     type(law_tangent_type), allocatable :: couplings(:)   !< in the order of the couplings
-    type(law_tangent_type), allocatable :: pairs(:)       !< (M) of the numbers that users' procedures receive, by coordinates
+    type(law_tangent_type), allocatable :: pairs(:)       !< (M) of the sizes of curves, and of the numbers of users' procedures
     type(law_tangent_type), allocatable :: loads(:)       !< in the order of the loads
     type(law_tangent_type), allocatable :: bodies(:)      !< mass, centre and inertia by columns, in the order of the bodies
     real(wp) :: gravity(3) = 0.0_wp            !< of gravity [m/s^2]
@@ -305,7 +304,7 @@ contains
     end do
   end function size_of_change
 
-  !> The derivatives of the numbers of drives, couplings, users' pairs and loads, and of those of dynamics.
+  !> The derivatives of the numbers of drives, couplings, pairs without a fixed axis and loads, and of those of dynamics.
   subroutine read_laws(model, change, tangent)
     type(model_type), intent(in) :: model           !< the present model
     real(wp), intent(in) :: change(:)               !< the part of the row that belongs to them
@@ -326,11 +325,8 @@ contains
       call take_part(values, change, at, tangent%couplings(i))
     end do
     do i = 1, size(tangent%pairs)
-      select type (pair => model%mechanism%pairs(i)%pair)
-      type is (procedure_pair_type)
-        values = pair%parameters
-        call take_part(values, change, at, tangent%pairs(i))
-      end select
+      call model%mechanism%pairs(i)%pair%constants(values)
+      call take_part(values, change, at, tangent%pairs(i))
     end do
     allocate (tangent%loads(size(model%mechanism%loads)), tangent%bodies(size(model%mechanism%bodies)))
     do i = 1, size(tangent%loads)

@@ -24,7 +24,7 @@ module mech9_varied_motion
   private
   public :: varied_motion_type, new_varied_motion, find_varied_motion, find_varied_points, link_twists
 
-  !> A user's pair whose procedure receives numbers that a parameter changes.
+  !> A pair without a fixed axis that depends on numbers which a parameter changes.
   type :: varied_pair_type
     integer :: step = 0                      !< of the plan
     integer :: parameter = 0                 !< number of the parameter
@@ -90,7 +90,7 @@ contains
               self%given(n, 0:2, size(plan%free)), source=0.0_wp)
   end subroutine new_varied_motion
 
-  !> The users' pairs whose numbers parameters change.
+  !> The pairs without a fixed axis whose numbers parameters change.
   subroutine list_pairs(self)
     type(varied_motion_type), intent(inout) :: self   !< with plan and tangents; gets the list
     integer :: s, p

@@ -140,6 +140,8 @@ module mech9_grammar
     item_row_type('pair', 'columns', 'integer', 2, 3, '', optional, '(all)', '>=1', '', 'path', &
                   'the columns of x, y and in space z in a file that has others too, as a table of results has', '3, 4, 5', &
                   seldom=.true.), &
+    item_row_type('pair', 'scale', 'real', 1, 1, '', optional, '1', '>0', '', 'path', &
+                  'the coordinates in the file are multiplied by this number', '0.001', seldom=.true.), &
     item_row_type('pair', 'orientation', 'text', 1, 1, '', optional, '''fixed''', '', 'fixed tangent', 'path', &
                   'fixed: the moving link keeps its orientation; tangent: it turns with the tangent of the curve', '''tangent'''), &
     item_row_type('pair', 'closed', 'logical', 1, 1, '', optional, '(where ends meet)', '', '', 'path', &
