@@ -8,7 +8,7 @@ module mech9_motor_states
   use mech9_state, only: state_type
   implicit none
   private
-  public :: start_motors, find_motor_rates, find_action, find_limits, coordinate_of_motor, has_limits
+  public :: start_motors, find_motor_rates, motion_of_state, find_action, find_limits, coordinate_of_motor, has_limits
 
 contains
 
@@ -42,22 +42,29 @@ contains
     type(state_type), intent(in) :: state               !< the state of motion
     type(motor_action_type), intent(out) :: action      !< the action
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(motor_motion_type) :: motion
 
     select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
     class is (motor_type)
-      motion%t = state%t
-      motion%q = state%q(motor%coordinate)
-      motion%dq = state%dq(motor%coordinate)
-      motion%ddq = state%ddq(motor%coordinate)
-      motion%steady = .not. allocated(state%motor)
-      if (.not. motion%steady) then
-        motion%value = state%motor(i)
-        motion%limited = state%limited(i)
-      end if
-      call motor%act(motion, action, err)
+      call motor%act(motion_of_state(motor, i, state), action, err)
     end select
   end subroutine find_action
+
+  !> The motion of a motor's coordinate, and the motor's state, in a state of motion.
+  pure function motion_of_state(motor, i, state) result(motion)
+    class(motor_type), intent(in) :: motor              !< the motor
+    integer, intent(in) :: i                            !< its number
+    type(state_type), intent(in) :: state               !< the state of motion
+    type(motor_motion_type) :: motion
+
+    motion%t = state%t
+    motion%q = state%q(motor%coordinate)
+    motion%dq = state%dq(motor%coordinate)
+    motion%ddq = state%ddq(motor%coordinate)
+    motion%steady = .not. allocated(state%motor)
+    if (motion%steady) return
+    motion%value = state%motor(i)
+    motion%limited = state%limited(i)
+  end function motion_of_state
 
   !> The rates of the motors' states.
   subroutine find_motor_rates(mechanism, state, err)

@@ -62,10 +62,9 @@ contains
     end do
   end subroutine read_output
 
-  !> Report sensitivities and gradients that are not computed, and those without a parameter or without a quantity.
-  pure subroutine check_sensitivities(document, needs_drives, n_parameters, diagnostics)
+  !> Report sensitivities and gradients without a parameter or without a quantity.
+  pure subroutine check_sensitivities(document, n_parameters, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
-    logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
     integer, intent(in) :: n_parameters                   !< how many parameters the data file has
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=13), parameter :: requests(2) = ['sensitivities', 'gradients    ']
@@ -77,10 +76,7 @@ contains
     quantities = groups_named(document, 'quantity')
     do i = 1, size(requests)
       if (.not. get_logical(group, trim(requests(i)))) cycle
-      if (.not. needs_drives .and. size(groups_named(document, 'motor')) > 0) then
-        call diagnostics%add(span_of(group, trim(requests(i)), 1), trim(requests(i))//' are not computed for mechanisms with '// &
-                             'motors; leave them out here')
-      else if (n_parameters == 0) then
+      if (n_parameters == 0) then
         call diagnostics%add(span_of(group, trim(requests(i)), 1), trim(requests(i))//' are derivatives by the parameters, '// &
                              'and there are none; give a group &parameter for each')
       else if (i == 2 .and. size(quantities) == 0) then

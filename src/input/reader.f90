@@ -91,7 +91,7 @@ contains
                                              model%mechanism%loads, model%mechanism%n_motors, diagnostics)
     call check_drives(document, needs_drives, model, diagnostics)
     if (.not. needs_drives) call check_motors(document, model, diagnostics)
-    call check_sensitivities(document, needs_drives, size(model%parameters), diagnostics)
+    call check_sensitivities(document, size(model%parameters), diagnostics)
   end subroutine read_checked
 
   !> Set a structure and its partition to the form that means unknown: no links and no coordinates.

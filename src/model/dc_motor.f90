@@ -2,7 +2,7 @@
 module mech9_dc_motor
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_motor, only: motor_type, motor_motion_type, motor_action_type
+  use mech9_motor, only: motor_type, motor_motion_type, motor_action_type, motor_change_type
   implicit none
   private
   public :: dc_motor_type
@@ -16,6 +16,8 @@ module mech9_dc_motor
     real(wp) :: gear_ratio = 1.0_wp   !< turns of the motor per turn of the coordinate
   contains
     procedure :: act
+    procedure :: vary_act
+    procedure :: numbers
     procedure :: has_state
     procedure :: has_limit
     procedure :: has_input
@@ -51,6 +53,45 @@ contains
     end if
     action%force = coupling*action%value
   end subroutine act
+
+  !> Voltage, resistance, inductance, constant and gear ratio.
+  pure subroutine numbers(self, values)
+    class(dc_motor_type), intent(in) :: self          !< the motor
+    real(wp), allocatable, intent(out) :: values(:)   !< (5) the numbers
+
+    values = [self%voltage, self%resistance, self%inductance, self%constant, self%gear_ratio]
+  end subroutine numbers
+
+  !> The derivative of the action by a parameter. Fails where the voltage has no value.
+  subroutine vary_act(self, motion, moved, numbers, change, err)
+    class(dc_motor_type), intent(in) :: self             !< the motor
+    type(motor_motion_type), intent(in) :: motion        !< of its coordinate, and its current
+    type(motor_motion_type), intent(in) :: moved         !< derivatives of rate and current
+    real(wp), intent(in) :: numbers(:)                   !< (5 and those of the law) derivatives; of size 0: all are zero
+    type(motor_change_type), intent(out) :: change       !< the derivative
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    type(motor_action_type) :: action
+    real(wp) :: own(5), factor, factor_change, rate, acceleration, coupling, coupling_change, drop_change
+
+    call self%act(motion, action, err)
+    if (.not. allocated(err)) call self%find_factor(motion%t, factor, err)
+    if (allocated(err)) return
+    own = 0.0_wp
+    factor_change = 0.0_wp
+    if (size(numbers) > 0) own = numbers(:5)
+    if (size(numbers) > 5) call self%law%vary(numbers(6:), motion%t, factor_change, rate, acceleration)
+    coupling = self%gear_ratio*self%constant
+    coupling_change = own(5)*self%constant + self%gear_ratio*own(4)
+    ! of the voltage that is left for resistance and inductance
+    drop_change = own(1)*factor + self%voltage*factor_change - coupling_change*motion%dq - coupling*moved%dq
+    if (motion%steady .or. .not. self%has_state()) then
+      change%value = (drop_change - own(2)*action%value)/self%resistance
+    else
+      change%value = moved%value
+      change%rate = (drop_change - own(2)*motion%value - self%resistance*moved%value - own(3)*action%rate)/self%inductance
+    end if
+    change%force = coupling_change*action%value + coupling*change%value
+  end subroutine vary_act
 
   !> Whether its current has a rate.
   pure logical function has_state(self)

@@ -28,7 +28,7 @@ module mech9_load
     procedure :: vary_own
     procedure :: varied_potential => unvaried_potential
     procedure, non_overridable :: constants
-    procedure, non_overridable :: vary_numbers
+    procedure :: vary_numbers
   end type load_type
 
   !> One of several loads of different kinds.

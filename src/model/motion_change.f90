@@ -25,6 +25,7 @@ module mech9_motion_change
     type(link_change_type), allocatable :: links(:)   !< (N); only the links requested by loads are up to date
     real(wp), allocatable :: q(:)                     !< (M) coordinates [rad, m]
     real(wp), allocatable :: dq(:)                    !< (M) their rates [rad/s, m/s]
+    real(wp), allocatable :: motor(:)                 !< states of the motors; not allocated where these are held
   contains
     procedure :: add_force
     procedure :: moved

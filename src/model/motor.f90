@@ -8,7 +8,7 @@ module mech9_motor
   use mech9_load, only: load_type
   implicit none
   private
-  public :: motor_type, motor_motion_type, motor_action_type, motion_of_motor
+  public :: motor_type, motor_motion_type, motor_action_type, motor_change_type, motion_of_motor
 
   !> The motion of a motor's coordinate, and the motor's own state.
   type :: motor_motion_type
@@ -39,12 +39,20 @@ module mech9_motor
     real(wp) :: rate_by_input = 0.0_wp
   end type motor_action_type
 
+  !> The derivative of the action of a motor by a parameter.
+  type :: motor_change_type
+    real(wp) :: force = 0.0_wp      !< of the force on the coordinate
+    real(wp) :: value = 0.0_wp      !< of the state as it is shown
+    real(wp) :: rate = 0.0_wp       !< of the derivative of the state in time
+  end type motor_change_type
+
   !> A motor of any kind. Its work counts as put in.
   type, abstract, extends(load_type) :: motor_type
     integer :: coordinate = 0   !< number of the coordinate on which it acts
     integer :: number = 0       !< its number, in the order of the data file
   contains
     procedure(act_interface), deferred :: act
+    procedure(vary_act_interface), deferred :: vary_act
     procedure(answer_interface), deferred :: has_state
     procedure(answer_interface), deferred :: has_limit
     procedure(answer_interface), deferred :: has_input
@@ -53,6 +61,7 @@ module mech9_motor
     procedure :: apply
     procedure :: potential
     procedure :: vary
+    procedure :: vary_numbers
   end type motor_type
 
   abstract interface
@@ -64,6 +73,18 @@ module mech9_motor
       type(motor_action_type), intent(out) :: action       !< its force, the rate of its state, and derivatives
       type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     end subroutine act_interface
+
+    !> The derivative of the action by a parameter on which the motion depends, and perhaps the numbers of the motor and of its law, in
+    !> the order of `constants`. Fails where its law of time has no value.
+    subroutine vary_act_interface(self, motion, moved, numbers, change, err)
+      import :: motor_type, motor_motion_type, motor_change_type, error_type, wp
+      class(motor_type), intent(in) :: self                !< the motor
+      type(motor_motion_type), intent(in) :: motion        !< of its coordinate, and its state
+      type(motor_motion_type), intent(in) :: moved         !< derivatives of coordinate, rate and state
+      real(wp), intent(in) :: numbers(:)                   !< derivatives of its numbers; of size 0: all are zero
+      type(motor_change_type), intent(out) :: change       !< the derivative
+      type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    end subroutine vary_act_interface
 
     !> A property of the motor: its state changes in time; its force has a limit; its voltage is an input of linearised equations.
     pure logical function answer_interface(self)
@@ -115,21 +136,37 @@ contains
     if (.not. allocated(err)) call sum%add_generalized(self%coordinate, action%force)
   end subroutine apply
 
-  !> Add the derivative of the generalized force by a parameter, with the motor's state held unless it is steady.
+  !> Add the derivative of the generalized force by a parameter on which the motion depends. The motor's state is held unless it is
+  !> steady, or its change is told.
   subroutine vary(self, state, change, changes, err)
     class(motor_type), intent(in) :: self               !< the motor
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates, with the motors' states
     type(motion_change_type), intent(in) :: change      !< derivative of the motion by the parameter
     type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the motor are added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(motor_action_type) :: action
+    type(motor_motion_type) :: moved
+    type(motor_change_type) :: own
 
-    call self%act(motion_of_motor(self, state), action, err)
-    if (allocated(err)) return
-    associate (k => self%coordinate)
-      call changes%add_generalized(k, action%force_by_q*change%q(k) + action%force_by_dq*change%dq(k))
-    end associate
+    moved%q = change%q(self%coordinate)
+    moved%dq = change%dq(self%coordinate)
+    if (allocated(change%motor)) moved%value = change%motor(self%number)
+    call self%vary_act(motion_of_motor(self, state), moved, [real(wp) ::], own, err)
+    if (.not. allocated(err)) call changes%add_generalized(self%coordinate, own%force)
   end subroutine vary
+
+  !> Add the derivative of the generalized force by a parameter on which the numbers of the motor or those of its law depend, for
+  !> the present motion.
+  subroutine vary_numbers(self, change, state, changes, err)
+    class(motor_type), intent(in) :: self               !< the motor
+    real(wp), intent(in) :: change(:)                   !< derivatives of its numbers, then of those of its law
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates, with the motors' states
+    type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the motor are added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(motor_change_type) :: own
+
+    call self%vary_act(motion_of_motor(self, state), motor_motion_type(), change, own, err)
+    if (.not. allocated(err)) call changes%add_generalized(self%coordinate, own%force)
+  end subroutine vary_numbers
 
   !> Motors store no energy of the mechanism.
   pure real(wp) function potential(self, state)

@@ -7,7 +7,7 @@ module mech9_pid_motor
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_motion_view, only: unlocked
-  use mech9_motor, only: motor_type, motor_motion_type, motor_action_type
+  use mech9_motor, only: motor_type, motor_motion_type, motor_action_type, motor_change_type
   implicit none
   private
   public :: pid_motor_type
@@ -21,6 +21,8 @@ module mech9_pid_motor
     real(wp) :: limit = huge(1.0_wp)    !< largest magnitude of the force; huge: none [N m, N]
   contains
     procedure :: act
+    procedure :: vary_act
+    procedure :: numbers
     procedure :: has_state
     procedure :: has_limit
     procedure :: has_input
@@ -80,6 +82,67 @@ contains
       action%rate_by_value = -self%integral*per_excess
     end subroutine lead_back
   end subroutine act
+
+  !> Proportional, integral and derivative part, and the limit: 0 for none.
+  pure subroutine numbers(self, values)
+    class(pid_motor_type), intent(in) :: self         !< the controller
+    real(wp), allocatable, intent(out) :: values(:)   !< (4) the numbers
+
+    values = [self%proportional, self%integral, self%derivative, merge(self%limit, 0.0_wp, self%has_limit())]
+  end subroutine numbers
+
+  !> The derivative of the action by a parameter. Fails where the setpoint has no value.
+  subroutine vary_act(self, motion, moved, numbers, change, err)
+    class(pid_motor_type), intent(in) :: self            !< the controller
+    type(motor_motion_type), intent(in) :: motion        !< of its coordinate, and the integral of its deviation
+    type(motor_motion_type), intent(in) :: moved         !< derivatives of coordinate, rate and integral
+    real(wp), intent(in) :: numbers(:)                   !< (4 and those of the law) derivatives; of size 0: all are zero
+    type(motor_change_type), intent(out) :: change       !< the derivative
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    type(motor_action_type) :: action
+    real(wp) :: own(4), e, de, e_change, de_change, unused, demand, demand_change, excess, per_excess
+    integer :: limited
+
+    call self%act(motion, action, err)
+    if (.not. allocated(err)) call self%law%evaluate(motion%t, e, de, unused, err)
+    if (allocated(err)) return
+    own = 0.0_wp
+    e_change = 0.0_wp
+    de_change = 0.0_wp
+    if (size(numbers) > 0) own = numbers(:4)
+    if (size(numbers) > 4) call self%law%vary(numbers(5:), motion%t, e_change, de_change, unused)
+    e = e - motion%q
+    de = de - motion%dq
+    e_change = e_change - moved%q
+    de_change = de_change - moved%dq
+    if (self%has_state() .and. .not. motion%steady) change%value = moved%value
+    demand = self%proportional*e + self%integral*action%value + self%derivative*de
+    demand_change = own(1)*e + own(2)*action%value + own(3)*de &
+                    + self%proportional*e_change + self%integral*change%value + self%derivative*de_change
+    limited = motion%limited
+    if (limited == unlocked) limited = limit_of(demand, self%limit)
+    change%force = demand_change
+    if (limited /= 0) change%force = limited*own(4)
+    if (.not. self%has_state()) return
+    change%rate = e_change
+    if (limited == 0) return
+    excess = demand - limited*self%limit
+    per_excess = 1.0_wp/(self%integral*self%tracking_time())
+    change%rate = e_change - (demand_change - limited*own(4))*per_excess + excess*per_excess*relative_change(self, own)
+  end subroutine vary_act
+
+  !> The derivative of the logarithm of the integral part times the tracking time: of the proportional part, or of the square root of
+  !> the integral part times the derivative part.
+  pure real(wp) function relative_change(self, own)
+    class(pid_motor_type), intent(in) :: self   !< the controller, with an integral part
+    real(wp), intent(in) :: own(4)              !< derivatives of its numbers
+
+    if (self%derivative > 0.0_wp) then
+      relative_change = 0.5_wp*(own(2)/self%integral + own(3)/self%derivative)
+    else
+      relative_change = own(1)/self%proportional
+    end if
+  end function relative_change
 
   !> The limit that a demand exceeds.
   pure integer function limit_of(demand, limit)

@@ -215,7 +215,7 @@ contains
     self%energies = 3
   end subroutine append_energies
 
-  !> Append the derivatives of the columns of motion, forces and energies, but for time, by each parameter. Those that are not
+  !> Append the derivatives of the columns of motion, forces, motors and energies, but for time, by each parameter. Those that are not
   !> recorded stand after the poses, without names.
   pure subroutine append_sensitivities(self, parameters, recorded)
     class(columns_type), intent(inout) :: self       !< the columns
@@ -225,7 +225,7 @@ contains
     integer :: p, i
 
     self%parameters = parameters
-    self%varied = self%motion - 1 + self%forces() + self%energies
+    self%varied = self%motion - 1 + self%forces() + self%motors + self%energies
     if (.not. recorded) then
       self%unrecorded = size(parameters)*self%varied
       return
@@ -274,7 +274,7 @@ contains
     end associate
   end subroutine fill_sensitivities
 
-  !> Fill the columns of the derivatives of forces and energies by parameters in a row.
+  !> Fill the columns of the derivatives of forces, motors and energies by parameters in a row.
   pure subroutine fill_beyond_motion(self, values, row)
     class(columns_type), intent(in) :: self        !< the columns
     real(wp), intent(in) :: values(:, :)           !< (P,columns) derivatives, in the order of these columns

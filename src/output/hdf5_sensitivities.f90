@@ -7,12 +7,12 @@ module mech9_hdf5_sensitivities
   private
   public :: quantities_of_sensitivity, add_sensitivities, put_parameters
 
-  !> Number of data sets: coordinates and points with their derivatives in time, forces, energies.
+  !> Number of data sets beside those of motors: coordinates and points with their derivatives in time, forces, energies.
   integer, parameter :: quantities_of_sensitivity = 6 + 4 + 3
 
 contains
 
-  !> Add the derivatives of coordinates, points, forces and energies. The parameter is the last dimension.
+  !> Add the derivatives of coordinates, points, forces, motors and energies. The parameter is the last dimension.
   subroutine add_sensitivities(series, columns)
     type(hdf5_series_type), intent(inout) :: series   !< the quantities of the file
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
@@ -24,7 +24,7 @@ contains
     each = columns%varied
     points = (columns%motion - 1)/(columns%derivatives + 1) - n
     call add_forces(series, columns)
-    call add_energies(series, columns)
+    call add_scalars(series, columns)
     do order = 0, columns%derivatives
       before = columns%count - columns%sensitivities + order*n
       call series%add('sensitivity/'//trim(names(order)), &
@@ -82,13 +82,13 @@ contains
     places = columns%derivatives_of(column)
   end function places
 
-  !> Add the derivatives of energies.
-  subroutine add_energies(series, columns)
+  !> Add the derivatives of motors and energies.
+  subroutine add_scalars(series, columns)
     type(hdf5_series_type), intent(inout) :: series   !< the quantities of the file
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     integer :: i, point
 
-    do i = columns%varied + 2 - columns%energies, columns%varied + 1
+    do i = columns%varied + 2 - columns%energies - columns%motors, columns%varied + 1
       associate (name => columns%names(i)%text)
         point = index(name, '.')
         call series%add('sensitivity/'//name(:point - 1)//'_'//name(point + 1:), places(columns, i), [size(columns%parameters)], &
@@ -96,7 +96,7 @@ contains
                         ['/time     ', '/parameter'])
       end associate
     end do
-  end subroutine add_energies
+  end subroutine add_scalars
 
   !> The unit of some columns, per unit of a parameter in the data file.
   pure function unit_of_all(columns, first, n) result(text)

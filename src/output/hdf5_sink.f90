@@ -54,7 +54,7 @@ contains
     call self%file%create(path, err)
     if (allocated(err)) return
     self%takes_poses = .true.
-    call self%series%start(1 + most_column_sets(columns) + quantities_of_sensitivity, columns%width(), &
+    call self%series%start(1 + most_column_sets(columns) + quantities_of_sensitivity + columns%motors, columns%width(), &
                            request%time%intervals + 1, request%output%compression)
     call self%series%add('time', [1], [integer ::], 'time', columns%units(1)%text, [character(len=5) ::])
     call sets%add(self%series, mechanism, columns)

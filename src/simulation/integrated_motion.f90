@@ -133,7 +133,8 @@ contains
     if (.not. allocated(self%system%sensitivity)) return
     call refuse_angles(angles, self%t, err)
     if (.not. allocated(err)) call self%system%show_sensitivity(err)
-    if (.not. allocated(err)) call other%begin_sensitivity(self%variable, err, self%system%sensitivity%motion%q)
+    if (.not. allocated(err)) call other%begin_sensitivity(self%variable, err, self%system%sensitivity%motion%q, &
+                                                               self%system%sensitivity%motors(:, :, 0))
   end subroutine hand_on_sensitivity
 
   !> Fail because derivatives by parameters are not known in other angles than those of the data file.
@@ -327,16 +328,20 @@ contains
     logical, intent(out) :: found                          !< the system stands at this time
     type(error_type), allocatable :: err
     real(wp) :: from, y(size(self%y))
+    logical :: knows_motion
 
     found = .false.
     if (self%dense_output%crosses()) return
+    ! dense output does not know the derivatives of motors by parameters
+    knows_motion = .not. allocated(self%system%sensitivity)
+    if (.not. knows_motion) knows_motion = size(self%system%sensitivity%motors) == 0
     call self%integrator%interpolate(t, y, found)
-    if (.not. found) call self%dense_output%find(self%system, t, y, found, err)
-    if (.not. (found .or. self%dense_output%count_inserted() > 0)) then
+    if (.not. found .and. knows_motion) call self%dense_output%find(self%system, t, y, found, err)
+    if (.not. (found .or. self%dense_output%count_inserted() > 0) .and. knows_motion) then
       call self%insert(0.5_wp, err)
       if (.not. allocated(err)) call self%dense_output%find(self%system, t, y, found, err)
     end if
-    if (.not. (found .or. allocated(err) .or. self%dense_output%count_inserted() > 1)) then
+    if (.not. (found .or. allocated(err) .or. self%dense_output%count_inserted() > 1) .and. knows_motion) then
       call self%insert(0.25_wp, err)
       if (.not. allocated(err)) call self%insert(0.75_wp, err)
       if (.not. allocated(err)) call self%dense_output%find(self%system, t, y, found, err)

@@ -141,6 +141,7 @@ contains
     class(motion_system_type), intent(in) :: self   !< the motion system
 
     size_of_vector = self%size_of_motion() + 2*self%count_varied()
+    if (allocated(self%sensitivity)) size_of_vector = size_of_vector + size(self%sensitivity%motors(:, :, 0))
   end function size_of_vector
 
   !> Length of the part of the vector that is the motion itself.
@@ -170,15 +171,17 @@ contains
 
   !> Integrate the derivatives by all parameters as well, from those of the free coordinates and their rates that are given, or
   !> from those that the start of the motion has. To be called before the integration begins.
-  subroutine begin_sensitivity(self, variable, err, values)
+  subroutine begin_sensitivity(self, variable, err, values, motors)
     class(motion_system_type), intent(inout) :: self        !< the motion system, with its motion
     class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     real(wp), intent(in), optional :: values(:, 0:, :)      !< (P,0:2,M) derivatives of all coordinates
+    real(wp), intent(in), optional :: motors(:, :)          !< (P,motors) those of the motors' states
 
     allocate (self%sensitivity)
     call new_motion_sensitivity(variable, self%model, self%plan, self%sensitivity, err)
     if (allocated(err)) return
+    if (present(motors)) self%sensitivity%motors(:, :, 0) = motors
     if (present(values)) then
       self%sensitivity%values(:, :, 0) = values(:, 0, self%plan%free)
       self%sensitivity%values(:, :, 1) = values(:, 1, self%plan%free)

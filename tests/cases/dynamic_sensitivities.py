@@ -306,9 +306,6 @@ def check_smooth_joints(case):
 
 
 def check_refusals(case):
-    crank = declared((('crank', 'pair(2).point(1)', 0.3),)) + '&output sensitivities=.true. /\n'
-    motor = "&motor kind='dc', coordinate=1, resistance=1, inductance=0.1, constant=0.1, voltage=1 /\n"
-    case.refused(FOUR_BAR + motor + crank, 3, 'sensitivities are not computed for mechanisms with motors')
     jumps = BEAD.format(law="segments', times=0,0.5,3, values=0,1,2, laws='constant-velocity','constant-velocity' / !")
     case.refused(jumps + declared((('centre', 'body.centre(2)', -0.5),)) + '&output sensitivities=.true. /\n', 6,
                  'derivatives by the parameters are not computed beyond t = 0.5 s, where the rates of drives jump')

@@ -44,7 +44,7 @@ contains
     sets_loads = .false.
     do i = 1, size(model%parameters(number)%targets)
       associate (group => model%parameters(number)%targets(i)%group)
-        sets_loads = sets_loads .or. group == 'load' .or. group == 'user'
+        sets_loads = sets_loads .or. group == 'load' .or. group == 'motor' .or. group == 'user'
       end associate
     end do
     if (.not. sets_loads) return

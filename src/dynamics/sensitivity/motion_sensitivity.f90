@@ -13,6 +13,8 @@ module mech9_motion_sensitivity
   use mech9_state, only: state_type
   use mech9_known_derivatives, only: check_known
   use mech9_varied_motion, only: varied_motion_type, new_varied_motion, find_varied_motion, find_varied_points
+  use mech9_motor, only: motor_change_type
+  use mech9_varied_motors, only: find_varied_motors
   use mech9_varied_forces, only: varied_forces_type, new_varied_forces, find_varied_forces
   implicit none
   private
@@ -23,6 +25,7 @@ module mech9_motion_sensitivity
     type(varied_motion_type) :: motion             !< of all coordinates and frames
     type(varied_forces_type) :: forces             !< required by the motion
     real(wp), allocatable :: values(:, :, :)       !< (P,free,0:2) of free coordinates and their derivatives in time [rad, m]
+    real(wp), allocatable :: motors(:, :, :)       !< (P,motors,0:1) of the motors' states and their derivatives in time
     real(wp), allocatable :: size_of(:)            !< (P) size that the derivatives by a parameter have at least, for tolerances
   contains
     procedure :: start
@@ -50,7 +53,7 @@ contains
     if (allocated(err)) return
     call new_varied_forces(model, self%motion, self%forces)
     associate (n => self%motion%n_parameters)
-      allocate (self%values(n, size(plan%free), 0:2), source=0.0_wp)
+      allocate (self%values(n, size(plan%free), 0:2), self%motors(n, model%mechanism%n_motors, 0:1), source=0.0_wp)
       allocate (self%size_of(n))
       do p = 1, n
         self%size_of(p) = self%motion%tangents(p)%size
@@ -69,26 +72,30 @@ contains
     end do
   end subroutine start
 
-  !> Write the derivatives of free coordinates, then those of their rates, into a vector.
+  !> Write the derivatives of free coordinates, those of their rates, and those of the motors' states into a vector.
   pure subroutine pack(self, y)
     class(motion_sensitivity_type), intent(in) :: self   !< the derivatives
     real(wp), intent(inout) :: y(:)                      !< the vector
-    integer :: n
+    integer :: n, m
 
-    n = size(y)/2
+    n = size(self%values(:, :, 0))
+    m = size(self%motors(:, :, 0))
     y(:n) = reshape(self%values(:, :, 0), [n])
-    y(n + 1:) = reshape(self%values(:, :, 1), [n])
+    y(n + 1:2*n) = reshape(self%values(:, :, 1), [n])
+    y(2*n + 1:) = reshape(self%motors(:, :, 0), [m])
   end subroutine pack
 
   !> Write the rate of change of this vector.
   pure subroutine pack_rates(self, ydot)
     class(motion_sensitivity_type), intent(in) :: self   !< the derivatives
     real(wp), intent(inout) :: ydot(:)                   !< the rate of change
-    integer :: n
+    integer :: n, m
 
-    n = size(ydot)/2
+    n = size(self%values(:, :, 0))
+    m = size(self%motors(:, :, 0))
     ydot(:n) = reshape(self%values(:, :, 1), [n])
-    ydot(n + 1:) = reshape(self%values(:, :, 2), [n])
+    ydot(n + 1:2*n) = reshape(self%values(:, :, 2), [n])
+    ydot(2*n + 1:) = reshape(self%motors(:, :, 1), [m])
   end subroutine pack_rates
 
   !> Take the derivatives from such a vector.
@@ -97,9 +104,10 @@ contains
     real(wp), intent(in) :: y(:)                            !< the vector
     integer :: n
 
-    n = size(y)/2
+    n = size(self%values(:, :, 0))
     self%values(:, :, 0) = reshape(y(:n), shape(self%values(:, :, 0)))
-    self%values(:, :, 1) = reshape(y(n + 1:), shape(self%values(:, :, 1)))
+    self%values(:, :, 1) = reshape(y(n + 1:2*n), shape(self%values(:, :, 1)))
+    self%motors(:, :, 0) = reshape(y(2*n + 1:), shape(self%motors(:, :, 0)))
   end subroutine unpack
 
   !> Find the derivatives of the free accelerations in the present motion, from those of free coordinates and rates. Fails where
@@ -118,6 +126,7 @@ contains
     call give(self)
     call find_varied_motion(model, state, self%motion, err)
     if (.not. allocated(err)) call find_varied_forces(model, self%motion, self%forces, err)
+    if (.not. allocated(err)) call find_motor_rates(model, self, err)
     if (allocated(err)) return
     factors = coefficients
     ! the motion itself was found with these coefficients
@@ -128,6 +137,18 @@ contains
       self%values(p, :, 2) = right
     end do
   end subroutine find_accelerations
+
+  !> Find the derivatives of the rates of the motors' states, from those of coordinates, rates and states.
+  subroutine find_motor_rates(model, self, err)
+    type(model_type), intent(in) :: model                   !< the model
+    class(motion_sensitivity_type), intent(inout) :: self   !< with the derivatives of the motion; gets those of the rates
+    type(error_type), allocatable, intent(out) :: err       !< allocated if the law of a motor has no value
+    type(motor_change_type) :: changes(size(self%motors, 1), size(self%motors, 2))
+
+    if (size(changes) == 0) return
+    call find_varied_motors(model, self%motion, changes, err)
+    self%motors(:, :, 1) = changes%rate
+  end subroutine find_motor_rates
 
   !> Find the derivatives of all coordinates, frames and points, after find_accelerations.
   subroutine complete(self, model, state, err)
@@ -149,5 +170,6 @@ contains
     do order = 0, 2
       self%motion%given(:, order, :) = self%values(:, :, order)
     end do
+    self%motion%motor = self%motors(:, :, 0)
   end subroutine give
 end module mech9_motion_sensitivity

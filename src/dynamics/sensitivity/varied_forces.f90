@@ -240,6 +240,7 @@ contains
 
     change%q = motion%q(p, 0, :)
     change%dq = motion%q(p, 1, :)
+    change%motor = motion%motor(p, :)
     do i = 1, size(loaded)
       twist = twists(p, :, 0, i)
       rate = twists(p, :, 1, i)

@@ -38,6 +38,7 @@ module mech9_varied_motion
     real(wp), allocatable :: q(:, :, :)             !< (P,0:2,M) of the coordinates and their derivatives in time [rad, m]
     real(wp), allocatable :: points(:, :, :, :)     !< (P,3,0:2,points) of the points of the mechanism [m]
     real(wp), allocatable :: given(:, :, :)         !< (P,0:2,free) of the free coordinates [rad, m]
+    real(wp), allocatable :: motor(:, :)            !< (P,motors) given, too: of the states of the motors
     real(wp), allocatable :: twists(:, :, :, :)     !< (P,6,0:2,0:M) of the frames
     type(tangent_type), allocatable :: tangents(:)  !< (P) of the constants
     type(plan_type) :: plan                         !< in space
@@ -87,7 +88,7 @@ contains
     self%numbers = [(i, i=0, m)]
     call list_pairs(self)
     allocate (self%q(n, 0:2, m), self%twists(n, 6, 0:2, 0:m), self%points(n, 3, 0:2, size(model%mechanism%points)), &
-              self%given(n, 0:2, size(plan%free)), source=0.0_wp)
+              self%given(n, 0:2, size(plan%free)), self%motor(n, model%mechanism%n_motors), source=0.0_wp)
   end subroutine new_varied_motion
 
   !> The pairs without a fixed axis whose numbers parameters change.
@@ -154,6 +155,10 @@ contains
     self%state%q = present%q
     self%state%dq = present%dq
     self%state%ddq = present%ddq
+    if (allocated(present%motor)) then
+      self%state%motor = present%motor
+      self%state%limited = present%limited
+    end if
     call place_all(self%plan, self%state, err)
     if (allocated(err)) return
     call spread_all_velocities(self%plan, self%state)

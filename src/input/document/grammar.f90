@@ -423,7 +423,7 @@ module mech9_grammar
     item_row_type('output', 'drive_forces', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'the force or torque that each drive needs for its motion', '.true.', seldom=.true.), &
     item_row_type('output', 'sensitivities', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
-                  'derivatives of all recorded coordinates, points, forces and energies by each parameter', '.true.', &
+                  'derivatives of recorded coordinates, points, forces, motors and energies by each parameter', '.true.', &
                   seldom=.true.), &
     item_row_type('output', 'gradients', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'derivatives of the quantities by each parameter, without columns of their own', '.true.', seldom=.true.), &

@@ -1,4 +1,4 @@
-!> The derivatives of forces and energies by the parameters that a run records, from the present state of its simulation.
+!> The derivatives of forces, motors and energies by the parameters that a run records, from the present state of its simulation.
 module mech9_varied_record
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -7,6 +7,8 @@ module mech9_varied_record
   use mech9_known_derivatives, only: check_known
   use mech9_varied_motion, only: varied_motion_type
   use mech9_varied_forces, only: varied_forces_type, new_varied_forces, find_varied_forces
+  use mech9_motor, only: motor_change_type
+  use mech9_varied_motors, only: find_varied_motors
   use mech9_varied_energy, only: varied_energy_type, new_varied_energy, find_varied_energy
   use mech9_varied_reactions, only: varied_reactions_type, new_varied_reactions, find_varied_reactions
   use mech9_columns, only: columns_type
@@ -19,6 +21,7 @@ module mech9_varied_record
     real(wp), allocatable :: values(:, :)             !< (P,columns) derivatives of the columns beyond the motion
     logical, private :: with_forces = .false.         !< those of forces are wanted
     logical, private :: with_reactions = .false.      !< those of pairs and couplings, too
+    logical, private :: with_motors = .false.         !< those of motors are wanted
     logical, private :: with_energies = .false.       !< those of energies are wanted
     type(varied_forces_type), private :: forces       !< of the present state
     type(varied_reactions_type), private :: reactions !< of the present state
@@ -40,15 +43,17 @@ contains
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
     integer :: i
 
-    associate (first => columns%motion + 1, forces => columns%forces(), last => columns%varied + 1)
-      self%with_forces = forces > 0
+    associate (first => columns%motion + 1, motors => columns%motion + columns%forces() + 1, last => columns%varied + 1)
+      self%with_forces = motors > first
+      self%with_motors = columns%motors > 0
       self%with_energies = columns%energies > 0
       if (columns%sensitivities == 0) then
-        self%with_forces = is_asked_for(first, first + forces - 1)
-        self%with_energies = is_asked_for(first + forces, last)
+        self%with_forces = is_asked_for(first, motors - 1)
+        self%with_motors = is_asked_for(motors, last - columns%energies)
+        self%with_energies = is_asked_for(last - columns%energies + 1, last)
       end if
       if (self%with_forces) self%with_reactions = size(columns%reacting) > 0
-      self%wanted = self%with_forces .or. self%with_energies
+      self%wanted = self%with_forces .or. self%with_motors .or. self%with_energies
       if (.not. self%wanted) return
       allocate (self%values(size(columns%parameters), last - columns%motion), source=0.0_wp)
     end associate
@@ -91,6 +96,8 @@ contains
       if (allocated(err)) return
       call put_forces(self, columns)
     end if
+    if (self%with_motors) call put_motors(self, simulation, motion, columns, err)
+    if (allocated(err)) return
     if (.not. self%with_energies) return
     call find_varied_energy(simulation%model, motion, self%energy)
     at = size(self%values, 2) - 3
@@ -115,6 +122,24 @@ contains
     if (self%with_reactions) call new_varied_reactions(simulation%model, motion, self%reactions, err)
     self%events = size(simulation%events)
   end subroutine make_room
+
+  !> Put the derivatives of the motors' states and forces in the order of their columns.
+  subroutine put_motors(self, simulation, motion, columns, err)
+    type(varied_record_type), intent(inout) :: self          !< the record; gets the derivatives
+    class(simulation_type), intent(in) :: simulation         !< the motion
+    type(varied_motion_type), intent(in) :: motion           !< its derivatives
+    type(columns_type), intent(in) :: columns                !< of the run
+    type(error_type), allocatable, intent(out) :: err        !< allocated if the law of a motor has no value
+    type(motor_change_type) :: changes(size(self%values, 1), columns%motors/2)
+    integer :: at, i
+
+    call find_varied_motors(simulation%model, motion, changes, err)
+    do i = 1, size(changes, 2)
+      at = columns%forces() + 2*i
+      self%values(:, at - 1) = changes(:, i)%value*columns%motor_factors(2*i - 1)
+      self%values(:, at) = changes(:, i)%force
+    end do
+  end subroutine put_motors
 
   !> Put the derivatives of forces in the order of their columns.
   subroutine put_forces(self, columns)

@@ -1,0 +1,180 @@
+"""Derivatives of motions with motors by parameters: of a flywheel with a direct-current motor and of a slide with a controller against
+complex steps in exponentials of matrices; of a four-bar linkage, with limits, laws and integral parts, against differences of whole
+runs; at outputs within steps and with all methods alike; HDF5 and gradients.
+
+Compares the program with itself in part: differences of runs at other values of a parameter; other methods of integration.
+
+usage: motor_sensitivities.py MECH9K MECH9D
+"""
+import json
+import os
+import sys
+import tempfile
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from dynamic_sensitivities import SOLVER, TOLERANCE, TOLERANCES, Case, declared
+from mech9_cases import Checks, run
+
+FLYWHEEL = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&initial coordinate=1, position=0.1, velocity=0.3 /
+&body link=2, mass=1, inertia=0,0,0.02,0,0,0 /
+&motor coordinate=1, kind='dc', voltage=12, resistance=0.8, inductance=0.02, constant=0.05, gear_ratio=20 /
+&time end=0.3, intervals=6 /
+"""
+FLYWHEEL_PARAMETERS = (('voltage', 'motor.voltage', 12.0), ('resistance', 'motor.resistance', 0.8), ('inductance', 'motor.inductance', 0.02),
+                       ('constant', 'motor.constant', 0.05), ('ratio', 'motor.gear_ratio', 20.0), ('inertia', 'body.inertia(3)', 0.02),
+                       ('speed', 'initial.velocity', 0.3))
+SLIDE = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&initial coordinate=1, position=0.1, velocity=0.2 /
+&body link=2, mass=2 /
+&load kind='coordinate', coordinate=1, stiffness=50, damping=1 /
+&motor coordinate=1, kind='pid', proportional=80, integral=60, derivative=7, setpoint=0.4 /
+&time end=0.5, intervals=5 /
+"""
+SLIDE_PARAMETERS = (('proportional', 'motor.proportional', 80.0), ('integral', 'motor.integral', 60.0), ('derivative', 'motor.derivative', 7.0),
+                    ('setpoint', 'motor.setpoint', 0.4), ('mass', 'body.mass', 2.0), ('stiffness', 'load.stiffness', 50.0),
+                    ('damping', 'load.damping', 1.0), ('start', 'initial.position', 0.1))
+FOUR_BAR = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', point=0.2,0,0, axis=0,0,1 /
+&pair coordinate=3, links=3,4, kind='revolute', point=0.7,0,0, axis=0,0,1, moving_point=1,0,0 /
+&pair coordinate=4, links=1,4, kind='revolute', point=0.6,0,0, axis=0,0,1, moving_point=0.6,0,0 /
+&initial coordinate=1, position=0.3 /
+&initial coordinate=2, position=0.45 /
+&initial coordinate=3, position=0.93 /
+&initial coordinate=4, position=1.67 /
+&body link=2, mass=1, centre=0.05,0.02,0, inertia=0.03,0.03,0.03,0,0,0 /
+&body link=3, mass=0.5, centre=0.4,0.1,0, inertia=0.01,0.01,0.01,0,0,0 /
+&body link=4, mass=0.8, centre=0.65,0.2,0, inertia=0.02,0.02,0.02,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&motor coordinate=1, {} /
+&time end=0.3, intervals=3 /
+"""
+MECHANISM_PARAMETERS = (('mass', 'body(2).mass', 0.5), ('crank', 'pair(2).point(1)', 0.2), ('start', 'initial(1).position', 0.3))
+
+
+def exponential(matrix):
+    """Of a small matrix, of complex numbers too: Taylor's series of a part of it, squared again and again."""
+    squarings = 12
+    part = matrix / 2**squarings
+    total = term = np.eye(len(matrix), dtype=complex)
+    for k in range(1, 16):
+        term = term @ part / k
+        total = total + term
+    for _ in range(squarings):
+        total = total @ total
+    return total
+
+
+def flywheel(values, times):
+    """Columns of the flywheel: J w' = k i and L i' = V - R i - k w with k = constant times ratio."""
+    voltage, resistance, inductance, constant, ratio, inertia, speed = values
+    k = constant * ratio
+    matrix = np.zeros((4, 4), dtype=complex)
+    matrix[0, 1] = 1
+    matrix[1, 2] = k / inertia
+    matrix[2, 1:] = [-k / inductance, -resistance / inductance, voltage / inductance]
+    states = np.array([exponential(matrix * t) @ np.array([0.1, speed, 0, 1], dtype=complex) for t in times])
+    q, w, current = states[:, 0], states[:, 1], states[:, 2]
+    return {'q1': q, 'dq1': w, 'ddq1': k * current / inertia, 'M1.current': current, 'M1.torque': k * current, 'R1.mz': k * current,
+            'E.kinetic': inertia * w**2 / 2}
+
+
+def slide(values, times):
+    """Columns of the slide: m v' = -c x - b v + F with F = P e + I (integral of e) - D v and e = setpoint - x."""
+    proportional, integral, derivative, setpoint, mass, stiffness, damping, start = values
+    matrix = np.zeros((4, 4), dtype=complex)
+    matrix[0, 1] = 1
+    force = np.array([-proportional, -derivative, integral, proportional * setpoint], dtype=complex)
+    matrix[1] = (force + np.array([-stiffness, -damping, 0, 0])) / mass
+    matrix[2] = [-1, 0, 0, setpoint]
+    states = np.array([exponential(matrix * t) @ np.array([start, 0.2, 0, 1], dtype=complex) for t in times])
+    return {'q1': states[:, 0], 'dq1': states[:, 1], 'ddq1': states @ matrix[1], 'M1.integral': states[:, 2], 'M1.torque': states @ force,
+            'E.kinetic': mass * states[:, 1]**2 / 2, 'E.potential': stiffness * states[:, 0]**2 / 2}
+
+
+def check_closed_forms(case):
+    for name, text, parameters, motion in (('flywheel', FLYWHEEL, FLYWHEEL_PARAMETERS, flywheel), ('slide', SLIDE, SLIDE_PARAMETERS, slide)):
+        found = case.table(text + SOLVER + declared(parameters) + '&output sensitivities=.true., reactions=.true. /\n')
+        values = np.array([value for _, _, value in parameters], dtype=complex)
+        plain = motion(values, found['t'])
+        for column in plain:
+            case.close(found[column], plain[column].real, TOLERANCES * TOLERANCE, f'{name}: {column} is that of the run')
+        for number, (parameter, _, _) in enumerate(parameters):
+            shifted = values.copy()
+            shifted[number] += 1e-30j
+            for column, numbers in motion(shifted, found['t']).items():
+                case.close(found[f'd({column})/d({parameter})'], numbers.imag / 1e-30, TOLERANCES * TOLERANCE, f'{name}: {column} by {parameter}')
+
+
+def check_four_bar(case):
+    dc = "kind='dc', voltage=12, resistance=0.8, inductance=0.02, constant=0.05, gear_ratio=20"
+    pid = "kind='pid', proportional=30, integral=40{}, setpoint=1.2"
+    for why, motor, parameters in (
+            ('a motor', dc, (('inductance', 'motor.inductance', 0.02),)),
+            ('no inductance', dc.replace('inductance=0.02, ', ''), (('ratio', 'motor.gear_ratio', 20.0), ('resistance', 'motor.resistance', 0.8))),
+            ('voltage by a law', dc + ", law='harmonic', mean=0.2, amplitude=1, angular_frequency=9",
+             (('often', 'motor.angular_frequency', 9.0), ('voltage', 'motor.voltage', 12.0))),
+            ('a controller', pid.format(', derivative=3'), (('setpoint', 'motor.setpoint', 1.2), ('derivative', 'motor.derivative', 3.0))),
+            ('a controller with a limit', pid.format(', derivative=3, limit=9'),
+             (('limit', 'motor.limit', 9.0), ('integral', 'motor.integral', 40.0), ('derivative', 'motor.derivative', 3.0))),
+            ('without a derivative part', pid.format(', limit=9'), (('limit', 'motor.limit', 9.0), ('proportional', 'motor.proportional', 30.0)))):
+        case.against_runs(FOUR_BAR.format(motor), parameters + MECHANISM_PARAMETERS[:1 + 2 * (why == 'a motor')], f'four-bar linkage with {why}',
+                          2.0**-9)
+
+
+def check_methods(case):
+    """Outputs within steps, and all methods: they differ by a thousand tolerances at most."""
+    text = FOUR_BAR.format("kind='pid', proportional=30, integral=40, derivative=3, limit=9, setpoint=1.2").replace('intervals=3', 'intervals=30')
+    text += declared((('limit', 'motor.limit', 9.0),)) + '&output sensitivities=.true. /\n'
+    runs = [case.table(text + f"&solver method='{method}', relative_tolerance=1e-11, absolute_tolerance=1e-12 /\n")
+            for method in ('auto', 'verner', 'bdf')]
+    for other in runs[1:]:
+        for column in other:
+            if column.startswith('d('):
+                case.close(other[column], runs[0][column], 1e-8, f'with other methods: {column}')
+
+
+def check_results(case):
+    """Gradients of quantities are those of the columns at the end; the HDF5 file has them, too."""
+    text = FLYWHEEL + SOLVER + declared(FLYWHEEL_PARAMETERS[:2])
+    found = case.table(text + '&output sensitivities=.true. /\n')
+    path = os.path.join(case.directory, 'b.nml')
+    report = os.path.join(case.directory, 'report.json')
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(text + "&quantity name='last', of='M1.torque', take='end' /\n&output gradients=.true. /\n")
+    done = run(case.mech9d, path, '--quiet', '--no-write', '--report', report)
+    case.checks.equal(done.returncode, 0, f'gradients alone: {done.stderr}')
+    with open(report, encoding='utf-8') as file:
+        told = [by['value'] for by in json.load(file)['quantities'][0]['gradient']]
+    case.checks.near(told, [found[f'd(M1.torque)/d({name})'][-1] for name in ('voltage', 'resistance')], 1e-12, 'the gradient of a torque', scale=1)
+    try:
+        import h5py
+    except ImportError:
+        case.checks.left_out('h5py is not installed (Debian: python3-h5py)')
+        return
+    hdf5 = os.path.join(case.directory, 'b.h5')
+    case.table(text + '&output sensitivities=.true. /\n', '--hdf5', hdf5)
+    with h5py.File(hdf5) as file:
+        for column in ('current', 'torque'):
+            case.checks.true((file[f'sensitivity/M1_{column}'][:, 1] == found[f'd(M1.{column})/d(resistance)']).all(), f'M1_{column} in the file')
+
+
+def main():
+    checks = Checks()
+    with tempfile.TemporaryDirectory() as directory:
+        case = Case(checks, directory, *sys.argv[1:3])
+        check_closed_forms(case)
+        check_four_bar(case)
+        check_methods(case)
+        check_results(case)
+    checks.finish()
+
+
+if __name__ == '__main__':
+    main()
