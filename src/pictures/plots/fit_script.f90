@@ -23,8 +23,8 @@ module mech9_fit_script
   end type fit_panel_type
 
   character, parameter :: line_end = achar(10)
-  !> Most targets that are numbered.
-  integer, parameter :: most_numbers = 60
+  !> Most targets that are numbered in a plane, and along a function, where their order can be seen.
+  integer, parameter :: most_in_plane = 60, most_of_function = 12
   !> Length of a direction in parts of the size of the targets.
   real(wp), parameter :: arrow = 0.08_wp
 
@@ -154,7 +154,7 @@ contains
     if (any(abs(panel%targets(:, 3:)) > 0.0_wp)) &
       text = text//next//name_of('reached', i)//' using 1:2:3:4 with vectors nohead lw 2 lc rgb '''//first_colour//''' notitle'// &
              next//name_of('targets', i)//' using 1:2:3:4 with vectors nohead lw 2 lc rgb '''//second_colour//''' notitle'
-    if (size(panel%targets, 1) <= most_numbers) &
+    if (size(panel%targets, 1) <= merge(most_in_plane, most_of_function, panel%equal_scales)) &
       text = text//next//name_of('targets', i)// &
              ' using 1:2:(sprintf(''%.0f'', $5)) with labels offset character 1,0.5 font '',10'' tc rgb ''#404040'' notitle'
     text = text//line_end
