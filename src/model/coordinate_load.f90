@@ -24,6 +24,8 @@ module mech9_coordinate_load
     procedure :: apply
     procedure :: potential
     procedure :: vary
+    procedure :: knows_slopes
+    procedure :: add_slopes
     procedure :: numbers
     procedure :: vary_own
     procedure :: varied_potential
@@ -86,6 +88,31 @@ contains
       call changes%add_generalized(k, -factor*(self%stiffness*change%q(k) + self%damping*change%dq(k)))
     end associate
   end subroutine vary
+
+  !> The derivatives of its power are known.
+  pure logical function knows_slopes(self)
+    class(coordinate_load_type), intent(in) :: self   !< the coordinate load
+
+    knows_slopes = .true.
+  end function knows_slopes
+
+  !> Add the derivatives of the power in a virtual motion.
+  subroutine add_slopes(self, state, virtual, slopes, err)
+    class(coordinate_load_type), intent(in) :: self     !< the coordinate load
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: virtual     !< the virtual motion
+    type(motion_change_type), intent(inout) :: slopes   !< derivatives so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: factor
+
+    factor = 1.0_wp
+    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
+    if (allocated(err)) return
+    associate (k => self%coordinate)
+      slopes%q(k) = slopes%q(k) - factor*self%stiffness*virtual%q(k)
+      slopes%dq(k) = slopes%dq(k) - factor*self%damping*virtual%q(k)
+    end associate
+  end subroutine add_slopes
 
   !> Stiffness, rest position, damping and force.
   pure subroutine numbers(self, values)

@@ -24,6 +24,8 @@ module mech9_force_load
     procedure :: apply
     procedure :: potential
     procedure :: vary
+    procedure :: knows_slopes
+    procedure :: add_slopes
     procedure :: numbers
     procedure :: vary_own
   end type force_load_type
@@ -89,6 +91,36 @@ contains
       end if
     end associate
   end subroutine vary
+
+  !> The derivatives of its power are known.
+  pure logical function knows_slopes(self)
+    class(force_load_type), intent(in) :: self   !< the force load
+
+    knows_slopes = .true.
+  end function knows_slopes
+
+  !> Add the derivatives of the power in a virtual motion: the arm of the force turns, and components in the link's axes turn, too.
+  subroutine add_slopes(self, state, virtual, slopes, err)
+    class(force_load_type), intent(in) :: self          !< the force load
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: virtual     !< the virtual motion
+    type(motion_change_type), intent(inout) :: slopes   !< derivatives so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: force(3), factor
+
+    factor = 1.0_wp
+    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
+    if (allocated(err)) return
+    associate (link => state%links(self%link), given => virtual%links(self%link), by_link => slopes%links(self%link))
+      force = factor*self%force
+      if (self%turns_with_link) then
+        call by_link%add_slope_of_arm(link, force, given%of_position(link, self%position))
+        call by_link%add_slope_of_arm(link, factor*self%torque, given%turn)
+        force = link%fixed_components(force)
+      end if
+      call by_link%add_slope_of_arm(link, self%position, cross(force, given%turn))
+    end associate
+  end subroutine add_slopes
 
   !> The point of the force, the force and the torque.
   pure subroutine numbers(self, values)

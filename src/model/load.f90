@@ -24,6 +24,8 @@ module mech9_load
     procedure(apply_interface), deferred :: apply
     procedure(potential_interface), deferred :: potential
     procedure :: vary
+    procedure :: knows_slopes
+    procedure :: add_slopes
     procedure :: numbers => unknown_numbers
     procedure :: vary_own
     procedure :: varied_potential => unvaried_potential
@@ -129,6 +131,25 @@ contains
     changes%generalized = changes%generalized + derivative(6*n + 1:)
     changes%any_generalized = .true.
   end subroutine vary
+
+  !> Whether add_slopes gives the derivatives of the load's power. This procedure is for kinds whose formula is not known.
+  pure logical function knows_slopes(self)
+    class(load_type), intent(in) :: self   !< the load
+
+    knows_slopes = .false.
+  end function knows_slopes
+
+  !> Add the derivatives of the power that the load's forces have in a virtual motion, by the motion on which these forces depend.
+  !> The virtual turn and shift of each link are held. It says in one pass what `vary` says for the changes of all parameters.
+  !> Fails where the load has no value. This procedure, for kinds whose formula is not known, adds nothing.
+  subroutine add_slopes(self, state, virtual, slopes, err)
+    class(load_type), intent(in) :: self                !< the load
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: virtual     !< turns and shifts of links, and `q` of coordinates, per unit of the motion
+    type(motion_change_type), intent(inout) :: slopes   !< derivatives so far, by the changes of the same names; the load is added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+  end subroutine add_slopes
 
   !> The numbers of the load on which its forces depend smoothly, in an order of its own, without those of its law. This procedure,
   !> for kinds whose numbers are not known, gives none.

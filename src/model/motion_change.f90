@@ -18,6 +18,9 @@ module mech9_motion_change
     procedure :: of_arm
     procedure :: of_position
     procedure :: of_velocity
+    procedure :: add_slope_of_arm
+    procedure :: add_slope_of_position
+    procedure :: add_slope_of_velocity
   end type link_change_type
 
   !> Change of all that a load may depend on.
@@ -75,6 +78,41 @@ contains
     arm_change = cross(self%turn, arm)
     change = self%v + cross(self%omega, arm) + cross(link%omega, arm_change)
   end function of_velocity
+
+  !> Add a derivative by a vector that is fixed in the link to those by the link's motion.
+  pure subroutine add_slope_of_arm(self, link, arm, slope)
+    class(link_change_type), intent(inout) :: self   !< derivatives by the link's motion
+    type(link_motion_type), intent(in) :: link       !< this motion
+    real(wp), intent(in) :: arm(3)                   !< the vector, in the link's axes
+    real(wp), intent(in) :: slope(3)                 !< derivative by the vector, fixed axes, in 1 over its unit
+
+    self%turn = self%turn + cross(turn(link%r, arm), slope)
+  end subroutine add_slope_of_arm
+
+  !> Add a derivative by the position of a point of the link to those by the link's motion.
+  pure subroutine add_slope_of_position(self, link, point, slope)
+    class(link_change_type), intent(inout) :: self   !< derivatives by the link's motion
+    type(link_motion_type), intent(in) :: link       !< this motion
+    real(wp), intent(in) :: point(3)                 !< in the link's system [m]
+    real(wp), intent(in) :: slope(3)                 !< derivative by the point's position, fixed axes [1/m]
+
+    self%shift = self%shift + slope
+    call self%add_slope_of_arm(link, point, slope)
+  end subroutine add_slope_of_position
+
+  !> Add a derivative by the velocity of a point of the link to those by the link's motion.
+  pure subroutine add_slope_of_velocity(self, link, point, slope)
+    class(link_change_type), intent(inout) :: self   !< derivatives by the link's motion
+    type(link_motion_type), intent(in) :: link       !< this motion
+    real(wp), intent(in) :: point(3)                 !< in the link's system [m]
+    real(wp), intent(in) :: slope(3)                 !< derivative by the point's velocity, fixed axes [s/m]
+    real(wp) :: arm(3)
+
+    arm = turn(link%r, point)
+    self%v = self%v + slope
+    self%omega = self%omega + cross(arm, slope)
+    self%turn = self%turn + cross(arm, cross(slope, link%omega))
+  end subroutine add_slope_of_velocity
 
   !> Add the change of a force at a point of a link to the changes of the loads' sums.
   pure subroutine add_force(self, state, link, point, force, force_change, changes)

@@ -25,6 +25,8 @@ module mech9_spring_load
     procedure :: apply
     procedure :: potential
     procedure :: vary
+    procedure :: knows_slopes
+    procedure :: add_slopes
     procedure :: numbers
     procedure :: vary_own
     procedure :: varied_potential
@@ -161,6 +163,70 @@ contains
     change = (spring%stiffness*length_change + spring%damping*(dot_product(e_change, rate) + dot_product(e, rate_change)))*e &
              + tension*e_change
   end function change_of_pull
+
+  !> The derivatives of its power are known.
+  pure logical function knows_slopes(self)
+    class(spring_load_type), intent(in) :: self   !< the spring load
+
+    knows_slopes = .true.
+  end function knows_slopes
+
+  !> Add the derivatives of the power in a virtual motion, the pull times the approach of the ends. Fails for a spring with a free
+  !> length whose ends meet.
+  subroutine add_slopes(self, state, virtual, slopes, err)
+    class(spring_load_type), intent(in) :: self         !< the spring load
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: virtual     !< the virtual motion
+    type(motion_change_type), intent(inout) :: slopes   !< derivatives so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: d(3), rate(3), force(3), approach(3), by_span(3), by_rate(3), factor, sign
+    integer :: e
+
+    d = self%span(state)
+    rate = 0.0_wp
+    if (abs(self%damping) > 0.0_wp) rate = self%span_rate(state)
+    factor = 1.0_wp
+    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
+    if (.not. allocated(err)) call self%pull(d, rate, force, err)
+    if (allocated(err)) return
+    associate (i => self%links(1), j => self%links(2), at => self%positions)
+      approach = virtual%links(i)%of_position(state%links(i), at(:, 1)) - virtual%links(j)%of_position(state%links(j), at(:, 2))
+    end associate
+    call slopes_of_pull(self, d, rate, factor*approach, by_span, by_rate)
+    force = factor*force
+    do e = 1, 2
+      sign = merge(-1.0_wp, 1.0_wp, e == 1)
+      associate (k => self%links(e), at => self%positions(:, e))
+        call slopes%links(k)%add_slope_of_position(state%links(k), at, sign*by_span)
+        if (abs(self%damping) > 0.0_wp) call slopes%links(k)%add_slope_of_velocity(state%links(k), at, sign*by_rate)
+        call slopes%links(k)%add_slope_of_arm(state%links(k), at, cross(virtual%links(k)%turn, sign*force))
+      end associate
+    end do
+  end subroutine add_slopes
+
+  !> Derivatives of the product of the pull with a vector, by the span and by its rate: change_of_pull transposed.
+  pure subroutine slopes_of_pull(spring, d, rate, vector, by_span, by_rate)
+    type(spring_load_type), intent(in) :: spring   !< the spring load
+    real(wp), intent(in) :: d(3)                   !< from the first end to the second [m]
+    real(wp), intent(in) :: rate(3)                !< rate of this vector [m/s]
+    real(wp), intent(in) :: vector(3)              !< the vector
+    real(wp), intent(out) :: by_span(3)            !< derivatives by d
+    real(wp), intent(out) :: by_rate(3)            !< derivatives by its rate
+    real(wp) :: e(3), length, along, length_rate, tension
+
+    length = norm2(d)
+    if (.not. length > 0.0_wp) then
+      by_span = spring%stiffness*vector
+      by_rate = spring%damping*vector
+      return
+    end if
+    e = d/length
+    along = dot_product(e, vector)
+    length_rate = dot_product(e, rate)
+    tension = spring%stiffness*(length - spring%free_length) + spring%damping*length_rate
+    by_span = spring%stiffness*along*e + (spring%damping*along*(rate - length_rate*e) + tension*(vector - along*e))/length
+    by_rate = spring%damping*along*e
+  end subroutine slopes_of_pull
 
   !> The points of both ends, stiffness, free length and damping.
   pure subroutine numbers(self, values)
