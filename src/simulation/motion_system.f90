@@ -179,7 +179,7 @@ contains
     real(wp), intent(in), optional :: motors(:, :)          !< (P,motors) those of the motors' states
 
     allocate (self%sensitivity)
-    call new_motion_sensitivity(variable, self%model, self%plan, self%sensitivity, err)
+    call new_motion_sensitivity(variable, self%model, self%plan, self%dynamics, self%sensitivity, err)
     if (allocated(err)) return
     if (present(motors)) self%sensitivity%motors(:, :, 0) = motors
     if (present(values)) then
@@ -189,6 +189,8 @@ contains
       call self%sensitivity%start()
     end if
     call self%present(err)
+    ! the whole motion shows where derivatives do not exist
+    if (.not. allocated(err)) call self%show_sensitivity(err)
   end subroutine begin_sensitivity
 
   !> Find the derivatives of the whole present motion by all parameters.
@@ -203,17 +205,8 @@ contains
   subroutine vary_accelerations(self, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(state_type) :: scratch
-    real(wp) :: coefficients(size(self%plan%free), size(self%plan%free))
 
-    ! articulated bodies give the accelerations without the coefficients
-    if (self%dynamics%articulated) then
-      scratch = self%state
-      call find_equations(self%model%mechanism, self%plan, self%dynamics, scratch, self%work, err)
-      if (allocated(err)) return
-    end if
-    coefficients = self%work%coefficients(self%plan%free_places, self%plan%free_places)
-    call self%sensitivity%find_accelerations(self%model, self%state, coefficients, err)
+    call self%sensitivity%find_accelerations(self%model, self%state, self%work, err)
   end subroutine vary_accelerations
 
   !> Take time, coordinates and free rates from a vector, and the motion of the driven coordinates from their drives. Fails where

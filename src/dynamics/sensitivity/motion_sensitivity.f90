@@ -5,17 +5,19 @@
 !> derivative of f along s, s' and the parameter itself.
 module mech9_motion_sensitivity
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
+  use mech9_error, only: error_type, raise, exit_integrator
+  use mech9_failure, only: failure_lost_inertia
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_known_derivatives, only: check_known
+  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_varied_motion, only: varied_motion_type, new_varied_motion, find_varied_motion, find_varied_points
   use mech9_motor, only: motor_change_type
   use mech9_varied_motors, only: find_varied_motors
-  use mech9_varied_forces, only: varied_forces_type, new_varied_forces, find_varied_forces
+  use mech9_force_gradient, only: force_gradient_type, new_force_gradient, needs_motions, find_force_gradient
   implicit none
   private
   public :: motion_sensitivity_type, new_motion_sensitivity
@@ -23,7 +25,7 @@ module mech9_motion_sensitivity
   !> The derivatives of the free coordinates by all parameters, and what finds those of the whole motion.
   type :: motion_sensitivity_type
     type(varied_motion_type) :: motion             !< of all coordinates and frames
-    type(varied_forces_type) :: forces             !< required by the motion
+    type(force_gradient_type), private :: gradient !< derivatives of the forces that the motion requires
     real(wp), allocatable :: values(:, :, :)       !< (P,free,0:2) of free coordinates and their derivatives in time [rad, m]
     real(wp), allocatable :: motors(:, :, :)       !< (P,motors,0:1) of the motors' states and their derivatives in time
     real(wp), allocatable :: size_of(:)            !< (P) size that the derivatives by a parameter have at least, for tolerances
@@ -40,10 +42,11 @@ contains
 
   !> Prepare the derivatives of a motion. Fails where the model does not exist beside the present values, and where a parameter sets
   !> numbers whose derivatives are not known.
-  subroutine new_motion_sensitivity(variable, model, plan, self, err)
+  subroutine new_motion_sensitivity(variable, model, plan, dynamics, self, err)
     class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the present model
     type(plan_type), intent(in) :: plan                     !< its plan
+    type(dynamics_plan_type), intent(in) :: dynamics        !< its plan of dynamics
     type(motion_sensitivity_type), intent(out) :: self      !< prepared; the derivatives are zero
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     integer :: p
@@ -51,7 +54,7 @@ contains
     call new_varied_motion(variable, model, plan, self%motion, err)
     if (.not. allocated(err)) call check_known(model, self%motion%tangents, .true., err)
     if (allocated(err)) return
-    call new_varied_forces(model, self%motion, self%forces)
+    call new_force_gradient(model, plan, dynamics, self%motion%tangents, self%gradient)
     associate (n => self%motion%n_parameters)
       allocate (self%values(n, size(plan%free), 0:2), self%motors(n, model%mechanism%n_motors, 0:1), source=0.0_wp)
       allocate (self%size_of(n))
@@ -75,67 +78,80 @@ contains
   !> Write the derivatives of free coordinates, those of their rates, and those of the motors' states into a vector.
   pure subroutine pack(self, y)
     class(motion_sensitivity_type), intent(in) :: self   !< the derivatives
-    real(wp), intent(inout) :: y(:)                      !< the vector
+    real(wp), intent(inout), contiguous :: y(:)          !< the vector
     integer :: n, m
 
     n = size(self%values(:, :, 0))
     m = size(self%motors(:, :, 0))
-    y(:n) = reshape(self%values(:, :, 0), [n])
-    y(n + 1:2*n) = reshape(self%values(:, :, 1), [n])
-    y(2*n + 1:) = reshape(self%motors(:, :, 0), [m])
+    call copy(n, self%values(:, :, 0), y)
+    call copy(n, self%values(:, :, 1), y(n + 1:))
+    if (m > 0) call copy(m, self%motors(:, :, 0), y(2*n + 1:))
   end subroutine pack
 
   !> Write the rate of change of this vector.
   pure subroutine pack_rates(self, ydot)
-    class(motion_sensitivity_type), intent(in) :: self   !< the derivatives
-    real(wp), intent(inout) :: ydot(:)                   !< the rate of change
+    class(motion_sensitivity_type), intent(in) :: self      !< the derivatives
+    real(wp), intent(inout), contiguous :: ydot(:)          !< the rate of change
     integer :: n, m
 
     n = size(self%values(:, :, 0))
     m = size(self%motors(:, :, 0))
-    ydot(:n) = reshape(self%values(:, :, 1), [n])
-    ydot(n + 1:2*n) = reshape(self%values(:, :, 2), [n])
-    ydot(2*n + 1:) = reshape(self%motors(:, :, 1), [m])
+    call copy(n, self%values(:, :, 1), ydot)
+    call copy(n, self%values(:, :, 2), ydot(n + 1:))
+    if (m > 0) call copy(m, self%motors(:, :, 1), ydot(2*n + 1:))
   end subroutine pack_rates
 
   !> Take the derivatives from such a vector.
   pure subroutine unpack(self, y)
     class(motion_sensitivity_type), intent(inout) :: self   !< gets the derivatives
-    real(wp), intent(in) :: y(:)                            !< the vector
-    integer :: n
+    real(wp), intent(in), contiguous :: y(:)                !< the vector
+    integer :: n, m
 
     n = size(self%values(:, :, 0))
-    self%values(:, :, 0) = reshape(y(:n), shape(self%values(:, :, 0)))
-    self%values(:, :, 1) = reshape(y(n + 1:2*n), shape(self%values(:, :, 1)))
-    self%motors(:, :, 0) = reshape(y(2*n + 1:), shape(self%motors(:, :, 0)))
+    m = size(self%motors(:, :, 0))
+    call copy(n, y, self%values(:, :, 0))
+    call copy(n, y(n + 1:), self%values(:, :, 1))
+    if (m > 0) call copy(m, y(2*n + 1:), self%motors(:, :, 0))
   end subroutine unpack
 
+  !> Copy numbers. The shapes are explicit, so that the loop needs no strides.
+  pure subroutine copy(n, from, to)
+    integer, intent(in) :: n            !< how many
+    real(wp), intent(in) :: from(n)     !< the numbers
+    real(wp), intent(inout) :: to(n)    !< gets them
+    integer :: i
+
+    do i = 1, n
+      to(i) = from(i)
+    end do
+  end subroutine copy
+
   !> Find the derivatives of the free accelerations in the present motion, from those of free coordinates and rates. Fails where
-  !> closed chains are singular, a change of a parameter opens one, or a load fails.
-  subroutine find_accelerations(self, model, state, coefficients, err)
+  !> a free coordinate has no inertia, or a load fails.
+  subroutine find_accelerations(self, model, state, work, err)
     class(motion_sensitivity_type), intent(inout) :: self   !< the derivatives
     type(model_type), intent(in) :: model                   !< the model
     type(state_type), intent(in) :: state                   !< the motion, with all accelerations
-    real(wp), intent(in) :: coefficients(:, :)              !< a_pr of the free coordinates, lower triangle
+    type(lagrange_work_type), intent(inout) :: work         !< its evaluation, with the factors of the closed chains
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp), dimension(size(coefficients, 1), size(coefficients, 1)) :: factors
-    real(wp) :: right(size(coefficients, 1))
-    integer :: p, failed_at
+    integer :: failed_at
 
-    self%values(:, :, 2) = 0.0_wp
-    call give(self)
-    call find_varied_motion(model, state, self%motion, err)
-    if (.not. allocated(err)) call find_varied_forces(model, self%motion, self%forces, err)
-    if (.not. allocated(err)) call find_motor_rates(model, self, err)
+    if (needs_motions(self%gradient)) then
+      self%values(:, :, 2) = 0.0_wp
+      call give(self)
+      call find_varied_motion(model, state, self%motion, err)
+      if (.not. allocated(err)) call find_motor_rates(model, self, err)
+      if (allocated(err)) return
+    end if
+    call find_force_gradient(model, state, self%motion, work, self%gradient, err)
     if (allocated(err)) return
-    factors = coefficients
-    ! the motion itself was found with these coefficients
-    call cholesky_factorize(size(right), factors, failed_at)
-    do p = 1, self%motion%n_parameters
-      right = -self%forces%changes(p, self%motion%plan%free)
-      call cholesky_solve(size(right), factors, right)
-      self%values(p, :, 2) = right
-    end do
+    associate (gradient => self%gradient, n => size(self%motion%plan%free), m => self%motion%n_parameters)
+      call find_right_sides(m, n, gradient%by_parameters, gradient%by_position, gradient%by_rate, self%values)
+      call divide(m, n, gradient%by_acceleration, self%values(:, :, 2), failed_at)
+    end associate
+    if (failed_at == 0) return
+    call raise(err, exit_integrator, failure_lost_inertia)
+    err%failure%coordinates = [self%motion%plan%free(failed_at)]
   end subroutine find_accelerations
 
   !> Find the derivatives of the rates of the motors' states, from those of coordinates, rates and states.
@@ -149,6 +165,48 @@ contains
     call find_varied_motors(model, self%motion, changes, err)
     self%motors(:, :, 1) = changes%rate
   end subroutine find_motor_rates
+
+  !> The right-hand sides of the variational equations: what the derivatives require without their accelerations, with a minus sign.
+  pure subroutine find_right_sides(m, n, by_parameters, by_position, by_rate, values)
+    integer, intent(in) :: m                           !< number of parameters
+    integer, intent(in) :: n                           !< number of free coordinates
+    real(wp), intent(in) :: by_parameters(m, n)        !< of each force, by each parameter
+    real(wp), intent(in) :: by_position(n, n)          !< of each force, by each coordinate
+    real(wp), intent(in) :: by_rate(n, n)              !< of each force, by each rate
+    real(wp), intent(inout) :: values(m, n, 0:2)       !< derivatives; those of order 2 become the right-hand sides
+    integer :: i, j, p
+
+    do i = 1, n
+      do p = 1, m
+        values(p, i, 2) = -by_parameters(p, i)
+      end do
+      do j = 1, n
+        do p = 1, m
+          values(p, i, 2) = values(p, i, 2) - by_position(i, j)*values(p, j, 0) - by_rate(i, j)*values(p, j, 1)
+        end do
+      end do
+    end do
+  end subroutine find_right_sides
+
+  !> Divide by the coefficients of motion.
+  pure subroutine divide(m, n, coefficients, values, failed_at)
+    integer, intent(in) :: m                       !< number of parameters
+    integer, intent(in) :: n                       !< number of free coordinates
+    real(wp), intent(in) :: coefficients(n, n)     !< the coefficients
+    real(wp), intent(inout) :: values(m, n)        !< right-hand sides by rows; then the solutions
+    integer, intent(out) :: failed_at              !< place of a coordinate without inertia; 0: none
+    real(wp) :: factors(n, n), right(n)
+    integer :: p
+
+    factors = coefficients
+    call cholesky_factorize(n, factors, failed_at)
+    if (failed_at > 0) return
+    do p = 1, m
+      right = values(p, :)
+      call cholesky_solve(n, factors, right)
+      values(p, :) = right
+    end do
+  end subroutine divide
 
   !> Find the derivatives of all coordinates, frames and points, after find_accelerations.
   subroutine complete(self, model, state, err)

@@ -1,0 +1,252 @@
+!> Derivatives of a force by small motions of a mechanism, as rows that are handed inward from frame to frame, like forces.
+!>
+!> A twist u of all frames from a step on, with its derivatives u' and u'' in time, changes the force by the sum of row 0 times u,
+!> row 1 times u' and row 2 times u''. A change of the step's coordinate is such a twist, and a change of a constant of the
+!> mechanism, too. Closed chains hold dependent coordinates: their rows are made zero by wrenches with which the chains act on the
+!> rows of their loops, in the same way as forces of constraint make the forces of dependent coordinates zero.
+module mech9_gradient_rows
+  use mech9_kinds, only: wp
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_block_solver, only: block_work_type
+  use mech9_coupling_constraint, only: coupling_factors
+  implicit none
+  private
+  public :: gradient_rows_type, new_gradient_rows, clear_rows, sum_inward, row_of_coordinate, eliminate_rows, subtract_crossed, &
+    pairing
+
+  !> The rows of one force. Twists have D numbers, three in a plane and six in space.
+  type :: gradient_rows_type
+    real(wp), allocatable :: frames(:, :, :)      !< (D,0:2,0:M) by a twist of the frame and all that follows it
+    real(wp), allocatable :: coordinates(:, :)    !< (0:2,M) by coordinates and rates beside their twists, and by accelerations
+    real(wp), allocatable :: chains(:, :, :)      !< (D,0:2,closures) by a twist of the pose at which a chain closes
+    real(wp), allocatable :: couplings(:, :)      !< (0:2,closures) multipliers of the equations of couplings
+    real(wp), allocatable, private :: right(:)    !< right-hand side for one block
+    real(wp), allocatable, private :: values(:)   !< multipliers of its equations
+  end type gradient_rows_type
+
+contains
+
+  !> Room for the rows of one force.
+  pure function new_gradient_rows(plan, d) result(rows)
+    type(plan_type), intent(in) :: plan   !< the plan, in the arithmetic of the rows
+    integer, intent(in) :: d              !< numbers of a twist
+    type(gradient_rows_type) :: rows
+    integer :: b, unknowns, equations
+
+    unknowns = 0
+    equations = 0
+    do b = 1, size(plan%blocks)
+      unknowns = max(unknowns, size(plan%blocks(b)%unknowns))
+      equations = max(equations, plan%blocks(b)%equations)
+    end do
+    associate (m => plan%n_coordinates, n => size(plan%closures))
+      allocate (rows%frames(d, 0:2, 0:m), rows%coordinates(0:2, m), rows%chains(d, 0:2, n), rows%couplings(0:2, n), &
+                rows%right(unknowns), rows%values(equations), source=0.0_wp)
+    end associate
+  end function new_gradient_rows
+
+  !> Make all rows of frames and coordinates zero.
+  pure subroutine clear_rows(rows)
+    type(gradient_rows_type), intent(inout) :: rows   !< the rows
+
+    call make_zero(size(rows%frames), rows%frames)
+    call make_zero(size(rows%coordinates), rows%coordinates)
+  end subroutine clear_rows
+
+  !> Make numbers zero. The shape is explicit, so that the loop needs no strides.
+  pure subroutine make_zero(n, numbers)
+    integer, intent(in) :: n              !< number of elements
+    real(wp), intent(out) :: numbers(n)   !< all zero afterwards
+    integer :: i
+
+    do i = 1, n
+      numbers(i) = 0.0_wp
+    end do
+  end subroutine make_zero
+
+  !> Add the rows of each frame to those of its parent.
+  pure subroutine sum_inward(plan, n, sums)
+    type(plan_type), intent(in) :: plan                             !< the plan of the mechanism
+    integer, intent(in) :: n                                        !< numbers of each frame
+    real(wp), intent(inout) :: sums(n, 0:plan%n_coordinates)        !< of each frame; then of all that follows it, too
+    integer :: s, c
+
+    do s = plan%n_coordinates, 1, -1
+      associate (i => plan%steps(s)%parent)
+        do c = 1, n
+          sums(c, i) = sums(c, i) + sums(c, s)
+        end do
+      end associate
+    end do
+  end subroutine sum_inward
+
+  !> The derivative of a force by the coordinate of a step, by its rate or by its acceleration: order 0, 1 or 2.
+  pure real(wp) function row_of_coordinate(d, order, twist, rows, own) result(row)
+    integer, intent(in) :: d                 !< numbers of a twist
+    integer, intent(in) :: order             !< of the derivative of the coordinate in time
+    real(wp), intent(in) :: twist(d, 0:2)    !< of the step per unit rate, with its derivatives in time
+    real(wp), intent(in) :: rows(d, 0:2)     !< by twists from the step on
+    real(wp), intent(in) :: own(0:2)         !< rows of the coordinate beside its twist
+    integer :: c
+
+    row = own(order)
+    select case (order)
+    case (0)
+      do c = 1, d
+        row = row + twist(c, 0)*rows(c, 0) + twist(c, 1)*rows(c, 1) + twist(c, 2)*rows(c, 2)
+      end do
+    case (1)
+      do c = 1, d
+        row = row + twist(c, 0)*rows(c, 1) + 2.0_wp*twist(c, 1)*rows(c, 2)
+      end do
+    case default
+      do c = 1, d
+        row = row + twist(c, 0)*rows(c, 2)
+      end do
+    end select
+  end function row_of_coordinate
+
+  !> Let closed chains and couplings make the rows of dependent coordinates zero, block by block inward, in each block from the rows
+  !> by accelerations on.
+  subroutine eliminate_rows(plan, d, lowest, state, steps, thirds, maps, blocks, rows)
+    type(plan_type), intent(in) :: plan                   !< the plan, in the arithmetic of the rows
+    integer, intent(in) :: d                              !< numbers of a twist
+    integer, intent(in) :: lowest                         !< lowest order of the rows that are found
+    type(state_type), intent(in) :: state                 !< the motion
+    real(wp), intent(in) :: steps(d, 0:2, plan%n_coordinates)   !< twists of all steps per unit rate, with derivatives in time
+    real(wp), intent(in) :: thirds(:)                     !< third derivatives of the functions of couplings
+    real(wp), intent(in) :: maps(d, d, size(plan%closures))     !< wrench of each multiplier of each closed chain
+    type(block_work_type), intent(inout) :: blocks(:)     !< factors of the closed chains
+    type(gradient_rows_type), intent(inout) :: rows       !< summed over all that follows each frame; gets the action of the chains
+    integer :: b, order, u, k
+
+    do b = size(plan%blocks), 1, -1
+      associate (block => plan%blocks(b), right => rows%right(:size(plan%blocks(b)%unknowns)), &
+                 values => rows%values(:plan%blocks(b)%equations))
+        if (size(block%unknowns) == 0) cycle
+        do order = 2, lowest, -1
+          do u = 1, size(block%unknowns)
+            k = block%coordinates(u)
+            right(u) = plan%unit_of(k)*row_of_coordinate(d, order, steps(:, :, block%unknowns(u)), &
+                                                         rows%frames(:, :, block%unknowns(u)), rows%coordinates(:, k))
+          end do
+          call blocks(b)%equations%solve_transposed(right, values)
+          call hand_on(plan, d, b, order, state, thirds, maps, rows)
+        end do
+      end associate
+    end do
+  end subroutine eliminate_rows
+
+  !> Subtract the action of the chains of a block, with its multipliers, from the rows of their loops.
+  subroutine hand_on(plan, d, b, order, state, thirds, maps, rows)
+    type(plan_type), intent(in) :: plan                   !< the plan, in the arithmetic of the rows
+    integer, intent(in) :: d                              !< numbers of a twist
+    integer, intent(in) :: b                              !< number of the block
+    integer, intent(in) :: order                          !< of the rows
+    type(state_type), intent(in) :: state                 !< the motion
+    real(wp), intent(in) :: thirds(:)                     !< third derivatives of the functions of couplings
+    real(wp), intent(in) :: maps(d, d, size(plan%closures))   !< wrench of each multiplier of each closed chain
+    type(gradient_rows_type), intent(inout) :: rows       !< with the multipliers; its frames and coordinates change
+    integer :: c, row, n
+
+    row = 0
+    do c = plan%blocks(b)%first_closure, plan%blocks(b)%last_closure
+      n = plan%constraints(c)%item%equations
+      if (plan%closures(c)%coupling > 0) then
+        rows%couplings(order, c) = rows%values(row + 1)
+        call hand_on_coupling(plan, c, order, state, thirds(plan%closures(c)%coupling), rows)
+      else
+        associate (loop => plan%closures(c)%loop)
+          call hand_on_chain(d, order, n, rows%values(row + 1), maps(1, 1, c), size(loop%steps), loop%steps, loop%signs, &
+                             plan%n_coordinates, rows%chains(1, 0, c), rows%frames)
+        end associate
+      end if
+      row = row + n
+    end do
+  end subroutine hand_on
+
+  !> Subtract the action of a closed chain from the rows of its loop, from plain arrays.
+  pure subroutine hand_on_chain(d, order, n, multipliers, map, n_steps, steps, signs, m, chain, frames)
+    integer, intent(in) :: d                        !< numbers of a twist
+    integer, intent(in) :: order                    !< of the rows
+    integer, intent(in) :: n                        !< number of equations of the chain
+    real(wp), intent(in) :: multipliers(n)          !< of these equations
+    real(wp), intent(in) :: map(d, n)               !< their wrenches
+    integer, intent(in) :: n_steps                  !< number of steps of the loop
+    integer, intent(in) :: steps(n_steps)           !< steps of the loop
+    real(wp), intent(in) :: signs(n_steps)          !< of these steps
+    integer, intent(in) :: m                        !< number of all steps
+    real(wp), intent(inout) :: chain(d, 0:2)        !< gets the wrench of the chain
+    real(wp), intent(inout) :: frames(d, 0:2, 0:m)  !< rows of the frames
+    real(wp) :: sum
+    integer :: i, j, k
+
+    do k = 1, d
+      sum = 0.0_wp
+      do j = 1, n
+        sum = sum + map(k, j)*multipliers(j)
+      end do
+      chain(k, order) = sum
+      do i = 1, n_steps
+        frames(k, order, steps(i)) = frames(k, order, steps(i)) - signs(i)*sum
+      end do
+    end do
+  end subroutine hand_on_chain
+
+  !> Subtract the action of a coupling from the rows of its coordinates.
+  pure subroutine hand_on_coupling(plan, c, order, state, third, rows)
+    type(plan_type), intent(in) :: plan                   !< the plan
+    integer, intent(in) :: c                              !< number of the closure that is the coupling
+    integer, intent(in) :: order                          !< of the rows
+    type(state_type), intent(in) :: state                 !< the motion
+    real(wp), intent(in) :: third                         !< third derivative of the coupling's function
+    type(gradient_rows_type), intent(inout) :: rows       !< with the multiplier; its coordinates change
+    real(wp) :: factors(0:2)
+    integer :: i, k
+
+    associate (coupling => plan%couplings(plan%closures(c)%coupling)%coupling, multiplier => rows%couplings(order, c))
+      do i = 1, size(coupling%coordinates)
+        k = coupling%coordinates(i)
+        factors = coupling_factors(plan, c, state, third, i)
+        rows%coordinates(order, k) = rows%coordinates(order, k) - multiplier*factors(0)
+        if (order > 0) rows%coordinates(order - 1, k) = rows%coordinates(order - 1, k) - order*multiplier*factors(1)
+        if (order > 1) rows%coordinates(0, k) = rows%coordinates(0, k) - multiplier*factors(2)
+      end do
+    end associate
+  end subroutine hand_on_coupling
+
+  !> Subtract the rate of change of a wrench that is fixed in a body with a twist.
+  pure subroutine subtract_crossed(d, twist, wrench, rest)
+    integer, intent(in) :: d              !< 3 in a plane, 6 in space
+    real(wp), intent(in) :: twist(d)      !< of the body: rotation, then shift at the origin
+    real(wp), intent(in) :: wrench(d)     !< moment about the origin, then force
+    real(wp), intent(inout) :: rest(d)    !< from which it is subtracted
+
+    if (d == 3) then
+      rest(1) = rest(1) - (twist(2)*wrench(3) - twist(3)*wrench(2))
+      rest(2) = rest(2) + twist(1)*wrench(3)
+      rest(3) = rest(3) - twist(1)*wrench(2)
+    else
+      rest(1) = rest(1) - (twist(2)*wrench(3) - twist(3)*wrench(2) + twist(5)*wrench(6) - twist(6)*wrench(5))
+      rest(2) = rest(2) - (twist(3)*wrench(1) - twist(1)*wrench(3) + twist(6)*wrench(4) - twist(4)*wrench(6))
+      rest(3) = rest(3) - (twist(1)*wrench(2) - twist(2)*wrench(1) + twist(4)*wrench(5) - twist(5)*wrench(4))
+      rest(4) = rest(4) - (twist(2)*wrench(6) - twist(3)*wrench(5))
+      rest(5) = rest(5) - (twist(3)*wrench(4) - twist(1)*wrench(6))
+      rest(6) = rest(6) - (twist(1)*wrench(5) - twist(2)*wrench(4))
+    end if
+  end subroutine subtract_crossed
+
+  !> The product of a row with a twist, of all orders of which there are n numbers together.
+  pure real(wp) function pairing(n, row, twist) result(product)
+    integer, intent(in) :: n              !< how many numbers
+    real(wp), intent(in) :: row(n)        !< of the row
+    real(wp), intent(in) :: twist(n)      !< of the twist
+    integer :: c
+
+    product = 0.0_wp
+    do c = 1, n
+      product = product + row(c)*twist(c)
+    end do
+  end function pairing
+end module mech9_gradient_rows
