@@ -40,6 +40,7 @@ module mech9_columns
     integer :: sensitivities = 0            !< how many columns, the last ones, are derivatives by parameters
     type(string_type), allocatable :: parameters(:)   !< names of these parameters
     type(poses_type) :: poses               !< columns after the others, if they were requested
+    integer :: varied_poses = 0             !< how many derivatives by parameters stand after the poses: of origins and rotations
     integer :: unrecorded = 0               !< how many derivatives by parameters stand after the poses, for quantities alone
   contains
     procedure :: append
@@ -52,6 +53,7 @@ module mech9_columns
     procedure :: append_sensitivities
     procedure :: fill_sensitivities
     procedure :: fill_beyond_motion
+    procedure :: fill_varied_poses
     procedure :: derivatives_of
     procedure :: width
     procedure :: family_of
@@ -231,6 +233,7 @@ contains
       return
     end if
     self%sensitivities = size(parameters)*self%varied
+    self%varied_poses = size(parameters)*12*self%poses%n_links
     do p = 1, size(parameters)
       do i = 2, self%varied + 1
         name = self%names(i)%text
@@ -286,6 +289,17 @@ contains
       row(at + 1:at + size(values, 2)) = values(p, :)
     end do
   end subroutine fill_beyond_motion
+
+  !> Fill the derivatives of the links' poses by parameters in a row: by all parameters for each number in the order of the poses.
+  pure subroutine fill_varied_poses(self, values, row)
+    class(columns_type), intent(in) :: self        !< the columns
+    real(wp), intent(in) :: values(:, :)           !< (P,12 links) derivatives of all origins, then of all rotations by rows
+    real(wp), intent(inout) :: row(:)              !< numbers of one row, one for each column
+    integer :: before
+
+    before = self%count + self%poses%width()
+    row(before + 1:before + self%varied_poses) = reshape(values, [self%varied_poses])
+  end subroutine fill_varied_poses
 
   !> Put derivatives by parameters in the order of columns: all by the first parameter first. The arrays have known shapes, so that
   !> the compiler keeps their addresses in registers.
@@ -356,11 +370,11 @@ contains
     call move_alloc(grown, texts)
   end subroutine grow
 
-  !> The number of columns, poses and derivatives that are not recorded included.
+  !> The number of columns, poses with their derivatives, and derivatives that are not recorded included.
   pure integer function width(self)
     class(columns_type), intent(in) :: self  !< the columns
 
-    width = self%count + self%poses%width() + self%unrecorded
+    width = self%count + self%poses%width() + self%varied_poses + self%unrecorded
   end function width
 
   !> The columns of the position, the rate and the acceleration to which a column belongs, where all three are recorded.

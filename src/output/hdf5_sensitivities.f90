@@ -7,8 +7,8 @@ module mech9_hdf5_sensitivities
   private
   public :: quantities_of_sensitivity, add_sensitivities, put_parameters
 
-  !> Number of data sets beside those of motors: coordinates and points with their derivatives in time, forces, energies.
-  integer, parameter :: quantities_of_sensitivity = 6 + 4 + 3
+  !> Number of data sets beside those of motors: coordinates and points with their derivatives in time, forces, energies, poses.
+  integer, parameter :: quantities_of_sensitivity = 6 + 4 + 3 + 2
 
 contains
 
@@ -25,6 +25,7 @@ contains
     points = (columns%motion - 1)/(columns%derivatives + 1) - n
     call add_forces(series, columns)
     call add_scalars(series, columns)
+    if (columns%varied_poses > 0) call add_poses(series, columns)
     do order = 0, columns%derivatives
       before = columns%count - columns%sensitivities + order*n
       call series%add('sensitivity/'//trim(names(order)), &
@@ -97,6 +98,25 @@ contains
       end associate
     end do
   end subroutine add_scalars
+
+  !> Add the derivatives of the poses of links.
+  subroutine add_poses(series, columns)
+    type(hdf5_series_type), intent(inout) :: series   !< the quantities of the file
+    type(columns_type), intent(in) :: columns         !< columns of the rows to come
+    character(len=*), parameter :: per_unit = ' per unit of the parameter in the data file'
+    integer :: before, parameters, n, i
+
+    before = columns%count + columns%poses%width()
+    parameters = size(columns%parameters)
+    n = columns%poses%n_links
+    call series%add('sensitivity/origin', [(before + i, i=1, 3*n*parameters)], [parameters, 3, n], &
+                    'derivatives of origin by the parameters', 'm'//per_unit, &
+                    ['/time     ', '/link     ', '/axis     ', '/parameter'])
+    before = before + 3*n*parameters
+    call series%add('sensitivity/rotation', [(before + i, i=1, 9*n*parameters)], [parameters, 3, 3, n], &
+                    'derivatives of rotation by the parameters', '1'//per_unit, &
+                    ['/time     ', '/link     ', '/axis     ', '/link_axis', '/parameter'])
+  end subroutine add_poses
 
   !> The unit of some columns, per unit of a parameter in the data file.
   pure function unit_of_all(columns, first, n) result(text)

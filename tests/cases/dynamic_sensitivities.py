@@ -1,6 +1,6 @@
 """Derivatives of free motions by parameters: of a double pendulum against eighth-order differences of motions in extended precision;
 of closed chains, through changes of the independent coordinates, with springs, forces and drives, against differences of
-whole runs; identities of scaling, of the start and of driven motions; what is refused, and why.
+whole runs, energies and poses of links among them; identities of scaling, of the start and of driven motions; what is refused, and why.
 
 Compares the program with itself in part: differences of runs at other values of a parameter, and mech9d with mech9k.
 
@@ -290,6 +290,35 @@ def check_hdf5(case):
                 case.checks.true((data[:, p] == found[f'd(E.{part})/d({name})']).all(), f'E_{part} by {name}')
 
 
+def check_poses(case):
+    """Derivatives of the poses of links in the HDF5 file, against differences of runs."""
+    try:
+        import h5py
+    except ImportError:
+        case.checks.left_out('h5py is not installed (Debian: python3-h5py)')
+        return
+    path = os.path.join(case.directory, 'a.h5')
+    for text, parameters, program in ((FOUR_BAR + SOLVER, (FOUR_BAR_PARAMETERS[0], FOUR_BAR_PARAMETERS[7]), case.mech9d),
+                                      (SPATIAL + SOLVER, SPATIAL_PARAMETERS[:2], case.mech9d),
+                                      (FOUR_BAR.replace(', velocity=1.0', '') + "&drive coordinate=1, kind='polynomial', coefficients=0.2,3 /\n",
+                                       FOUR_BAR_PARAMETERS[:1], case.mech9k)):
+        def poses(*options):
+            case.table(text + declared(parameters) + '&output poses=.true. /\n', '--hdf5', path, *options, program=program)
+            with h5py.File(path) as file:
+                found = {name: file[name][()] for name in ('origin', 'rotation')}
+                found.update({f'd {name}': file[f'sensitivity/{name}'][()] for name in found if 'sensitivity' in file})
+                return found
+
+        found = poses('--set', 'output.sensitivities=.true.')
+        case.checks.equal(found['d rotation'].shape, (*found['rotation'].shape, len(parameters)), 'the parameter is the last dimension')
+        for p, (name, _, value) in enumerate(parameters):
+            step = 2.0**-9 * max(abs(value), 0.1)
+            runs = [[poses('--set', f'parameter({p + 1}).value={value + sign * i * step!r}') for sign in (1, -1)] for i in (1, 2, 3, 4)]
+            for data in ('origin', 'rotation'):
+                expected = sum(weight * (above[data] - below[data]) / step for weight, (above, below) in zip(WEIGHTS, runs))
+                case.close(found[f'd {data}'][..., p], expected, BY_RUNS, f'{data} of all links by {name}')
+
+
 def check_smooth_joints(case):
     """Drives that move between rests by smooth laws have no jumps of their rates but round-off: derivatives go on behind the joints."""
     for law in ('cycloidal', 'polynomial345'):
@@ -337,6 +366,7 @@ def main():
         check_identities(case)
         check_driven(case)
         check_hdf5(case)
+        check_poses(case)
         check_smooth_joints(case)
         check_refusals(case)
         case.against_runs(FOUR_BAR, FOUR_BAR_PARAMETERS, 'four-bar with loads', 2.0**-10)

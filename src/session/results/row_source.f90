@@ -180,7 +180,9 @@ contains
       if (allocated(err)) return
       call self%columns%fill_sensitivities(self%sensitivity, row)
       if (self%varied%wanted) call self%varied%find(self%simulation, self%columns, err)
-      if (self%varied%wanted .and. .not. allocated(err)) call self%columns%fill_beyond_motion(self%varied%values, row)
+      if (.not. self%varied%wanted .or. allocated(err)) return
+      call self%columns%fill_beyond_motion(self%varied%values, row)
+      if (size(self%varied%poses) > 0) call self%columns%fill_varied_poses(self%varied%poses, row)
     end if
   end subroutine fill_row
 

@@ -1,4 +1,5 @@
-!> The derivatives of forces, motors and energies by the parameters that a run records, from the present state of its simulation.
+!> The derivatives of forces, motors, energies and poses of links by the parameters that a run records, from the present state of its
+!> simulation.
 module mech9_varied_record
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -6,6 +7,7 @@ module mech9_varied_record
   use mech9_simulation, only: simulation_type
   use mech9_known_derivatives, only: check_known
   use mech9_varied_motion, only: varied_motion_type
+  use mech9_varied_poses, only: find_varied_poses
   use mech9_varied_forces, only: varied_forces_type, new_varied_forces, find_varied_forces
   use mech9_motor, only: motor_change_type
   use mech9_varied_motors, only: find_varied_motors
@@ -19,6 +21,7 @@ module mech9_varied_record
   type :: varied_record_type
     logical :: wanted = .false.                       !< some of these derivatives are recorded, or quantities need them
     real(wp), allocatable :: values(:, :)             !< (P,columns) derivatives of the columns beyond the motion
+    real(wp), allocatable :: poses(:, :)              !< (P,12 links) of origins and rotations; of no size where they are not recorded
     logical, private :: with_forces = .false.         !< those of forces are wanted
     logical, private :: with_reactions = .false.      !< those of pairs and couplings, too
     logical, private :: with_motors = .false.         !< those of motors are wanted
@@ -53,9 +56,10 @@ contains
         self%with_energies = is_asked_for(last - columns%energies + 1, last)
       end if
       if (self%with_forces) self%with_reactions = size(columns%reacting) > 0
-      self%wanted = self%with_forces .or. self%with_motors .or. self%with_energies
+      self%wanted = self%with_forces .or. self%with_motors .or. self%with_energies .or. columns%varied_poses > 0
       if (.not. self%wanted) return
       allocate (self%values(size(columns%parameters), last - columns%motion), source=0.0_wp)
+      allocate (self%poses(size(columns%parameters), columns%varied_poses/size(columns%parameters)), source=0.0_wp)
     end associate
     call simulation%begin_varied_motion(variable, err)
   contains
@@ -96,6 +100,7 @@ contains
       if (allocated(err)) return
       call put_forces(self, columns)
     end if
+    if (size(self%poses) > 0) call find_varied_poses(motion, self%poses)
     if (self%with_motors) call put_motors(self, simulation, motion, columns, err)
     if (allocated(err)) return
     if (.not. self%with_energies) return
