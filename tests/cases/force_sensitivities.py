@@ -256,7 +256,8 @@ def check_chains(case):
                       'cylindrical joint')
     case.against_runs(GEARED, (('ratio', 'coupling.ratio', -1.5), ('phase', 'coupling.phase', 1.1), ('mass', 'body(2).mass', 1.4),
                                ('length', 'pair(5).point(1)', 0.8)), 'gears')
-    case.against_runs(PLANETS, (('mass', 'body(1).mass', 1.1), ('height', 'body(1).centre(3)', 0.1), ('push', 'load.force', 1.5)),
+    case.against_runs(PLANETS, (('mass', 'body(1).mass', 1.1), ('height', 'body(1).centre(3)', 0.1), ('push', 'load.force', 1.5),
+                                ('ratio', 'coupling(2).ratio', 0.30769230769230769)),
                       'a planetary gear')
 
 
