@@ -36,6 +36,15 @@ contains
     call tester%is_true(index(line, '2400:00:00 left') > 0, 'the longest line fits')
     line = progress_line('run', 2.0_wp, 5.0_wp)
     call tester%is_true(index(line, '100 %') > 0 .and. index(line, '0 s left') > 0, 'a run shows no more than 100 per cent')
+    line = progress_line('run', 0.95_wp, 10.0_wp, found=0.9_wp)
+    call tester%is_true(index(line, ' 95 % [') > 0 .and. index(line, '10 s left') > 0, 'what was done before takes no time')
+    line = progress_line('run', 0.25_wp, 60.0_wp, 'failed 3 (code 6), 12 (code 5)')
+    call tester%is_true(line == 'run  25 % [######..................]  3:00 left  failed 3 (code 6), 12 (code 5)', &
+                        'a note stands at the end: '//line)
+    line = progress_line('run', 0.0_wp, 5.0_wp, 'failed 3 (code 6)')
+    call tester%is_true(index(line, ']  failed 3') > 0, 'a note without a time left')
+    line = progress_line('run', 0.25_wp, 60.0_wp, repeat('many words ', 20))
+    call tester%is_true(index(line, 'many words many words') > 0, 'the line ends where a note is too long')
   end subroutine test_line
 
   !> After a fast stretch, a loop that slows down is noticed at the next look, 64 calls away at most.

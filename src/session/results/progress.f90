@@ -46,9 +46,11 @@ contains
   end subroutine start
 
   !> Show the progress; the call is cheap enough for each position.
-  subroutine update(self, fraction)
-    class(progress_type), intent(inout) :: self   !< the progress
-    real(wp), intent(in) :: fraction              !< 0 to 1
+  subroutine update(self, fraction, note, found)
+    class(progress_type), intent(inout) :: self      !< the progress
+    real(wp), intent(in) :: fraction                 !< 0 to 1
+    character(len=*), intent(in), optional :: note   !< a few words behind the time left; none if absent
+    real(wp), intent(in), optional :: found          !< part of the fraction that was done before; 0 if absent
     real(wp) :: elapsed
     integer :: status
 
@@ -58,7 +60,7 @@ contains
     if (elapsed < first_line_after) return
     ! the cursor goes back to the beginning, so that the echo of Ctrl-C by the terminal does not begin another line
     write (error_unit, '(3a)', advance='no', iostat=status) achar(13), &
-      progress_line(self%label, fraction, elapsed), achar(13)
+      progress_line(self%label, fraction, elapsed, note, found), achar(13)
     flush (error_unit, iostat=status)
     self%shown = .true.
   end subroutine update
@@ -76,23 +78,30 @@ contains
     self%active = .false.
   end subroutine finish
 
-  !> The line: label, share done, a bar, and the time left if the run goes on as it went so far.
-  pure function progress_line(label, fraction, elapsed) result(line)
-    character(len=*), intent(in) :: label   !< name of the run
-    real(wp), intent(in) :: fraction        !< 0 to 1; less or more is taken as that
-    real(wp), intent(in) :: elapsed         !< since the start [s]
+  !> The line: label, share done, a bar, the time left if the run goes on as it went so far, and a note.
+  pure function progress_line(label, fraction, elapsed, note, found) result(line)
+    character(len=*), intent(in) :: label            !< name of the run
+    real(wp), intent(in) :: fraction                 !< 0 to 1; less or more is taken as that
+    real(wp), intent(in) :: elapsed                  !< since the start [s]
+    character(len=*), intent(in), optional :: note   !< a few words at the end; none if absent
+    real(wp), intent(in), optional :: found          !< part of the fraction that was done before; 0 if absent
     character(len=line_width) :: line
     integer, parameter :: bar_width = 24
     character(len=:), allocatable :: left
-    real(wp) :: share
+    character(len=6) :: percent
+    real(wp) :: share, done
     integer :: filled
 
     share = max(0.0_wp, min(1.0_wp, fraction))
     filled = nint(bar_width*share)
+    done = share
+    if (present(found)) done = share - found
     left = ''
-    if (share > 1.0e-6_wp) left = time_text(elapsed*((1.0_wp - share)/share))//' left'
-    write (line, '(a,i4,6a)') label(:min(len(label), 24)), int(100.0_wp*share), ' % [', &
-      repeat('#', filled), repeat('.', bar_width - filled), ']  ', left, ' '
+    if (done > 1.0e-6_wp) left = time_text(elapsed*((1.0_wp - share)/done))//' left'
+    if (present(note) .and. left /= '') left = left//'  '
+    if (present(note)) left = left//note
+    write (percent, '(i4,a)') int(100.0_wp*share), ' %'
+    line = label(:min(len(label), 24))//percent//' ['//repeat('#', filled)//repeat('.', bar_width - filled)//']  '//left
   end function progress_line
 
   !> A time as `4 s`, `1:05` (minutes) or `2:01:05` (hours).

@@ -38,6 +38,7 @@ module mech9_study_runs
     integer, private :: total = 0                          !< runs of the part
     integer, private :: handed_out = 0                     !< runs of the part that were handed out, the first ones
     integer, private :: written = 0                        !< runs of the part that are written, the first ones
+    integer, private :: found = 0                          !< how many of these were made before
     type(made_run_type), allocatable, private :: made(:)   !< runs that wait for their turn, each at its place in a ring
     logical, allocatable, private :: before(:)             !< such a run was made before, and is still to be read from the file
   contains
@@ -132,11 +133,26 @@ contains
       if (self%made(i)%number /= self%first + self%written*self%step) exit
       call add_up(self, self%made(i))
       call self%results%show_run(self%made(i), self%stopped)
+      if (self%before(i)) self%found = self%found + 1
       self%before(i) = .false.
       self%written = self%written + 1
-      call self%progress%update(real(self%written, wp)/self%total)
+      call self%progress%update(real(self%written, wp)/self%total, failed_words(self%sums), real(self%found, wp)/self%total)
     end do
   end subroutine write_ready
+
+  !> How many runs failed so far, by their codes.
+  pure function failed_words(sums) result(words)
+    type(study_sums_type), intent(in) :: sums   !< over the runs
+    character(len=:), allocatable :: words
+    integer :: i
+
+    words = ''
+    do i = 1, sums%n_codes
+      if (i == 1) words = 'failed '
+      if (i > 1) words = words//', '
+      words = words//to_text(sums%failed(i))//' (code '//to_text(sums%codes(i))//')'
+    end do
+  end function failed_words
 
   !> Stop at the user's request.
   subroutine stop_here(self)
