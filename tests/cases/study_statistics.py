@@ -1,8 +1,8 @@
 """Summaries and plots of studies: quantiles and moments are those of the table, shares of variance those of linear propagation where
 the quantity is linear, all of them the same for parts of one; the numbers in the scripts of plots are those of the table, and gnuplot
-draws them; requests that cannot be drawn.
+draws them; requests that cannot be drawn. Shares by derivatives are those of the linear propagation of errors.
 
-usage: study_statistics.py MECH9K
+usage: study_statistics.py MECH9K MECH9D
 """
 import json
 import os
@@ -33,6 +33,35 @@ SLIDES = """&structure cq=1,2 /
 &parameter name='start', sets='drive(1).coefficients(1)', spread=0.06, distribution='uniform' /
 &parameter name='speed', sets='drive(2).coefficients(2)', low=0.2, high=0.5 /
 &parameter name='high', sets='point(1).position(2)', low=0.6, high=0.8 /
+"""
+# A stone that falls: its height at the end is start + rate - pull/2, its rate there the rate less the pull.
+STONE = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=0,1,0 /
+&initial coordinate=1, position=3, velocity=4 /
+&body link=2, mass=2 /
+&gravity acceleration=0,-9.81,0 /
+&time end=1, intervals=10 /
+&parameter name='start', sets='initial.position', spread=0.3 /
+&parameter name='rate', sets='initial.velocity', low=3, high=7 /
+&parameter name='pull', sets='gravity.acceleration(2)', spread=0.5, distribution='uniform' /
+&parameter name='mass', sets='body.mass', spread=0.1 /
+&quantity name='height', of='q1', take='end' /
+&quantity name='speed', of='dq1', take='end' /
+&quantity name='gap', of='closure', take='max' /
+&study kind='latin', runs=100 /
+"""
+# With a crank of 0.6 m and a rod of 0.5 m, the means, the slider comes to a dead point; other cranks turn.
+FOLDING = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=0.5,0,0, moving_point=0,0,0 /
+&pair coordinate=4, links=1,4, kind='prismatic', axis=1,0,0, zero=0,1,0, moving_point=0,0,0 /
+&initial coordinate=4, position=1 /
+&drive coordinate=1, kind='polynomial', coefficients=0.4, 7 /
+&time end=1, intervals=20 /
+&quantity name='stroke', of='q4', take='range' /
+&parameter name='crank', sets='pair(2).point(1)', low=0.2, high=1 /
+&study kind='random', runs=20 /
 """
 RUNS = 400
 
@@ -79,6 +108,11 @@ def summaries(cases):
         check.equal([one['parameter'] for one in place['first_order_shares']], ['far', 'start', 'speed', 'high'], f'{kind}: parameters')
         check.near([one['share'] for one in place['first_order_shares']], variances / sum(variances), 1e-10, f'{kind}: shares')
         check.near(place['share_of_rest'], 0, 1e-10, f'{kind}: the rest of the variance')
+        check.equal([one['parameter'] for one in place['linear_shares']], ['far', 'start', 'speed', 'high'], f'{kind}: parameters of linear shares')
+        check.near([one['share'] for one in place['linear_shares']], variances / sum(variances), 1e-12, f'{kind}: linear shares')
+        check.near([one['derivative'] for one in place['linear_shares']], [1, 1, 1, 0], 1e-12, f'{kind}: derivatives')
+        check.near(place['linear_deviation'], np.sqrt(sum(variances)), 1e-12, f'{kind}: linear deviation')
+        check.true('place: shares by its derivatives: far 0.0' in printed, f'{kind}: linear shares in words', printed)
         check.near([one['share'] for one in height['first_order_shares']], [0, 0, 0, 1], 1e-10, f'{kind}: shares of one cause')
         check.true('first_order_shares' not in level, f'{kind}: what does not vary has no shares', level)
         for name, one in (('place', place), ('level', level)):
@@ -90,10 +124,35 @@ def summaries(cases):
     check.true('error' not in told['quantities'][0]['quantiles'][0] and 'first_order_shares' not in told['quantities'][0],
                'ten runs: what they do not tell', told)
     _, told, printed = cases.study(SLIDES + "&study kind='random', runs=1 /\n")
-    check.true('deviation' not in told['quantities'][0] and 'deviation' not in printed, 'one run tells nothing of the scatter', printed)
+    check.true('deviation' not in told['quantities'][0] and 'standard error' not in printed, 'one run tells nothing of the scatter', printed)
     cases.write('0.5 0.3 0.3 0.7\n0.6 0.3 0.3 0.7\n', 'designs.dat')
     _, told, printed = cases.study(SLIDES + "&study kind='list', file='designs.dat' /\n")
     check.true('deviation' not in told['quantities'][0] and 'quantiles' not in printed, 'a list does not scatter', told)
+
+
+def propagation(cases, mech9d):
+    """Shares by derivatives of a free motion, a quantity without derivatives, a mechanism that cannot be put together at the means."""
+    check = cases.checks
+    mech9k, cases.mech9k = cases.mech9k, mech9d
+    _, told, printed = cases.study(STONE)
+    height, speed, gap = told['quantities']
+    for one, by in ((height, [1, 1, 0.5, 0]), (speed, [0, 1, 1, 0])):
+        parts = (np.array(by) * [0.3, 4 / 12**0.5, 0.5 / 3**0.5, 0.1])**2
+        check.near([share['derivative'] for share in one['linear_shares']], by, 1e-6, f"derivatives of {one['name']}")
+        check.near([share['share'] for share in one['linear_shares']], parts / sum(parts), 1e-6, f"linear shares of {one['name']}")
+        check.near(one['linear_deviation'], np.sqrt(sum(parts)), 1e-6, f"linear deviation of {one['name']}")
+    check.true('linear_shares' not in gap and 'gap: no shares by derivatives, because it has none by the parameters' in printed,
+               'a quantity without derivatives', printed)
+    # at the means, crank and rod are equally long: this linkage passes a change point, and has no derivatives
+    cases.mech9k = mech9k
+    _, told, printed = cases.study(FOLDING)
+    check.true('note: no shares by derivatives: ' in printed and 'linear_shares' not in told['quantities'][0] and 'mean' in told['quantities'][0],
+               'a run that fails at the means', printed)
+    cases.mech9k = mech9k
+    _, told, printed = cases.study(SLIDES.replace(', low=0.2, high=0.5', ', low=0.2, high=0.5, count=2').replace(', low=0.6, high=0.8', ', low=0.6, high=0.8, count=2')
+                                   .replace('spread=0.02', 'low=0.4, high=0.6, count=2').replace("spread=0.06, distribution='uniform'", 'low=0.2, high=0.3, count=2')
+                                   + "&study kind='grid' /\n")
+    check.true('linear_shares' not in told['quantities'][0] and 'derivatives' not in printed, 'a grid has no shares by derivatives', printed)
 
 
 def plots(cases):
@@ -171,6 +230,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         cases = Cases(checks, folder, os.path.abspath(sys.argv[1]))
         summaries(cases)
+        propagation(cases, os.path.abspath(sys.argv[2]))
         if checks.has('gnuplot', 'gnuplot-nox'):
             plots(cases)
             letters(cases)

@@ -1,7 +1,7 @@
 !> One evaluation for Dakota: a run with the values of its variables, and the quantities that it asks for.
 module mech9_dakota_task
   use, intrinsic :: iso_fortran_env, only: error_unit
-  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data, exit_singular, exit_interrupted
   use mech9_text, only: string_type, nearest_name
@@ -13,14 +13,14 @@ module mech9_dakota_task
   use mech9_row_source, only: row_source_type
   use mech9_quantity_record, only: quantity_record_type
   use mech9_design_run, only: run_design, find_quantities
-  use mech9_driven_quantities, only: find_driven_quantities
+  use mech9_design_gradient, only: find_design_gradient
   use mech9_dakota_file, only: dakota_request_type, read_dakota, write_dakota_failure, write_dakota_results
   implicit none
   private
   public :: work_for_dakota
 
   !> Bits of the active set vector.
-  integer, parameter :: gradients = 2, hessians = 4
+  integer, parameter :: values = 1, gradients = 2, hessians = 4
   !> Letters of a name that are compared when the nearest name is looked for.
   integer, parameter :: longest_name = 64
 
@@ -43,15 +43,14 @@ contains
     call options%arguments('dakota', paths)
     call find_quantities(program_name, model, columns, err)
     if (.not. allocated(err)) call read_dakota(paths(1)%text, request, err)
-    if (.not. allocated(err)) call match_names(program_name, model, paths(1)%text, request, parameters, quantities, err)
+    if (.not. allocated(err)) call match_names(model, paths(1)%text, request, parameters, quantities, err)
     if (.not. allocated(err)) call evaluate(program_name, varied, model, request, parameters, quantities, paths(2)%text, &
                                             options%has('quiet'), err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine work_for_dakota
 
   !> Find the parameters and quantities that Dakota means, and refuse what it cannot have.
-  subroutine match_names(program_name, model, path, request, parameters, quantities, err)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine match_names(model, path, request, parameters, quantities, err)
     type(model_type), intent(in) :: model                   !< the model
     character(len=*), intent(in) :: path                    !< of the parameters file
     type(dakota_request_type), intent(in) :: request        !< the evaluation
@@ -73,8 +72,6 @@ contains
     if (request%wants(hessians)) then
       call raise(err, exit_data, path//': second derivatives are asked for, and there are none; use no_hessians or '// &
                  'numerical_hessians')
-    else if (request%wants(gradients) .and. program_name == 'mech9d') then
-      call raise(err, exit_data, path//': gradients are asked for, and mech9d gives none to Dakota; use numerical_gradients')
     end if
   end subroutine match_names
 
@@ -117,16 +114,14 @@ contains
     logical, intent(in) :: quiet                            !< a failure is not told
     type(error_type), allocatable, intent(out) :: err       !< allocated if the results cannot be written
     type(error_type), allocatable :: failure
-    real(wp) :: values(size(model%parameters)), numbers(size(model%request%quantities))
+    real(wp) :: present(size(model%parameters)), numbers(size(model%request%quantities))
     real(wp) :: gradient(size(model%parameters), size(model%request%quantities))
 
-    values = model%parameters%value
-    values(parameters) = request%values
-    call run_at(program_name, varied, values, request%wants(gradients), numbers, gradient, failure)
-    if (.not. allocated(failure) .and. request%wants(gradients)) then
-      if (any(ieee_is_nan(gradient(parameters(request%by), pack(quantities, iand(request%active, gradients) /= 0))))) &
-        call raise(failure, exit_singular, 'a quantity has no derivative here')
-    end if
+    present = model%parameters%value
+    present(parameters) = request%values
+    call run_at(program_name, varied, present, request%wants(gradients), numbers, gradient, failure)
+    if (.not. allocated(failure)) &
+      call check_numbers(request, numbers(quantities), gradient(parameters(request%by), quantities), failure)
     if (allocated(failure)) then
       call explain(failure)
       if (failure%code == exit_interrupted) then
@@ -140,6 +135,26 @@ contains
       call write_dakota_results(path, request, numbers(quantities), gradient(parameters(request%by), quantities), err)
     end if
   end subroutine evaluate
+
+  !> Fail where a number that Dakota asks for does not exist.
+  subroutine check_numbers(request, numbers, gradient, err)
+    type(dakota_request_type), intent(in) :: request        !< the evaluation
+    real(wp), intent(in) :: numbers(:)                      !< (responses)
+    real(wp), intent(in) :: gradient(:, :)                  !< (derivative variables,responses)
+    type(error_type), allocatable, intent(out) :: err       !< allocated if one does not exist
+    integer :: i
+
+    do i = 1, size(numbers)
+      associate (active => request%active(i), name => request%responses(i)%text)
+        if (iand(active, values) /= 0 .and. .not. ieee_is_finite(numbers(i))) then
+          call raise(err, exit_singular, "quantity '"//name//"' is not a finite number")
+        else if (iand(active, gradients) /= 0 .and. .not. all(ieee_is_finite(gradient(:, i)))) then
+          call raise(err, exit_singular, "quantity '"//name//"' has no derivative here")
+        end if
+      end associate
+      if (allocated(err)) return
+    end do
+  end subroutine check_numbers
 
   !> Make a run with values of the parameters.
   subroutine run_at(program_name, varied, values, with_gradient, numbers, gradient, err)
@@ -158,7 +173,7 @@ contains
     call varied%at(values, model, err)
     if (allocated(err)) return
     if (with_gradient) then
-      call find_driven_quantities(program_name, model, varied, numbers, gradient, err)
+      call find_design_gradient(program_name, model, varied, numbers, gradient, err)
     else
       call run_design(program_name, model, source, numbers, err)
     end if

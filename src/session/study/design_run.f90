@@ -17,7 +17,7 @@ module mech9_design_run
   use mech9_quantity_record, only: quantity_record_type
   implicit none
   private
-  public :: run_design, begin_design, find_quantities, columns_of_runs
+  public :: run_design, begin_design, find_quantities, columns_of_runs, is_driven
 
 contains
 

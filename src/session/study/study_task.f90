@@ -20,6 +20,7 @@ module mech9_study_task
   use mech9_user_calls, only: calls_user_procedures
   use mech9_study_team, only: study_team_type
   use mech9_study_threads, only: make_in_threads, threads_of_machine, has_threads
+  use mech9_study_propagation, only: propagation_type, propagate
   use mech9_study_words, only: print_study, save_study_report
   implicit none
   private
@@ -174,7 +175,8 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(inout) :: reported                      !< the report is written
     class(study_team_type), intent(in), optional :: team    !< processes that make the runs together
-    type(error_type), allocatable :: err
+    type(propagation_type), allocatable :: propagation(:)
+    type(error_type), allocatable :: err, without_shares
     real(wp) :: clock
     integer :: threads
     logical :: quiet, kept
@@ -192,7 +194,14 @@ contains
     call runs%finish(err)
     kept = .true.
     if (allocated(err)) kept = err%code == exit_interrupted
-    if (.not. quiet) call print_study(error_unit, model, quantities, runs%sums, runs%statistics, seconds() - clock)
+    clock = seconds() - clock
+    allocate (propagation(0))
+    if (.not. allocated(err) .and. runs%statistics%drawn .and. runs%sums%done > 0 .and. &
+        .not. (quiet .and. .not. options%has('report'))) &
+      call propagate(program_name, model, varied, propagation, without_shares)
+    if (.not. quiet) call print_study(error_unit, model, quantities, runs%sums, runs%statistics, propagation, clock)
+    if (.not. quiet .and. allocated(without_shares)) &
+      write (error_unit, '(a)') 'note: no shares by derivatives: '//without_shares%message
     if (.not. quiet .and. kept) call runs%results%print_paths(error_unit)
     if (allocated(err)) then
       call diagnostics%add_error(err)
@@ -208,7 +217,7 @@ contains
     end if
     if (.not. options%has('report')) return
     call save_study_report(options%argument('report'), program_name, model, quantities, runs%values, runs%sums, &
-                           runs%statistics, runs%results%paths%table, diagnostics, err)
+                           runs%statistics, propagation, runs%results%paths%table, diagnostics, err)
     reported = .true.
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out

@@ -11,6 +11,7 @@ module mech9_study_words
   use mech9_run_words, only: duration, begin_report
   use mech9_study_sums, only: study_sums_type
   use mech9_main_effects, only: shares_type
+  use mech9_study_propagation, only: propagation_type
   use mech9_study_statistics, only: study_statistics_type, quantile_type, n_levels, quantile_levels
   implicit none
   private
@@ -19,12 +20,13 @@ module mech9_study_words
 contains
 
   !> Print how the study went: failed runs by code, and the quantities. For values that were drawn, means and deviations are told.
-  subroutine print_study(unit, model, quantities, sums, statistics, time)
+  subroutine print_study(unit, model, quantities, sums, statistics, propagation, time)
     integer, intent(in) :: unit                            !< Fortran unit to write to
     type(model_type), intent(in) :: model                  !< the model
     type(quantity_record_type), intent(in) :: quantities   !< with their columns
     type(study_sums_type), intent(in) :: sums              !< over the runs
     type(study_statistics_type), intent(in) :: statistics  !< of the same runs
+    type(propagation_type), intent(in) :: propagation(:)   !< (quantities) their scatter to first order; none where it was not found
     real(wp), intent(in) :: time                           !< time that the study took [s]
     integer :: i
 
@@ -33,16 +35,17 @@ contains
       write (unit, '(a)') counted(sums%failed(i), 'run')//' failed with exit code '//to_text(sums%codes(i))// &
         ', the first one is run '//to_text(sums%first_failed(i))
     end do
-    if (sums%done > 0) call print_quantities(unit, model, quantities, sums, statistics)
+    if (sums%done > 0) call print_quantities(unit, model, quantities, sums, statistics, propagation)
   end subroutine print_study
 
   !> Print the range of each quantity, and of values that were drawn its mean, deviation, quantiles, and the shares in its variance.
-  subroutine print_quantities(unit, model, quantities, sums, statistics)
+  subroutine print_quantities(unit, model, quantities, sums, statistics, propagation)
     integer, intent(in) :: unit                            !< Fortran unit to write to
     type(model_type), intent(in) :: model                  !< the model
     type(quantity_record_type), intent(in) :: quantities   !< with their columns
     type(study_sums_type), intent(in) :: sums              !< over the runs
     type(study_statistics_type), intent(in) :: statistics  !< of the same runs
+    type(propagation_type), intent(in) :: propagation(:)   !< (quantities) their scatter to first order; none where it was not found
     type(shares_type), allocatable :: shares(:)
     integer :: i
 
@@ -53,6 +56,7 @@ contains
         write (unit, '(a)') name//': '//to_text(sums%low(i), 8)//' to '//to_text(sums%high(i), 8)//' '//quantities%unit_of(i)
         if (statistics%drawn .and. sums%done > 1) call print_quantiles(unit, name, quantities%unit_of(i), statistics, i)
         if (statistics%drawn) call print_shares(unit, name, model, shares(i))
+        if (i <= size(propagation)) call print_propagation(unit, name, quantities%unit_of(i), model, propagation(i))
       end associate
     end do
   end subroutine print_quantities
@@ -112,9 +116,31 @@ contains
     write (unit, '(a)') line//' the rest '//to_text(shares%rest, 3)
   end subroutine print_shares
 
+  !> Print how a quantity scatters to first order, by its derivatives.
+  subroutine print_propagation(unit, name, unit_name, model, propagation)
+    integer, intent(in) :: unit                            !< Fortran unit to write to
+    character(len=*), intent(in) :: name                   !< of the quantity
+    character(len=*), intent(in) :: unit_name              !< its unit
+    type(model_type), intent(in) :: model                  !< with the parameters
+    type(propagation_type), intent(in) :: propagation      !< of this quantity
+    character(len=:), allocatable :: line
+    integer :: k
+
+    if (.not. propagation%known) then
+      write (unit, '(a)') name//': no shares by derivatives, because it has none by the parameters'
+    else if (propagation%varies) then
+      line = name//': shares by its derivatives:'
+      do k = 1, size(propagation%share)
+        line = line//' '//model%parameters(k)%name//' '//to_text(propagation%share(k), 3)//','
+      end do
+      write (unit, '(a)') line//' and a deviation of '//to_text(propagation%deviation, 6)//' '//unit_name
+    end if
+  end subroutine print_propagation
+
   !> Write the report of a study as JSON: the runs, the failed ones by code, the ranges of parameters and quantities, and of values
   !> that were drawn how the quantities scatter.
-  subroutine save_study_report(path, program_name, model, quantities, values, sums, statistics, table_path, diagnostics, err)
+  subroutine save_study_report(path, program_name, model, quantities, values, sums, statistics, propagation, table_path, &
+                               diagnostics, err)
     character(len=*), intent(in) :: path                   !< of the report
     character(len=*), intent(in) :: program_name           !< mech9k or mech9d
     type(model_type), intent(in) :: model                  !< the model
@@ -122,6 +148,7 @@ contains
     type(study_sums_type), intent(in) :: values            !< of the parameters, over all runs
     type(study_sums_type), intent(in) :: sums              !< of the quantities, over the runs
     type(study_statistics_type), intent(in) :: statistics  !< of the runs that did not fail
+    type(propagation_type), intent(in) :: propagation(:)   !< (quantities) their scatter to first order; none where it was not found
     character(len=*), intent(in) :: table_path             !< path of the table; '-' is standard output; empty: no table
     type(diagnostics_type), intent(in) :: diagnostics      !< all errors, which determine the exit code
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
@@ -157,6 +184,7 @@ contains
       call json%add('unit', quantities%unit_of(i))
       call add_range(json, sums, i)
       if (statistics%drawn .and. sums%done > 1) call add_scatter(json, model, sums, statistics, shares(i), i)
+      if (i <= size(propagation)) call add_propagation(json, model, propagation(i))
       call json%end_object()
     end do
     call json%end_array()
@@ -175,6 +203,26 @@ contains
     call json%add('greatest', sums%high(i))
     call json%add('mean', sums%mean(i))
   end subroutine add_range
+
+  !> Add to the object of a quantity how it scatters to first order.
+  subroutine add_propagation(json, model, propagation)
+    type(json_type), intent(inout) :: json                 !< the report, inside the object of the quantity
+    type(model_type), intent(in) :: model                  !< with the parameters
+    type(propagation_type), intent(in) :: propagation      !< of this quantity
+    integer :: k
+
+    if (.not. propagation%known) return
+    call json%add('linear_deviation', propagation%deviation)
+    call json%begin_array('linear_shares')
+    do k = 1, size(propagation%share)
+      call json%begin_object()
+      call json%add('parameter', model%parameters(k)%name)
+      call json%add('derivative', propagation%derivative(k))
+      if (propagation%varies) call json%add('share', propagation%share(k))
+      call json%end_object()
+    end do
+    call json%end_array()
+  end subroutine add_propagation
 
   !> Add to the object of a quantity how it scatters.
   subroutine add_scatter(json, model, sums, statistics, shares, i)

@@ -8,7 +8,7 @@ module mech9_run_evaluator
   use mech9_variable_model, only: variable_model_type
   use mech9_quantity_evaluator, only: quantity_evaluator_type
   use mech9_row_source, only: row_source_type
-  use mech9_driven_quantities, only: find_driven_quantities
+  use mech9_design_gradient, only: find_design_gradient
   use mech9_design_run, only: run_design
   implicit none
   private
@@ -139,7 +139,7 @@ contains
     call make_model(self, values, q, model, made)
     if (.not. made) return
     model%request%output%gradients = .true.
-    call find_driven_quantities(self%program_name, model, self%variable, numbers, slopes, err)
+    call find_design_gradient(self%program_name, model, self%variable, numbers, slopes, err)
     if (allocated(err)) slopes = ieee_value(1.0_wp, ieee_quiet_nan)
   end subroutine take_gradient
 

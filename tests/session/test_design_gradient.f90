@@ -1,5 +1,5 @@
 !> Quantities of a driven motion and their derivatives, without any results: the stroke of a slider-crank.
-program test_driven_quantities
+program test_design_gradient
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -9,16 +9,16 @@ program test_driven_quantities
   use mech9_parser, only: parse_document
   use mech9_model, only: model_type
   use mech9_varied_document, only: varied_document_type, new_varied_document
-  use mech9_driven_quantities, only: find_driven_quantities
+  use mech9_design_gradient, only: find_design_gradient
   use mech9_testing, only: tester_type
   implicit none
 
   character, parameter :: eol = new_line('a')
   character(len=*), parameter :: slider_crank = &
     "&structure cq=1 /"//eol// &
-    "&pair coordinate=1, links=1,2, kind='revolute' /"//eol// &
-    "&pair coordinate=2, links=2,3, kind='revolute', point=0.3,0,0, moving_point=0,0,0 /"//eol// &
-    "&pair coordinate=3, links=3,4, kind='revolute', point=1.1,0,0, moving_point=0,0,0 /"//eol// &
+    "&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /"//eol// &
+    "&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /"//eol// &
+    "&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1.1,0,0, moving_point=0,0,0 /"//eol// &
     "&pair coordinate=4, links=1,4, kind='prismatic', axis=1,0,0, zero=0,1,0, moving_point=0,0,0 /"//eol// &
     "&initial coordinate=4, position=1.2 /"//eol// &
     "&drive coordinate=1, kind='polynomial', coefficients=0.4,10 /"//eol// &
@@ -44,7 +44,7 @@ contains
     call varied%at([0.25_wp, 1.0_wp], model, err)
     call tester%is_true(.not. allocated(err), 'there is a model')
     if (allocated(err)) return
-    call find_driven_quantities('mech9k', model, varied, numbers, gradient, err)
+    call find_design_gradient('mech9k', model, varied, numbers, gradient, err)
     call tester%is_true(.not. allocated(err), 'it moves')
     ! polynomials through outputs that are 1/36 of a turn apart
     call tester%near(numbers(1), 0.5_wp, 1.0e-9_wp, 'the stroke is twice the crank')
@@ -52,8 +52,8 @@ contains
     call tester%near(gradient(2, 1), 0.0_wp, 1.0e-9_wp, 'its derivative by the rod')
     call tester%is_true(all(ieee_is_nan(gradient(:, 2))), 'the error of closed chains has no derivative')
     call varied%at([0.3_wp, 0.25_wp], model, err)
-    if (.not. allocated(err)) call find_driven_quantities('mech9k', model, varied, numbers, gradient, err)
+    if (.not. allocated(err)) call find_design_gradient('mech9k', model, varied, numbers, gradient, err)
     call tester%is_true(allocated(err), 'a rod that is too short fails')
     call tester%finish()
   end subroutine run_tests
-end program test_driven_quantities
+end program test_design_gradient

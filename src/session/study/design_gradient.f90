@@ -1,0 +1,83 @@
+!> The quantities of one run with their derivatives by all parameters, without any files.
+module mech9_design_gradient
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_model, only: model_type
+  use mech9_variable_model, only: variable_model_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_simulation, only: simulation_type
+  use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
+  use mech9_free_simulation, only: free_simulation_type, new_free_simulation
+  use mech9_accuracy, only: find_accuracy
+  use mech9_explained_assembly, only: assemble_driven_start, assemble_free_start
+  use mech9_row_source, only: row_source_type, signal_interruption_type, new_row_source
+  use mech9_design_run, only: is_driven
+  implicit none
+  private
+  public :: find_design_gradient
+
+contains
+
+  !> Make the motion of a model and take its quantities and their derivatives. Fails as a run with derivatives would.
+  subroutine find_design_gradient(program_name, model, variable, numbers, gradient, err)
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+    type(model_type), intent(inout), target :: model        !< with quantities; gets the tolerances where an accuracy is requested
+    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
+    real(wp), intent(out) :: numbers(:)                     !< (quantities)
+    real(wp), intent(out) :: gradient(:, :)                 !< (parameters,quantities); NaN where a number has no derivative
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(driven_simulation_type), target :: driven
+    type(free_simulation_type), target :: free
+    type(plan_type) :: plan
+    type(state_type) :: start
+
+    model%request%output%gradients = .true.
+    if (is_driven(program_name, model)) then
+      call assemble_driven_start(model, plan, start, err)
+      if (allocated(err)) return
+      call new_driven_simulation(model, plan, start, driven, .false., program_name == 'mech9d')
+      call take_gradient(program_name, model, plan, start, variable, driven, numbers, gradient, err)
+    else
+      call assemble_free_start(model, plan, start, err)
+      if (.not. allocated(err)) call new_free_simulation(model, plan, start, free, err, .true.)
+      if (.not. allocated(err)) call take_gradient(program_name, model, plan, start, variable, free, numbers, gradient, err)
+      call free%close()
+    end if
+  end subroutine find_design_gradient
+
+  !> Go through all outputs of a simulation with its derivatives.
+  subroutine take_gradient(program_name, model, plan, start, variable, simulation, numbers, gradient, err)
+    character(len=*), intent(in) :: program_name                    !< mech9k or mech9d
+    type(model_type), intent(inout), target :: model                !< the model; gets the tolerances where an accuracy is requested
+    type(plan_type), intent(in) :: plan                             !< its plan
+    type(state_type), intent(in) :: start                           !< its assembled position
+    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
+    class(simulation_type), intent(inout), target :: simulation     !< about to start
+    real(wp), intent(out) :: numbers(:)                             !< (quantities)
+    real(wp), intent(out) :: gradient(:, :)                         !< (parameters,quantities); NaN where a number has no derivative
+    type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
+    type(row_source_type) :: source
+    real(wp), allocatable :: row(:)
+    integer :: i
+
+    call new_row_source(program_name, simulation, source)
+    call source%add_sensitivities(variable, err)
+    if (.not. allocated(err)) call source%begin_quantities(err)
+    if (allocated(err)) return
+    select type (simulation)
+    type is (free_simulation_type)
+      if (simulation%with_error) &
+        call find_accuracy(model, plan, start, simulation%errors, err, interruption=signal_interruption_type())
+      if (allocated(err)) return
+    end select
+    allocate (row(source%columns%width()))
+    do i = 0, model%request%time%intervals
+      call source%row_at(model%request%time%time(i), row, err)
+      if (allocated(err)) return
+    end do
+    call source%quantities%finish()
+    numbers = source%quantities%numbers
+    gradient = source%quantities%gradient
+  end subroutine take_gradient
+end module mech9_design_gradient
