@@ -119,24 +119,41 @@ contains
     real(wp), intent(in) :: maps(d, d, size(plan%closures))     !< wrench of each multiplier of each closed chain
     type(block_work_type), intent(inout) :: blocks(:)     !< factors of the closed chains
     type(gradient_rows_type), intent(inout) :: rows       !< summed over all that follows each frame; gets the action of the chains
-    integer :: b, order, u, k
+    integer :: b, order, u, n
 
     do b = size(plan%blocks), 1, -1
-      associate (block => plan%blocks(b), right => rows%right(:size(plan%blocks(b)%unknowns)), &
-                 values => rows%values(:plan%blocks(b)%equations))
-        if (size(block%unknowns) == 0) cycle
-        do order = 2, lowest, -1
-          do u = 1, size(block%unknowns)
-            k = block%coordinates(u)
-            right(u) = plan%unit_of(k)*row_of_coordinate(d, order, steps(:, :, block%unknowns(u)), &
-                                                         rows%frames(:, :, block%unknowns(u)), rows%coordinates(:, k))
-          end do
-          call blocks(b)%equations%solve_transposed(right, values)
-          call hand_on(plan, d, b, order, state, thirds, maps, rows)
+      n = size(plan%blocks(b)%unknowns)
+      if (n == 0) cycle
+      do order = 2, lowest, -1
+        call find_right_side(plan%n_coordinates, d, order, n, plan%blocks(b)%unknowns, plan%blocks(b)%coordinates, steps, &
+                             rows%frames, rows%coordinates, rows%right)
+        do u = 1, n
+          rows%right(u) = plan%unit_of(plan%blocks(b)%coordinates(u))*rows%right(u)
         end do
-      end associate
+        call blocks(b)%equations%solve_transposed(rows%right(:n), rows%values(:plan%blocks(b)%equations))
+        call hand_on(plan, d, b, order, state, thirds, maps, rows)
+      end do
     end do
   end subroutine eliminate_rows
+
+  !> The rows of the unknowns of a block, from plain arrays.
+  pure subroutine find_right_side(m, d, order, n, unknowns, coordinates, steps, frames, own, right)
+    integer, intent(in) :: m                        !< number of all steps
+    integer, intent(in) :: d                        !< numbers of a twist
+    integer, intent(in) :: order                    !< of the rows
+    integer, intent(in) :: n                        !< number of unknowns
+    integer, intent(in) :: unknowns(n)              !< their steps
+    integer, intent(in) :: coordinates(n)           !< their coordinates
+    real(wp), intent(in) :: steps(d, 0:2, m)        !< twists of all steps per unit rate, with derivatives in time
+    real(wp), intent(in) :: frames(d, 0:2, 0:m)     !< rows of the frames
+    real(wp), intent(in) :: own(0:2, m)             !< rows of coordinates beside their twists
+    real(wp), intent(inout) :: right(n)             !< the rows
+    integer :: u
+
+    do u = 1, n
+      right(u) = row_of_coordinate(d, order, steps(1, 0, unknowns(u)), frames(1, 0, unknowns(u)), own(0, coordinates(u)))
+    end do
+  end subroutine find_right_side
 
   !> Subtract the action of the chains of a block, with its multipliers, from the rows of their loops.
   subroutine hand_on(plan, d, b, order, state, thirds, maps, rows)

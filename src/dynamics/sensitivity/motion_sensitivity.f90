@@ -198,6 +198,13 @@ contains
     real(wp) :: factors(n, n), right(n)
     integer :: p
 
+    if (n == 1 .and. coefficients(1, 1) > 0.0_wp) then
+      failed_at = 0
+      do p = 1, m
+        values(p, 1) = values(p, 1)/coefficients(1, 1)
+      end do
+      return
+    end if
     factors = coefficients
     call cholesky_factorize(n, factors, failed_at)
     if (failed_at > 0) return
