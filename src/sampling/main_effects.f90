@@ -49,6 +49,7 @@ contains
     type(fit_type) :: fit
     type(parameter_type), allocatable :: chosen(:)
     integer, allocatable :: varied(:)
+    real(wp), allocatable :: scaled(:, :)
     integer :: i
 
     allocate (shares(size(numbers, 1)))
@@ -60,10 +61,15 @@ contains
     end do
     call factorize_products(chosen, values(varied, :), fit)
     if (fit%degree == 0) return
-    call find_coefficients(chosen, values(varied, :), numbers, fit)
-    call judge_coefficients(chosen, values(varied, :), numbers, fit)
+    ! shares have no unit: powers of two keep the fourth powers of large numbers finite, and change no digit
+    allocate (scaled, source=numbers)
     do i = 1, size(shares)
-      call find_shares_of(fit, i, size(numbers, 2), maxval(abs(numbers(i, :))), varied, size(parameters), shares(i))
+      scaled(i, :) = scale(scaled(i, :), -exponent(maxval(abs(numbers(i, :)))))
+    end do
+    call find_coefficients(chosen, values(varied, :), scaled, fit)
+    call judge_coefficients(chosen, values(varied, :), scaled, fit)
+    do i = 1, size(shares)
+      call find_shares_of(fit, i, size(numbers, 2), maxval(abs(scaled(i, :))), varied, size(parameters), shares(i))
     end do
   end subroutine find_shares
 

@@ -155,6 +155,26 @@ def propagation(cases, mech9d):
     check.true('linear_shares' not in told['quantities'][0] and 'derivatives' not in printed, 'a grid has no shares by derivatives', printed)
 
 
+def extreme_numbers(cases):
+    """Numbers whose fourth powers are no numbers of the machine scatter as those of common size do."""
+    check = cases.checks
+    slide = SLIDES.split('&drive coordinate=2')[0].replace('cq=1,2', 'cq=1').split('&pair coordinate=2')[0]
+    for size in (1e-90, 1.0, 1e98):
+        text = (slide + f"&drive coordinate=1, kind='polynomial', coefficients={3 * size}, {size} /\n&time end=1, intervals=4 /\n"
+                f"&parameter name='start', sets='drive.coefficients(1)', spread={0.5 * size} /\n"
+                f"&parameter name='speed', sets='drive.coefficients(2)', spread={0.2 * size}, distribution='uniform' /\n"
+                "&quantity name='place', of='q1', take='end' /\n&study kind='random', runs=200 /\n")
+        rows, told, _ = cases.study(text)
+        place = told['quantities'][0]
+        values = rows['place'] / size
+        check.near([place['mean'] / size, place['deviation'] / size], [values.mean(), values.std(ddof=1)], 1e-12, f'{size}: mean and deviation')
+        check.true(0 < place['deviation_error'] < 0.1 * place['deviation'], f'{size}: error of the deviation', place['deviation_error'])
+        variances = np.array([0.25, 0.04 / 3])
+        for name in ('first_order_shares', 'linear_shares'):
+            check.near([one['share'] for one in place[name]], variances / sum(variances), 1e-9, f'{size}: {name}')
+        check.near(place['linear_deviation'] / size, np.sqrt(sum(variances)), 1e-9, f'{size}: linear deviation')
+
+
 def plots(cases):
     """Histograms, effects and maps of drawn values and of a grid against those of numpy."""
     check = cases.checks
@@ -231,6 +251,7 @@ def main():
         cases = Cases(checks, folder, os.path.abspath(sys.argv[1]))
         summaries(cases)
         propagation(cases, os.path.abspath(sys.argv[2]))
+        extreme_numbers(cases)
         if checks.has('gnuplot', 'gnuplot-nox'):
             plots(cases)
             letters(cases)

@@ -1,5 +1,6 @@
 !> Sums over the runs of a study, one run after the other: means and deviations of quantities, and how many runs failed.
 module mech9_study_sums
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp
   implicit none
   private
@@ -12,6 +13,8 @@ module mech9_study_sums
     real(wp), allocatable :: mean(:)                 !< (quantities) of these
     real(wp), allocatable :: low(:)                  !< (quantities) least one
     real(wp), allocatable :: high(:)                 !< (quantities) largest one
+    integer, allocatable, private :: power(:)        !< (quantities) moments are those of the numbers over 2**power, at most 1 then
+    real(wp), allocatable, private :: middle(:)      !< (quantities) mean, so scaled
     real(wp), allocatable, private :: second(:)      !< (quantities) sum of the squares of the deviations from the mean
     real(wp), allocatable, private :: third(:)       !< (quantities) sum of their third powers
     real(wp), allocatable, private :: fourth(:)      !< (quantities) sum of their fourth powers
@@ -27,6 +30,7 @@ module mech9_study_sums
     procedure :: deviation
     procedure :: error_of_mean
     procedure :: error_of_deviation
+    procedure, private :: rescale
   end type study_sums_type
 
 contains
@@ -37,10 +41,13 @@ contains
     integer, intent(in) :: n_quantities             !< how many quantities there are
 
     allocate (self%mean(n_quantities), self%low(n_quantities), self%high(n_quantities), source=0.0_wp)
-    allocate (self%second(n_quantities), self%third(n_quantities), self%fourth(n_quantities), source=0.0_wp)
+    allocate (self%middle(n_quantities), self%second(n_quantities), self%third(n_quantities), self%fourth(n_quantities), &
+              source=0.0_wp)
+    allocate (self%power(n_quantities), source=minexponent(0.0_wp))
   end subroutine begin
 
-  !> Add a run that went to its end. The moments are brought up to date by Pébay's formulas, without loss of digits.
+  !> Add a run that went to its end. The moments are brought up to date by Pébay's formulas, without loss of digits; they are those
+  !> of scaled numbers, since fourth powers of large ones would be infinite.
   pure subroutine add(self, numbers)
     class(study_sums_type), intent(inout) :: self   !< the sums
     real(wp), intent(in) :: numbers(:)              !< (quantities) of the run
@@ -55,14 +62,34 @@ contains
     end if
     self%low = min(self%low, numbers)
     self%high = max(self%high, numbers)
-    step = numbers - self%mean
+    call self%rescale(numbers)
+    step = scale(numbers, -self%power) - self%middle
     part = step/n
     square = step*part*(n - 1.0_wp)
-    self%mean = self%mean + part
+    self%middle = self%middle + part
+    self%mean = scale(self%middle, self%power)
     self%fourth = self%fourth + square*part**2*(n**2 - 3.0_wp*n + 3.0_wp) + 6.0_wp*part**2*self%second - 4.0_wp*part*self%third
     self%third = self%third + square*part*(n - 2.0_wp) - 3.0_wp*part*self%second
     self%second = self%second + square
   end subroutine add
+
+  !> Choose larger powers where numbers come that are larger than all before. Powers of two change no digit.
+  pure subroutine rescale(self, numbers)
+    class(study_sums_type), intent(inout) :: self   !< the sums
+    real(wp), intent(in) :: numbers(:)              !< (quantities) of the next run
+    integer :: i, more
+
+    do i = 1, size(numbers)
+      if (.not. (ieee_is_finite(numbers(i)) .and. abs(numbers(i)) > 0.0_wp)) cycle
+      more = exponent(numbers(i)) - self%power(i)
+      if (more <= 0) cycle
+      self%power(i) = self%power(i) + more
+      self%middle(i) = scale(self%middle(i), -more)
+      self%second(i) = scale(self%second(i), -2*more)
+      self%third(i) = scale(self%third(i), -3*more)
+      self%fourth(i) = scale(self%fourth(i), -4*more)
+    end do
+  end subroutine rescale
 
   !> Add a run that failed.
   pure subroutine add_failure(self, run, code)
@@ -93,7 +120,7 @@ contains
     class(study_sums_type), intent(in) :: self   !< the sums
     real(wp) :: deviation(size(self%mean))
 
-    deviation = sqrt(max(0.0_wp, self%second/max(1, self%done - 1)))
+    deviation = scale(sqrt(max(0.0_wp, self%second/max(1, self%done - 1))), self%power)
   end function deviation
 
   !> The standard errors of the means of runs that are drawn independently.
@@ -115,7 +142,8 @@ contains
     do i = 1, size(error)
       variance = self%second(i)/n
       error(i) = 0.0_wp
-      if (variance > 0.0_wp) error(i) = sqrt(max(0.0_wp, (self%fourth(i)/n - variance**2)/n)/variance)/2.0_wp
+      if (variance > 0.0_wp) &
+        error(i) = scale(sqrt(max(0.0_wp, (self%fourth(i)/n - variance**2)/n)/variance)/2.0_wp, self%power(i))
     end do
   end function error_of_deviation
 end module mech9_study_sums
