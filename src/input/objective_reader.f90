@@ -19,6 +19,8 @@ module mech9_objective_reader
   private
   public :: read_objectives, find_quantity
 
+  !> Sums of fourth powers of larger numbers could be beyond all numbers.
+  real(wp), parameter :: largest_number = 1.0e60_wp
   character(len=*), parameter :: gaps = ' ,;'//achar(9)//achar(13)
 
 contains
@@ -329,6 +331,11 @@ contains
       if (allocated(numeral%problem)) then
         call diagnostics%add(span_type(number, at, at + length - 1), ''''//printable(source%text(at:at + length - 1))//''' '// &
                              numeral%problem)
+        return
+      end if
+      if (abs(numeral%number) > largest_number) then
+        call diagnostics%add(span_type(number, at, at + length - 1), 'the squares of such numbers cannot be added; change the '// &
+                             'unit of the whole file')
         return
       end if
       if (count <= columns(size(columns))) rows(count, n + 1) = numeral%number

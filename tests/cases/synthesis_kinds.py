@@ -274,7 +274,11 @@ def refusals(cases):
     refuse(good + STROKE + "&limit kind='transmission', coordinate=3, at_least=91 /\n", 'a transmission angle is at most a right angle')
     plain = with_numbers(FOUR_BAR, **MADE) + LENGTHS + QUANTITIES
     refuse(plain + STROKE + "&optimum method='levenberg-marquardt' /\n", 'levenberg-marquardt finds the least sum of squares only')
-    targets(cases, [made['P.x'][:4], 0*made['P.x'][:4]])
+    function = "&objective kind='function', of='q4', over='q1', file='targets.dat' /\n"
+    targets(cases, [[20, 400], [50, 60]])
+    refuse(good + function, 'the run never brings q1 to 400')
+    targets(cases, [[20, 1e80], [50, 60]])
+    refuse(good + function, 'the squares of such numbers cannot be added')
     targets(cases, [0*made['t'][:4], 0*made['t'][:4], made['q1'][:4]])
     refuse(good + pose.replace(", timing='given'", ''), "give 'length'")
 

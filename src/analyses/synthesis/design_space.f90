@@ -39,6 +39,8 @@ module mech9_design_space
     type(tangent_type), allocatable :: tangents(:)  !< (varied) the same as tangents
     integer :: drives_at = 0                        !< number of constants before those of the drives
     class(quantity_evaluator_type), allocatable :: evaluator   !< makes the runs from which quantities are taken
+  contains
+    procedure :: moves_drives
   end type design_space_type
 
   !> One design.
@@ -220,6 +222,14 @@ contains
     values = space%values
     values(space%varied) = x
   end function all_values
+
+  !> Whether a varied parameter sets a number of a drive.
+  pure logical function moves_drives(self)
+    class(design_space_type), intent(in) :: self   !< the designs
+    integer :: i
+
+    moves_drives = any([(any(self%tangents(i)%drives%varies), i=1, size(self%tangents))])
+  end function moves_drives
 
   !> A design that is not placed yet.
   pure subroutine new_design(space, design)

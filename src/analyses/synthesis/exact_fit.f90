@@ -12,7 +12,8 @@ module mech9_exact_fit
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_objective, only: timing_free, timing_over, quantity_objective, crank_limit
   use mech9_design_space, only: design_space_type, design_type, place_design, find_tangents, all_values
-  use mech9_open_position, only: open_position_type, find_openings, find_derivatives
+  use mech9_open_position, only: open_position_type, find_derivatives
+  use mech9_frame_motion, only: place_all
   use mech9_closed_changes, only: closed_changes_type, find_closed_changes
   use mech9_branch, only: close_near, follow_turn
   use mech9_free_times, only: free_times_type, new_free_times, parts_of, part_by_gap, are_in_order
@@ -42,6 +43,7 @@ module mech9_exact_fit
     real(wp), allocatable :: q(:, :)                        !< (M,targets) its coordinates at the targets [rad, m]
     real(wp), allocatable :: times(:)                       !< (targets) times of the targets [s]
     real(wp), allocatable :: quantities(:)                  !< values of the quantities of the last design with a value
+    type(closed_changes_type) :: changes                    !< scratch
     real(wp), allocatable :: gradient(:, :)                 !< (parameters,quantities) their derivatives by all parameters
     integer(long) :: work = 0                               !< steps of all motions that were followed
     logical :: heeds_interruption = .true.                  !< designs have no value after the user has interrupted
@@ -95,7 +97,6 @@ contains
     logical, intent(out) :: has_value                       !< the residuals have a value here
     type(error_type), allocatable :: err
     real(wp) :: q_start(size(self%q_start)), quantities(size(self%quantities)), gradient(size(self%gradient, 1), size(quantities))
-    integer :: g
 
     if (with_derivatives) then
       call self%has_derivatives(values, has_value)
@@ -110,20 +111,14 @@ contains
       call find_times(self, x(v + 1:), has_value)
       if (.not. has_value) return
       q_start = self%q_start
-      call follow_targets(self, q_start, has_value)
+      values%r = 0.0_wp
+      call follow_targets(self, q_start, values%r, has_value)
       if (has_value .and. self%with_quantities) &
         call space%evaluator%evaluate(all_values(space, self%design%x), q_start, .false., quantities, gradient, has_value)
     end associate
     ! a run for quantities may have been interrupted
     if (.not. has_value .and. self%with_quantities .and. self%heeds_interruption) self%was_cut = self%was_cut .or. interrupted()
     if (.not. has_value) return
-    values%r = 0.0_wp
-    do g = 1, size(self%targets)
-      call place_at(self, self%times(g), self%q(:, g), err)
-      has_value = .not. allocated(err)
-      if (.not. has_value) return
-      call difference(self%targets(g), self%design, self%position%state, values%r(:, g))
-    end do
     self%q_trial = q_start
     if (self%with_quantities) self%quantities = quantities
     call add_goals(self, values)
@@ -184,13 +179,14 @@ contains
     self%position%state%q = q
     driven = q
     call set_inputs(self%design%drives, t, driven, self%position%state%dq, self%position%state%ddq, err)
-    if (.not. allocated(err)) call find_openings(self%design, self%position, err)
+    if (.not. allocated(err)) call place_all(self%design%in_space, self%position%state, err)
   end subroutine place_at
 
   !> Follow the branch of the start through all targets and on to the end of the run.
-  subroutine follow_targets(self, q_start, has_value)
+  subroutine follow_targets(self, q_start, r, has_value)
     class(exact_fit_type), intent(inout) :: self            !< the fit; gets the coordinates at the targets
     real(wp), intent(inout) :: q_start(:)                   !< (M) coordinates near the start, then those of the start [rad, m]
+    real(wp), intent(inout) :: r(:, :)                      !< (rows,groups) gets the differences from the targets
     logical, intent(out) :: has_value                       !< the motion comes to the end of the run, and cranks turn fully
     type(driven_motion_type) :: driven
     type(state_type) :: state
@@ -206,7 +202,9 @@ contains
     call sort_times(self%times, self%end - self%start, order)
     do i = 1, size(order)
       if (.not. allocated(err)) call advance(self%design%drives, self%design%plan, driven, self%times(order(i)), err)
-      if (.not. allocated(err)) self%q(:, order(i)) = driven%state%q
+      if (allocated(err)) exit
+      self%q(:, order(i)) = driven%state%q
+      call difference(self%targets(order(i)), self%design%plan, self%design, driven%state, r(:, order(i)))
     end do
     if (.not. allocated(err)) call advance(self%design%drives, self%design%plan, driven, self%end, err)
     has_value = .not. allocated(err)
@@ -278,7 +276,6 @@ contains
     integer, intent(in) :: g                                !< number of the target
     real(wp), intent(inout) :: by_unknown(:, :)             !< (rows,n) the derivatives
     logical, intent(out) :: has_value                       !< they exist
-    type(closed_changes_type) :: changes
     type(error_type), allocatable :: err
     real(wp) :: by_q(self%rows, size(self%q_start)), by_x(self%rows, self%varied), by_t(self%rows)
     integer :: i, j
@@ -288,11 +285,13 @@ contains
     if (.not. has_value) return
     call find_derivatives(self%design, self%position)
     call difference_derivatives(self%targets(g), self%design, self%position, by_q, by_x)
-    call find_closed_changes(self%design, self%position, changes)
-    by_t = matmul(by_q, changes%by_t)
-    by_x = by_x + matmul(by_q, changes%by_x)
-    if (self%targets(g)%timing == timing_over) by_x = by_x + spread(by_t, 2, self%varied) &
+    associate (changes => self%changes)
+      call find_closed_changes(self%design, self%position, changes)
+      by_t = matmul(by_q, changes%by_t)
+      by_x = by_x + matmul(by_q, changes%by_x)
+      if (self%targets(g)%timing == timing_over) by_x = by_x + spread(by_t, 2, self%varied) &
                                                       *spread(changes%delay(self%targets(g)%over, self%position), 1, self%rows)
+    end associate
     do i = 1, self%varied
       by_unknown(:, i) = by_x(:, i)*(self%space%high(i) - self%space%low(i))
     end do

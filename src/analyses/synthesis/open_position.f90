@@ -134,12 +134,15 @@ contains
     type(open_position_type), intent(in) :: position       !< with the twists of its frames
     integer, intent(in) :: c                               !< number of the closure
     integer, intent(in) :: p                               !< number of the parameter
-    real(wp), intent(out), contiguous :: values(:)         !< (equations)
+    real(wp), intent(inout), contiguous :: values(:)       !< (equations) zero on entry
     real(wp) :: twist(6)
 
     associate (plan => design%in_space, closure => design%in_space%closures(c))
-      twist = position%frames(:, p, closure%closing) - position%frames(:, p, closure%target) &
-              - carried(position%state, closure%target, design%tangents(p)%in_target(:, plan%steps(closure%closing)%coordinate))
+      twist = position%frames(:, p, closure%closing) - position%frames(:, p, closure%target)
+      associate (own => design%tangents(p)%in_target(:, plan%steps(closure%closing)%coordinate))
+        if (any(abs(own) > 0.0_wp)) twist = twist - carried(position%state, closure%target, own)
+      end associate
+      if (.not. any(abs(twist) > 0.0_wp)) return      ! the values are zero already
       call plan%constraints(c)%item%opening(plan, position%state, twist(1:3), &
                                             shift_at(twist, position%state%p(:, closure%closing)), values)
     end associate

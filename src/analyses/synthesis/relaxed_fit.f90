@@ -96,7 +96,7 @@ contains
         has_value = .not. allocated(err)
         if (.not. has_value) return
         values%r(:position%equations, g) = self%closing*position%opening
-        call difference(self%targets(g), self%design, position%state, values%r(position%equations + 1:, g))
+        call difference(self%targets(g), plan, self%design, position%state, values%r(position%equations + 1:, g))
         values%r(position%equations + 1:, g) = values%r(position%equations + 1:, g)/self%scale
       end associate
     end do

@@ -82,7 +82,7 @@ contains
       call set_inputs(design%drives, times(i), position%state%q, position%state%dq, position%state%ddq, err)
       if (.not. allocated(err)) call find_openings(design, position, err)
       do g = 1, size(targets)
-        call difference(targets(g), design, position%state, r)
+        call difference(targets(g), design%in_space, design, position%state, r)
         squares(g, i) = sum(r**2)
       end do
     end do

@@ -2,8 +2,9 @@
 module mech9_targets
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_rotation, only: cross, about_axis, combine, rotation_between
-  use mech9_frame_motion, only: point_motion
+  use mech9_rotation, only: cross, about_axis, rotation_between
+  use mech9_frame_motion, only: point_motion, link_motion
+  use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_law, only: drive_slot_type
   use mech9_model, only: model_type
@@ -93,25 +94,25 @@ contains
 
   !> The weighted difference of the mechanism from a target: of places, or of the value of a coordinate first, then the angle between
   !> rotations, as a rotation vector times a length.
-  subroutine difference(target, design, state, r)
+  subroutine difference(target, plan, design, state, r)
     type(target_type), intent(in) :: target       !< the target
+    type(plan_type), intent(in) :: plan           !< of the design, in the arithmetic of the state
     type(design_type), intent(in) :: design       !< placed
-    type(state_type), intent(in) :: state         !< with the poses of its frames, in space
+    type(state_type), intent(in) :: state         !< with the poses of its frames
     real(wp), intent(out) :: r(:)                 !< (3 or 6) the difference [m, rad]
-    real(wp) :: place(3)
+    real(wp) :: place(3), turned(3, 3), omega(3), v(3)
 
     r = 0.0_wp
     if (target%coordinate > 0) then
       r(1) = target%factor*(state%q(target%coordinate) - target%place(1))
     else if (target%link > 0) then
       if (target%point > 0) then
-        call point_motion(design%in_space, state, target%link, design%places(:, target%point), place)
+        call point_motion(plan, state, target%link, design%places(:, target%point), place)
       else
-        call point_motion(design%in_space, state, target%link, [0.0_wp, 0.0_wp, 0.0_wp], place)
+        call link_motion(plan, state, target%link, turned, place, omega, v)
+        r(4:6) = target%factor*target%length*rotation_between(target%turn, turned)
       end if
       r(:target%components) = target%factor*(place(:target%components) - target%place(:target%components))
-      if (target%length > 0.0_wp) r(4:6) = target%factor*target%length*rotation_between(target%turn, &
-        combine(state%r(:, :, design%in_space%frame_of(target%link)), design%in_space%link_in_frame(target%link)%r))
     end if
   end subroutine difference
 

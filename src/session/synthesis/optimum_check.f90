@@ -1,11 +1,14 @@
 !> Judges before a search begins whether it can be made: its methods, its quantities, its limits.
 module mech9_optimum_check
+  use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_error, only: error_type, raise, exit_data
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_state, only: state_type
-  use mech9_objective, only: transmission_limit
+  use mech9_objective, only: transmission_limit, timing_over
+  use mech9_result_units, only: unit_of
+  use mech9_targets, only: time_at
   use mech9_limited_minimum, only: has_limited_minimum
   use mech9_quantity_record, only: quantity_record_type
   use mech9_design_run, only: find_quantities
@@ -32,6 +35,7 @@ contains
     type(model_type) :: asked
 
     call check_method(model, err)
+    if (.not. allocated(err)) call check_driven_values(model, synthesis, err)
     if (.not. allocated(err)) call check_transmissions(model, synthesis, start, err)
     if (allocated(err) .or. size(used_quantities(model)) == 0) return
     asked = model
@@ -60,6 +64,29 @@ contains
       end if
     end associate
   end subroutine check_method
+
+  !> Report values of a driven coordinate that no time of the run has, where no varied parameter changes the drive.
+  subroutine check_driven_values(model, synthesis, err)
+    type(model_type), intent(in) :: model                 !< the model
+    type(synthesis_type), intent(in) :: synthesis         !< its designs and targets
+    type(error_type), allocatable, intent(out) :: err     !< allocated if there is such a value
+    real(wp) :: t
+    logical :: found
+    integer :: i
+
+    associate (time => model%request%time, targets => synthesis%targets)
+      do i = 1, size(targets)
+        if (targets(i)%timing /= timing_over .or. synthesis%space%moves_drives()) cycle
+        call time_at(model%problem%drives, targets(i)%over, targets(i)%at, min(time%start, time%end), max(time%start, time%end), &
+                     t, found)
+        if (found) cycle
+        call raise(err, exit_data, 'the run never brings q'//to_text(targets(i)%over)//' to '// &
+                   to_text(targets(i)%at/unit_of(model%mechanism, targets(i)%over), 8)//', where a target of this objective is'// &
+                   '; change &time or the drive', model%request%objectives(targets(i)%objective)%place)
+        return
+      end do
+    end associate
+  end subroutine check_driven_values
 
   !> Report transmission angles that do not exist.
   subroutine check_transmissions(model, synthesis, start, err)
