@@ -1,6 +1,6 @@
 """Derivatives of motions with motors by parameters: of a flywheel with a direct-current motor and of a slide with a controller against
-complex steps in exponentials of matrices; of a four-bar linkage, with limits, laws and integral parts, against differences of whole
-runs; at outputs within steps and with all methods alike; HDF5 and gradients.
+complex steps in exponentials of matrices; of a four-bar linkage, with limits, laws and integral parts, and of a motion through changes of the
+independent coordinates, against differences of whole runs; at outputs within steps and with all methods alike; HDF5 and gradients.
 
 Compares the program with itself in part: differences of runs at other values of a parameter; other methods of integration.
 
@@ -15,7 +15,7 @@ import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from dynamic_sensitivities import SOLVER, TOLERANCE, TOLERANCES, Case, declared
+from dynamic_sensitivities import PENDULUM_FOUR_BAR, SOLVER, TOLERANCE, TOLERANCES, Case, declared
 from mech9_cases import Checks, run
 
 FLYWHEEL = """&structure cq=1 /
@@ -128,6 +128,13 @@ def check_four_bar(case):
                           2.0**-9)
 
 
+def check_changes(case):
+    """Where other coordinates become independent, the derivatives of the motor's state go on."""
+    motor = "&motor coordinate=4, kind='dc', voltage=5, resistance=0.8, inductance=0.5, constant=0.05, gear_ratio=20 /\n"
+    case.against_runs(PENDULUM_FOUR_BAR + motor, (('mass', 'body(1).mass', 20.0), ('inductance', 'motor.inductance', 0.5)),
+                      'through changes of coordinates', 2.0**-9)
+
+
 def check_methods(case):
     """Outputs within steps, and all methods: they differ by a thousand tolerances at most."""
     text = FOUR_BAR.format("kind='pid', proportional=30, integral=40, derivative=3, limit=9, setpoint=1.2").replace('intervals=3', 'intervals=30')
@@ -171,6 +178,7 @@ def main():
         case = Case(checks, directory, *sys.argv[1:3])
         check_closed_forms(case)
         check_four_bar(case)
+        check_changes(case)
         check_methods(case)
         check_results(case)
     checks.finish()
