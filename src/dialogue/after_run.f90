@@ -34,6 +34,8 @@ module mech9_after_run
   character(len=*), parameter :: help_of_rest = &
     'equilibrium: the position in which the mechanism rests; "equilibrium 30" searches from 30 random positions, too. '// &
     'modes: frequencies, dampings and shapes of its small vibrations there.'
+  character(len=*), parameter :: help_of_study = &
+    'study: the runs of the study of this file are made, and told in a summary. The option --study writes them to files.'
 
 contains
 
@@ -47,12 +49,14 @@ contains
     character(len=:), allocatable, intent(out) :: request    !< the answer that is wanted: options of the command line
     type(string_type), allocatable :: words(:)
     character(len=:), allocatable :: line, word, rest, usual, prompt
-    logical :: done, with_rest
+    logical :: done, with_rest, with_study
 
     with_rest = conversation%program_name == 'mech9d'
+    with_study = conversation%interview%draft%count_of('study') > 0
     call words_here(kept, with_rest, words)
     prompt = '  show, plot, compare, change, run or done ['
     if (with_rest) prompt = '  show, plot, compare, equilibrium, modes, change, run or done ['
+    if (with_study) prompt = prompt(:index(prompt, 'change') - 1)//'study, '//prompt(index(prompt, 'change'):)
     request = ''
     rest = ''
     usual = 'done'
@@ -72,6 +76,7 @@ contains
       case ('?', 'help')
         call conversation%say(help)
         if (with_rest) call conversation%say(help_of_rest)
+        if (with_study) call conversation%say(help_of_study)
         call say_columns(conversation, kept)
       case ('show')
         call show(conversation, kept, rest)
@@ -85,6 +90,9 @@ contains
         if (with_rest .and. (word == 'equilibrium' .or. word == 'modes')) then
           call ask_for_rest(conversation, word, rest, request)
           if (request /= '') next = answering
+        else if (with_study .and. word == 'study' .and. rest == '') then
+          request = '--study --no-write'
+          next = answering
         else
           call change(conversation, line, done)
           if (done) next = changing

@@ -137,6 +137,20 @@ def test_plot(session):
     checks.true('zzz' in said[2], 'plot: a name that is not there', said[2])
 
 
+def test_study(session):
+    """A study of the data file is made where it has one, and told; nothing is written."""
+    path = os.path.join(session.folder, 'arm.nml')
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write("&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /\n"
+                   "&drive coordinate=1, kind='polynomial', coefficients=0, 1 /\n&point name='B', link=2, position=1,0,0 /\n&time end=1, intervals=5 /\n"
+                   "&parameter name='arm', sets='point.position(1)', low=0.5, high=2, count=3 /\n&quantity name='reach', of='B.x', take='max' /\n"
+                   "&output table='arm.dat' /\n&study kind='grid' /\n")
+    done = run(session.program, '--edit', path, folder=session.folder, stdin='\nboth\n\nstudy\nstudy kind = list\ndone\n')
+    said = done.stderr + done.stdout
+    session.checks.true('modes, study, change' in said or 'compare, study, change' in said, 'study: it is offered', said)
+    session.checks.true('3 runs: ' in said and 'reach: 0.5 to 2 m' in said, 'study: its summary', said)
+
+
 def test_failed_run(session):
     """A run that fails ends nothing; the exit code is that of the last run."""
     checks = session.checks
@@ -219,7 +233,7 @@ def main():
     checks = Checks()
     kinematics, dynamics = sys.argv[1:3]
     for test in (test_show, test_bare_change, test_compare, test_change, test_change_before, test_plot, test_failed_run,
-                 test_no_rest_in_kinematics):
+                 test_no_rest_in_kinematics, test_study):
         with Session(checks, kinematics, 'fig1') as session:
             test(session)
     with Session(checks, dynamics, 'pendulum') as session:
