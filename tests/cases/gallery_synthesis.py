@@ -20,13 +20,20 @@ EXAMPLES = os.path.join(TREE, 'examples')
 class Search:
     """The search of an example, in a folder of its own."""
 
-    def __init__(self, checks, program, folder, name):
+    def __init__(self, checks, program, folder, name, plot=True):
         self.checks, self.program, self.name = checks, program, name
         self.folder = os.path.join(folder, name)
         shutil.copytree(os.path.join(EXAMPLES, name), self.folder)
-        done = run(program, f'{name}.nml', '--optimize', '--table', 'designs.dat', '--out', 'best.nml', '--plot', 'fit.svg:',
-                   '--quiet', folder=self.folder)
-        checks.true(done.returncode == 0, f'{name}: the search goes through', done.stderr)
+        self.search(*(('--plot', 'fit.svg:') if plot else ()))
+
+    def search(self, *options, data='', out='best.nml'):
+        """Search, with another text of the data file if need be."""
+        path = os.path.join(self.folder, f'{self.name}.nml')
+        if data:
+            with open(path, 'w', encoding='utf-8') as file:
+                file.write(data)
+        done = run(self.program, path, '--optimize', '--table', 'designs.dat', '--out', out, '--quiet', *options, folder=self.folder)
+        self.checks.true(done.returncode == 0, f'{self.name}: the search goes through', done.stderr)
         self.designs = read_table(text_of(os.path.join(self.folder, 'designs.dat')))
         self.best = {name: float(values[0]) for name, values in self.designs.items()}
 
@@ -220,6 +227,53 @@ def dwell(checks, program, folder):
     search.tells(f'{DWELL_ERROR}', f'{SWING}')
 
 
+def poses(checks, program, folder):
+    """Each pivot has equal distances from the three places of its moving joint."""
+    search = Search(checks, program, folder, 'three_poses')
+    x, y, angle = search.targets('poses.dat')
+    joint = x + 1j*y
+    checks.true(search.best['value'] < 1e-24, 'poses: nothing is left', search.best['value'])
+    for places, pivot, bar in ((joint, 'a', 'crank'), (joint + 2*np.exp(1j*np.radians(angle)), 'b', 'rocker')):
+        # |p_k - c|^2 is the same for all k
+        matrix = 2*np.transpose([np.diff(places.real), np.diff(places.imag)])
+        centre = np.linalg.solve(matrix, np.diff(np.abs(places)**2))
+        checks.near([search.best[pivot + 'x'], search.best[pivot + 'y']], centre, 1e-12, f'poses: pivot {pivot}')
+        checks.near(search.best[bar], abs(places[0] - complex(*centre)), 1e-12, f'poses: {bar}')
+        search.tells(f'({centre[0]:.6f}, {centre[1]:.6f})')
+    made = search.motion('--set', 'time.intervals=6500')
+    body = np.exp(1j*np.radians(made['q1'] + made['q2']))
+    way = made['A.x'] + 1j*made['A.y']
+    last = -1
+    for k in range(3):
+        at = int(np.argmin(np.abs(way - joint[k])))
+        # the crank turns by 0.01 degrees from row to row
+        checks.near([way[at].real, way[at].imag], [joint[k].real, joint[k].imag], 5e-4, f'poses: a run comes to place {k + 1}', scale=1.0)
+        checks.near(abs(body[at] - np.exp(1j*np.radians(angle[k]))), 0, 5e-4, f'poses: and to its angle {k + 1}')
+        checks.true(at > last, f'poses: {k + 1} in its order')
+        last = at
+    block = search.block('targets1')
+    checks.near(np.degrees(np.arctan2(block[:, 3], block[:, 2])), angle, 1e-9, 'poses: the plot has their angles')
+    checks.near(search.block('reached1'), block[:, :4], 1e-9, 'poses: and the design meets them')
+
+
+def balance(checks, program, folder):
+    """Half of the reciprocating mass, and 1/(1 + w) of it where the force across counts by the weight w."""
+    search = Search(checks, program, folder, 'balanced_crank', plot=False)
+    text = text_of(os.path.join(search.folder, 'balanced_crank.nml'))
+    # the value is flat at its least: half of the digits of the derivatives, which are exact, decide
+    checks.near(search.best['distance'], -0.05/2/2, 1e-7, 'balance: one half')
+    made = search.motion()
+    value = sum(np.trapezoid(made[f'R1.f{axis}']**2, made['t']) if hasattr(np, 'trapezoid') else
+                np.trapz(made[f'R1.f{axis}']**2, made['t']) for axis in 'xy')/0.01
+    search.has_value(value, 'a run of the best design')
+    search.search(data=text.replace("of='across', goal=0 /", "of='across', goal=0, weight=0.5 /"))
+    checks.near(read_table(text_of(os.path.join(search.folder, 'designs.dat')))['distance'][0], -0.05*2/3/2, 1e-7, 'balance: two thirds')
+    done = run(program, 'balanced_crank.nml', '--optimize', '--plot', 'fit.svg:', folder=search.folder)
+    checks.true(done.returncode == 2 and 'it shows targets, and no &objective of this file has any' in done.stderr,
+                'balance: there are no targets to plot', done.stderr)
+    search.tells('0.500000', '0.666667')
+
+
 SPATIAL_ERROR = 0.0209
 DWELL_ERROR, SWING = 0.028, 45
 
@@ -227,7 +281,7 @@ DWELL_ERROR, SWING = 0.028, 45
 def main():
     checks = Checks()
     with tempfile.TemporaryDirectory() as folder:
-        for check in (five_points, eighteen_points, straight_line, functions, spatial, dwell):
+        for check in (five_points, eighteen_points, straight_line, functions, spatial, dwell, poses, balance):
             check(checks, sys.argv[1], folder)
     checks.finish()
 
