@@ -129,7 +129,7 @@ def check_four_bar(case):
 
 
 def check_changes(case):
-    """Where other coordinates become independent, the derivatives of the motor's state go on."""
+    """The derivatives of a motor's state go on where other coordinates become independent."""
     motor = "&motor coordinate=4, kind='dc', voltage=5, resistance=0.8, inductance=0.5, constant=0.05, gear_ratio=20 /\n"
     case.against_runs(PENDULUM_FOUR_BAR + motor, (('mass', 'body(1).mass', 20.0), ('inductance', 'motor.inductance', 0.5)),
                       'through changes of coordinates', 2.0**-9)
