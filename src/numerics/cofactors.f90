@@ -7,7 +7,7 @@ module mech9_cofactors
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: invert_by_cofactors
+  public :: invert_by_cofactors, invert_several
 
 contains
 
@@ -49,6 +49,67 @@ contains
     inverse(2, :) = per_volume*c2
     inverse(3, :) = per_volume*c3
   end subroutine invert_by_cofactors
+
+  !> Inverses of several matrices, with the number of the matrix as the fastest index, by the same cofactors. Where the least pivot is not
+  !> above a part of the largest one, the inverse is zero.
+  pure subroutine invert_several(n, lead, part, a, inverse, largest, least)
+    integer, intent(in) :: n                             !< number of matrices
+    integer, intent(in) :: lead                          !< room for so many matrices
+    real(wp), intent(in) :: part                         !< of the largest pivot
+    real(wp), intent(in) :: a(lead, 3, 3)                !< the matrices
+    real(wp), intent(inout) :: inverse(lead, 3, 3)       !< their inverses
+    real(wp), intent(inout) :: largest(lead)             !< largest pivot of each
+    real(wp), intent(inout) :: least(lead)               !< least pivot of each
+    real(wp), dimension(lead) :: l1, l2, l3, s1, s2, s3, volume
+    real(wp) :: area
+    integer :: i, j, k
+
+    call cofactor_column(n, lead, a(1, 1, 2), a(1, 1, 3), inverse(1, 1, 1), inverse(1, 1, 2), inverse(1, 1, 3), s1)
+    call cofactor_column(n, lead, a(1, 1, 3), a(1, 1, 1), inverse(1, 2, 1), inverse(1, 2, 2), inverse(1, 2, 3), s2)
+    call cofactor_column(n, lead, a(1, 1, 1), a(1, 1, 2), inverse(1, 3, 1), inverse(1, 3, 2), inverse(1, 3, 3), s3)
+    do i = 1, n
+      l1(i) = a(i, 1, 1)**2 + a(i, 2, 1)**2 + a(i, 3, 1)**2
+      l2(i) = a(i, 1, 2)**2 + a(i, 2, 2)**2 + a(i, 3, 2)**2
+      l3(i) = a(i, 1, 3)**2 + a(i, 2, 3)**2 + a(i, 3, 3)**2
+      volume(i) = a(i, 1, 1)*inverse(i, 1, 1) + a(i, 2, 1)*inverse(i, 1, 2) + a(i, 3, 1)*inverse(i, 1, 3)
+    end do
+    do i = 1, n
+      largest(i) = max(l1(i), l2(i), l3(i))
+      area = merge(max(s1(i), s2(i)), merge(max(s1(i), s3(i)), max(s2(i), s3(i)), l2(i) >= largest(i) .and. l1(i) < largest(i)), &
+                   l1(i) < largest(i) .and. l2(i) < largest(i))
+      largest(i) = sqrt(largest(i))
+      least(i) = abs(volume(i))/sqrt(max(area, tiny(area)))
+      volume(i) = merge(volume(i), huge(area), least(i) > part*largest(i))
+      volume(i) = 1.0_wp/volume(i)
+    end do
+    do k = 1, 3
+      do j = 1, 3
+        do i = 1, n
+          inverse(i, j, k) = volume(i)*inverse(i, j, k)
+        end do
+      end do
+    end do
+  end subroutine invert_several
+
+  !> Vector products of two columns each of several matrices, and the squares of their lengths.
+  pure subroutine cofactor_column(n, lead, u, v, x, y, z, square_of)
+    integer, intent(in) :: n                       !< number of matrices
+    integer, intent(in) :: lead                    !< room for so many matrices
+    real(wp), intent(in) :: u(lead, 3)             !< left factors
+    real(wp), intent(in) :: v(lead, 3)             !< right factors
+    real(wp), intent(inout) :: x(lead)             !< first components of the products
+    real(wp), intent(inout) :: y(lead)             !< second components
+    real(wp), intent(inout) :: z(lead)             !< third components
+    real(wp), intent(inout) :: square_of(lead)     !< squares of the lengths
+    integer :: i
+
+    do i = 1, n
+      x(i) = u(i, 2)*v(i, 3) - u(i, 3)*v(i, 2)
+      y(i) = u(i, 3)*v(i, 1) - u(i, 1)*v(i, 3)
+      z(i) = u(i, 1)*v(i, 2) - u(i, 2)*v(i, 1)
+      square_of(i) = x(i)**2 + y(i)**2 + z(i)**2
+    end do
+  end subroutine cofactor_column
 
   !> Vector product u x v. (The floor of rotations, which has one too, lies above this one.)
   pure function product_of(u, v) result(w)

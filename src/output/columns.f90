@@ -12,7 +12,8 @@ module mech9_columns
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_motor_states, only: find_action
-  use mech9_sensitivity, only: sensitivity_type
+  use mech9_motion_changes, only: motion_changes_type
+  use mech9_derivative_columns, only: derivative_columns_type, new_derivative_columns
   use mech9_poses, only: poses_type, poses_of
   use mech9_frame_motion, only: point_motion
   implicit none
@@ -38,6 +39,7 @@ module mech9_columns
     integer :: energies = 0                 !< how many columns belong to energies, after those of motors
     integer :: varied = 0                   !< how many columns, from the second one on, have derivatives by parameters
     integer :: sensitivities = 0            !< how many columns, the last ones, are derivatives by parameters
+    type(derivative_columns_type) :: derived    !< those of the motion
     type(string_type), allocatable :: parameters(:)   !< names of these parameters
     type(poses_type) :: poses               !< columns after the others, if they were requested
     integer :: varied_poses = 0             !< how many derivatives by parameters stand after the poses: of origins and rotations
@@ -55,6 +57,7 @@ module mech9_columns
     procedure :: fill_beyond_motion
     procedure :: fill_varied_poses
     procedure :: derivatives_of
+    procedure :: order_in_table
     procedure :: width
     procedure :: family_of
     procedure :: fill
@@ -83,11 +86,15 @@ contains
     allocate (columns%names(columns%motion), columns%units(columns%motion), columns%long_names(columns%motion))
     allocate (columns%factors(n), source=1.0_wp)
     if (output%poses) columns%poses = poses_of(mechanism)
+    do i = 1, n
+      columns%factors(i) = 1.0_wp/unit_of(mechanism, columns%coordinates(i))
+    end do
+    columns%derived = new_derivative_columns(columns%coordinates, columns%factors, columns%derivatives, size(mechanism%pairs), &
+                                             size(mechanism%points))
     call columns%append('t', 's')
     do order = 1, columns%derivatives + 1
       do i = 1, n
         k = columns%coordinates(i)
-        columns%factors(i) = 1.0_wp/unit_of(mechanism, k)
         call columns%append(trim(orders(order))//to_text(k), trim(unit_name(mechanism, k))//trim(per_time(order)))
       end do
     end do
@@ -217,8 +224,8 @@ contains
     self%energies = 3
   end subroutine append_energies
 
-  !> Append the derivatives of the columns of motion, forces, motors and energies, but for time, by each parameter. Those that are not
-  !> recorded stand after the poses, without names.
+  !> Append the derivatives of the columns of motion, forces, motors and energies, but for time: those of each column by all
+  !> parameters side by side, as they stand in an HDF5 file. Those that are not recorded stand after the poses, without names.
   pure subroutine append_sensitivities(self, parameters, recorded)
     class(columns_type), intent(inout) :: self       !< the columns
     type(string_type), intent(in) :: parameters(:)   !< names of the parameters
@@ -234,10 +241,10 @@ contains
     end if
     self%sensitivities = size(parameters)*self%varied
     self%varied_poses = size(parameters)*12*self%poses%n_links
-    do p = 1, size(parameters)
-      do i = 2, self%varied + 1
-        name = self%names(i)%text
-        unit = self%units(i)%text
+    do i = 2, self%varied + 1
+      name = self%names(i)%text
+      unit = self%units(i)%text
+      do p = 1, size(parameters)
         call self%append('d('//name//')/d('//parameters(p)%text//')', unit//'/'//parameters(p)%text, &
                          'derivative of '//name//' by '//parameters(p)%text)
       end do
@@ -261,20 +268,34 @@ contains
 
     columns = 0
     if (column < 2 .or. column > self%varied + 1) return
-    columns = [(before_sensitivities(self) + (p - 1)*self%varied + column - 1, p=1, size(columns))]
+    columns = [(before_sensitivities(self) + (column - 2)*size(columns) + p, p=1, size(columns))]
   end function derivatives_of
 
-  !> Fill the columns of the derivatives of the motion by parameters in a row.
-  pure subroutine fill_sensitivities(self, sensitivity, row)
-    class(columns_type), intent(in) :: self               !< the columns
-    type(sensitivity_type), intent(in) :: sensitivity     !< the derivatives
-    real(wp), intent(inout), contiguous :: row(:)         !< numbers of one row, one for each column
+  !> The columns in the order of a table: of the derivatives all those by the first parameter first.
+  pure function order_in_table(self) result(order)
+    class(columns_type), intent(in) :: self   !< the columns
+    integer :: order(self%count)
+    integer :: i, p
 
-    associate (before => before_sensitivities(self), n => self%sensitivities + self%unrecorded)
-      call put_derivatives(size(self%parameters), size(self%coordinates), self%coordinates, self%factors, self%derivatives, &
-                           size(sensitivity%q, 3), sensitivity%q, size(sensitivity%points, 4), sensitivity%points, &
-                           self%varied, row(before + 1:before + n))
+    associate (before => self%count - self%sensitivities)
+      order(:before) = [(i, i=1, before)]
+      if (self%sensitivities == 0) return
+      associate (n => size(self%parameters))
+        order(before + 1:) = [((before + (i - 1)*n + p, i=1, self%varied), p=1, n)]
+      end associate
     end associate
+  end function order_in_table
+
+  !> Fill columns of the derivatives of the motion by parameters in rows that follow each other.
+  pure subroutine fill_sensitivities(self, changes, first, n, list, rows)
+    class(columns_type), intent(in) :: self               !< the columns
+    type(motion_changes_type), intent(in) :: changes      !< the derivatives at several positions
+    integer, intent(in) :: first                          !< number of the position of the first row
+    integer, intent(in) :: n                              !< number of rows
+    integer, intent(in) :: list(:)                        !< numbers of the columns whose derivatives are wanted
+    real(wp), intent(inout), contiguous :: rows(:, :)     !< (columns,n) numbers of the rows
+
+    call self%derived%fill(changes, first, n, list - 1, before_sensitivities(self), size(rows, 1), rows)
   end subroutine fill_sensitivities
 
   !> Fill the columns of the derivatives of forces, motors and energies by parameters in a row.
@@ -282,12 +303,13 @@ contains
     class(columns_type), intent(in) :: self        !< the columns
     real(wp), intent(in) :: values(:, :)           !< (P,columns) derivatives, in the order of these columns
     real(wp), intent(inout) :: row(:)              !< numbers of one row, one for each column
-    integer :: p, at
+    integer :: i
 
-    do p = 1, size(values, 1)
-      at = before_sensitivities(self) + (p - 1)*self%varied + self%motion - 1
-      row(at + 1:at + size(values, 2)) = values(p, :)
-    end do
+    associate (n => size(values, 1), before => before_sensitivities(self) + (self%motion - 1)*size(values, 1))
+      do i = 1, size(values, 2)
+        row(before + (i - 1)*n + 1:before + i*n) = values(:, i)
+      end do
+    end associate
   end subroutine fill_beyond_motion
 
   !> Fill the derivatives of the links' poses by parameters in a row: by all parameters for each number in the order of the poses.
@@ -300,43 +322,6 @@ contains
     before = self%count + self%poses%width()
     row(before + 1:before + self%varied_poses) = reshape(values, [self%varied_poses])
   end subroutine fill_varied_poses
-
-  !> Put derivatives by parameters in the order of columns: all by the first parameter first. The arrays have known shapes, so that
-  !> the compiler keeps their addresses in registers.
-  pure subroutine put_derivatives(n, n_coordinates, coordinates, factors, highest, m, q, n_points, points, each, row)
-    integer, intent(in) :: n                            !< number of parameters
-    integer, intent(in) :: n_coordinates                !< number of recorded coordinates
-    integer, intent(in) :: coordinates(n_coordinates)   !< their numbers
-    real(wp), intent(in) :: factors(n_coordinates)      !< from internal units to those of the results
-    integer, intent(in) :: highest                      !< order of the highest derivative in time
-    integer, intent(in) :: m                            !< number of all coordinates
-    real(wp), intent(in) :: q(n, 0:2, m)                !< derivatives of coordinates
-    integer, intent(in) :: n_points                     !< number of points
-    real(wp), intent(in) :: points(n, 3, 0:2, n_points) !< derivatives of points
-    integer, intent(in) :: each                         !< number of columns for each parameter, those beyond the motion included
-    real(wp), intent(inout) :: row(each, n)             !< gets the derivatives of the motion
-    integer :: at, p, order, i
-
-    at = 0
-    do order = 0, highest
-      do i = 1, n_coordinates
-        at = at + 1
-        do p = 1, n
-          row(at, p) = q(p, order, coordinates(i))*factors(i)
-        end do
-      end do
-    end do
-    do i = 1, n_points
-      do order = 0, highest
-        do p = 1, n
-          row(at + 1, p) = points(p, 1, order, i)
-          row(at + 2, p) = points(p, 2, order, i)
-          row(at + 3, p) = points(p, 3, order, i)
-        end do
-        at = at + 3
-      end do
-    end do
-  end subroutine put_derivatives
 
   !> Append a column.
   pure subroutine append(self, name, unit, long_name)

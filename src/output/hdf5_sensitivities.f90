@@ -18,27 +18,26 @@ contains
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     character(len=3), parameter :: names(0:2) = ['q  ', 'dq ', 'ddq']
     character(len=12), parameter :: of_points(0:2) = ['position    ', 'velocity    ', 'acceleration']
-    integer :: order, n, points, each, before, i, k, p
+    integer :: order, n, points, before, i, k, parameters
 
     n = size(columns%coordinates)
-    each = columns%varied
+    parameters = size(columns%parameters)
     points = (columns%motion - 1)/(columns%derivatives + 1) - n
     call add_forces(series, columns)
     call add_scalars(series, columns)
     if (columns%varied_poses > 0) call add_poses(series, columns)
     do order = 0, columns%derivatives
-      before = columns%count - columns%sensitivities + order*n
-      call series%add('sensitivity/'//trim(names(order)), &
-                      [((before + (p - 1)*each + i, p=1, size(columns%parameters)), i=1, n)], [size(columns%parameters), n], &
+      before = columns%count - columns%sensitivities + order*n*parameters
+      call series%add('sensitivity/'//trim(names(order)), [(before + i, i=1, parameters*n)], [parameters, n], &
                       'derivatives of '//trim(names(order))//' by the parameters', unit_of_all(columns, order*n + 2, n), &
                       ['/time      ', '/coordinate', '/parameter '])
     end do
     if (points == 0) return
     do order = 0, columns%derivatives
-      before = columns%count - columns%sensitivities + (columns%derivatives + 1)*n + 3*order
+      before = columns%count - columns%sensitivities + ((columns%derivatives + 1)*n + 3*order)*parameters
       call series%add('sensitivity/'//trim(of_points(order)), &
-                      [(((before + (p - 1)*each + 3*(columns%derivatives + 1)*(i - 1) + k, p=1, size(columns%parameters)), &
-                         k=1, 3), i=1, points/3)], [size(columns%parameters), 3, points/3], &
+                      [((before + 3*(columns%derivatives + 1)*(i - 1)*parameters + k, k=1, 3*parameters), i=1, points/3)], &
+                      [parameters, 3, points/3], &
                       'derivatives of '//trim(of_points(order))//' by the parameters', &
                       unit_of_all(columns, (columns%derivatives + 1)*n + 3*order + 2, 1), &
                       ['/time     ', '/point    ', '/axis     ', '/parameter'])

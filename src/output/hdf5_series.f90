@@ -30,6 +30,8 @@ module mech9_hdf5_series
   !> Size of the chunks of all quantities together, and of the rows gathered before they are written [bytes].
   integer(long), parameter :: largest_chunk = 67108864, buffer_size = 8388608
   integer, parameter :: most_buffered = 4096
+  !> Columns that are copied as one piece, on the average.
+  integer, parameter :: shortest_piece = 8
 
   !> One quantity.
   type :: quantity_type
@@ -38,6 +40,8 @@ module mech9_hdf5_series
     logical :: whole = .false.                   !< whether its numbers are whole
     character(len=:), allocatable :: scales(:)   !< paths of the dimension scales, time first; none: the quantity is a scale itself
     integer, allocatable :: columns(:)           !< numbers of its columns in a row
+    integer, allocatable :: pieces(:, :)         !< (2,pieces) first column and number of columns that stand side by side; none: the
+                                                 !< pieces would be short
     integer(hsize_t), allocatable :: extents(:)  !< extents of its part of a row, Fortran order; empty: one number
     real(wp), allocatable :: buffer(:, :)        !< (columns, rows) numbers of all rows
   end type quantity_type
@@ -134,6 +138,7 @@ contains
       quantity%scales = scales
       if (present(whole)) quantity%whole = whole
       quantity%columns = columns
+      quantity%pieces = pieces_of(columns)
       quantity%extents = extents
       allocate (quantity%buffer(size(columns), self%capacity), source=0.0_wp)
     end associate
@@ -150,6 +155,29 @@ contains
       names(i)%text = self%quantities(i)%name
     end do
   end subroutine list_names
+
+  !> The pieces of a list of columns that stand side by side in a row: the first column of each, and their number; none where they are
+  !> short on the average.
+  pure function pieces_of(columns) result(pieces)
+    integer, intent(in) :: columns(:)   !< numbers of the columns
+    integer, allocatable :: pieces(:, :)
+    integer :: i, n
+
+    allocate (pieces(2, size(columns)))
+    n = 0
+    do i = 1, size(columns)
+      if (i > 1) then
+        if (columns(i) == columns(i - 1) + 1) then
+          pieces(2, n) = pieces(2, n) + 1
+          cycle
+        end if
+      end if
+      n = n + 1
+      pieces(:, n) = [columns(i), 1]
+    end do
+    if (n*shortest_piece > size(columns)) n = 0
+    pieces = pieces(:, :n)
+  end function pieces_of
 
   !> Make all data sets first and name them afterwards. This is called before anything else is written to
   !> the file, so that one page of memory holds the lengths of all of them.
@@ -359,8 +387,13 @@ contains
 
     do i = 1, self%count
       associate (quantity => self%quantities(i))
-        call pick(size(rows, 1), size(rows, 2), rows, size(quantity%columns), quantity%columns, &
-                  quantity%buffer(1, self%waiting + 1))
+        if (size(quantity%pieces) > 0) then
+          call pick_pieces(size(rows, 1), size(rows, 2), rows, size(quantity%columns), size(quantity%pieces, 2), quantity%pieces, &
+                           quantity%buffer(1, self%waiting + 1))
+        else
+          call pick(size(rows, 1), size(rows, 2), rows, size(quantity%columns), quantity%columns, &
+                    quantity%buffer(1, self%waiting + 1))
+        end if
       end associate
     end do
     self%waiting = self%waiting + size(rows, 2)
@@ -382,6 +415,28 @@ contains
       end do
     end do
   end subroutine pick
+
+  !> The same by pieces.
+  pure subroutine pick_pieces(width, n, rows, count, n_pieces, pieces, picked)
+    integer, intent(in) :: width                    !< number of all columns
+    integer, intent(in) :: n                        !< number of rows
+    real(wp), intent(in) :: rows(width, n)          !< the rows
+    integer, intent(in) :: count                    !< number of columns to be copied
+    integer, intent(in) :: n_pieces                 !< number of pieces
+    integer, intent(in) :: pieces(2, n_pieces)      !< first column and number of columns of each
+    real(wp), intent(inout) :: picked(count, n)     !< gets them
+    integer :: i, j, k, at
+
+    do j = 1, n
+      at = 0
+      do i = 1, n_pieces
+        do k = 1, pieces(2, i)
+          picked(at + k, j) = rows(pieces(1, i) + k - 1, j)
+        end do
+        at = at + pieces(2, i)
+      end do
+    end do
+  end subroutine pick_pieces
 
   !> Write the rows in the buffers. Compressed rows are written only as whole chunks, except at the end.
   subroutine hand_over(self, file, at_end)

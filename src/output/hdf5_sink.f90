@@ -107,7 +107,7 @@ contains
   !> determines where the later data stand in the file.
   subroutine write_rows(self, rows, err)
     class(hdf5_sink_type), intent(inout) :: self       !< the HDF5 sink
-    real(wp), intent(in) :: rows(:, :)                 !< (columns, rows) numbers of the rows
+    real(wp), intent(in), contiguous :: rows(:, :)     !< (columns, rows) numbers of the rows
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     call self%series%append_rows(self%file, rows)

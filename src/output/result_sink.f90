@@ -27,7 +27,7 @@ module mech9_result_sink
     subroutine rows_interface(self, rows, err)
       import :: result_sink_type, error_type, wp
       class(result_sink_type), intent(inout) :: self     !< the result sink
-      real(wp), intent(in) :: rows(:, :)                 !< (columns, rows) numbers of the rows, in the columns given at the opening
+      real(wp), intent(in), contiguous :: rows(:, :)     !< (columns, rows) numbers of the rows, in the columns given at the opening
       type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     end subroutine rows_interface
 

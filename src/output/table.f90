@@ -38,6 +38,8 @@ module mech9_table
     character(len=:), allocatable :: buffer
     integer :: used = 0  !< bytes waiting in the buffer
     integer :: columns = 0
+    integer, allocatable :: order(:)        !< numbers of the columns in the order of the table; not allocated: as they are
+    real(wp), allocatable :: arranged(:)    !< a row in this order
     integer :: row_size = 0      !< length of the longest row [bytes]
     logical :: commas = .false.  !< whether the file has comma-separated values
   contains
@@ -51,7 +53,7 @@ module mech9_table
 contains
 
   !> Create the file and write the lines above the rows.
-  subroutine open_table(self, path, title, program, names, units, err)
+  subroutine open_table(self, path, title, program, names, units, err, order)
     class(table_type), intent(inout) :: self           !< the table
     character(len=*), intent(in) :: path               !< path of the file; '-' is standard output
     character(len=*), intent(in) :: title              !< title of the mechanism; each of its lines becomes a comment line
@@ -59,6 +61,7 @@ contains
     type(string_type), intent(in) :: names(:)          !< headings of the columns
     type(string_type), intent(in) :: units(:)          !< units of the columns; empty for a plain number
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
+    integer, intent(in), optional :: order(:)          !< numbers of the columns in the order of the table; absent: as they are
 
     if (size(names) == 0 .or. size(names) /= size(units)) then
       call raise(err, exit_internal, 'a table needs columns, and as many units as names')
@@ -68,6 +71,11 @@ contains
     if (allocated(err)) return
     self%format = number_format_type()
     self%columns = size(names)
+    if (allocated(self%order)) deallocate (self%order, self%arranged)
+    if (present(order)) then
+      self%order = order
+      allocate (self%arranged(size(order)))
+    end if
     self%row_size = number_width*self%columns + 1
     self%used = 0
     if (allocated(self%buffer)) deallocate (self%buffer)
@@ -76,9 +84,10 @@ contains
     self%commas = .false.
     if (len(path) > 4) self%commas = lower(path(len(path) - 3:)) == '.csv'
     if (self%commas) then
-      call self%file%write(comma_line(names), err)
+      call self%file%write(comma_line(in_order(names, order)), err)
     else
-      call self%file%write(comment_lines(title)//comment_lines(program)//unit_line(units)//name_line(names), err)
+      call self%file%write(comment_lines(title)//comment_lines(program)//unit_line(in_order(units, order)) &
+                           //name_line(in_order(names, order)), err)
     end if
   end subroutine open_table
 
@@ -146,15 +155,32 @@ contains
   !> Write rows, one after the other.
   subroutine write_rows(self, rows, err)
     class(table_type), intent(inout) :: self           !< the table
-    real(wp), intent(in) :: rows(:, :)                 !< (columns, rows) numbers of the rows
+    real(wp), intent(in), contiguous :: rows(:, :)     !< (columns, rows) numbers of the rows
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
-    integer :: i
+    integer :: i, k
 
     do i = 1, size(rows, 2)
-      call self%write_row(rows(:, i), err)
+      if (allocated(self%order)) then
+        do k = 1, size(self%order)
+          self%arranged(k) = rows(self%order(k), i)
+        end do
+        call self%write_row(self%arranged, err)
+      else
+        call self%write_row(rows(:, i), err)
+      end if
       if (allocated(err)) return
     end do
   end subroutine write_rows
+
+  !> Texts in another order, if one is given.
+  pure function in_order(texts, order) result(arranged)
+    type(string_type), intent(in) :: texts(:)      !< the texts
+    integer, intent(in), optional :: order(:)      !< their numbers in the other order
+    type(string_type) :: arranged(size(texts))
+
+    arranged = texts
+    if (present(order)) arranged = texts(order)
+  end function in_order
 
   !> Write the last rows and close the file; does nothing to a table that is not open. The file is closed
   !> even when writing fails.

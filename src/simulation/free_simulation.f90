@@ -24,7 +24,7 @@ module mech9_free_simulation
   use mech9_limit_passing, only: stop_at_limits
   use mech9_stopped_motion, only: name_cause, name_cause_at_start
   use mech9_variable_model, only: variable_model_type
-  use mech9_sensitivity, only: sensitivity_type
+  use mech9_sensitivity, only: sensitivity_type, new_given_sensitivity
   use mech9_varied_motion, only: varied_motion_type
   use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type
   implicit none
@@ -395,12 +395,7 @@ contains
 
     call self%motion%begin_sensitivity(variable, err)
     if (allocated(err)) return
-    associate (motion => self%motion%system%sensitivity%motion)
-      sensitivity%n_parameters = motion%n_parameters
-      sensitivity%highest = highest
-      sensitivity%q = motion%q
-      sensitivity%points = motion%points
-    end associate
+    call new_given_sensitivity(self%model, highest, sensitivity)
   end subroutine begin_sensitivity
 
   !> Find the derivatives of the present motion by all parameters.
@@ -411,8 +406,10 @@ contains
 
     call self%motion%system%show_sensitivity(err)
     if (allocated(err)) return
-    sensitivity%q = self%motion%system%sensitivity%motion%q
-    sensitivity%points = self%motion%system%sensitivity%motion%points
+    associate (motion => self%motion%system%sensitivity%motion)
+      call sensitivity%changes%put(1, motion%q, motion%points)
+    end associate
+    sensitivity%waiting = 1
   end subroutine show_sensitivity
 
   !> Prepare the derivatives of all frames by all parameters. The integration finds them in any case.

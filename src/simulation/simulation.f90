@@ -9,7 +9,7 @@ module mech9_simulation
   use mech9_requested, only: requested_type
   use mech9_closure_guard, only: check_closure
   use mech9_variable_model, only: variable_model_type
-  use mech9_sensitivity, only: sensitivity_type, new_sensitivity, find_sensitivities
+  use mech9_sensitivity, only: sensitivity_type, new_sensitivity, take_position
   use mech9_varied_motion, only: varied_motion_type, new_varied_motion, find_varied_motion
   implicit none
   private
@@ -300,16 +300,16 @@ contains
     call new_sensitivity(variable, self%model, plan, highest, sensitivity, err)
   end subroutine begin_sensitivity
 
-  !> Find the derivatives of the present motion by all parameters.
+  !> Let the present motion wait for its derivatives by all parameters, which are found for several positions at once.
   subroutine show_sensitivity(self, sensitivity, err)
     class(simulation_type), intent(inout) :: self            !< the simulation
-    type(sensitivity_type), intent(inout) :: sensitivity     !< gets the derivatives
+    type(sensitivity_type), intent(inout) :: sensitivity     !< gets the motion
     type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
 
     call self%present(plan, state)
-    call find_sensitivities(self%model, state, sensitivity, err)
+    call take_position(self%model, state, sensitivity, err)
   end subroutine show_sensitivity
 
   !> Prepare the derivatives of all frames by all parameters, from which those of energies and forces follow, after

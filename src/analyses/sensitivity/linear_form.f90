@@ -1,15 +1,16 @@
 !> Numbers that are linear in the derivatives of coordinates by all parameters, such as the openings of a chain or the shift of a
-!> point, with their derivatives in time.
+!> point, with their derivatives in time, at several positions of a motion at once.
 !>
-!> The parameter is the fastest index, so that the innermost loops run over all parameters. A coordinate that no parameter changes
-!> has no column.
+!> The position is the fastest index. All that the parameters decide, such as which of them changes which coordinate, is decided once
+!> for all positions: a product of zero is never formed.
 module mech9_linear_form
   use mech9_kinds, only: wp
+  use mech9_batch_products, only: batch_size, set_three, add_three, add_three_to, add_to
   implicit none
   private
-  public :: linear_form_type, new_linear_form, put_constant, find_values, add_sizes, solve_for, add_motion
+  public :: linear_form_type, new_linear_form, put_share, keep_double, find_values, find_sizes, solve_for
 
-  !> value(p,r) = of_constants(p,r) + the sum over the steps of columns(r,s)*q(p,s), and the derivatives of this sum in time.
+  !> For each parameter p, value(r) = share(r,p) + the sum over the steps of columns(r,s)*q(p,s), and the derivatives of this sum in time.
   type :: linear_form_type
     integer :: rows = 0                                !< how many numbers
     integer :: n_given = 0                             !< steps, the first ones, whose coordinates other blocks or drives determine
@@ -18,26 +19,26 @@ module mech9_linear_form
     integer, allocatable :: coordinates(:)             !< of these steps
     real(wp), allocatable :: signs(:)                  !< of these steps: 1 or -1
     integer, allocatable :: unknowns(:)                !< number of each coordinate among the unknowns of the block; 0: it is given
-    real(wp), allocatable :: columns(:, :, :)          !< (rows,0:2,steps) with derivatives in time, per unit of the coordinate
+    !> (batch,rows,0:3,steps) per unit of the coordinate, their derivatives in time, and twice the first one.
+    real(wp), allocatable :: columns(:, :, :, :)
     integer, allocatable :: constants(:)               !< twists by which constants change with a parameter
     real(wp), allocatable :: constant_signs(:)         !< of these twists
     integer, allocatable :: parameters(:)              !< of these twists
     real(wp), allocatable :: constant_sizes(:)         !< (P) sums of the sizes of these twists, by their parameters
     logical, allocatable :: is_first(:)                !< the twist is the first one of its parameter
     logical, allocatable :: keeps(:)                   !< the share of the twist and of its parameter's others never changes
-    logical :: is_filled = .false.                     !< the shares have been found once
-    real(wp), allocatable :: of_constants(:, :, :)     !< (P,rows,0:2) sums of these twists by their parameters, with their signs
+    logical :: is_filled = .false.                     !< the shares have been found once, those that never change for a whole batch
+    integer, allocatable :: slots(:)                   !< (P) number of each parameter's share of constants; 0: it has none
+    real(wp), allocatable :: shares(:, :, :, :)        !< (batch,rows,0:2,slots) sums of twists with their signs
+    logical, allocatable :: is_changed(:)              !< (P) the parameter changes some of the numbers
+    logical, allocatable :: is_still(:)                !< (P) it changes them by what never changes itself
   end type linear_form_type
-
-  !> Binomial coefficients of derivatives of a product: (part, order).
-  real(wp), parameter :: binomial(0:2, 0:2) = &
-    reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 1.0_wp, 2.0_wp, 1.0_wp], [3, 3])
 
 contains
 
   !> A form of some steps and constants, with room for its columns.
-  pure function new_linear_form(n, rows, steps, coordinates, signs, constants, constant_signs, parameters) result(form)
-    integer, intent(in) :: n                        !< number of all parameters
+  pure function new_linear_form(rows, steps, coordinates, signs, constants, constant_signs, parameters, touched, varies) &
+    result(form)
     integer, intent(in) :: rows                     !< how many numbers the form gives
     integer, intent(in) :: steps(:)                 !< numbers of its steps
     integer, intent(in) :: coordinates(:)           !< their coordinates
@@ -45,8 +46,10 @@ contains
     integer, intent(in) :: constants(:)             !< numbers of twists of constants
     real(wp), intent(in) :: constant_signs(:)       !< their signs
     integer, intent(in) :: parameters(:)            !< their parameters
+    logical, intent(in) :: touched(:, :)            !< (M,P) coordinates that change with each parameter
+    logical, intent(in) :: varies(:)                !< (P) parameters that have a share besides these twists
     type(linear_form_type) :: form
-    integer :: i
+    integer :: i, p
 
     form%rows = rows
     form%steps = steps
@@ -56,289 +59,217 @@ contains
     form%constant_signs = constant_signs
     form%parameters = parameters
     form%is_first = [(all(parameters(:i - 1) /= parameters(i)), i=1, size(parameters))]
-    allocate (form%unknowns(size(steps)), source=0)
-    allocate (form%keeps(size(constants)), source=.false.)
-    allocate (form%columns(rows, 0:2, size(steps)), form%of_constants(n, rows, 0:2), form%constant_sizes(n), &
-              source=0.0_wp)
+    allocate (form%unknowns(size(steps)), form%slots(size(varies)), source=0)
+    allocate (form%keeps(size(constants)), form%is_still(size(varies)), source=.false.)
+    form%is_changed = varies
+    do p = 1, size(varies)
+      if (varies(p) .or. any(parameters == p)) form%slots(p) = maxval(form%slots) + 1
+      form%is_changed(p) = form%slots(p) > 0 .or. any(touched(coordinates, p))
+    end do
+    allocate (form%columns(batch_size, rows, 0:3, size(steps)), form%shares(batch_size, rows, 0:2, maxval(form%slots)), &
+              form%constant_sizes(size(varies)), source=0.0_wp)
   end function new_linear_form
 
-  !> Put the share of a constant in its place, or add it to that of an earlier constant of the same parameter.
-  pure subroutine put_constant(form, i, highest, share)
+  !> Put the share of a constant at one position in its place, or add it to that of an earlier constant of the same parameter.
+  pure subroutine put_share(form, i, position, highest, share)
     type(linear_form_type), intent(inout) :: form   !< gets the share
     integer, intent(in) :: i                        !< number of the constant in the form; in ascending order
+    integer, intent(in) :: position                 !< number of the position in the batch
     integer, intent(in) :: highest                  !< order of the highest derivative in time
     real(wp), intent(in) :: share(form%rows, 0:2)   !< addition of the constant to the values
+    integer :: order
 
-    call put_share(size(form%of_constants, 1), form%rows, form%parameters(i), form%is_first(i), highest, share, form%of_constants)
-  end subroutine put_constant
-
-  !> The same with arrays of known shape, so that the compiler keeps their addresses in registers.
-  pure subroutine put_share(n, rows, p, is_first, highest, share, sums)
-    integer, intent(in) :: n                           !< number of parameters
-    integer, intent(in) :: rows                        !< number of rows
-    integer, intent(in) :: p                           !< number of the parameter
-    logical, intent(in) :: is_first                    !< its other shares are overwritten
-    integer, intent(in) :: highest                     !< order of the highest derivative in time
-    real(wp), intent(in) :: share(rows, 0:2)           !< addition to the values
-    real(wp), intent(inout) :: sums(n, rows, 0:2)      !< gets the share
-    integer :: order, r
-
-    if (is_first) then
+    associate (sums => form%shares(position, :, :, form%slots(form%parameters(i))))
       do order = 0, highest
-        do r = 1, rows
-          sums(p, r, order) = share(r, order)
-        end do
+        if (form%is_first(i)) then
+          sums(:, 1 + order) = share(:, order)
+        else
+          sums(:, 1 + order) = sums(:, 1 + order) + share(:, order)
+        end if
       end do
-    else
-      do order = 0, highest
-        do r = 1, rows
-          sums(p, r, order) = sums(p, r, order) + share(r, order)
-        end do
-      end do
-    end if
+    end associate
   end subroutine put_share
 
-  !> The values of a form, or of its derivatives in time. Products are added three at a time to three rows at a time, so that numbers
-  !> are read and written seldom.
-  pure subroutine find_values(form, n, m, order, whole, q, values)
-    type(linear_form_type), intent(in) :: form        !< with its columns and its part of constants
-    integer, intent(in) :: n                          !< number of parameters
-    integer, intent(in) :: m                          !< number of coordinates
-    integer, intent(in) :: order                      !< of the derivative in time
-    logical, intent(in) :: whole                      !< with the unknowns in this order, not only with those that are given
-    real(wp), intent(in) :: q(n, 3*m)                 !< derivatives of the coordinates, each with two derivatives in time
-    real(wp), intent(inout) :: values(n, form%rows)   !< the values
-    integer :: first, own
+  !> Keep twice the first derivatives of the columns, as the second derivatives of the values take them.
+  pure subroutine keep_double(form, n)
+    type(linear_form_type), intent(inout) :: form   !< with its columns
+    integer, intent(in) :: n                        !< number of positions
+    integer :: i, r, j
 
-    call copy(n*form%rows, form%of_constants(1, 1, order), values)
-    own = form%n_given
-    if (whole) own = size(form%steps)
-    first = 1
-    if (order > 0 .and. own == 0) first = form%first_moving
-    if (size(form%steps) > 0) call add_steps(n, m, form%rows, first, order, size(form%steps), own, form%coordinates, &
-                                             form%columns, q, values)
-  end subroutine find_values
-
-  !> Add the products of all steps. The arrays have known shapes, so that the compiler keeps their addresses in registers.
-  pure subroutine add_steps(n, m, rows, first, order, count, own, coordinates, factors_of, q, values)
-    integer, intent(in) :: n                               !< number of parameters
-    integer, intent(in) :: m                               !< number of coordinates
-    integer, intent(in) :: rows                            !< number of all rows
-    integer, intent(in) :: first                           !< first of the rows that is not left out
-    integer, intent(in) :: order                           !< of the derivative in time
-    integer, intent(in) :: count                           !< number of steps
-    integer, intent(in) :: own                             !< number of steps whose coordinates count in this order itself
-    integer, intent(in) :: coordinates(count)              !< of the steps
-    real(wp), intent(in) :: factors_of(rows, 0:2, count)   !< columns of the steps
-    real(wp), intent(in) :: q(n, 3*m)                      !< derivatives of the coordinates
-    real(wp), intent(inout) :: values(n, rows)             !< the sums
-    real(wp) :: factors(3, 3), weight
-    integer :: columns(3), row, terms, i, j, r, last
-
-    do row = first, rows, 3
-      last = min(3, rows - row + 1)
-      terms = 0
-      do j = 0, order
-        weight = binomial(j, order)
-        do i = 1, merge(own, count, j == order)
-          terms = terms + 1
-          do r = 1, last
-            factors(terms, r) = weight*factors_of(row + r - 1, order - j, i)
-          end do
-          columns(terms) = 3*coordinates(i) - 2 + j
-          if (terms < 3) cycle
-          call add_terms(n, m, rows, row, factors, columns, q, values)
-          terms = 0
+    do j = 1, size(form%steps)
+      do r = form%first_moving, form%rows
+        do i = 1, n
+          form%columns(i, r, 3, j) = 2.0_wp*form%columns(i, r, 1, j)
         end do
       end do
-      if (terms == 0) cycle
-      do j = terms + 1, 3
-        factors(j, :) = 0.0_wp
-        columns(j) = columns(1)
-      end do
-      call add_terms(n, m, rows, row, factors, columns, q, values)
     end do
+  end subroutine keep_double
+
+  !> The values of a form by one parameter, or those of its derivatives in time.
+  pure subroutine find_values(form, n, p, m, order, whole, touched, q, values)
+    type(linear_form_type), intent(in) :: form                    !< with its columns and shares
+    integer, intent(in) :: n                                      !< number of positions
+    integer, intent(in) :: p                                      !< number of the parameter
+    integer, intent(in) :: m                                      !< number of coordinates
+    integer, intent(in) :: order                                  !< of the derivative in time
+    logical, intent(in) :: whole                                  !< with the unknowns in this order, not only with those that are given
+    logical, intent(in) :: touched(m)                             !< coordinates that change with the parameter
+    real(wp), intent(in) :: q(batch_size, 0:2, m)                 !< derivatives of the coordinates, each with two derivatives in time
+    real(wp), intent(inout) :: values(batch_size, form%rows)      !< the values
+    integer :: own
+
+    if (form%slots(p) > 0) then
+      call copy(n, form%rows, form%shares(1, 1, order, form%slots(p)), values)
+    else
+      call set_zero(n, form%rows, values)
+    end if
+    own = form%n_given
+    if (whole) own = size(form%steps)
+    if (size(form%steps) > 0) call add_steps(n, m, form%rows, form%first_moving, order, size(form%steps), own, &
+                                             form%coordinates, touched, form%columns, q, values)
+  end subroutine find_values
+
+  !> Add the products of all steps, three at a time.
+  pure subroutine add_steps(n, m, rows, first_moving, order, count, own, coordinates, touched, columns, q, values)
+    integer, intent(in) :: n                                            !< number of positions
+    integer, intent(in) :: m                                            !< number of coordinates
+    integer, intent(in) :: rows                                         !< number of all rows
+    integer, intent(in) :: first_moving                                 !< rows before this one have constant columns
+    integer, intent(in) :: order                                        !< of the derivative in time
+    integer, intent(in) :: count                                        !< number of steps
+    integer, intent(in) :: own                                          !< number of steps whose coordinates count in this order itself
+    integer, intent(in) :: coordinates(count)                           !< of the steps
+    logical, intent(in) :: touched(m)                                   !< coordinates that change with the parameter
+    real(wp), intent(in) :: columns(batch_size, rows, 0:3, count)       !< of the steps
+    real(wp), intent(in) :: q(batch_size, 0:2, m)                       !< derivatives of the coordinates
+    real(wp), intent(inout) :: values(batch_size, rows)                 !< the sums
+    integer :: steps(3), kinds(3), orders(3), j, i, terms, kind_of, first
+
+    terms = 0
+    first = first_moving
+    do j = 0, order
+      kind_of = order - j
+      if (order == 2 .and. j == 1) kind_of = 3
+      if (kind_of == 0 .and. first > 1) then
+        call add_rest(n, m, rows, first, count, terms, steps, kinds, orders, coordinates, columns, q, values)
+        terms = 0
+        first = 1
+      end if
+      do i = 1, merge(own, count, j == order)
+        if (.not. touched(coordinates(i))) cycle
+        terms = terms + 1
+        steps(terms) = i
+        kinds(terms) = kind_of
+        orders(terms) = j
+        if (terms < 3) cycle
+        call add_three_to(n, rows - first + 1, columns(1, first, kinds(1), steps(1)), columns(1, first, kinds(2), steps(2)), &
+                          columns(1, first, kind_of, i), q(1, orders(1), coordinates(steps(1))), &
+                          q(1, orders(2), coordinates(steps(2))), q(1, j, coordinates(i)), values(1, first))
+        terms = 0
+      end do
+    end do
+    call add_rest(n, m, rows, first, count, terms, steps, kinds, orders, coordinates, columns, q, values)
   end subroutine add_steps
 
-  !> Add three products to each of up to three rows.
-  pure subroutine add_terms(n, m, rows, row, factors, columns, q, values)
-    integer, intent(in) :: n                      !< number of parameters
-    integer, intent(in) :: m                      !< number of coordinates
-    integer, intent(in) :: rows                   !< number of all rows
-    integer, intent(in) :: row                    !< the first of the rows
-    real(wp), intent(in) :: factors(3, 3)         !< (terms,rows)
-    integer, intent(in) :: columns(3)             !< columns of `q` that are multiplied
-    real(wp), intent(in) :: q(n, 3*m)             !< derivatives of the coordinates
-    real(wp), intent(inout) :: values(n, rows)    !< the sums
+  !> Add the products that are left, fewer than three.
+  pure subroutine add_rest(n, m, rows, first, count, terms, steps, kinds, orders, coordinates, columns, q, values)
+    integer, intent(in) :: n                                            !< number of positions
+    integer, intent(in) :: m                                            !< number of coordinates
+    integer, intent(in) :: rows                                         !< number of all rows
+    integer, intent(in) :: first                                        !< first of the rows that change
+    integer, intent(in) :: count                                        !< number of all steps
+    integer, intent(in) :: terms                                        !< number of products
+    integer, intent(in) :: steps(3)                                     !< number of the step of each among all
+    integer, intent(in) :: kinds(3)                                     !< kind of its column
+    integer, intent(in) :: orders(3)                                    !< of the derivative of its coordinate
+    integer, intent(in) :: coordinates(count)                           !< of all steps
+    real(wp), intent(in) :: columns(batch_size, rows, 0:3, count)       !< of all steps
+    real(wp), intent(in) :: q(batch_size, 0:2, m)                       !< derivatives of the coordinates
+    real(wp), intent(inout) :: values(batch_size, rows)                 !< the sums
+    integer :: t
 
-    associate (a => columns(1), b => columns(2), c => columns(3))
-      select case (rows - row)
-      case (0)
-        call add_to_one(n, factors, q(1, a), q(1, b), q(1, c), values(1, row))
-      case (1)
-        call add_to_two(n, factors, q(1, a), q(1, b), q(1, c), values(1, row))
-      case default
-        call add_to_three(n, 3, factors, q(1, a), q(1, b), q(1, c), values(1, row), values(1, row + 1), values(1, row + 2))
-      end select
-    end associate
-  end subroutine add_terms
+    do t = 1, terms
+      call add_to(n, rows - first + 1, columns(1, first, kinds(t), steps(t)), q(1, orders(t), coordinates(steps(t))), &
+                  values(1, first))
+    end do
+  end subroutine add_rest
 
-  !> Copy numbers.
-  pure subroutine copy(n, from, to)
-    integer, intent(in) :: n            !< how many
-    real(wp), intent(in) :: from(n)     !< the numbers
-    real(wp), intent(inout) :: to(n)    !< gets them
-    integer :: i
+  !> Copy some rows of numbers.
+  pure subroutine copy(n, rows, from, to)
+    integer, intent(in) :: n                          !< number of positions
+    integer, intent(in) :: rows                       !< number of rows
+    real(wp), intent(in) :: from(batch_size, rows)    !< the numbers
+    real(wp), intent(inout) :: to(batch_size, rows)   !< gets them
+    integer :: i, r
 
-    do i = 1, n
-      to(i) = from(i)
+    do r = 1, rows
+      do i = 1, n
+        to(i, r) = from(i, r)
+      end do
     end do
   end subroutine copy
 
-  !> x = x + three products.
-  pure subroutine add_to_one(n, f, a, b, c, x)
-    integer, intent(in) :: n               !< number of parameters
-    real(wp), intent(in) :: f(3)           !< factors
-    real(wp), intent(in) :: a(n)           !< first numbers
-    real(wp), intent(in) :: b(n)           !< second numbers
-    real(wp), intent(in) :: c(n)           !< third numbers
-    real(wp), intent(inout) :: x(n)        !< the sum
-    integer :: p
+  !> Set some rows of numbers to zero.
+  pure subroutine set_zero(n, rows, numbers)
+    integer, intent(in) :: n                               !< number of positions
+    integer, intent(in) :: rows                            !< number of rows
+    real(wp), intent(inout) :: numbers(batch_size, rows)   !< the numbers
+    integer :: i, r
 
-    do p = 1, n
-      x(p) = x(p) + f(1)*a(p) + f(2)*b(p) + f(3)*c(p)
-    end do
-  end subroutine add_to_one
-
-  !> The same in two rows.
-  pure subroutine add_to_two(n, f, a, b, c, x)
-    integer, intent(in) :: n               !< number of parameters
-    real(wp), intent(in) :: f(3, 3)        !< factors, two columns of three
-    real(wp), intent(in) :: a(n)           !< first numbers
-    real(wp), intent(in) :: b(n)           !< second numbers
-    real(wp), intent(in) :: c(n)           !< third numbers
-    real(wp), intent(inout) :: x(n, 2)     !< the sums
-    integer :: p
-
-    do p = 1, n
-      x(p, 1) = x(p, 1) + f(1, 1)*a(p) + f(2, 1)*b(p) + f(3, 1)*c(p)
-      x(p, 2) = x(p, 2) + f(1, 2)*a(p) + f(2, 2)*b(p) + f(3, 2)*c(p)
-    end do
-  end subroutine add_to_two
-
-  !> The same in three rows.
-  pure subroutine add_to_three(n, lead, f, a, b, c, x, y, z)
-    integer, intent(in) :: n               !< number of parameters
-    integer, intent(in) :: lead            !< number of rows in which the factors stand
-    real(wp), intent(in) :: f(lead, *)     !< factors, a column for each sum; the first three rows are used
-    real(wp), intent(in) :: a(n)           !< first numbers
-    real(wp), intent(in) :: b(n)           !< second numbers
-    real(wp), intent(in) :: c(n)           !< third numbers
-    real(wp), intent(inout) :: x(n)        !< first sum
-    real(wp), intent(inout) :: y(n)        !< second sum
-    real(wp), intent(inout) :: z(n)        !< third sum
-    integer :: p
-
-    do p = 1, n
-      x(p) = x(p) + f(1, 1)*a(p) + f(2, 1)*b(p) + f(3, 1)*c(p)
-      y(p) = y(p) + f(1, 2)*a(p) + f(2, 2)*b(p) + f(3, 2)*c(p)
-      z(p) = z(p) + f(1, 3)*a(p) + f(2, 3)*b(p) + f(3, 3)*c(p)
-    end do
-  end subroutine add_to_three
-
-  !> Three products instead of sums, in three rows.
-  pure subroutine set_three(n, lead, f, a, b, c, x, y, z)
-    integer, intent(in) :: n               !< number of parameters
-    integer, intent(in) :: lead            !< number of rows in which the factors stand
-    real(wp), intent(in) :: f(lead, *)     !< factors, a column for each sum; the first three rows are used
-    real(wp), intent(in) :: a(n)           !< first numbers
-    real(wp), intent(in) :: b(n)           !< second numbers
-    real(wp), intent(in) :: c(n)           !< third numbers
-    real(wp), intent(inout) :: x(n)        !< first sum of products
-    real(wp), intent(inout) :: y(n)        !< second sum of products
-    real(wp), intent(inout) :: z(n)        !< third sum of products
-    integer :: p
-
-    do p = 1, n
-      x(p) = f(1, 1)*a(p) + f(2, 1)*b(p) + f(3, 1)*c(p)
-      y(p) = f(1, 2)*a(p) + f(2, 2)*b(p) + f(3, 2)*c(p)
-      z(p) = f(1, 3)*a(p) + f(2, 3)*b(p) + f(3, 3)*c(p)
-    end do
-  end subroutine set_three
-
-  !> The derivatives of unknowns in one order, combinations of openings.
-  pure subroutine solve_for(n, m, unknowns, rows, solver, openings, columns, q)
-    integer, intent(in) :: n                          !< number of parameters
-    integer, intent(in) :: m                          !< number of coordinates
-    integer, intent(in) :: unknowns                   !< number of unknowns
-    integer, intent(in) :: rows                       !< number of openings, a multiple of three
-    real(wp), intent(in) :: solver(rows, unknowns)    !< factors of the openings
-    real(wp), intent(in) :: openings(n, rows)         !< of the block, by all parameters
-    integer, intent(in) :: columns(unknowns)          !< columns of `q` that are solved for
-    real(wp), intent(inout) :: q(n, 3*m)              !< derivatives of the coordinates
-    integer :: u, r, p
-
-    if (unknowns == 3 .and. rows == 3) then
-      call set_three(n, rows, solver, openings(1, 1), openings(1, 2), openings(1, 3), q(1, columns(1)), q(1, columns(2)), &
-                     q(1, columns(3)))
-      return
-    end if
-    do u = 1, unknowns - 2, 3
-      call set_three(n, rows, solver(1, u), openings(1, 1), openings(1, 2), openings(1, 3), q(1, columns(u)), &
-                     q(1, columns(u + 1)), q(1, columns(u + 2)))
-      do r = 4, rows, 3
-        call add_to_three(n, rows, solver(r, u), openings(1, r), openings(1, r + 1), openings(1, r + 2), q(1, columns(u)), &
-                          q(1, columns(u + 1)), q(1, columns(u + 2)))
+    do r = 1, rows
+      do i = 1, n
+        numbers(i, r) = 0.0_wp
       end do
+    end do
+  end subroutine set_zero
+
+  !> The derivatives of unknowns by one parameter in one order, combinations of openings.
+  pure subroutine solve_for(n, unknowns, rows, solver, openings, order, m, coordinates, q)
+    integer, intent(in) :: n                                           !< number of positions
+    integer, intent(in) :: unknowns                                    !< number of unknowns
+    integer, intent(in) :: rows                                        !< number of openings, a multiple of three
+    real(wp), intent(in) :: solver(batch_size, unknowns, rows)         !< factors of the openings
+    real(wp), intent(in) :: openings(batch_size, rows)                 !< of the block, by the parameter
+    integer, intent(in) :: order                                       !< of the derivative in time
+    integer, intent(in) :: m                                           !< number of coordinates
+    integer, intent(in) :: coordinates(unknowns)                       !< the unknowns
+    real(wp), intent(inout) :: q(batch_size, 0:2, m)                   !< derivatives of the coordinates; gets the unknowns
+    integer :: u, r
+
+    do u = 1, unknowns - 2, 3
+      associate (i => coordinates(u), j => coordinates(u + 1), k => coordinates(u + 2))
+        call set_three(n, solver(1, u, 1), solver(1, u, 2), solver(1, u, 3), openings(1, 1), openings(1, 2), openings(1, 3), &
+                       q(1, order, i), q(1, order, j), q(1, order, k))
+        do r = 4, rows, 3
+          call add_three(n, solver(1, u, r), solver(1, u, r + 1), solver(1, u, r + 2), openings(1, r), openings(1, r + 1), &
+                         openings(1, r + 2), q(1, order, i), q(1, order, j), q(1, order, k))
+        end do
+      end associate
     end do
     do u = 3*(unknowns/3) + 1, unknowns
-      do p = 1, n
-        q(p, columns(u)) = 0.0_wp
-      end do
+      call set_zero(n, 1, q(1, order, coordinates(u)))
       do r = 1, rows, 3
-        call add_to_one(n, solver(r, u), openings(1, r), openings(1, r + 1), openings(1, r + 2), q(1, columns(u)))
+        call add_three_to(n, 1, solver(1, u, r), solver(1, u, r + 1), solver(1, u, r + 2), openings(1, r), openings(1, r + 1), &
+                          openings(1, r + 2), q(1, order, coordinates(u)))
       end do
     end do
   end subroutine solve_for
 
-  !> Add the sizes of all parts of a form's values, each counted by its largest row.
-  pure subroutine add_sizes(form, n, m, q, sizes)
-    type(linear_form_type), intent(in) :: form      !< with its columns and shares
-    integer, intent(in) :: n                        !< number of parameters
+  !> The sizes of all parts of a form's values by one parameter, each counted by its largest row.
+  pure subroutine find_sizes(form, n, p, m, q, sizes)
+    type(linear_form_type), intent(in) :: form      !< with its columns
+    integer, intent(in) :: n                        !< number of positions
+    integer, intent(in) :: p                        !< number of the parameter
     integer, intent(in) :: m                        !< number of coordinates
-    real(wp), intent(in) :: q(n, 0:2, m)            !< derivatives of the coordinates by all parameters
-    real(wp), intent(inout) :: sizes(n)             !< the sums
-    real(wp) :: largest
-    integer :: i, p
+    real(wp), intent(in) :: q(batch_size, 0:2, m)   !< derivatives of the coordinates
+    real(wp), intent(inout) :: sizes(batch_size)    !< the sums
+    integer :: i, j
 
-    do i = 1, size(form%steps)
-      largest = maxval(abs(form%columns(:, 0, i)))
-      do p = 1, n
-        sizes(p) = sizes(p) + largest*abs(q(p, 0, form%coordinates(i)))
+    sizes(:n) = form%constant_sizes(p)
+    do j = 1, size(form%steps)
+      do i = 1, n
+        sizes(i) = sizes(i) + maxval(abs(form%columns(i, :, 0, j)))*abs(q(i, 0, form%coordinates(j)))
       end do
     end do
-    do p = 1, n
-      sizes(p) = sizes(p) + form%constant_sizes(p)
-    end do
-  end subroutine add_sizes
-
-  !> Add the motion that one coordinate gives to a twist.
-  pure subroutine add_motion(n, highest, series, q, twists)
-    integer, intent(in) :: n                          !< number of parameters
-    integer, intent(in) :: highest                    !< order of the highest derivative
-    real(wp), intent(in) :: series(6, 0:2)            !< twist per unit of the coordinate, and its derivatives in time
-    real(wp), intent(in) :: q(n, 0:2)                 !< derivatives of the coordinate by all parameters
-    real(wp), intent(inout) :: twists(n, 6, 0:2)      !< the sum
-    integer :: order, j, i, p
-
-    do order = 0, highest
-      do j = 0, order
-        do i = 1, 6
-          do p = 1, n
-            twists(p, i, order) = twists(p, i, order) + binomial(j, order)*series(i, order - j)*q(p, j)
-          end do
-        end do
-      end do
-    end do
-  end subroutine add_motion
+  end subroutine find_sizes
 end module mech9_linear_form

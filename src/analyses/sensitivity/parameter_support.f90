@@ -9,7 +9,7 @@ module mech9_parameter_support
   use mech9_linear_form, only: linear_form_type, new_linear_form
   implicit none
   private
-  public :: support_type, varied_constant_type, find_support, is_touched, closure_form, point_form, keep_static
+  public :: support_type, varied_constant_type, find_support, closure_form, point_form, keep_static
 
   !> A twist by which a constant of the mechanism changes with one parameter.
   type :: varied_constant_type
@@ -28,7 +28,7 @@ module mech9_parameter_support
   type :: support_type
     integer :: count = 0                                      !< how many twists of constants
     type(varied_constant_type), allocatable :: constants(:)   !< they come first; the others are room for more
-    logical, allocatable :: touched(:)                        !< (M) coordinates that change with some parameter
+    logical, allocatable :: touched(:, :)                     !< (M,P) coordinates that change with each parameter
   end type support_type
 
 contains
@@ -42,17 +42,17 @@ contains
     integer :: p, i, b
 
     allocate (support%constants(size(tangents)*(5*plan%n_coordinates + size(model%mechanism%points))))
-    allocate (support%touched(plan%n_coordinates), source=.false.)
+    allocate (support%touched(plan%n_coordinates, size(tangents)), source=.false.)
     do p = 1, size(tangents)
       call add_steps(plan, tangents(p), p, support)
       call add_targets(plan, tangents(p), p, support)
       call add_points(model, plan, tangents(p), p, support)
       do i = 1, size(model%problem%drives)
-        if (tangents(p)%drives(i)%varies) support%touched(model%problem%drives(i)%drive%coordinate) = .true.
+        if (tangents(p)%drives(i)%varies) support%touched(model%problem%drives(i)%drive%coordinate, p) = .true.
       end do
-    end do
-    do b = 1, size(plan%blocks)
-      if (is_touched(plan, plan%blocks(b), tangents, support)) support%touched(plan%blocks(b)%coordinates) = .true.
+      do b = 1, size(plan%blocks)
+        if (is_touched(plan, plan%blocks(b), tangents(p), p, support)) support%touched(plan%blocks(b)%coordinates, p) = .true.
+      end do
     end do
   end subroutine find_support
 
@@ -134,25 +134,24 @@ contains
     end do
   end subroutine add_points
 
-  !> Whether some parameter changes the unknowns of a block: through constants of its loops, or through their coordinates.
-  pure logical function is_touched(plan, block, tangents, support) result(touched)
+  !> Whether a parameter changes the unknowns of a block: through constants of its loops, or through their coordinates.
+  pure logical function is_touched(plan, block, tangent, p, support) result(touched)
     type(plan_type), intent(in) :: plan            !< the plan
     type(block_type), intent(in) :: block          !< the block
-    type(tangent_type), intent(in) :: tangents(:)  !< derivatives of the constants by each parameter
+    type(tangent_type), intent(in) :: tangent      !< derivatives of the constants by the parameter
+    integer, intent(in) :: p                       !< number of the parameter
     type(support_type), intent(in) :: support      !< with the constants and the coordinates of earlier blocks
-    integer :: c, i, p
+    integer :: c, i
 
     touched = .true.
     do c = block%first_closure, block%last_closure
       associate (closure => plan%closures(c))
-        if (any(support%touched(plan%steps(closure%loop%steps)%coordinate))) return
+        if (any(support%touched(plan%steps(closure%loop%steps)%coordinate, p))) return
         do i = 1, support%count
-          if (belongs_to(support%constants(i), plan, c)) return
+          if (support%constants(i)%parameter == p .and. belongs_to(support%constants(i), plan, c)) return
         end do
         if (closure%coupling == 0) cycle
-        do p = 1, size(tangents)
-          if (tangents(p)%couplings(closure%coupling)%varies) return
-        end do
+        if (tangent%couplings(closure%coupling)%varies) return
       end associate
     end do
     touched = .false.
@@ -170,31 +169,37 @@ contains
   end function belongs_to
 
   !> The opening of a closed chain as a form: first the steps with given coordinates, then those with unknown ones. The form of a
-  !> coupling has no constants.
-  pure function closure_form(plan, support, block, c, n, rows) result(form)
+  !> coupling has no twists of constants.
+  pure function closure_form(plan, support, tangents, block, c, rows) result(form)
     type(plan_type), intent(in) :: plan            !< the plan
     type(support_type), intent(in) :: support      !< the support of the parameters
+    type(tangent_type), intent(in) :: tangents(:)  !< derivatives of the constants by each parameter
     type(block_type), intent(in) :: block          !< the block that solves the chain
     integer, intent(in) :: c                       !< number of the closure
-    integer, intent(in) :: n                       !< number of parameters
     integer, intent(in) :: rows                    !< number of equations
     type(linear_form_type) :: form
     integer, allocatable :: order(:), coordinates(:), used(:)
     real(wp), allocatable :: signs(:)
-    logical, allocatable :: unknown(:), takes(:)
+    logical, allocatable :: unknown(:), given(:), takes(:)
+    logical :: varies(size(tangents))
     integer :: i
 
     associate (loop => plan%closures(c)%loop, closure => plan%closures(c))
       coordinates = plan%steps(loop%steps)%coordinate
-      allocate (unknown(size(coordinates)), takes(support%count))
+      allocate (unknown(size(coordinates)), given(size(coordinates)), takes(support%count))
       do i = 1, size(coordinates)
         unknown(i) = any(block%coordinates == coordinates(i))
+        given(i) = any(support%touched(coordinates(i), :)) .and. .not. unknown(i)
+      end do
+      varies = .false.
+      do i = 1, size(tangents)
+        if (closure%coupling > 0) varies(i) = tangents(i)%couplings(closure%coupling)%varies
       end do
       do i = 1, support%count
         takes(i) = belongs_to(support%constants(i), plan, c)
       end do
       order = [(i, i=1, size(coordinates))]
-      order = [pack(order, support%touched(coordinates) .and. .not. unknown), pack(order, unknown)]
+      order = [pack(order, given), pack(order, unknown)]
       used = pack([(i, i=1, support%count)], takes)
       allocate (signs(size(used)))
       do i = 1, size(used)
@@ -202,9 +207,9 @@ contains
         if (support%constants(used(i))%step > 0) &
           signs(i) = loop%signs(findloc(loop%steps, support%constants(used(i))%step, dim=1))
       end do
-      form = new_linear_form(n, rows, loop%steps(order), coordinates(order), loop%signs(order), used, signs, &
-                             support%constants(used)%parameter)
-      form%n_given = count(support%touched(coordinates) .and. .not. unknown)
+      form = new_linear_form(rows, loop%steps(order), coordinates(order), loop%signs(order), used, signs, &
+                             support%constants(used)%parameter, support%touched, varies)
+      form%n_given = count(given)
       do i = 1, size(used)
         associate (constant => support%constants(used(i)))
           form%constant_sizes(constant%parameter) = form%constant_sizes(constant%parameter) + constant%size
@@ -217,16 +222,16 @@ contains
   end function closure_form
 
   !> The shift of a point as a form of the steps that lead to its link.
-  pure function point_form(plan, support, number, frame, n, rows) result(form)
+  pure function point_form(plan, support, number, frame, rows) result(form)
     type(plan_type), intent(in) :: plan            !< the plan
     type(support_type), intent(in) :: support      !< the support of the parameters
     integer, intent(in) :: number                  !< number of the point
     integer, intent(in) :: frame                   !< first frame of its link
-    integer, intent(in) :: n                       !< number of parameters
     integer, intent(in) :: rows                    !< number of components that change
     type(linear_form_type) :: form
     integer, allocatable :: path(:), used(:)
     logical :: takes(support%count)
+    logical :: none(size(support%touched, 2))
     integer :: s, i
 
     allocate (path(0))
@@ -240,28 +245,36 @@ contains
       if (support%constants(i)%step > 0) takes(i) = any(path == support%constants(i)%step)
     end do
     used = pack([(i, i=1, support%count)], takes)
-    path = pack(path, support%touched(plan%steps(path)%coordinate))
-    form = new_linear_form(n, rows, path, plan%steps(path)%coordinate, [(1.0_wp, i=1, size(path))], used, &
-                           [(1.0_wp, i=1, size(used))], support%constants(used)%parameter)
+    path = pack(path, any(support%touched(plan%steps(path)%coordinate, :), dim=2))
+    none = .false.
+    form = new_linear_form(rows, path, plan%steps(path)%coordinate, [(1.0_wp, i=1, size(path))], used, &
+                           [(1.0_wp, i=1, size(used))], support%constants(used)%parameter, support%touched, none)
     form%n_given = size(path)
   end function point_form
 
-  !> Mark the twists of a form in planar arithmetic whose shares never change: those in frame 0, and only if they are pure shifts where
-  !> the form is written at a place that moves.
-  pure subroutine keep_static(support, at_rest, form)
-    type(support_type), intent(in) :: support        !< the support of the parameters, in the plane
+  !> Mark the twists of a form whose shares never change: those in frame 0, and only if they are pure shifts where the form is written
+  !> at a place that moves. A parameter whose shares do not change and which changes none of the form's coordinates changes the form
+  !> by what never changes.
+  pure subroutine keep_static(support, angles, at_rest, form)
+    type(support_type), intent(in) :: support        !< the support of the parameters
+    integer, intent(in) :: angles                    !< numbers of a rotation in a twist: 1 in the plane, 3 in space
     logical, intent(in) :: at_rest                   !< the form is written at a place that does not move
     type(linear_form_type), intent(inout) :: form    !< the form
     logical :: static(size(form%constants))
-    integer :: i
+    integer :: i, p
 
     do i = 1, size(form%constants)
       associate (constant => support%constants(form%constants(i)))
-        static(i) = constant%frame == 0 .and. (at_rest .or. .not. abs(constant%twist(1)) > 0.0_wp)
+        static(i) = constant%frame == 0 .and. .not. constant%by_pair .and. constant%stretched_by == 0 .and. &
+                    (at_rest .or. .not. any(abs(constant%twist(:angles)) > 0.0_wp))
       end associate
     end do
     do i = 1, size(form%constants)
       form%keeps(i) = all(static .or. form%parameters /= form%parameters(i))
+    end do
+    do p = 1, size(form%is_still)
+      form%is_still(p) = form%is_changed(p) .and. all(form%keeps .or. form%parameters /= p) .and. &
+                         .not. any(support%touched(form%coordinates, p))
     end do
   end subroutine keep_static
 end module mech9_parameter_support

@@ -5,12 +5,12 @@
 !> its target, in all orders of derivatives in time. The unknown derivatives of dependent coordinates follow from the factors of
 !> the block, with one right-hand side for each parameter.
 !>
-!> The columns of these sums are the same for all parameters: they are found once for each position, from the motion of the frames,
-!> and the innermost loops run over the parameters. In a planar mechanism whose parameters leave its plane alone, a twist has three
-!> numbers; else it has six.
+!> The columns of these sums are the same for all parameters. Derivatives do not depend on those at other positions: the motion of the
+!> frames is taken at one position after the other, and the derivatives at many positions are found together, with the position as the
+!> innermost index. In a planar mechanism whose parameters leave its plane alone, a twist has three numbers; else it has six.
 module mech9_sensitivity
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: singular_conditioning
+  use mech9_batch_products, only: batch_size
   use mech9_error, only: error_type, raise, exit_data, exit_singular
   use mech9_failure, only: failure_singular_sensitivity, failure_opening_parameter
   use mech9_model, only: model_type
@@ -23,16 +23,19 @@ module mech9_sensitivity
   use mech9_frame_variation, only: third_derivatives_type, new_third_derivatives, find_third_derivatives
   use mech9_twists, only: frame_twists_type, new_frame_twists, find_frame_twists, find_step_twists
   use mech9_tangent, only: tangent_type, find_tangent
-  use mech9_pair_changes, only: find_pair_change
+  use mech9_planar_batch, only: planar_batch_type, new_planar_batch, take_planar, find_spins
+  use mech9_spatial_batch, only: spatial_batch_type, new_spatial_batch, take_spatial, find_turning, find_twists
+  use mech9_motion_changes, only: motion_changes_type, new_motion_changes, place_of_coordinate, place_of_point
   use mech9_parameter_support, only: support_type, find_support, point_form, keep_static
-  use mech9_linear_form, only: linear_form_type, find_values, add_motion
-  use mech9_planar_forms, only: carry_in_plane, fill_planar_closure, fill_planar_point, planar_step_series
-  use mech9_spatial_forms, only: carry_in_space, fill_spatial_closure, fill_whole_closure, fill_coupling, fill_spatial_point
+  use mech9_linear_form, only: linear_form_type, find_values
+  use mech9_planar_forms, only: carry_in_plane, fill_planar_closure, fill_planar_point
+  use mech9_spatial_forms, only: carry_in_space, fill_spatial_closure, fill_spatial_point
+  use mech9_forms_at_position, only: find_twist, fill_reduced_closure, fill_coupling
   use mech9_planar_support, only: put_in_plane
-  use mech9_varied_block, only: varied_block_type, new_varied_block, factorize, solve_block
+  use mech9_varied_block, only: varied_block_type, new_varied_block, solve_block
   implicit none
   private
-  public :: sensitivity_type, new_sensitivity, find_sensitivities, find_twists_of_frame
+  public :: sensitivity_type, new_sensitivity, new_given_sensitivity, take_position, find_waiting
 
   !> A drive whose numbers a parameter changes.
   type :: varied_drive_type
@@ -40,12 +43,13 @@ module mech9_sensitivity
     integer :: drive = 0       !< number of the drive
   end type varied_drive_type
 
-  !> The derivatives of a motion by all parameters, and what finds them. Each parameter counts in its unit in the data file.
+  !> The derivatives of a motion by all parameters at several positions, and what finds them.
   type :: sensitivity_type
-    integer :: n_parameters = 0
     integer :: highest = 2                          !< order of the highest derivative in time that is found
-    real(wp), allocatable :: q(:, :, :)             !< (P,0:2,M) of the coordinates and their derivatives in time [rad, m]
-    real(wp), allocatable :: points(:, :, :, :)     !< (P,3,0:2,points) of the points of the mechanism [m]
+    integer :: at_once = 1                          !< most positions that may wait for their derivatives
+    integer :: waiting = 0                          !< positions that were taken and wait for their derivatives
+    type(motion_changes_type) :: changes            !< the derivatives at these positions, after `find_waiting`
+    logical, private :: is_given = .false.          !< the derivatives are found elsewhere
     logical, private :: in_plane = .false.          !< twists have three numbers
     logical, private :: own_frames = .false.        !< the frames are placed here, because others do not place them all in space
     type(tangent_type), allocatable, private :: tangents(:)    !< (P) of the constants
@@ -54,14 +58,24 @@ module mech9_sensitivity
     type(varied_block_type), allocatable, private :: blocks(:) !< chains that they change
     type(linear_form_type), allocatable, private :: points_shift(:)   !< of all points
     real(wp), allocatable, private :: places(:, :)             !< (3,points) of the points in the first frames of their links [m]
-    real(wp), allocatable, private :: series(:, :, :)          !< (3 or 6,0:2,constants) twists of constants
+    logical, allocatable, private :: apart(:)                  !< (constants) found at each position by itself
+    real(wp), allocatable, private :: series(:, :, :, :)       !< (batch,3 or 6,0:2,constants) twists of constants
     logical, private :: is_carried = .false.                   !< twists of the ground are in `series`
     integer, allocatable, private :: steps(:)                  !< steps whose twists are found
-    integer, allocatable, private :: frames(:)                 !< frames whose motion is found as twists
+    integer, allocatable, private :: slides(:)                 !< those of them that slide, in the plane
+    integer, allocatable, private :: screws(:)                 !< those of them with axes that are fixed in their parent frames
+    integer, allocatable, private :: others(:)                 !< those of them without
+    logical, private :: by_position = .false.                  !< some twists and forms are found at each position by itself
+    integer, allocatable, private :: parents(:)                !< frames whose motion is found as twists
+    integer, allocatable, private :: frames(:)                 !< frames whose motion is taken, without frame 0
+    integer, allocatable, private :: turned(:)                 !< frames the derivatives of whose rotation are found
     type(plan_type), private :: plan                           !< in the arithmetic of the derivatives
     type(state_type), private :: state                         !< the motion, where the frames are placed here
-    type(frame_twists_type), private :: motion                 !< twists of the motion in space
+    type(frame_twists_type), private :: motion                 !< twists of the motion in space, at one position
     type(third_derivatives_type), private :: third             !< of pairs without a fixed axis
+    real(wp), private :: times(batch_size) = 0.0_wp            !< of the positions [s]
+    type(planar_batch_type), private :: plane                  !< motion of the frames in the plane
+    type(spatial_batch_type), private :: space                 !< motion of frames and steps in space
   end type sensitivity_type
 
 contains
@@ -77,33 +91,42 @@ contains
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     integer :: i
 
-    sensitivity%n_parameters = size(model%parameters)
     sensitivity%highest = highest
-    allocate (sensitivity%tangents(sensitivity%n_parameters))
-    do i = 1, sensitivity%n_parameters
+    allocate (sensitivity%tangents(size(model%parameters)))
+    do i = 1, size(model%parameters)
       call find_tangent(variable, model, plan, i, sensitivity%tangents(i), err)
       if (allocated(err)) return
     end do
+    sensitivity%changes = new_motion_changes(size(model%parameters), plan%n_coordinates, size(model%mechanism%points))
     call find_support(model, plan, sensitivity%tangents, sensitivity%support)
     call choose_arithmetic(model, plan, sensitivity)
     call make_forms(model, sensitivity)
+    call list_frames(model, sensitivity)
   end subroutine new_sensitivity
+
+  !> Room for derivatives that are found elsewhere, at one position after the other.
+  subroutine new_given_sensitivity(model, highest, sensitivity)
+    type(model_type), intent(in) :: model                 !< the model
+    integer, intent(in) :: highest                        !< order of the highest derivative in time
+    type(sensitivity_type), intent(out) :: sensitivity    !< gets its room
+
+    sensitivity%highest = highest
+    sensitivity%is_given = .true.
+    sensitivity%changes = new_motion_changes(size(model%parameters), size(model%mechanism%pairs), size(model%mechanism%points))
+  end subroutine new_given_sensitivity
 
   !> Choose planar arithmetic where neither the mechanism nor a parameter leaves the plane, and decide who places the frames.
   subroutine choose_arithmetic(model, plan, self)
     type(model_type), intent(in) :: model           !< the present model
     type(plan_type), intent(in) :: plan             !< its plan
     type(sensitivity_type), intent(inout) :: self   !< with the support; gets the plan and its arithmetic
-    integer :: n, m
 
-    n = self%n_parameters
-    m = plan%n_coordinates
-    allocate (self%q(n, 0:2, m), self%points(n, 3, 0:2, size(model%mechanism%points)), source=0.0_wp)
     self%plan = plan
     if (plan%planar%used .and. .not. any(self%support%constants%by_pair)) &
       call put_in_plane(plan, model%problem%initial%position, self%support, self%in_plane)
     if (self%in_plane) then
       self%own_frames = self%highest > 0 .and. any(plan%blocks%last_moved < plan%blocks%last_step)
+      self%plane = new_planar_batch(plan%n_coordinates)
     else
       self%own_frames = plan%planar%used .or. self%highest > 0 .and. any(plan%blocks%last_moved < plan%blocks%last_step)
       if (allocated(plan%planar%planes)) self%own_frames = self%own_frames .or. any(plan%planar%plane_of > 0 .and. &
@@ -111,34 +134,42 @@ contains
       self%plan%blocks%arithmetic = 1
       self%plan%blocks%is_shown = .false.
       call set_in_space(self%plan)
-      self%motion = new_frame_twists(m)
+      self%motion = new_frame_twists(plan%n_coordinates)
       self%third = new_third_derivatives(plan)
+      self%space = new_spatial_batch(plan%n_coordinates)
     end if
     if (self%own_frames) self%state = new_state(self%plan)
-    allocate (self%series(merge(3, 6, self%in_plane), 0:2, self%support%count), source=0.0_wp)
+    allocate (self%series(batch_size, merge(3, 6, self%in_plane), 0:2, self%support%count), source=0.0_wp)
   end subroutine choose_arithmetic
 
-  !> Make the forms of chains and points, and the lists of all that a position needs.
+  !> Make the forms of chains and points, and decide how many positions are treated at once.
   subroutine make_forms(model, self)
     type(model_type), intent(in) :: model           !< the present model
     type(sensitivity_type), intent(inout) :: self   !< with support and plan; gets forms and lists
-    logical :: steps(self%plan%n_coordinates), frames(0:self%plan%n_coordinates)
     logical :: varies(size(self%plan%blocks))
     integer, allocatable :: varied(:)
-    integer :: b, i, p, n
+    integer :: b, i, p
 
     do b = 1, size(varies)
       associate (coordinates => self%plan%blocks(b)%coordinates)
-        varies(b) = size(coordinates) > 0 .and. all(self%support%touched(coordinates))
+        varies(b) = size(coordinates) > 0 .and. any(self%support%touched(coordinates, :))
       end associate
     end do
     varied = pack([(b, b=1, size(varies))], varies)
-    n = self%n_parameters
     allocate (self%blocks(size(varied)), self%drives(0), self%points_shift(size(model%mechanism%points)))
+    allocate (self%apart(self%support%count), source=.false.)
+    self%apart = self%support%constants(:self%support%count)%by_pair .or. &
+                 self%support%constants(:self%support%count)%stretched_by > 0
+    self%at_once = batch_size
     do b = 1, size(varied)
-      self%blocks(b) = new_varied_block(self%plan, self%support, varied(b), n, self%in_plane, self%highest)
+      self%blocks(b) = new_varied_block(self%plan, self%support, self%tangents, varied(b), self%in_plane, self%highest)
+      self%at_once = min(self%at_once, self%blocks(b)%at_once)
+      if (self%in_plane) cycle
+      do i = 1, size(self%blocks(b)%forms)
+        if (self%blocks(b)%forms(i)%rows < 6) self%apart(self%blocks(b)%forms(i)%constants) = .true.
+      end do
     end do
-    do p = 1, n
+    do p = 1, size(self%tangents)
       do i = 1, size(model%problem%drives)
         if (self%tangents(p)%drives(i)%varies) self%drives = [self%drives, varied_drive_type(p, i)]
       end do
@@ -147,12 +178,6 @@ contains
     do i = 1, size(model%mechanism%points)
       call make_point(model, i, self)
     end do
-    steps = self%support%touched(self%plan%steps%coordinate)
-    self%steps = pack([(i, i=1, size(steps))], steps)
-    frames = .false.
-    frames(self%plan%steps(self%steps)%parent) = .true.
-    frames(self%support%constants(:self%support%count)%frame) = .true.
-    self%frames = pack([(i, i=0, size(steps))], frames)
   end subroutine make_forms
 
   !> Make the form of a point. The part of its shift that is normal to a plane never changes.
@@ -165,37 +190,89 @@ contains
     rows = 3
     if (self%in_plane .and. self%plan%planar%in_xy_plane) rows = 2
     associate (point => model%mechanism%points(number), form => self%points_shift(number), planar => self%plan%planar)
-      form = point_form(self%plan, self%support, number, self%plan%frame_of(point%link), self%n_parameters, rows)
+      form = point_form(self%plan, self%support, number, self%plan%frame_of(point%link), rows)
+      call keep_static(self%support, merge(1, 3, self%in_plane), .false., form)
       if (.not. self%in_plane) then
         self%places(:, number) = transformed(self%plan%link_in_frame(point%link), point%position)
         return
       end if
-      call keep_static(self%support, .false., form)
       self%places(:, number) = transformed(planar%link_in_frame(point%link), point%position)
       ! beside a plane of the first two axes, the third row of the shift never changes
       do i = 1, self%support%count
         associate (constant => self%support%constants(i))
-          if (constant%point == number) self%points(constant%parameter, 3, 0, number) = constant%twist(4)
+          if (constant%point == number) &
+            self%changes%values(:, place_of_point(self%plan%n_coordinates, number, 0, 3), constant%parameter) = constant%twist(4)
         end associate
       end do
     end associate
   end subroutine make_point
 
-  !> Find the derivatives of the present motion. Fails with exit_singular where closed chains are in a singular position, and with
-  !> exit_data where a change of a parameter would open a closed chain.
-  subroutine find_sensitivities(model, present, self, err)
+  !> List the frames and steps whose motion is needed, and decide whether some of it is found at each position by itself.
+  subroutine list_frames(model, self)
+    type(model_type), intent(in) :: model           !< the present model
+    type(sensitivity_type), intent(inout) :: self   !< with its forms; gets the lists
+    logical, dimension(self%plan%n_coordinates) :: touched
+    logical, dimension(0:self%plan%n_coordinates) :: parents, turned, taken
+    integer :: b, i
+
+    touched = any(self%support%touched(self%plan%steps%coordinate, :), dim=2)
+    self%steps = pack([(i, i=1, size(touched))], touched)
+    parents = .false.
+    parents(self%plan%steps(self%steps)%parent) = .true.
+    turned = .false.
+    turned(self%support%constants(:self%support%count)%frame) = .true.
+    taken = .false.
+    do i = 1, size(model%mechanism%points)
+      associate (frame => self%plan%frame_of(model%mechanism%points(i)%link))
+        taken(frame) = .true.
+        if (.not. self%in_plane) turned(frame) = .true.
+      end associate
+    end do
+    do b = 1, size(self%blocks)
+      do i = self%plan%blocks(self%blocks(b)%number)%first_closure, self%plan%blocks(self%blocks(b)%number)%last_closure
+        if (self%in_plane) then
+          taken(self%plan%planar%closures(i)%base) = .true.
+        else if (self%plan%closures(i)%coupling == 0) then
+          taken(self%plan%closures(i)%closing) = .true.
+        end if
+      end do
+    end do
+    taken = taken .or. turned
+    allocate (self%slides(0))
+    if (self%in_plane) then
+      taken(self%steps) = .true.
+      self%slides = pack(self%steps, .not. self%plan%planar%steps(self%steps)%turns)
+    end if
+    taken = taken .or. parents
+    self%parents = pack([(i, i=0, size(touched))], parents .or. turned)
+    self%screws = pack(self%steps, self%plan%steps(self%steps)%is_screw)
+    self%others = pack(self%steps, .not. self%plan%steps(self%steps)%is_screw)
+    if (.not. self%in_plane) taken(self%screws) = .true.
+    self%turned = pack([(i, i=1, size(touched))], turned(1:))
+    self%frames = pack([(i, i=1, size(touched))], taken(1:))
+    if (self%in_plane) return
+    self%by_position = any(self%apart) .or. size(self%others) > 0
+    do b = 1, size(self%blocks)
+      self%by_position = self%by_position .or. any(self%blocks(b)%forms%rows < 6)
+    end do
+  end subroutine list_frames
+
+  !> Take the present motion as the next position whose derivatives are wanted. Fails if a pair has no pose beside the present one; then
+  !> the position is not taken.
+  subroutine take_position(model, present, self, err)
     type(model_type), intent(in) :: model                 !< the present model
     type(state_type), intent(in) :: present               !< the motion in the plan for which this was prepared, frames included
-    type(sensitivity_type), intent(inout) :: self         !< gets the derivatives
+    type(sensitivity_type), intent(inout) :: self         !< with room for one more position; gets the motion
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
 
     if (self%own_frames) then
       call place_motion(present, self, err)
-      if (.not. allocated(err)) call find_from_frames(model, self%state, self, err)
+      if (.not. allocated(err)) call take_frames(model, self%state, self, err)
     else
-      call find_from_frames(model, present, self, err)
+      call take_frames(model, present, self, err)
     end if
-  end subroutine find_sensitivities
+    if (.not. allocated(err)) self%waiting = self%waiting + 1
+  end subroutine take_position
 
   !> Place the frames of the present motion.
   subroutine place_motion(present, self, err)
@@ -213,200 +290,210 @@ contains
     if (self%highest > 1) call spread_all_accelerations(self%plan, self%state)
   end subroutine place_motion
 
-  !> Find the derivatives of a motion whose frames are in place.
-  subroutine find_from_frames(model, state, self, err)
+  !> Take the motion of the frames, and find what is found for each position by itself.
+  subroutine take_frames(model, state, self, err)
     type(model_type), intent(in) :: model                 !< the present model
-    type(state_type), intent(in) :: state                 !< the motion
-    type(sensitivity_type), intent(inout) :: self         !< gets the derivatives
-    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
-    integer :: b, i, parameter
-
-    call find_series(state, self, err)
-    if (allocated(err)) return
-    call vary_drives(model, state%t, self)
-    do b = 1, size(self%blocks)
-      associate (block => self%blocks(b))
-        call fill_block(state, block, self)
-        call factorize(block)
-        if (.not. block%equations%conditioning() >= singular_conditioning) then
-          call fail_with(failure_singular_sensitivity, exit_singular, self%plan%blocks(block%number), state%t, err)
-          return
-        end if
-        call solve_block(model, self%plan, state, self%tangents, self%highest, self%n_parameters, &
-                         self%plan%n_coordinates, block, self%q, parameter)
-        if (parameter == 0) cycle
-        call fail_with(failure_opening_parameter, exit_data, self%plan%blocks(block%number), state%t, err)
-        err%failure%number = parameter
-        err%failure%name = model%parameters(parameter)%name
-        err%place = model%parameters(parameter)%place
-        return
-      end associate
-    end do
-    do i = 1, size(self%points_shift)
-      call vary_point(model, i, state, self)
-    end do
-  end subroutine find_from_frames
-
-  !> Find the twists of steps and constants with their derivatives in time.
-  subroutine find_series(state, self, err)
-    type(state_type), intent(in) :: state                 !< the motion
-    type(sensitivity_type), intent(inout) :: self         !< gets the twists
+    type(state_type), intent(in) :: state                 !< the motion, with its frames in place
+    type(sensitivity_type), intent(inout) :: self         !< gets the motion
     type(error_type), allocatable, intent(out) :: err     !< allocated if a pair has no pose beside the present one
-    integer :: i
 
-    associate (n => self%support%count)
+    associate (position => self%waiting + 1)
+      self%times(position) = state%t
+      if (size(self%drives) > 0) call vary_drives(model, state%t, position, self)
       if (self%in_plane) then
-        call carry_in_plane(n, self%support%constants, state%planar, self%highest, self%is_carried, self%series)
-        self%is_carried = .true.
+        call take_planar(state%planar, self%frames, self%slides, position, self%highest, self%plane)
         return
       end if
       if (self%highest > 1) call find_third_derivatives(self%plan, state, self%third, err)
       if (allocated(err)) return
-      call find_frame_twists(state, self%frames, self%highest, self%motion)
-      call find_step_twists(self%plan, state, self%third, self%steps, self%highest, self%motion)
-      call carry_in_space(self%plan, n, self%support%constants, state, self%motion, self%highest, self%is_carried, &
-                          self%series)
-      self%is_carried = .true.
-      do i = 1, n
-        associate (constant => self%support%constants(i))
-          if (constant%by_pair) call find_pair_change(self%plan, state, self%motion, self%tangents(constant%parameter), &
-                                                      constant%step, self%highest, self%series(:, :, i))
-        end associate
-      end do
+      call take_spatial(state, self%frames, self%screws, position, self%highest, self%space)
+      if (self%by_position) call fill_at_position(model, state, position, self)
     end associate
+  end subroutine take_frames
+
+  !> The derivatives of the driven coordinates, which their laws give.
+  subroutine vary_drives(model, t, position, self)
+    type(model_type), intent(in) :: model           !< the present model
+    real(wp), intent(in) :: t                       !< time [s]
+    integer, intent(in) :: position                 !< number of the position in the batch
+    type(sensitivity_type), intent(inout) :: self   !< gets the derivatives
+    real(wp) :: change(0:2)
+    integer :: i, order
+
+    do i = 1, size(self%drives)
+      associate (varied => self%drives(i), drive => model%problem%drives(self%drives(i)%drive)%drive)
+        call drive%vary(self%tangents(varied%parameter)%drives(varied%drive)%change, t, change(0), change(1), change(2))
+        do order = 0, 2
+          self%changes%values(position, place_of_coordinate(drive%coordinate, order), varied%parameter) = change(order)
+        end do
+      end associate
+    end do
+  end subroutine vary_drives
+
+  !> Find the twists of some constants and the forms of some closures in space, at one position.
+  subroutine fill_at_position(model, state, position, self)
+    type(model_type), intent(in) :: model           !< the present model
+    type(state_type), intent(in) :: state           !< the motion
+    integer, intent(in) :: position                 !< number of the position in the batch
+    type(sensitivity_type), intent(inout) :: self   !< with the twists of the motion; gets those of constants and forms
+    integer :: b, i, c, number
+
+    call find_frame_twists(state, self%parents, self%highest, self%motion)
+    call find_step_twists(self%plan, state, self%third, self%steps, self%highest, self%motion)
+    do i = 1, size(self%others)
+      self%space%step(position, :, :, self%others(i)) = self%motion%step(:, :, self%others(i))
+    end do
+    do i = 1, self%support%count
+      if (.not. self%apart(i)) cycle
+      associate (constant => self%support%constants(i))
+        call find_twist(self%plan, constant, self%tangents(constant%parameter), state, self%motion, self%highest, &
+                        self%series(position, :, :, i))
+      end associate
+    end do
+    do b = 1, size(self%blocks)
+      associate (block => self%blocks(b))
+        do i = 1, size(block%forms)
+          c = block%first_closure + i - 1
+          number = self%plan%closures(c)%coupling
+          if (number > 0) then
+            call fill_coupling(model, self%plan, c, state, self%tangents, self%third%couplings(number), position, self%highest, &
+                               block%forms(i))
+          else if (block%forms(i)%rows < 6) then
+            call fill_reduced_closure(self%plan, c, state, self%motion, position, self%highest, self%series(position, :, :, :), &
+                                      block%forms(i))
+          end if
+        end do
+      end associate
+    end do
+  end subroutine fill_at_position
+
+  !> Find the derivatives at the positions that wait. Fails with exit_singular where closed chains are in a singular position, and with
+  !> exit_data where a change of a parameter would open a closed chain.
+  subroutine find_waiting(model, self, good, err)
+    type(model_type), intent(in) :: model                 !< the present model
+    type(sensitivity_type), intent(inout) :: self         !< gets the derivatives; no position waits any more
+    integer, intent(out) :: good                          !< positions before the first one that failed, or all
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+
+    good = self%waiting
+    if (good > 0 .and. .not. self%is_given) call find_in_batch(model, self, good, err)
+    self%waiting = 0
+  end subroutine find_waiting
+
+  !> Find the derivatives of a batch of positions.
+  subroutine find_in_batch(model, self, n, err)
+    type(model_type), intent(in) :: model                 !< the present model
+    type(sensitivity_type), intent(inout) :: self         !< gets the derivatives
+    integer, intent(inout) :: n                           !< number of positions; gets those before the first one that failed
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    integer :: b, i, good, parameter
+
+    call find_series(n, self)
+    do b = 1, size(self%blocks)
+      call fill_block(n, self%blocks(b), self)
+      associate (changes => self%changes)
+        call solve_block(n, self%plan, self%highest, changes%n_parameters, changes%n_coordinates, size(changes%values, 2), &
+                         self%support%touched, self%blocks(b), changes%values, good, parameter)
+      end associate
+      if (good == n) cycle
+      ! an earlier position that fails in another block replaces this one
+      n = good
+      if (allocated(err)) deallocate (err)
+      call fail_with(model, parameter, self%plan%blocks(self%blocks(b)%number), self%times(n + 1), err)
+    end do
+    do i = 1, size(self%points_shift)
+      call vary_point(model, i, n, self)
+    end do
+  end subroutine find_in_batch
+
+  !> Find the twists of constants with their derivatives in time.
+  subroutine find_series(n, self)
+    integer, intent(in) :: n                              !< number of positions
+    type(sensitivity_type), intent(inout) :: self         !< with the motion of the frames; gets the twists
+
+    associate (constants => self%support%constants(:self%support%count))
+      if (self%in_plane) then
+        call find_spins(n, self%turned, self%highest, self%plane)
+        call carry_in_plane(n, self%support%count, constants, self%plane, self%highest, self%is_carried, self%series)
+      else
+        call find_turning(n, self%turned, self%highest, self%space)
+        call find_twists(n, self%plan, self%parents, self%screws, self%highest, self%space)
+        call carry_in_space(n, self%support%count, constants, self%apart, self%space, self%highest, self%is_carried, self%series)
+      end if
+    end associate
+    self%is_carried = .true.
   end subroutine find_series
 
   !> Fail because of the chains of a block.
-  pure subroutine fail_with(kind, code, block, t, err)
-    integer, intent(in) :: kind                           !< of the failure
-    integer, intent(in) :: code                           !< exit code
+  pure subroutine fail_with(model, parameter, block, t, err)
+    type(model_type), intent(in) :: model                 !< the present model
+    integer, intent(in) :: parameter                      !< the parameter that opens a chain; 0: the position is singular
     type(block_type), intent(in) :: block                 !< the block
     real(wp), intent(in) :: t                             !< time [s]
     type(error_type), allocatable, intent(out) :: err     !< the failure
 
-    call raise(err, code, kind)
+    if (parameter == 0) then
+      call raise(err, exit_singular, failure_singular_sensitivity)
+    else
+      call raise(err, exit_data, failure_opening_parameter)
+      err%failure%number = parameter
+      err%failure%name = model%parameters(parameter)%name
+      err%place = model%parameters(parameter)%place
+    end if
     err%failure%chains = block%chains
     err%failure%coordinates = block%coordinates
     err%failure%t = t
   end subroutine fail_with
 
-  !> The derivatives of the driven coordinates, which their laws give.
-  subroutine vary_drives(model, t, self)
-    type(model_type), intent(in) :: model           !< the present model
-    real(wp), intent(in) :: t                       !< time [s]
-    type(sensitivity_type), intent(inout) :: self   !< gets the derivatives
-    real(wp) :: change(0:2)
-    integer :: i
-
-    do i = 1, size(self%drives)
-      associate (varied => self%drives(i), drive => model%problem%drives(self%drives(i)%drive)%drive)
-        call drive%vary(self%tangents(varied%parameter)%drives(varied%drive)%change, t, change(0), change(1), change(2))
-        self%q(varied%parameter, :, drive%coordinate) = change
-      end associate
-    end do
-  end subroutine vary_drives
-
-  !> Fill the forms of a block for the present position.
-  subroutine fill_block(state, block, self)
-    type(state_type), intent(in) :: state              !< the motion
+  !> Fill the forms of a block.
+  subroutine fill_block(n, block, self)
+    integer, intent(in) :: n                           !< number of positions
     type(varied_block_type), intent(inout) :: block    !< gets its columns
-    type(sensitivity_type), intent(inout) :: self      !< with the twists of steps and constants
-    integer :: i, c, number
+    type(sensitivity_type), intent(in) :: self         !< with the twists of steps and constants
+    integer :: i, c
 
-    do i = 1, size(block%forms)
-      c = block%first_closure + i - 1
-      number = self%plan%closures(c)%coupling
-      if (self%in_plane) then
-        call fill_planar_closure(self%plan%planar, c, state%planar, self%highest, self%series, block%forms(i))
-      else if (number > 0) then
-        call fill_coupling(self%plan, c, state, self%third%couplings(number), block%forms(i))
-      else
-        call fill_spatial_closure(self%plan, c, state, self%motion, self%highest, self%series, block%forms(i))
-        if (block%has_whole) call fill_whole_closure(self%plan, c, state, self%motion, self%series, block%whole(i))
-      end if
-    end do
+    associate (constants => self%support%constants)
+      do i = 1, size(block%forms)
+        c = block%first_closure + i - 1
+        if (self%in_plane) then
+          call fill_planar_closure(n, self%plan%planar, c, self%plane, self%highest, constants, self%series, block%forms(i))
+        else if (self%plan%closures(c)%coupling == 0) then
+          if (block%forms(i)%rows == 6) &
+            call fill_spatial_closure(n, self%plan, c, self%space, self%highest, constants, self%series, block%forms(i))
+          if (block%has_whole) call fill_spatial_closure(n, self%plan, c, self%space, 0, constants, self%series, block%whole(i))
+        end if
+      end do
+    end associate
   end subroutine fill_block
 
   !> The derivatives of a point.
-  subroutine vary_point(model, number, state, self)
+  subroutine vary_point(model, number, n, self)
     type(model_type), intent(in) :: model           !< the present model
     integer, intent(in) :: number                   !< of the point
-    type(state_type), intent(in) :: state           !< the motion
+    integer, intent(in) :: n                        !< number of positions
     type(sensitivity_type), intent(inout) :: self   !< with the coordinates; gets the derivatives
-    integer :: f, order
+    integer :: frame, order, p
+    logical :: again
 
-    f = self%plan%frame_of(model%mechanism%points(number)%link)
-    associate (form => self%points_shift(number))
-      if (size(form%steps) == 0 .and. (form%is_filled .or. size(form%constants) == 0) .and. all(form%keeps)) return
+    frame = self%plan%frame_of(model%mechanism%points(number)%link)
+    associate (form => self%points_shift(number), values => self%changes%values)
+      again = form%is_filled
+      if (all(form%is_still .or. .not. form%is_changed) .and. again) return
       if (self%in_plane) then
-        call fill_planar_point(self%plan%planar, f, self%places(1:2, number), state%planar, self%highest, &
+        call fill_planar_point(n, self%plan%planar, frame, self%places(1:2, number), self%plane, self%highest, &
                                self%support%constants, self%series, form)
       else
-        call fill_spatial_point(f, self%places(:, number), state, self%motion, self%highest, self%series, form)
+        call fill_spatial_point(n, frame, self%places(:, number), self%space, self%highest, self%support%constants, &
+                                self%series, form)
       end if
-      do order = 0, self%highest
-        call find_values(form, self%n_parameters, self%plan%n_coordinates, order, .true., self%q, &
-                         self%points(1, 1, order, number))
+      do p = 1, self%changes%n_parameters
+        if (.not. form%is_changed(p) .or. form%is_still(p) .and. again) cycle
+        do order = 0, self%highest
+          call find_values(form, merge(batch_size, n, form%is_still(p)), p, self%plan%n_coordinates, order, .true., &
+                           self%support%touched(:, p), values(1, 1, p), &
+                           values(1, place_of_point(self%plan%n_coordinates, number, order, 1), p))
+        end do
       end do
     end associate
   end subroutine vary_point
-
-  !> The twists of a frame by all parameters, after `find_sensitivities`: rotation, then shift of the point that coincides with the
-  !> origin of frame 0, in its axes, with the derivatives of these numbers in time. A link moves with its first frame and, in
-  !> addition, with the constant twist of its own system in that frame.
-  subroutine find_twists_of_frame(self, present, frame, twists)
-    type(sensitivity_type), intent(inout) :: self        !< with the derivatives of the present motion
-    type(state_type), intent(in) :: present              !< this motion
-    integer, intent(in) :: frame                         !< number of the frame
-    real(wp), intent(out), contiguous :: twists(:, :, 0:)   !< (P,6,0:2) up to the order `highest` [rad, m per unit of parameter]
-    real(wp) :: series(6, 0:2), planar_series(3, 0:2)
-    integer :: s, i, order
-
-    twists = 0.0_wp
-    s = frame
-    do while (s > 0)
-      if (self%support%touched(self%plan%steps(s)%coordinate)) then
-        if (.not. self%in_plane) then
-          series = self%motion%step(:, :, s)
-        else
-          if (self%own_frames) then
-            call planar_step_series(self%plan%planar, s, self%state%planar, self%highest, planar_series)
-          else
-            call planar_step_series(self%plan%planar, s, present%planar, self%highest, planar_series)
-          end if
-          series = in_space(self, planar_series)
-        end if
-        call add_motion(self%n_parameters, self%highest, series, self%q(:, :, self%plan%steps(s)%coordinate), twists)
-      end if
-      do i = 1, self%support%count
-        associate (constant => self%support%constants(i))
-          if (constant%step /= s) cycle
-          if (self%in_plane) then
-            series = in_space(self, self%series(:, :, i))
-          else
-            series = self%series(:, :, i)
-          end if
-          do order = 0, self%highest
-            twists(constant%parameter, :, order) = twists(constant%parameter, :, order) + series(:, order)
-          end do
-        end associate
-      end do
-      s = self%plan%steps(s)%parent
-    end do
-  end subroutine find_twists_of_frame
-
-  !> A twist in the plane as a twist in space.
-  pure function in_space(self, twist) result(series)
-    type(sensitivity_type), intent(in) :: self   !< with the plane
-    real(wp), intent(in) :: twist(3, 0:2)        !< rotation about the normal, shift in the plane
-    real(wp) :: series(6, 0:2)
-    integer :: order
-
-    associate (axes => self%plan%planar%axes)
-      do order = 0, 2
-        series(1:3, order) = axes(:, 3)*twist(1, order)
-        series(4:6, order) = axes(:, 1)*twist(2, order) + axes(:, 2)*twist(3, order)
-      end do
-    end associate
-  end function in_space
 end module mech9_sensitivity

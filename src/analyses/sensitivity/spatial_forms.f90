@@ -1,205 +1,233 @@
-!> Columns of the openings of chains, of couplings and of the shifts of points in space, with their derivatives in time.
+!> Columns of the openings of chains and of the shifts of points in space, with their derivatives in time, at several positions at once.
 module mech9_spatial_forms
   use mech9_kinds, only: wp
-  use mech9_rotation, only: turn, cross
-  use mech9_plan, only: plan_type, closure_type
-  use mech9_state, only: state_type
-  use mech9_spatial_closure, only: reduced_screw
-  use mech9_coupling_constraint, only: coupling_factors
-  use mech9_twists, only: frame_twists_type, carried, shift_at
+  use mech9_batch_products, only: batch_size
+  use mech9_plan, only: plan_type
+  use mech9_spatial_batch, only: spatial_batch_type
+  use mech9_linear_form, only: linear_form_type, keep_double
   use mech9_parameter_support, only: varied_constant_type
-  use mech9_linear_form, only: linear_form_type, put_constant
   implicit none
   private
-  public :: carry_in_space, fill_spatial_closure, fill_whole_closure, fill_coupling, fill_spatial_point
+  public :: carry_in_space, fill_spatial_closure, fill_spatial_point
 
 contains
 
   !> Twists of constants, seen from frame 0, and their derivatives in time.
-  pure subroutine carry_in_space(plan, n, constants, state, twists, highest, again, series)
-    type(plan_type), intent(in) :: plan                     !< the plan, in space
-    integer, intent(in) :: n                                !< number of twists
-    type(varied_constant_type), intent(in) :: constants(n)  !< the twists
-    type(state_type), intent(in) :: state                   !< the motion
-    type(frame_twists_type), intent(in) :: twists           !< of its frames
-    integer, intent(in) :: highest                          !< order of the highest derivative
-    logical, intent(in) :: again                            !< twists of the ground are in `series` already
-    real(wp), intent(inout) :: series(6, 0:2, n)            !< gets the twists up to this derivative
-    real(wp) :: length(0:2)
-    integer :: i
+  pure subroutine carry_in_space(n, count, constants, apart, motion, highest, again, series)
+    integer, intent(in) :: n                                  !< number of positions
+    integer, intent(in) :: count                              !< number of twists
+    type(varied_constant_type), intent(in) :: constants(count)   !< the twists
+    logical, intent(in) :: apart(count)                       !< these were found for each position by itself
+    type(spatial_batch_type), intent(in) :: motion            !< the motion of the frames, with the derivatives of their rotations
+    integer, intent(in) :: highest                            !< order of the highest derivative
+    logical, intent(in) :: again                              !< twists of the ground are in `series` already, for whole batches
+    real(wp), intent(inout) :: series(batch_size, 6, 0:2, count)   !< gets the twists up to this derivative
+    integer :: i, order, all_or_n
 
-    do i = 1, n
-      associate (constant => constants(i))
-        if (again .and. constant%frame == 0 .and. constant%stretched_by == 0) cycle
-        call carried(state, twists, constant%frame, constant%twist, highest, series(:, :, i))
-        if (constant%stretched_by == 0) cycle
-        length(0) = state%q(constant%stretched_by) + plan%steps(constant%step)%offset
-        length(1) = state%dq(constant%stretched_by)
-        length(2) = state%ddq(constant%stretched_by)
-        series(:, 2, i) = length(2)*series(:, 0, i) + 2.0_wp*length(1)*series(:, 1, i) + length(0)*series(:, 2, i)
-        series(:, 1, i) = length(1)*series(:, 0, i) + length(0)*series(:, 1, i)
-        series(:, 0, i) = length(0)*series(:, 0, i)
+    do i = 1, count
+      if (apart(i)) cycle
+      associate (k => constants(i)%frame, twist => constants(i)%twist)
+        if (again .and. k == 0) cycle
+        all_or_n = merge(batch_size, n, k == 0)
+        do order = 0, highest
+          call turn_vector(all_or_n, motion%r(1, 1, 1, order, k), twist(4:6), series(1, 4, order, i))
+        end do
+        if (.not. any(abs(twist(1:3)) > 0.0_wp)) cycle
+        do order = 0, highest
+          call turn_vector(all_or_n, motion%r(1, 1, 1, order, k), twist(1:3), series(1, 1, order, i))
+        end do
+        call shift_origin(all_or_n, motion%p(:, :, :, k), highest, series(:, :, :, i))
       end associate
     end do
   end subroutine carry_in_space
 
-  !> Fill the form of a closed chain: the independent components of its opening.
-  pure subroutine fill_spatial_closure(plan, c, state, twists, highest, series, form)
-    type(plan_type), intent(in) :: plan                  !< the plan, in space
-    integer, intent(in) :: c                             !< number of the closure
-    type(state_type), intent(in) :: state                !< the motion
-    type(frame_twists_type), intent(in) :: twists        !< of its steps
-    integer, intent(in) :: highest                       !< order of the highest derivative
-    real(wp), intent(in) :: series(:, 0:, :)             !< (6,0:2,constants) twists of constants
-    type(linear_form_type), intent(inout) :: form        !< gets its columns and shares
-    real(wp) :: share(6, 0:2), few(18)
-    integer :: i, order
+  ! The procedures of one column take arrays of known shape, so that the compiler keeps their addresses in registers.
 
-    associate (closure => plan%closures(c), per_length => 1.0_wp/plan%length)
-      if (closure%rank == 6) then
-        do i = 1, size(form%steps)
-          call shift_to_place(form%signs(i), per_length, state%p(:, closure%closing), twists%step(:, :, form%steps(i)), highest, &
-                              form%columns(:, :, i))
-        end do
-        do i = 1, size(form%constants)
-          call shift_to_place(form%constant_signs(i), per_length, state%p(:, closure%closing), series(:, :, form%constants(i)), &
-                              highest, share)
-          call put_constant(form, i, highest, share)
-        end do
-        return
-      end if
-      do i = 1, size(form%steps)
-        do order = 0, highest
-          call reduce(plan, closure, state, form%signs(i), twists%step(:, order, form%steps(i)), form%columns(:, order, i))
-        end do
-      end do
-      do i = 1, size(form%constants)
-        do order = 0, highest
-          call reduce(plan, closure, state, form%constant_signs(i), series(:, order, form%constants(i)), &
-                      few(order*form%rows + 1:(order + 1)*form%rows))
-        end do
-        call put_constant(form, i, highest, few)
-      end do
-    end associate
-  end subroutine fill_spatial_closure
-
-  !> The components of a twist in the equations of a closure.
-  pure subroutine reduce(plan, closure, state, factor, twist, rows)
-    type(plan_type), intent(in) :: plan            !< the plan, in space
-    type(closure_type), intent(in) :: closure      !< the closure
-    type(state_type), intent(in) :: state          !< with the poses of the frames
-    real(wp), intent(in) :: factor                 !< of the twist
-    real(wp), intent(in) :: twist(6)               !< rotation, and shift at the origin of frame 0
-    real(wp), intent(inout) :: rows(:)             !< the components
+  !> A vector that is constant in a frame, in the axes of frame 0.
+  pure subroutine turn_vector(n, r, vector, turned)
+    integer, intent(in) :: n                             !< number of positions
+    real(wp), intent(in) :: r(batch_size, 3, 3)          !< rotation of the frame, or a derivative in time
+    real(wp), intent(in) :: vector(3)                    !< in the axes of the frame
+    real(wp), intent(inout) :: turned(batch_size, 3)     !< in those of frame 0
     integer :: i
 
-    call reduced_screw(plan, closure, state, twist(1:3), twist(4:6), [0.0_wp, 0.0_wp, 0.0_wp], rows)
-    do i = 1, size(rows)
-      rows(i) = factor*rows(i)
+    do i = 1, n
+      turned(i, 1) = r(i, 1, 1)*vector(1) + r(i, 1, 2)*vector(2) + r(i, 1, 3)*vector(3)
+      turned(i, 2) = r(i, 2, 1)*vector(1) + r(i, 2, 2)*vector(2) + r(i, 2, 3)*vector(3)
+      turned(i, 3) = r(i, 3, 1)*vector(1) + r(i, 3, 2)*vector(2) + r(i, 3, 3)*vector(3)
     end do
-  end subroutine reduce
+  end subroutine turn_vector
 
-  !> A twist and its derivatives at a place, with a factor, its shift in lengths of the mechanism.
-  pure subroutine shift_to_place(factor, per_length, p, twist, highest, rows)
-    real(wp), intent(in) :: factor                 !< of the twist
-    real(wp), intent(in) :: per_length             !< one over the length of the mechanism [1/m]
-    real(wp), intent(in) :: p(3)                   !< the place [m]
-    real(wp), intent(in) :: twist(6, 0:2)          !< rotation, and shift at the origin of frame 0
-    integer, intent(in) :: highest                 !< order of the highest derivative
-    real(wp), intent(inout) :: rows(6, 0:2)        !< the same at the place
+  !> Add the shift of the point at the origin of frame 0 by a rotation about the origin of a frame.
+  pure subroutine shift_origin(n, p, highest, series)
+    integer, intent(in) :: n                               !< number of positions
+    real(wp), intent(in) :: p(batch_size, 3, 0:2)          !< origin of the frame with its derivatives in time [m]
+    integer, intent(in) :: highest                         !< order of the highest derivative
+    real(wp), intent(inout) :: series(batch_size, 6, 0:2)  !< the twist with its derivatives; gets more shift
+
+    call add_cross(n, 1.0_wp, p(1, 1, 0), series(1, 1, 0), series(1, 4, 0))
+    if (highest == 0) return
+    call add_cross(n, 1.0_wp, p(1, 1, 0), series(1, 1, 1), series(1, 4, 1))
+    call add_cross(n, 1.0_wp, p(1, 1, 1), series(1, 1, 0), series(1, 4, 1))
+    if (highest == 1) return
+    call add_cross(n, 1.0_wp, p(1, 1, 0), series(1, 1, 2), series(1, 4, 2))
+    call add_cross(n, 2.0_wp, p(1, 1, 1), series(1, 1, 1), series(1, 4, 2))
+    call add_cross(n, 1.0_wp, p(1, 1, 2), series(1, 1, 0), series(1, 4, 2))
+  end subroutine shift_origin
+
+  !> Add a multiple of a vector product.
+  pure subroutine add_cross(n, factor, u, v, w)
+    integer, intent(in) :: n                        !< number of positions
+    real(wp), intent(in) :: factor                  !< of the product
+    real(wp), intent(in) :: u(batch_size, 3)        !< left factor
+    real(wp), intent(in) :: v(batch_size, 3)        !< right factor
+    real(wp), intent(inout) :: w(batch_size, 3)     !< the sum
+    integer :: i
+
+    do i = 1, n
+      w(i, 1) = w(i, 1) + factor*(u(i, 2)*v(i, 3) - u(i, 3)*v(i, 2))
+      w(i, 2) = w(i, 2) + factor*(u(i, 3)*v(i, 1) - u(i, 1)*v(i, 3))
+      w(i, 3) = w(i, 3) + factor*(u(i, 1)*v(i, 2) - u(i, 2)*v(i, 1))
+    end do
+  end subroutine add_cross
+
+  !> Fill the form of a closed chain with all six components of its opening.
+  pure subroutine fill_spatial_closure(n, plan, c, motion, highest, constants, series, form)
+    integer, intent(in) :: n                                 !< number of positions
+    type(plan_type), intent(in) :: plan                      !< the plan, in space
+    integer, intent(in) :: c                                 !< number of the closure
+    type(spatial_batch_type), intent(in) :: motion           !< the motion of the frames and steps
+    integer, intent(in) :: highest                           !< order of the highest derivative
+    type(varied_constant_type), intent(in) :: constants(:)   !< the constants
+    real(wp), intent(in), contiguous :: series(:, :, 0:, :)  !< (batch,6,0:2,constants) their twists
+    type(linear_form_type), intent(inout) :: form            !< gets its columns and shares
+    integer :: i, all_or_n
+
+    associate (p => motion%p(:, :, 0, plan%closures(c)%closing), per_length => 1.0_wp/plan%length)
+      do i = 1, size(form%steps)
+        call shift_to_place(n, form%signs(i), per_length, p, motion%step(:, :, :, form%steps(i)), highest, .true., &
+                            form%columns(:, :, :, i))
+      end do
+      if (highest > 1) call keep_double(form, n)
+      do i = 1, size(form%constants)
+        if (form%keeps(i) .and. form%is_filled) cycle
+        all_or_n = merge(batch_size, n, form%keeps(i))
+        associate (k => form%constants(i), share => form%shares(:, :, :, form%slots(form%parameters(i))))
+          if (any(abs(constants(k)%twist(1:3)) > 0.0_wp) .or. constants(k)%by_pair) then
+            call shift_to_place(all_or_n, form%constant_signs(i), per_length, p, series(:, :, :, k), highest, form%is_first(i), &
+                                share)
+          else
+            call put_shift(all_or_n, form%constant_signs(i)*per_length, series(:, :, :, k), highest, form%is_first(i), share)
+          end if
+        end associate
+      end do
+    end associate
+    form%is_filled = .true.
+  end subroutine fill_spatial_closure
+
+  !> Put a twist and its derivatives at a place, with a factor, its shift in lengths of the mechanism; or add it.
+  pure subroutine shift_to_place(n, factor, per_length, p, twist, highest, is_first, rows)
+    integer, intent(in) :: n                               !< number of positions
+    real(wp), intent(in) :: factor                         !< of the twist
+    real(wp), intent(in) :: per_length                     !< one over the length of the mechanism [1/m]
+    real(wp), intent(in) :: p(batch_size, 3)               !< the place [m]
+    real(wp), intent(in) :: twist(batch_size, 6, 0:2)      !< rotation, and shift at the origin of frame 0
+    integer, intent(in) :: highest                         !< order of the highest derivative
+    logical, intent(in) :: is_first                        !< numbers that stand there are overwritten
+    real(wp), intent(inout) :: rows(batch_size, 6, 0:*)    !< gets the twist at the place
     real(wp) :: scaled
-    integer :: o
+    integer :: i, o
 
     scaled = factor*per_length
     do o = 0, highest
-      rows(1, o) = factor*twist(1, o)
-      rows(2, o) = factor*twist(2, o)
-      rows(3, o) = factor*twist(3, o)
-      rows(4, o) = scaled*(twist(4, o) + twist(2, o)*p(3) - twist(3, o)*p(2))
-      rows(5, o) = scaled*(twist(5, o) + twist(3, o)*p(1) - twist(1, o)*p(3))
-      rows(6, o) = scaled*(twist(6, o) + twist(1, o)*p(2) - twist(2, o)*p(1))
+      if (is_first) rows(:n, :, o) = 0.0_wp
+      do i = 1, n
+        rows(i, 1, o) = rows(i, 1, o) + factor*twist(i, 1, o)
+        rows(i, 2, o) = rows(i, 2, o) + factor*twist(i, 2, o)
+        rows(i, 3, o) = rows(i, 3, o) + factor*twist(i, 3, o)
+        rows(i, 4, o) = rows(i, 4, o) + scaled*(twist(i, 4, o) + twist(i, 2, o)*p(i, 3) - twist(i, 3, o)*p(i, 2))
+        rows(i, 5, o) = rows(i, 5, o) + scaled*(twist(i, 5, o) + twist(i, 3, o)*p(i, 1) - twist(i, 1, o)*p(i, 3))
+        rows(i, 6, o) = rows(i, 6, o) + scaled*(twist(i, 6, o) + twist(i, 1, o)*p(i, 2) - twist(i, 2, o)*p(i, 1))
+      end do
     end do
   end subroutine shift_to_place
 
-  !> Fill the form of the whole opening of a closed chain, with the components that its equations leave out. Only the openings
-  !> themselves are filled, not their derivatives in time.
-  pure subroutine fill_whole_closure(plan, c, state, twists, series, form)
-    type(plan_type), intent(in) :: plan                  !< the plan, in space
-    integer, intent(in) :: c                             !< number of the closure
-    type(state_type), intent(in) :: state                !< with the poses of the frames
-    type(frame_twists_type), intent(in) :: twists        !< of the steps
-    real(wp), intent(in) :: series(:, 0:, :)             !< (6,0:2,constants) twists of constants
-    type(linear_form_type), intent(inout) :: form        !< six rows; gets its columns and shares
-    real(wp) :: share(6, 0:2)
-    integer :: i
+  !> Put a twist without rotation, or add it: its shift is the same everywhere.
+  pure subroutine put_shift(n, factor, twist, highest, is_first, rows)
+    integer, intent(in) :: n                               !< number of positions
+    real(wp), intent(in) :: factor                         !< of the twist
+    real(wp), intent(in) :: twist(batch_size, 6, 0:2)      !< rotation, which is zero, and shift
+    integer, intent(in) :: highest                         !< order of the highest derivative
+    logical, intent(in) :: is_first                        !< numbers that stand there are overwritten
+    real(wp), intent(inout) :: rows(batch_size, 6, 0:2)    !< gets the twist
+    integer :: i, o, r
 
-    associate (p => state%p(:, plan%closures(c)%closing), per_length => 1.0_wp/plan%length)
-      do i = 1, size(form%steps)
-        call shift_to_place(form%signs(i), per_length, p, twists%step(:, :, form%steps(i)), 0, form%columns(:, :, i))
+    do o = 0, highest
+      if (is_first) rows(:n, :, o) = 0.0_wp
+      do r = 4, 6
+        do i = 1, n
+          rows(i, r, o) = rows(i, r, o) + factor*twist(i, r, o)
+        end do
       end do
-      do i = 1, size(form%constants)
-        call shift_to_place(form%constant_signs(i), per_length, p, series(:, :, form%constants(i)), 0, share)
-        call put_constant(form, i, 0, share)
-      end do
-    end associate
-  end subroutine fill_whole_closure
-
-  !> Fill the form of a coupling.
-  pure subroutine fill_coupling(plan, c, state, third, form)
-    type(plan_type), intent(in) :: plan                  !< the plan, in space
-    integer, intent(in) :: c                             !< number of the closure that is the coupling
-    type(state_type), intent(in) :: state                !< the motion
-    real(wp), intent(in) :: third                        !< third derivative of the coupling's function
-    type(linear_form_type), intent(inout) :: form        !< one row; gets its columns
-    integer :: i
-
-    associate (coupling => plan%couplings(plan%closures(c)%coupling)%coupling)
-      do i = 1, size(form%steps)
-        form%columns(1, :, i) = coupling_factors(plan, c, state, third, findloc(coupling%coordinates, form%coordinates(i), dim=1))
-      end do
-    end associate
-  end subroutine fill_coupling
+    end do
+  end subroutine put_shift
 
   !> Fill the form of the shift of a point.
-  pure subroutine fill_spatial_point(frame, place, state, twists, highest, series, form)
-    integer, intent(in) :: frame                         !< frame with which the point moves
-    real(wp), intent(in) :: place(3)                     !< the point in this frame [m]
-    type(state_type), intent(in) :: state                !< the motion
-    type(frame_twists_type), intent(in) :: twists        !< of its steps
-    integer, intent(in) :: highest                       !< order of the highest derivative
-    real(wp), intent(in) :: series(:, 0:, :)             !< (6,0:2,constants) twists of constants
-    type(linear_form_type), intent(inout) :: form        !< gets its columns and shares
-    real(wp) :: arm(3), slip(3), p(3, 0:2), share(3, 0:2)
-    integer :: i
+  pure subroutine fill_spatial_point(n, frame, place, motion, highest, constants, series, form)
+    integer, intent(in) :: n                                 !< number of positions
+    integer, intent(in) :: frame                             !< frame with which the point moves
+    real(wp), intent(in) :: place(3)                         !< the point in this frame [m]
+    type(spatial_batch_type), intent(in) :: motion           !< the motion of the frames and steps
+    integer, intent(in) :: highest                           !< order of the highest derivative
+    type(varied_constant_type), intent(in) :: constants(:)   !< the constants
+    real(wp), intent(in), contiguous :: series(:, :, 0:, :)  !< (batch,6,0:2,constants) their twists
+    type(linear_form_type), intent(inout) :: form            !< gets its columns and shares
+    real(wp) :: p(batch_size, 3, 0:2)
+    integer :: i, order, all_or_n
 
-    p = 0.0_wp
-    arm = turn(state%r(:, :, frame), place)
-    p(:, 0) = state%p(:, frame) + arm
-    if (highest > 0) then
-      slip = cross(state%omega(:, frame), arm)
-      p(:, 1) = state%v(:, frame) + slip
-    end if
-    if (highest > 1) p(:, 2) = state%a(:, frame) + cross(state%alpha(:, frame), arm) + cross(state%omega(:, frame), slip)
+    do order = 0, highest
+      call turn_vector(n, motion%r(1, 1, 1, order, frame), place, p(1, 1, order))
+      p(:n, :, order) = p(:n, :, order) + motion%p(:n, :, order, frame)
+    end do
     do i = 1, size(form%steps)
-      call shift_point(p, twists%step(:, :, form%steps(i)), highest, form%columns(:, :, i))
+      call shift_point(n, .true., p, motion%step(:, :, :, form%steps(i)), highest, .true., form%columns(:, :, :, i))
     end do
+    if (highest > 1) call keep_double(form, n)
     do i = 1, size(form%constants)
-      call shift_point(p, series(:, :, form%constants(i)), highest, share)
-      call put_constant(form, i, highest, share)
+      if (form%keeps(i) .and. form%is_filled) cycle
+      all_or_n = merge(batch_size, n, form%keeps(i))
+      associate (k => form%constants(i))
+        call shift_point(all_or_n, any(abs(constants(k)%twist(1:3)) > 0.0_wp) .or. constants(k)%by_pair, p, series(:, :, :, k), &
+                         highest, form%is_first(i), form%shares(:, :, :, form%slots(form%parameters(i))))
+      end associate
     end do
+    form%is_filled = .true.
   end subroutine fill_spatial_point
 
-  !> The shift of a moving point by a twist, and its derivatives in time.
-  pure subroutine shift_point(p, twist, highest, shift)
-    real(wp), intent(in) :: p(3, 0:2)            !< the point, its velocity and its acceleration [m]
-    real(wp), intent(in) :: twist(6, 0:2)        !< the twist and its derivatives
-    integer, intent(in) :: highest               !< order of the highest derivative
-    real(wp), intent(inout) :: shift(3, 0:2)     !< of the point [m]
+  !> Put the shift of a moving point by a twist with its derivatives in time, or add it.
+  pure subroutine shift_point(n, turns, p, twist, highest, is_first, shift)
+    integer, intent(in) :: n                               !< number of positions
+    logical, intent(in) :: turns                           !< the twist has a rotation
+    real(wp), intent(in) :: p(batch_size, 3, 0:2)          !< the point, its velocity and its acceleration [m, m/s, m/s^2]
+    real(wp), intent(in) :: twist(batch_size, 6, 0:2)      !< the twist and its derivatives
+    integer, intent(in) :: highest                         !< order of the highest derivative
+    logical, intent(in) :: is_first                        !< numbers that stand there are overwritten
+    real(wp), intent(inout) :: shift(batch_size, 3, 0:*)   !< of the point [m]
+    integer :: i, o, r
 
-    shift(:, 0) = shift_at(twist(:, 0), p(:, 0))
-    if (highest == 0) return
-    shift(:, 1) = shift_at(twist(:, 1), p(:, 0)) + cross(twist(1:3, 0), p(:, 1))
+    do o = 0, highest
+      if (is_first) shift(:n, :, o) = 0.0_wp
+      do r = 1, 3
+        do i = 1, n
+          shift(i, r, o) = shift(i, r, o) + twist(i, 3 + r, o)
+        end do
+      end do
+      if (turns) call add_cross(n, 1.0_wp, twist(1, 1, o), p(1, 1, 0), shift(1, 1, o))
+    end do
+    if (.not. turns .or. highest == 0) return
+    call add_cross(n, 1.0_wp, twist(1, 1, 0), p(1, 1, 1), shift(1, 1, 1))
     if (highest == 1) return
-    shift(:, 2) = shift_at(twist(:, 2), p(:, 0)) + 2.0_wp*cross(twist(1:3, 1), p(:, 1)) + cross(twist(1:3, 0), p(:, 2))
+    call add_cross(n, 2.0_wp, twist(1, 1, 1), p(1, 1, 1), shift(1, 1, 2))
+    call add_cross(n, 1.0_wp, twist(1, 1, 0), p(1, 1, 2), shift(1, 1, 2))
   end subroutine shift_point
 end module mech9_spatial_forms

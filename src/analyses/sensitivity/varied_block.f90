@@ -1,17 +1,17 @@
-!> The chains that are solved together, with the derivatives of their unknowns by all parameters.
+!> The chains that are solved together, with the derivatives of their unknowns by all parameters at several positions at once.
 module mech9_varied_block
-  use mech9_kinds, only: wp
-  use mech9_tolerances, only: opened_by_parameter, inexact_dimensions
-  use mech9_least_squares, only: least_squares_type
-  use mech9_model, only: model_type
+  use mech9_kinds, only: wp, long
+  use mech9_batch_products, only: batch_size
+  use mech9_tolerances, only: singular_conditioning, opened_by_parameter, inexact_dimensions
+  use mech9_least_squares, only: least_squares_type, nearly_dependent
+  use mech9_cofactors, only: invert_several
   use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
   use mech9_tangent, only: tangent_type
   use mech9_parameter_support, only: support_type, closure_form, keep_static
-  use mech9_linear_form, only: linear_form_type, find_values, add_sizes, solve_for
+  use mech9_linear_form, only: linear_form_type, find_values, find_sizes, solve_for
   implicit none
   private
-  public :: varied_block_type, new_varied_block, factorize, solve_block
+  public :: varied_block_type, new_varied_block, solve_block
 
   !> A block that some parameter changes.
   type :: varied_block_type
@@ -20,28 +20,33 @@ module mech9_varied_block
     type(linear_form_type), allocatable :: forms(:)    !< openings of its closures, in its equations
     type(linear_form_type), allocatable :: whole(:)    !< the same with all components, where the equations leave some out
     logical :: has_whole = .false.                     !< the equations leave some out
-    logical :: is_checked = .false.                    !< chains may stay open although the equations are solved
-    integer, allocatable :: coordinates(:)             !< unknowns
-    integer, allocatable, private :: columns(:, :)     !< (unknowns,0:2) of their derivatives among those of all coordinates
-    real(wp), allocatable :: units(:)                  !< of the unknowns: 1 rad, or the length of the mechanism [m]
-    type(least_squares_type) :: equations              !< factors of the Jacobian
-    logical :: by_solver = .false.                     !< `solver` serves for all right-hand sides
-    real(wp), allocatable :: jacobian(:, :)            !< (equations,unknowns) in units of the unknowns
-    real(wp), allocatable :: solver(:, :)              !< (equations,unknowns) share of each opening in each unknown; rows to a multiple of three
-    real(wp), allocatable, private :: openings(:, :)   !< (P,equations) and up to two columns of zeros
-    real(wp), allocatable, private :: parts(:, :)      !< (P,6) the whole opening of a closure
-    real(wp), allocatable, private :: sizes(:)         !< (P) of what adds up to it
+    integer :: at_once = batch_size                    !< most positions that are treated at once
+    logical, private :: is_checked = .false.           !< chains may stay open although the equations are solved
+    integer, allocatable, private :: parameters(:)     !< those that change the block
+    integer, allocatable, private :: coordinates(:)    !< unknowns
+    real(wp), allocatable, private :: units(:)         !< of the unknowns: 1 rad, or the length of the mechanism [m]
+    !> Factors of the Jacobian: those of one position after the other, or of each position where `solver` does not serve.
+    type(least_squares_type), allocatable, private :: equations(:)
+    logical, private :: by_solver = .false.            !< `solver` serves for all right-hand sides
+    logical, private :: has_cofactors = .false.        !< it consists of cofactors
+    real(wp), allocatable, private :: jacobian(:, :)   !< (equations,unknowns) in units of the unknowns
+    !> (batch,unknowns,equations) share of each opening in each unknown; equations to a multiple of three, those after the last zero.
+    real(wp), allocatable, private :: solver(:, :, :)
+    real(wp), allocatable, private :: openings(:, :)   !< (batch,equations) by one parameter, and up to two columns of zeros
     real(wp), allocatable, private :: right(:), change(:)   !< (equations), (unknowns) scratch
   end type varied_block_type
 
+  !> Memory for the factors of several positions [bytes].
+  integer(long), parameter :: most_memory = 67108864_long
+
 contains
 
-  !> A block with room for all that a position needs.
-  function new_varied_block(plan, support, number, n, in_plane, highest) result(block)
+  !> A block with room for all that a batch of positions needs.
+  function new_varied_block(plan, support, tangents, number, in_plane, highest) result(block)
     type(plan_type), intent(in) :: plan            !< the plan
     type(support_type), intent(in) :: support      !< all that the parameters change
+    type(tangent_type), intent(in) :: tangents(:)  !< (P) derivatives of constants
     integer, intent(in) :: number                  !< of the block
-    integer, intent(in) :: n                       !< number of parameters
     logical, intent(in) :: in_plane                !< the arithmetic is planar
     integer, intent(in) :: highest                 !< order of the highest derivative
     type(varied_block_type) :: block
@@ -52,14 +57,17 @@ contains
       block%first_closure = planned%first_closure
       block%coordinates = planned%coordinates
       block%units = plan%unit_of(planned%coordinates)
+      block%parameters = pack([(i, i=1, size(tangents))], any(support%touched(planned%coordinates, :), dim=1))
       allocate (block%forms(planned%last_closure - planned%first_closure + 1))
       rows = 0
       do i = 1, size(block%forms)
         c = planned%first_closure + i - 1
-        block%forms(i) = closure_form(plan, support, planned, c, n, plan%constraints(c)%item%equations)
+        block%forms(i) = closure_form(plan, support, tangents, planned, c, plan%constraints(c)%item%equations)
         if (in_plane) then
           block%forms(i)%first_moving = 2
-          call keep_static(support, plan%closures(c)%base == 0, block%forms(i))
+          call keep_static(support, 1, plan%closures(c)%base == 0, block%forms(i))
+        else if (block%forms(i)%rows == 6) then
+          call keep_static(support, 3, .false., block%forms(i))
         end if
         rows = rows + block%forms(i)%rows
         if (plan%closures(c)%coupling == 0 .and. .not. in_plane) &
@@ -69,195 +77,230 @@ contains
       block%is_checked = block%has_whole .or. rows > unknowns
       allocate (block%whole(merge(size(block%forms), 0, block%has_whole)))
       do i = 1, size(block%whole)
-        block%whole(i) = block%forms(i)
-        if (plan%closures(planned%first_closure + i - 1)%coupling == 0) &
-          block%whole(i) = closure_form(plan, support, planned, planned%first_closure + i - 1, n, 6)
+        c = planned%first_closure + i - 1
+        if (plan%closures(c)%coupling == 0) block%whole(i) = closure_form(plan, support, tangents, planned, c, 6)
       end do
-      allocate (block%columns(unknowns, 0:2))
-      do i = 0, 2
-        block%columns(:, i) = 3*planned%coordinates - 2 + i
+      block%by_solver = rows == 3 .and. unknowns == 3 .or. rows <= (highest + 1)*size(block%parameters)
+      block%has_cofactors = rows == 3 .and. unknowns == 3 .and. size(block%forms) == 1
+      if (.not. block%by_solver) block%at_once = most_at_once(rows, unknowns)
+      allocate (block%equations(merge(1, block%at_once, block%by_solver)))
+      do i = 1, size(block%equations)
+        call block%equations(i)%create(rows, unknowns)
+        block%equations(i)%regular_pivot = planned%regular_pivot
       end do
-      call block%equations%create(rows, unknowns)
-      block%equations%regular_pivot = planned%regular_pivot
     end associate
-    block%by_solver = rows == 3 .and. unknowns == 3 .or. rows <= (highest + 1)*n
     ! openings are combined three at a time
     padded = 3*((rows + 2)/3)
-    allocate (block%jacobian(rows, unknowns), block%solver(padded, unknowns), block%openings(n, padded), block%parts(n, 6), &
-              block%sizes(n), block%right(rows), block%change(unknowns), source=0.0_wp)
+    allocate (block%jacobian(rows, unknowns), block%openings(batch_size, padded), block%right(rows), block%change(unknowns), &
+              source=0.0_wp)
+    allocate (block%solver(batch_size, merge(unknowns, 0, block%by_solver), padded), source=0.0_wp)
   end function new_varied_block
 
-  !> Factorize the equations of a block from the columns of its forms.
-  subroutine factorize(block)
-    type(varied_block_type), intent(inout) :: block   !< with its columns; gets the factors
-    integer :: i, j, u, r, row
+  !> The number of positions whose factors are kept at once.
+  pure integer function most_at_once(rows, unknowns) result(most)
+    integer, intent(in) :: rows       !< number of equations
+    integer, intent(in) :: unknowns   !< number of unknowns
+
+    most = int(max(1_long, min(int(batch_size, long), most_memory/(8_long*max(1, rows*unknowns)))))
+  end function most_at_once
+
+  !> Find the derivatives of the unknowns of a block, in all orders.
+  subroutine solve_block(n, plan, highest, n_parameters, m, numbers, touched, block, q, good, opened_by)
+    integer, intent(in) :: n                                   !< number of positions
+    type(plan_type), intent(in) :: plan                        !< the plan
+    integer, intent(in) :: highest                             !< order of the highest derivative
+    integer, intent(in) :: n_parameters                        !< number of parameters
+    integer, intent(in) :: m                                   !< number of coordinates
+    integer, intent(in) :: numbers                             !< number of all derivatives by a parameter
+    logical, intent(in) :: touched(m, n_parameters)            !< coordinates that change with each parameter
+    type(varied_block_type), intent(inout) :: block            !< with its forms filled
+    real(wp), intent(inout) :: q(batch_size, numbers, n_parameters)   !< derivatives of the coordinates, then others; gets the unknowns
+    integer, intent(out) :: good                               !< positions before the first one without derivatives, or n
+    integer, intent(out) :: opened_by                          !< parameter that opens a chain there; 0: the position is singular
+    integer :: i, j, order, row
+
+    opened_by = 0
+    if (block%has_cofactors) then
+      call invert(n, block, good)
+    else
+      call factorize(n, block, good)
+    end if
+    do j = 1, size(block%parameters)
+      associate (p => block%parameters(j))
+        do order = 0, highest
+          row = 1
+          do i = 1, size(block%forms)
+            call find_values(block%forms(i), good, p, m, order, .false., touched(:, p), q(1, 1, p), block%openings(1, row))
+            row = row + block%forms(i)%rows
+          end do
+          if (block%by_solver) then
+            call solve_for(good, size(block%units), size(block%solver, 3), block%solver, block%openings, order, m, &
+                           block%coordinates, q(1, 1, p))
+          else
+            call solve_one_by_one(good, block, order, m, q(1, 1, p))
+          end if
+        end do
+      end associate
+    end do
+    if (block%is_checked) call find_opened(plan, n_parameters, m, numbers, touched, block, q, good, opened_by)
+  end subroutine solve_block
+
+  !> Factorize the equations of a block at one position after the other, as far as they are regular.
+  subroutine factorize(n, block, good)
+    integer, intent(in) :: n                          !< number of positions
+    type(varied_block_type), intent(inout) :: block   !< with the columns of its forms; gets the factors
+    integer, intent(out) :: good                      !< positions before the first singular one, or n
+    integer :: i
+
+    do i = 1, n
+      good = i - 1
+      call fill_jacobian(block, i)
+      associate (equations => block%equations(merge(1, i, block%by_solver)))
+        call equations%factorize(block%jacobian)
+        if (.not. equations%conditioning() >= singular_conditioning) return
+      end associate
+      if (block%by_solver) call find_solver(block, i)
+    end do
+    good = n
+  end subroutine factorize
+
+  !> Invert the Jacobians of three equations in three unknowns at all positions, as far as they are regular.
+  subroutine invert(n, block, good)
+    integer, intent(in) :: n                          !< number of positions
+    type(varied_block_type), intent(inout) :: block   !< with the columns of its forms; gets the shares of openings in unknowns
+    integer, intent(out) :: good                      !< positions before the first singular one, or n
+    real(wp) :: matrices(batch_size, 3, 3), inverse(batch_size, 3, 3), largest(batch_size), least(batch_size)
+    integer :: i, j, r, u
+
+    associate (form => block%forms(1))
+      do j = 1, 3
+        u = form%unknowns(form%n_given + j)
+        do r = 1, 3
+          matrices(:n, r, u) = form%columns(:n, r, 0, form%n_given + j)*block%units(u)
+        end do
+      end do
+    end associate
+    call invert_several(n, batch_size, nearly_dependent, matrices, inverse, largest, least)
+    do r = 1, 3
+      do u = 1, 3
+        block%solver(:n, u, r) = -block%units(u)*inverse(:n, u, r)
+      end do
+    end do
+    do i = 1, n
+      good = i - 1
+      if (least(i) > nearly_dependent*max(largest(i), block%equations(1)%regular_pivot)) cycle
+      block%jacobian = matrices(i, :, :)
+      call block%equations(1)%factorize(block%jacobian)
+      if (.not. block%equations(1)%conditioning() >= singular_conditioning) return
+      call find_solver(block, i)
+    end do
+    good = n
+  end subroutine invert
+
+  !> Take the Jacobian from the columns of the forms.
+  pure subroutine fill_jacobian(block, position)
+    type(varied_block_type), intent(inout) :: block   !< with the columns of its forms; gets the Jacobian
+    integer, intent(in) :: position                   !< number of the position in the batch
+    integer :: i, j, r, row
 
     row = 0
     do i = 1, size(block%forms)
       associate (form => block%forms(i))
         do j = form%n_given + 1, size(form%steps)
-          u = form%unknowns(j)
-          do r = 1, form%rows
-            block%jacobian(row + r, u) = form%columns(r, 0, j)*block%units(u)
-          end do
+          associate (u => form%unknowns(j))
+            do r = 1, form%rows
+              block%jacobian(row + r, u) = form%columns(position, r, 0, j)*block%units(u)
+            end do
+          end associate
         end do
         row = row + form%rows
       end associate
     end do
-    call block%equations%factorize(block%jacobian)
-    if (block%by_solver) call find_solver(block)
-  end subroutine factorize
+  end subroutine fill_jacobian
 
   !> Find the share of each opening in each unknown.
-  subroutine find_solver(block)
+  subroutine find_solver(block, position)
     type(varied_block_type), intent(inout) :: block   !< with its factors
+    integer, intent(in) :: position                   !< number of the position in the batch
     integer :: r, u
 
-    if (block%equations%by_cofactors) then
-      do u = 1, 3
+    associate (equations => block%equations(1))
+      if (equations%by_cofactors) then
         do r = 1, 3
-          block%solver(r, u) = -block%units(u)*block%equations%inverse(u, r)
+          do u = 1, 3
+            block%solver(position, u, r) = -block%units(u)*equations%inverse(u, r)
+          end do
+        end do
+        return
+      end if
+      do r = 1, size(block%right)
+        block%right = 0.0_wp
+        block%right(r) = -1.0_wp
+        call equations%solve(block%right, block%change)
+        do u = 1, size(block%units)
+          block%solver(position, u, r) = block%units(u)*block%change(u)
         end do
       end do
-      return
-    end if
-    do r = 1, size(block%right)
-      block%right = 0.0_wp
-      block%right(r) = -1.0_wp
-      call block%equations%solve(block%right, block%change)
-      do u = 1, size(block%units)
-        block%solver(r, u) = block%units(u)*block%change(u)
-      end do
-    end do
+    end associate
   end subroutine find_solver
 
-  !> Find the derivatives of the unknowns of a block, in all orders.
-  subroutine solve_block(model, plan, state, tangents, highest, n, m, block, q, opened_by)
-    type(model_type), intent(in) :: model               !< the present model
-    type(plan_type), intent(in) :: plan                 !< the plan
-    type(state_type), intent(in) :: state               !< the motion
-    type(tangent_type), intent(in) :: tangents(:)       !< (P) derivatives of constants
-    integer, intent(in) :: highest                      !< order of the highest derivative
-    integer, intent(in) :: n                            !< number of parameters
-    integer, intent(in) :: m                            !< number of coordinates
-    type(varied_block_type), intent(inout) :: block     !< with its factors
-    real(wp), intent(inout) :: q(n, 0:2, m)             !< derivatives of the coordinates; gets the unknowns
-    integer, intent(out) :: opened_by                   !< parameter that opens a chain; 0: none
-    integer :: order, i, row
+  !> Solve for one position after the other, where there are fewer right-hand sides than equations.
+  subroutine solve_one_by_one(n, block, order, m, q)
+    integer, intent(in) :: n                                !< number of positions
+    type(varied_block_type), intent(inout) :: block         !< with its factors and openings
+    integer, intent(in) :: order                            !< of the derivative in time
+    integer, intent(in) :: m                                !< number of coordinates
+    real(wp), intent(inout) :: q(batch_size, 0:2, m)        !< derivatives of the coordinates; gets the unknowns
+    integer :: i
 
-    opened_by = 0
-    do order = 0, highest
-      row = 1
-      do i = 1, size(block%forms)
-        call find_values(block%forms(i), n, m, order, .false., q, block%openings(1, row))
-        if (plan%closures(block%first_closure + i - 1)%coupling > 0) &
-          call add_coupling(model, plan, state, tangents, block%first_closure + i - 1, order, block%openings(:, row))
-        row = row + block%forms(i)%rows
-      end do
-      if (block%by_solver) then
-        call solve_for(n, m, size(block%units), size(block%solver, 1), block%solver, block%openings, &
-                       block%columns(:, order), q)
-      else
-        call solve_one_by_one(block, order, n, m, q)
-      end if
-      if (order == 0 .and. block%is_checked) call find_opened(model, plan, state, tangents, n, m, block, q, opened_by)
-      if (opened_by > 0) return
-    end do
-  end subroutine solve_block
-
-  !> Solve for each parameter on its own, where there are fewer of them than equations.
-  subroutine solve_one_by_one(block, order, n, m, q)
-    type(varied_block_type), intent(inout) :: block     !< with its factors and openings
-    integer, intent(in) :: order                        !< of the derivative in time
-    integer, intent(in) :: n                            !< number of parameters
-    integer, intent(in) :: m                            !< number of coordinates
-    real(wp), intent(inout) :: q(n, 0:2, m)             !< derivatives of the coordinates; gets the unknowns
-    integer :: p, u
-
-    do p = 1, n
-      block%right = -block%openings(p, :size(block%right))
-      call block%equations%solve(block%right, block%change)
-      do u = 1, size(block%units)
-        q(p, order, block%coordinates(u)) = block%units(u)*block%change(u)
-      end do
+    do i = 1, n
+      block%right = -block%openings(i, :size(block%right))
+      call block%equations(i)%solve(block%right, block%change)
+      q(i, order, block%coordinates) = block%units*block%change
     end do
   end subroutine solve_one_by_one
 
-  !> Add the share of the numbers of a coupling in the variation of its equation.
-  subroutine add_coupling(model, plan, state, tangents, c, order, openings)
-    type(model_type), intent(in) :: model           !< the present model
-    type(plan_type), intent(in) :: plan             !< the plan
-    type(state_type), intent(in) :: state           !< the motion
-    type(tangent_type), intent(in) :: tangents(:)   !< (P) derivatives of constants
-    integer, intent(in) :: c                        !< number of the closure that is the coupling
-    integer, intent(in) :: order                    !< of the derivative in time
-    real(wp), intent(inout) :: openings(:)          !< (P) the variation of the equation
-    real(wp) :: own
-    integer :: i, k, p
+  !> Find the first position at which no change of the unknowns keeps a chain closed for some parameter: the equations of the block left
+  !> out what does not change in any motion of the mechanism, but changes with the parameter.
+  subroutine find_opened(plan, n_parameters, m, numbers, touched, block, q, good, opened_by)
+    type(plan_type), intent(in) :: plan                        !< the plan
+    integer, intent(in) :: n_parameters                        !< number of parameters
+    integer, intent(in) :: m                                   !< number of coordinates
+    integer, intent(in) :: numbers                             !< number of all derivatives by a parameter
+    logical, intent(in) :: touched(m, n_parameters)            !< coordinates that change with each parameter
+    type(varied_block_type), intent(in) :: block               !< with its forms
+    real(wp), intent(in) :: q(batch_size, numbers, n_parameters)   !< derivatives of the coordinates, then others
+    integer, intent(inout) :: good                             !< positions that are judged; gets those before the first that is open
+    integer, intent(inout) :: opened_by                        !< gets the parameter that opens it
+    integer :: i, j
+    logical :: is_coupling
 
-    do p = 1, size(tangents)
-      associate (part => tangents(p)%couplings(plan%closures(c)%coupling), &
-                 coupling => model%mechanism%couplings(plan%closures(c)%coupling)%coupling)
-        if (.not. part%varies) cycle
-        own = 0.0_wp
-        do i = 1, size(coupling%coordinates)
-          k = coupling%coordinates(i)
-          select case (order)
-          case (0)
-            own = own + coupling%varied_term(part%change, i, state%q(k), 0)
-          case (1)
-            own = own + coupling%varied_term(part%change, i, state%q(k), 1)*state%dq(k)
-          case default
-            own = own + coupling%varied_term(part%change, i, state%q(k), 1)*state%ddq(k) &
-                  + coupling%varied_term(part%change, i, state%q(k), 2)*state%dq(k)**2
-          end select
-        end do
-        openings(p) = openings(p) + plan%closures(c)%weight*own
-      end associate
-    end do
-  end subroutine add_coupling
-
-  !> Find a parameter for which no change of the unknowns keeps a chain closed: the equations of the block left it out because they
-  !> do not change in any motion of the mechanism, but they change with the parameter.
-  subroutine find_opened(model, plan, state, tangents, n, m, block, q, opened_by)
-    type(model_type), intent(in) :: model               !< the present model
-    type(plan_type), intent(in) :: plan                 !< the plan
-    type(state_type), intent(in) :: state               !< the motion
-    type(tangent_type), intent(in) :: tangents(:)       !< (P) derivatives of constants
-    integer, intent(in) :: n                            !< number of parameters
-    integer, intent(in) :: m                            !< number of coordinates
-    type(varied_block_type), intent(inout) :: block     !< with its forms
-    real(wp), intent(in) :: q(n, 0:2, m)                !< derivatives of the coordinates
-    integer, intent(out) :: opened_by                   !< the parameter; 0: none
-    integer :: i
-
-    opened_by = 0
     do i = 1, size(block%forms)
-      if (block%has_whole) then
-        call judge(block%whole(i))
-      else
-        call judge(block%forms(i))
-      end if
-      if (opened_by > 0) return
+      is_coupling = plan%closures(block%first_closure + i - 1)%coupling > 0
+      do j = 1, size(block%parameters)
+        if (block%has_whole .and. .not. is_coupling) then
+          call judge(block%whole(i), block%parameters(j))
+        else
+          call judge(block%forms(i), block%parameters(j))
+        end if
+      end do
     end do
   contains
 
-    !> Judge the opening of one closure.
-    subroutine judge(form)
+    !> Judge the opening of one closure by one parameter.
+    subroutine judge(form, p)
       type(linear_form_type), intent(in) :: form   !< its opening
-      integer :: p, c
+      integer, intent(in) :: p                     !< number of the parameter
+      real(wp) :: parts(batch_size, form%rows), sizes(batch_size)
+      integer :: k
 
-      c = block%first_closure + i - 1
-      call find_values(form, n, m, 0, .true., q, block%parts)
-      block%sizes = 0.0_wp
-      call add_sizes(form, n, m, q, block%sizes)
-      if (plan%closures(c)%coupling > 0) then
-        call add_coupling(model, plan, state, tangents, c, 0, block%parts(:, 1))
-        block%sizes = max(block%sizes, abs(block%parts(:, 1)))
-      end if
-      do p = 1, n
-        if (maxval(abs(block%parts(p, :form%rows))) <= &
-            max(opened_by_parameter, inexact_dimensions*plan%data_tolerance)*block%sizes(p)) cycle
+      call find_values(form, good, p, m, 0, .true., touched(:, p), q(1, 1, p), parts)
+      call find_sizes(form, good, p, m, q(1, 1, p), sizes)
+      ! the numbers of a coupling are not among the constants whose sizes are known
+      if (is_coupling) sizes(:good) = max(sizes(:good), abs(parts(:good, 1)))
+      do k = 1, good
+        if (maxval(abs(parts(k, :))) <= max(opened_by_parameter, inexact_dimensions*plan%data_tolerance)*sizes(k)) cycle
+        good = k - 1
         opened_by = p
         return
       end do

@@ -12,7 +12,7 @@ module mech9_planar_gradient
   use mech9_frame_variation, only: third_derivatives_type
   use mech9_twists, only: frame_twists_type
   use mech9_parameter_support, only: varied_constant_type
-  use mech9_planar_forms, only: planar_step_series, carry_in_plane
+  use mech9_twists_at_position, only: planar_step_series, carry_in_plane
   use mech9_gradient_arithmetic, only: gradient_arithmetic_type
   implicit none
   private

@@ -11,7 +11,7 @@ module mech9_spatial_gradient
   use mech9_frame_variation, only: third_derivatives_type
   use mech9_twists, only: frame_twists_type, find_frame_twists, find_step_twists
   use mech9_parameter_support, only: varied_constant_type
-  use mech9_spatial_forms, only: carry_in_space
+  use mech9_twists_at_position, only: carry_in_space
   use mech9_gradient_arithmetic, only: gradient_arithmetic_type
   implicit none
   private

@@ -65,7 +65,7 @@ contains
   !> Rows of results are counted.
   subroutine write_rows(self, rows, err)
     class(xdmf_type), intent(inout) :: self            !< names, counts and times for the description
-    real(wp), intent(in) :: rows(:, :)                 !< (columns,rows) rows of the results, which are only counted
+    real(wp), intent(in), contiguous :: rows(:, :)     !< (columns,rows) rows of the results, which are only counted
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     self%rows = self%rows + size(rows, 2)

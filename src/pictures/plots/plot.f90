@@ -60,7 +60,7 @@ contains
   !> Rows of results are taken.
   subroutine write_rows(self, rows, err)
     class(plot_type), intent(inout) :: self            !< request and rows of the plot
-    real(wp), intent(in) :: rows(:, :)                 !< (columns,rows) rows of the results
+    real(wp), intent(in), contiguous :: rows(:, :)     !< (columns,rows) rows of the results
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: i
 

@@ -31,12 +31,12 @@ module mech9_quantity_record
     type(chebyshev_type), private :: rule
     real(wp), allocatable, private :: piece(:, :)            !< (points_between,quantities) values between two outputs
     real(wp), allocatable, private :: changes(:, :, :)       !< (P,points_between,quantities) derivatives of these values
-    real(wp), private :: times(points_between) = 0.0_wp      !< of the points between two outputs [s]
-    real(wp), private :: previous = 0.0_wp                   !< time of the output before [s]
+    real(wp), private :: previous = 0.0_wp                   !< time of the output that was taken last [s]
   contains
     procedure :: begin
     procedure :: is_empty
     procedure :: has_gradient
+    procedure :: columns_with_gradients
     procedure :: times_before
     procedure :: take_between
     procedure :: take_output
@@ -132,27 +132,57 @@ contains
     if (allocated(self%gradient)) has_gradient = size(self%gradient) > 0
   end function has_gradient
 
+  !> The columns whose derivatives by the parameters are needed for the quantities.
+  pure function columns_with_gradients(self) result(columns)
+    class(quantity_record_type), intent(in) :: self   !< the record
+    integer, allocatable :: columns(:)
+    logical :: needed(self%columns%count)
+    integer :: i
+
+    needed = .false.
+    do i = 1, size(self%tracked)
+      associate (tracked => self%tracked(i))
+        if (.not. allocated(tracked%changes)) cycle
+        needed(tracked%column) = .true.
+        if (tracked%family(0) > 0) needed(tracked%family) = .true.
+      end associate
+    end do
+    columns = pack([(i, i=1, size(needed))], needed)
+  end function columns_with_gradients
+
   !> The times between the output before and the next one at which rows are needed, in their order.
-  subroutine times_before(self, t, times)
-    class(quantity_record_type), intent(inout) :: self  !< the record; keeps the times of the points
+  subroutine times_before(self, previous, t, times)
+    class(quantity_record_type), intent(in) :: self     !< the record
+    real(wp), intent(in) :: previous                    !< time of the output before [s]
     real(wp), intent(in) :: t                           !< time of the next output [s]
     real(wp), allocatable, intent(out) :: times(:)      !< between the two outputs [s]
+    real(wp) :: points(points_between)
     integer :: i
 
     allocate (times(0))
     if (self%is_empty()) return
-    self%times = self%previous + 0.5_wp*(t - self%previous)*(1.0_wp + self%rule%points)
-    if (needs_pieces(self)) times = self%times(2:self%rule%n - 1)
+    points = points_in(self, previous, t)
+    if (needs_pieces(self)) times = points(2:self%rule%n - 1)
     do i = 1, size(self%tracked)
       associate (at => self%tracked(i)%at)
         if (self%tracked(i)%take /= 'at') cycle
-        if (.not. (at - self%previous)*(t - at) > 0.0_wp .or. any(.not. abs(times - at) > 0.0_wp)) cycle
+        if (.not. (at - previous)*(t - at) > 0.0_wp .or. any(.not. abs(times - at) > 0.0_wp)) cycle
         ! the new time stands after those that are nearer to the output before
-        times = [pack(times, abs(times - self%previous) < abs(at - self%previous)), at, &
-                 pack(times, abs(times - self%previous) > abs(at - self%previous))]
+        times = [pack(times, abs(times - previous) < abs(at - previous)), at, &
+                 pack(times, abs(times - previous) > abs(at - previous))]
       end associate
     end do
   end subroutine times_before
+
+  !> The times of the points between two outputs, these included.
+  pure function points_in(self, previous, t) result(times)
+    class(quantity_record_type), intent(in) :: self     !< the record
+    real(wp), intent(in) :: previous                    !< time of the output before [s]
+    real(wp), intent(in) :: t                           !< time of the next output [s]
+    real(wp) :: times(points_between)
+
+    times = previous + 0.5_wp*(t - previous)*(1.0_wp + self%rule%points)
+  end function points_in
 
   !> Whether a quantity needs values at the points between outputs.
   pure logical function needs_pieces(self)
@@ -166,16 +196,19 @@ contains
   end function needs_pieces
 
   !> Take a row between the output before and the next one.
-  pure subroutine take_between(self, row)
-    class(quantity_record_type), intent(inout) :: self  !< the record
+  pure subroutine take_between(self, row, next)
+    class(quantity_record_type), intent(inout) :: self  !< the record, which has taken all rows before this one
     real(wp), intent(in) :: row(:)                      !< numbers of the row, time first
+    real(wp), intent(in) :: next                        !< time of the next output [s]
+    real(wp) :: times(points_between)
     integer :: i, k
 
+    times = points_in(self, self%previous, next)
     do i = 1, size(self%tracked)
       associate (tracked => self%tracked(i))
         if (tracked%take == 'at' .and. .not. abs(row(1) - tracked%at) > 0.0_wp) call tracked%take_at(row)
         do k = 2, self%rule%n - 1
-          if (abs(row(1) - self%times(k)) > 0.0_wp) cycle
+          if (abs(row(1) - times(k)) > 0.0_wp) cycle
           self%piece(k, i) = row(tracked%column)
           if (allocated(tracked%changes)) self%changes(:, k, i) = tracked%changes_of(row)
         end do

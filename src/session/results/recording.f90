@@ -76,19 +76,22 @@ contains
     type(progress_type), intent(inout) :: progress              !< is told of each row
     type(pacer_type), intent(inout) :: pacer                    !< says when rows must be written
     integer, intent(inout) :: next                              !< number of the next output, from 0 on
-    real(wp), intent(inout) :: rows(:, :)                       !< (width, most rows)
+    real(wp), intent(inout), contiguous :: rows(:, :)           !< (width, most rows)
     integer, intent(out) :: count                               !< rows that were computed
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    integer :: taken
 
     count = 0
-    do while (count < size(rows, 2) .and. next <= model%request%time%intervals)
-      call source%row_at(model%request%time%time(next), rows(:, count + 1), err)
+    taken = 0
+    do while (taken < size(rows, 2) .and. next <= model%request%time%intervals)
+      call source%add_row(model%request%time%time(next), rows, count, err)
       if (allocated(err)) return
-      count = count + 1
+      taken = taken + 1
       next = next + 1
       call progress%update(real(next, wp)/max(1, model%request%time%intervals))
-      if (pacer%due()) return
+      if (pacer%due()) exit
     end do
+    call source%complete(rows, count, err)
   end subroutine compute_rows
 
   !> Add the time since `clock` to a sum and set the clock.

@@ -118,10 +118,12 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(table_type), allocatable :: table
     class(result_sink_type), allocatable :: sink
+    integer, allocatable :: order(:)
 
     allocate (table)
+    if (columns%sensitivities > 0) order = columns%order_in_table()
     call table%open(self%table_path, model%mechanism%title, program_name//' '//version, &
-                    columns%names(:columns%count), columns%units(:columns%count), err)
+                    columns%names(:columns%count), columns%units(:columns%count), err, order)
     if (allocated(err)) return
     call move_alloc(table, sink)
     call append_sink(self%sinks, sink)
@@ -154,13 +156,17 @@ contains
   !> Write rows to all results, up to the first error.
   subroutine write_rows(self, rows, err)
     class(results_type), intent(inout) :: self          !< the results
-    real(wp), intent(in) :: rows(:, :)                  !< (columns, rows), those of poses at the end
+    real(wp), intent(in), contiguous :: rows(:, :)      !< (columns, rows), those of poses at the end
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     integer :: i
 
     do i = 1, size(self%sinks)
       associate (sink => self%sinks(i)%sink)
-        call sink%write_rows(rows(:merge(size(rows, 1), self%n_columns, sink%takes_poses), :), err)
+        if (sink%takes_poses .or. size(rows, 1) == self%n_columns) then
+          call sink%write_rows(rows, err)
+        else
+          call sink%write_rows(rows(:self%n_columns, :), err)
+        end if
       end associate
       if (allocated(err)) return
     end do

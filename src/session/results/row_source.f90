@@ -9,7 +9,8 @@ module mech9_row_source
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_simulation, only: simulation_type, interruption_type
-  use mech9_sensitivity, only: sensitivity_type
+  use mech9_batch_products, only: batch_size
+  use mech9_sensitivity, only: sensitivity_type, find_waiting
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_film, only: film_type
   use mech9_force_record, only: force_record_type
@@ -28,10 +29,20 @@ module mech9_row_source
     type(varied_record_type) :: varied     !< finds those of forces and energies
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
     type(quantity_record_type) :: quantities   !< of the whole run
-    real(wp), allocatable, private :: between(:)   !< a row between two outputs
+    integer, private :: waiting = 0                !< rows that wait for their derivatives, in the order of time
+    integer, private :: outputs = 0                !< how many of them are outputs
+    logical, private :: is_output(batch_size) = .true.   !< each of them is an output, not a row between two outputs
+    real(wp), private :: next_output(batch_size) = 0.0_wp   !< time of each output, or of the output after each row between [s]
+    real(wp), private :: last_output = 0.0_wp      !< time of the output that was reached last [s]
+    real(wp), allocatable, private :: between(:, :)      !< (width,batch) rows between two outputs
+    integer, allocatable, private :: wanted(:)           !< columns whose derivatives are wanted at outputs
+    integer, allocatable, private :: wanted_between(:)   !< columns whose derivatives quantities need between outputs
   contains
     procedure :: begin_quantities
+    procedure :: add_row
+    procedure :: complete
     procedure :: row_at
+    procedure :: go_through
     procedure :: add_sensitivities
   end type row_source_type
 
@@ -87,6 +98,7 @@ contains
     call self%simulation%begin_sensitivity(variable, self%columns%derivatives, self%sensitivity, err)
     if (allocated(err)) return
     call self%columns%append_sensitivities(names, self%simulation%model%request%output%sensitivities)
+    self%wanted = [(i, i=2, self%columns%motion)]
     call self%varied%begin(self%simulation, variable, self%columns, err)
   end subroutine add_sensitivities
 
@@ -97,45 +109,177 @@ contains
 
     if (.not. allocated(self%simulation%model%request%quantities)) return
     call self%quantities%begin(self%simulation%model, self%columns, err)
-    allocate (self%between(self%columns%width()), source=0.0_wp)
+    if (allocated(err)) return
+    allocate (self%between(self%columns%width(), batch_size), source=0.0_wp)
+    associate (needed => self%quantities%columns_with_gradients())
+      self%wanted_between = pack(needed, needed <= self%columns%motion)
+    end associate
+    if (self%columns%sensitivities == 0) self%wanted = self%wanted_between
   end subroutine begin_quantities
 
-  !> Go on to output time t and give its row. Output times come in order, the first one is the start. Quantities take what they
-  !> need on the way.
-  subroutine row_at(self, t, row, err)
-    class(row_source_type), intent(inout) :: self       !< the row source
-    real(wp), intent(in) :: t                           !< output time [s]
-    real(wp), intent(inout) :: row(:)                   !< (columns%width()) in the units of the results
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+  !> Go on to output time t. Its row follows those that are complete, and those that wait for their derivatives: these are found for
+  !> many rows at once. Output times come in order, the first one is the start. Quantities take what they need on the way. After a
+  !> failure no row waits: those before the failure are complete.
+  subroutine add_row(self, t, rows, count, err)
+    class(row_source_type), intent(inout) :: self             !< the row source
+    real(wp), intent(in) :: t                                 !< output time [s]
+    real(wp), intent(inout), contiguous :: rows(:, :)         !< (columns%width(),rows) in the units of the results
+    integer, intent(inout) :: count                           !< number of complete rows; grows where rows become complete
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    type(error_type), allocatable :: earlier
 
     if (self%simulation%started) then
-      if (.not. self%quantities%is_empty()) call visit_between(self, t, err)
+      if (.not. self%quantities%is_empty()) call visit_between(self, t, rows, count, err)
       if (.not. allocated(err)) call self%simulation%advance(t, err)
     else
       call self%simulation%start(err, signal_interruption_type())
     end if
-    if (.not. allocated(err)) call fill_row(self, row, err)
-    if (allocated(err)) return
-    if (.not. self%quantities%is_empty()) call self%quantities%take_output(row)
-    if (allocated(self%film)) call film_row(self, row)
+    if (.not. allocated(err)) call fill_row(self, rows(:, count + self%outputs + 1), err)
+    if (.not. allocated(err)) then
+      if (allocated(self%film)) call film_row(self, rows(:, count + self%outputs + 1))
+      self%last_output = t
+      if (.not. allocated(self%sensitivity) .and. self%quantities%is_empty()) then
+        count = count + 1
+        return
+      end if
+      self%outputs = self%outputs + 1
+      call let_wait(self, .true., t, rows, count, err)
+      return
+    end if
+    ! positions before this one may fail, too
+    call self%complete(rows, count, earlier)
+    if (allocated(earlier)) call move_alloc(earlier, err)
+  end subroutine add_row
+
+  !> Go on to output time t and give its row.
+  subroutine row_at(self, t, row, err)
+    class(row_source_type), intent(inout) :: self       !< the row source; no row waits
+    real(wp), intent(in) :: t                           !< output time [s]
+    real(wp), intent(inout) :: row(:)                   !< (columns%width()) in the units of the results
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp), allocatable :: rows(:, :)
+    integer :: count
+
+    allocate (rows(size(row), 1))
+    count = 0
+    call self%add_row(t, rows, count, err)
+    if (.not. allocated(err)) call self%complete(rows, count, err)
+    row = rows(:, 1)
   end subroutine row_at
 
+  !> Go through all outputs of the run, for its quantities, and for the numbers of its columns where these are wanted.
+  subroutine go_through(self, err, numbers)
+    class(row_source_type), intent(inout) :: self              !< the row source, before the start
+    type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
+    real(wp), intent(inout), optional :: numbers(:, :)         !< (columns,outputs) gets the columns of all outputs that are reached
+    real(wp), allocatable :: rows(:, :)
+    integer :: i, first, last, count
+
+    allocate (rows(self%columns%width(), batch_size))
+    associate (time => self%simulation%model%request%time)
+      do first = 0, time%intervals, batch_size
+        count = 0
+        last = min(first + batch_size - 1, time%intervals)
+        do i = first, last
+          call self%add_row(time%time(i), rows, count, err)
+          if (allocated(err)) exit
+        end do
+        if (.not. allocated(err)) call self%complete(rows, count, err)
+        if (present(numbers)) then
+          ! a parameter that sets the accuracy may add or take away the last column
+          associate (n => min(size(rows, 1), size(numbers, 1)))
+            numbers(:n, first + 1:first + count) = rows(:n, :count)
+          end associate
+        end if
+        if (allocated(err)) return
+      end do
+    end associate
+  end subroutine go_through
+
   !> Visit the times before an output at which quantities need rows.
-  subroutine visit_between(self, t, err)
-    type(row_source_type), intent(inout) :: self        !< the row source
-    real(wp), intent(in) :: t                           !< time of the next output [s]
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+  subroutine visit_between(self, t, rows, count, err)
+    type(row_source_type), intent(inout) :: self              !< the row source
+    real(wp), intent(in) :: t                                 !< time of the next output [s]
+    real(wp), intent(inout), contiguous :: rows(:, :)         !< (columns%width(),rows) rows of outputs
+    integer, intent(inout) :: count                           !< number of complete rows
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     real(wp), allocatable :: times(:)
     integer :: i
 
-    call self%quantities%times_before(t, times)
+    call self%quantities%times_before(self%last_output, t, times)
     do i = 1, size(times)
       call self%simulation%visit(times(i), err)
-      if (.not. allocated(err)) call fill_row(self, self%between, err)
+      if (.not. allocated(err)) call fill_row(self, self%between(:, self%waiting + 1), err)
+      if (.not. allocated(err)) call let_wait(self, .false., t, rows, count, err)
       if (allocated(err)) return
-      call self%quantities%take_between(self%between)
     end do
   end subroutine visit_between
+
+  !> Let a row wait for its derivatives, until enough of them wait. Rows without derivatives do not wait.
+  subroutine let_wait(self, is_output, t, rows, count, err)
+    type(row_source_type), intent(inout) :: self              !< the row source
+    logical, intent(in) :: is_output                          !< the row is an output
+    real(wp), intent(in) :: t                                 !< time of this output, or of the next one [s]
+    real(wp), intent(inout), contiguous :: rows(:, :)         !< (columns%width(),rows) rows of outputs
+    integer, intent(inout) :: count                           !< number of complete rows; grows where rows become complete
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+
+    self%waiting = self%waiting + 1
+    self%is_output(self%waiting) = is_output
+    self%next_output(self%waiting) = t
+    if (allocated(self%sensitivity)) then
+      if (self%waiting < self%sensitivity%at_once .and. .not. allocated(self%film)) return
+    end if
+    call self%complete(rows, count, err)
+  end subroutine let_wait
+
+  !> Complete all rows that wait for their derivatives, as far as these exist.
+  subroutine complete(self, rows, count, err)
+    class(row_source_type), intent(inout) :: self             !< the row source
+    real(wp), intent(inout), contiguous :: rows(:, :)         !< (columns%width(),rows) rows of outputs
+    integer, intent(inout) :: count                           !< number of complete rows; grows
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    integer :: good, first, last
+
+    good = self%waiting
+    if (allocated(self%sensitivity)) call find_waiting(self%simulation%model, self%sensitivity, good, err)
+    ! a position whose row failed has derivatives of no use
+    good = min(good, self%waiting)
+    first = 1
+    do while (first <= good)
+      last = first
+      if (self%is_output(first)) then
+        do while (last < good)
+          if (.not. self%is_output(last + 1)) exit
+          last = last + 1
+        end do
+        call complete_outputs(self, first, rows(:, count + 1:count + last - first + 1))
+        count = count + last - first + 1
+      else
+        if (allocated(self%sensitivity)) call self%columns%fill_sensitivities(self%sensitivity%changes, first, 1, &
+                                                                              self%wanted_between, self%between(:, first:first))
+        call self%quantities%take_between(self%between(:, first), self%next_output(first))
+      end if
+      first = last + 1
+    end do
+    self%waiting = 0
+    self%outputs = 0
+  end subroutine complete
+
+  !> Complete the rows of outputs that follow each other.
+  subroutine complete_outputs(self, first, rows)
+    type(row_source_type), intent(inout) :: self              !< the row source
+    integer, intent(in) :: first                              !< number of the first of them among those that wait
+    real(wp), intent(inout), contiguous :: rows(:, :)         !< (columns%width(),rows) these rows
+    integer :: i
+
+    if (allocated(self%sensitivity)) &
+      call self%columns%fill_sensitivities(self%sensitivity%changes, first, size(rows, 2), self%wanted, rows)
+    if (self%quantities%is_empty()) return
+    do i = 1, size(rows, 2)
+      call self%quantities%take_output(rows(:, i))
+    end do
+  end subroutine complete_outputs
 
   !> Fill a row with the numbers of the present position.
   subroutine fill_row(self, row, err)
@@ -178,9 +322,9 @@ contains
     if (allocated(self%sensitivity)) then
       call self%simulation%show_sensitivity(self%sensitivity, err)
       if (allocated(err)) return
-      call self%columns%fill_sensitivities(self%sensitivity, row)
-      if (self%varied%wanted) call self%varied%find(self%simulation, self%columns, err)
-      if (.not. self%varied%wanted .or. allocated(err)) return
+      if (.not. self%varied%wanted) return
+      call self%varied%find(self%simulation, self%columns, err)
+      if (allocated(err)) return
       call self%columns%fill_beyond_motion(self%varied%values, row)
       if (size(self%varied%poses) > 0) call self%columns%fill_varied_poses(self%varied%poses, row)
     end if

@@ -58,8 +58,6 @@ contains
     real(wp), intent(out) :: gradient(:, :)                         !< (parameters,quantities); NaN where a number has no derivative
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
     type(row_source_type) :: source
-    real(wp), allocatable :: row(:)
-    integer :: i
 
     call new_row_source(program_name, simulation, source)
     call source%add_sensitivities(variable, err)
@@ -71,11 +69,8 @@ contains
         call find_accuracy(model, plan, start, simulation%errors, err, interruption=signal_interruption_type())
       if (allocated(err)) return
     end select
-    allocate (row(source%columns%width()))
-    do i = 0, model%request%time%intervals
-      call source%row_at(model%request%time%time(i), row, err)
-      if (allocated(err)) return
-    end do
+    call source%go_through(err)
+    if (allocated(err)) return
     call source%quantities%finish()
     numbers = source%quantities%numbers
     gradient = source%quantities%gradient

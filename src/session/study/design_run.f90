@@ -101,20 +101,11 @@ contains
     real(wp), intent(out) :: numbers(:)                            !< (quantities)
     type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
     real(wp), intent(inout), optional :: rows(:, :)                !< (columns,outputs) gets the columns of all outputs
-    real(wp), allocatable :: row(:)
-    integer :: i, n
 
     call begin_design(program_name, simulation, source, err)
     if (allocated(err)) return
-    allocate (row(source%columns%width()))
-    do i = 0, model%request%time%intervals
-      call source%row_at(model%request%time%time(i), row, err)
-      if (allocated(err)) return
-      if (.not. present(rows)) cycle
-      ! a parameter that sets the accuracy may add or take away the last column
-      n = min(size(row), size(rows, 1))
-      rows(:n, i + 1) = row(:n)
-    end do
+    call source%go_through(err, rows)
+    if (allocated(err)) return
     if (size(numbers) == 0) return
     call source%quantities%finish()
     numbers = source%quantities%numbers
