@@ -1,4 +1,5 @@
-"""Studies in several processes: the same bits as in one, whatever their number; failed runs, mistakes and interruptions as in one.
+"""Studies in several processes: the same bits as in one, whatever their number; parts in HDF5 files, and the continuation
+of a study one of whose processes was killed; failed runs, mistakes and interruptions as in one.
 
 usage: study_processes.py MECH9K MECH9D MECH9K_MPI MECH9D_MPI MPIRUN
 """
@@ -13,6 +14,11 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 from mech9_cases import Checks, run, text_of
+
+try:
+    import h5py
+except ImportError:
+    h5py = None
 
 DONE, USAGE, DATA, FILE, INTERRUPTED = 0, 2, 3, 8, 130
 SLIDER_CRANK = """&structure cq=1 /
@@ -83,6 +89,56 @@ def same_bits(cases, text, program, program_mpi, why):
     check.equal(cases.file('team.dat'), cases.file('alone.dat'), f'{why}: a part of it')
 
 
+def numbers_of(path):
+    """All numbers of the runs in the HDF5 file of a study, as bytes."""
+    with h5py.File(path, 'r') as file:
+        names = ['run', 'exit_code'] + [f'{group}/{name}' for group in ('parameters', 'quantities') for name in file[group]]
+        return {name: file[name][()].tobytes() for name in names}
+
+
+def files(cases, mech9k, mech9k_mpi):
+    """Parts in HDF5 files have the bits of one process; what a killed process leaves is continued by others to the same bits."""
+    check = cases.checks
+    path = cases.write(SLIDER_CRANK.replace('count=9', 'count=300') + "&study kind='grid' /\n")
+    whole, cut, part = (os.path.join(cases.folder, name) for name in ('whole.h5', 'cut.h5', 'part.h5'))
+    done = run(mech9k, path, '--study', '--part', '1/2', '--hdf5', whole, folder=cases.folder)
+    check.true(done.returncode == DONE, 'the part in one process', done.stderr)
+    expected = numbers_of(whole)
+    for n in (2, 4):
+        done = cases.processes(n, mech9k_mpi, path, '--study', '--part', '1/2', '--hdf5', part)
+        check.true(done.returncode == DONE, f'the part in {n} processes', f'{done.returncode}: {done.stderr}')
+        check.true(numbers_of(part) == expected, f'the part in {n} processes has the same bits')
+        os.remove(part)
+        made = kill_one(cases, n, mech9k_mpi, path, cut)
+        check.true(0 < made < 1650, f'{n} processes: the kill comes in the middle', made)
+        done = cases.processes(n, mech9k_mpi, path, '--study', '--part', '1/2', '--continue', cut)
+        check.true(done.returncode == DONE, f'{n} processes continue the study', f'{done.returncode}: {done.stderr}')
+        check.true(numbers_of(cut) == expected, f'{n} processes continue to the same bits')
+        os.remove(cut)
+
+
+def kill_one(cases, processes, program, path, file):
+    """Kill the last process of a study in the middle; returns how many runs are in the file."""
+    with subprocess.Popen(cases.command(processes, program, path, '--study', '--part', '1/2', '--hdf5', file), cwd=cases.folder, env=ENVIRONMENT,
+                          stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True) as process:
+        end = time.time() + 30
+        while time.time() < end and not (os.path.exists(file) and made_runs(file) > 0):
+            time.sleep(0.02)
+        children = subprocess.run(['ps', '-o', 'pid=', '--ppid', str(process.pid)], text=True, capture_output=True, timeout=10).stdout.split()
+        os.kill(int(children[-1]), signal.SIGKILL)
+        cases.checks.true(process.wait(60) != DONE, f'{processes} processes: one that is killed ends all')
+    return made_runs(file)
+
+
+def made_runs(file):
+    """How many runs the file of a study has; 0 where it is about to be written."""
+    try:
+        with h5py.File(file, 'r', locking=False) as study:
+            return int((study['exit_code'][()] >= 0).sum())
+    except OSError:
+        return 0
+
+
 def mistakes(cases, mech9k_mpi):
     """All processes end with the code of the mistake, which is told once; a table that cannot be written ends them, too."""
     check = cases.checks
@@ -140,6 +196,10 @@ def main():
         cases = Cases(checks, folder, mpirun)
         same_bits(cases, SLIDER_CRANK + "&study kind='grid' /\n", mech9k, mech9k_mpi, 'grid')
         same_bits(cases, PENDULUM + "&study kind='sobol', runs=150, seed=4 /\n", mech9d, mech9d_mpi, 'dynamics')
+        if h5py:
+            files(cases, mech9k, mech9k_mpi)
+        else:
+            print('h5py is not installed (Debian: python3-h5py): HDF5 files are not tested')
         mistakes(cases, mech9k_mpi)
         interruption(cases, mech9k_mpi)
         libraries = subprocess.run(['ldd', mech9k], text=True, capture_output=True, timeout=60).stdout
