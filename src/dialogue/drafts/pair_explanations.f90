@@ -99,6 +99,10 @@ module mech9_pair_explanations
     explanation_type('pair', 'columns', 'path', &
                   'A file can have further columns, as a table of results or of a cam has. Tell in which columns x and y '// &
                   'stand, and in space z.', '3, 4 (x is the third number of each line, y the fourth)'), &
+    explanation_type('pair', 'scale', 'path', &
+                  'All coordinates in the file are multiplied by this number: for a file in other units, or a curve in another '// &
+                  'size.', &
+                  '0.001 (from millimetres to metres)'), &
     explanation_type('pair', 'orientation', 'path', &
                   'The moving link can keep its orientation while one of its points follows the curve, or turn with the '// &
                   'tangent of the curve, as a train does on its rails.', 'tangent'), &

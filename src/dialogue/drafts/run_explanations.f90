@@ -172,6 +172,8 @@ module mech9_run_explanations
     explanation_type('output', 'poses', '', &
                   'The HDF5 file then holds the position and the rotation of every link too, and a file that ends with '// &
                   '.xdmf beside it shows the links in ParaView.', 'yes'), &
+    explanation_type('output', 'hdf5_runs', '', &
+                  'The HDF5 file of a study then holds the whole motion of each run, and not its quantities alone.', 'yes'), &
     explanation_type('output', 'compression', '', &
                   'The HDF5 file is compressed by this much: 0 is not at all and the fastest, 9 gives the smallest file '// &
                   'and is the slowest.', '4'), &
