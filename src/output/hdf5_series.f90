@@ -161,19 +161,19 @@ contains
   pure function pieces_of(columns) result(pieces)
     integer, intent(in) :: columns(:)   !< numbers of the columns
     integer, allocatable :: pieces(:, :)
-    integer :: i, n
+    integer :: i, n, follower
 
     allocate (pieces(2, size(columns)))
     n = 0
+    follower = 0
     do i = 1, size(columns)
-      if (i > 1) then
-        if (columns(i) == columns(i - 1) + 1) then
-          pieces(2, n) = pieces(2, n) + 1
-          cycle
-        end if
+      if (n > 0 .and. columns(i) == follower) then
+        pieces(2, n) = pieces(2, n) + 1
+      else
+        n = n + 1
+        pieces(:, n) = [columns(i), 1]
       end if
-      n = n + 1
-      pieces(:, n) = [columns(i), 1]
+      follower = columns(i) + 1
     end do
     if (n*shortest_piece > size(columns)) n = 0
     pieces = pieces(:, :n)
