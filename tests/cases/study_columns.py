@@ -191,9 +191,9 @@ def killed(cases, command, text, whole, why, victim=None):
     """Killed in the middle and continued: the bits of an undisturbed study, whatever was finished at the kill."""
     check = cases.checks
     random.seed(5)
-    partly = 0
-    for i in range(12):
-        if i >= 3 and partly > 0:
+    partly, delay = 0, 0.6
+    for i in range(20):
+        if i >= 2 and partly > 0:
             break
         path = f'killed{i}.h5'
         process = subprocess.Popen([*command, cases.path('case.nml'), '--study', '--quiet', '--hdf5', path], cwd=cases.folder, env=ENVIRONMENT,
@@ -201,7 +201,7 @@ def killed(cases, command, text, whole, why, victim=None):
         patience = time.monotonic() + 60
         while not os.path.exists(cases.path(path)) and process.poll() is None and time.monotonic() < patience:
             time.sleep(0.02)
-        time.sleep(random.uniform(0.3, 1.2))
+        time.sleep(delay * random.uniform(0.7, 1.3))
         (victim or (lambda one: one.kill()))(process)
         process.wait(60)
         if not os.path.exists(cases.path(path)):
@@ -212,6 +212,8 @@ def killed(cases, command, text, whole, why, victim=None):
                 check.true(file['q'][k].tobytes() == good['q'][k].tobytes() and file['closure'][k].tobytes() == good['closure'][k].tobytes(),
                            f'{why}: finished runs are whole at a kill')
             partly += 0 < np.sum(codes >= 0) < len(codes)
+            # on a machine with other work a study may not have begun yet, or have ended
+            delay *= 2 if np.all(codes < 0) else 0.5 if np.all(codes >= 0) else 1
         done = subprocess.run([*command, cases.path('case.nml'), '--study', '--quiet', '--continue', path], cwd=cases.folder, env=ENVIRONMENT,
                               capture_output=True, text=True, timeout=120)
         check.true(done.returncode == DONE, f'{why}: continued', done.stderr)
@@ -222,7 +224,7 @@ def killed(cases, command, text, whole, why, victim=None):
 def long_study(cases, program, text, why):
     """A study that takes some seconds."""
     intervals, length = 40, 0.0
-    while length < 2.5:
+    while length < 2.0:
         intervals *= 2
         longer = text.replace('intervals=40', f'intervals={intervals}').replace('runs=60', 'runs=150').replace('poses=.true., ', '')
         start = time.monotonic()
@@ -247,6 +249,15 @@ def processes_of(session, program):
     return sorted(found)
 
 
+def wait_for(process):
+    """Whether a process whose ranks have ended ends by itself."""
+    try:
+        process.wait(30)
+    except subprocess.TimeoutExpired:
+        return False
+    return True
+
+
 def several_processes(cases, programs, mpirun):
     for (program, program_mpi), text in zip(programs, (SLIDER_CRANK, PENDULUM)):
         name = os.path.basename(program_mpi)
@@ -267,7 +278,8 @@ def several_processes(cases, programs, mpirun):
     def kill_rank(rank):
         def kill(process):
             ranks = processes_of(process.pid, program_mpi)
-            cases.checks.equal(len(ranks), 2, 'two processes make the runs')
+            # none are left where the study has ended
+            cases.checks.true(len(ranks) == 2 or process.poll() is not None or wait_for(process), 'two processes make the runs', ranks)
             if len(ranks) == 2:
                 os.kill(ranks[rank], signal.SIGKILL)
         return kill
@@ -279,14 +291,14 @@ def several_processes(cases, programs, mpirun):
 def bounded_memory(cases, mech9k):
     """The peak of memory of a study whose columns have a hundred times its size is that of a tenth of its runs."""
     peaks = []
-    for runs in (40, 400):
+    for runs in (20, 200):
         text = SLIDER_CRANK.replace('intervals=40', 'intervals=4000').replace('runs=60', f'runs={runs}').replace('high=0.8', 'high=0.5')
         text = text.replace('reactions=.true., drive_forces=.true., poses=.true., conditioning=.true.', 'derivatives=0')
         process = subprocess.Popen([mech9k, cases.write(text), '--study', '--quiet', '--hdf5', cases.path('large.h5'), '--threads', '2'])
         _, status, usage = os.wait4(process.pid, 0)
         cases.checks.equal(status, 0, f'{runs} runs')
         peaks.append(usage.ru_maxrss)
-    # 400 runs have 140 MB of columns
+    # 200 runs have 70 MB of columns
     cases.checks.true(peaks[1] < peaks[0] + 15000, 'memory does not grow with the number of runs', peaks)
     os.remove(cases.path('large.h5'))
 
