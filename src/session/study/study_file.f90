@@ -3,7 +3,8 @@
 !> where the file has them, are written before its exit code.
 module mech9_study_file
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
+  use mech9_error, only: error_type, raise, exit_interrupted
+  use mech9_system, only: interrupted
   use mech9_clock, only: pacer_type
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type
@@ -152,11 +153,14 @@ contains
   subroutine write_numbers(self, numbers)
     class(study_file_type), intent(inout) :: self          !< the file
     type(hdf5_series_type), intent(inout) :: numbers       !< the data set of the numbers; closed on return
+    integer, parameter :: often = 1000   ! runs between two looks for an interruption
     integer :: i
 
     do i = 1, self%layout%runs_of_part()
       if (allocated(self%file%failure)) exit
       call numbers%write_row_at(self%file, i, [real(self%layout%part(1) + (i - 1)*self%layout%part(2), wp)])
+      if (modulo(i, often) > 0 .or. allocated(self%file%failure)) cycle
+      if (interrupted()) call raise(self%file%failure, exit_interrupted, 'interrupted before the first run')
     end do
     call numbers%close(self%file)
   end subroutine write_numbers
