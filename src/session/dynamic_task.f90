@@ -74,7 +74,7 @@ contains
     type(plan_type) :: plan
     type(state_type) :: start
     type(picture_requests_type) :: pictures
-    type(free_simulation_type), target :: simulation
+    type(free_simulation_type), allocatable, target :: simulation
     type(error_type), allocatable :: err
 
     if (asks_for_equilibrium(options)) then
@@ -89,6 +89,7 @@ contains
     if (options%has('check') .or. .not. answers_only(options)) call check_times_of_laws(model, .true., diagnostics)
     if (diagnostics%failed()) return
     used = model
+    allocate (simulation)   ! too large for a small stack
     call read_picture_requests(options, model, self%program_name, pictures, err)
     if (.not. allocated(err)) call assemble_free_start(model, plan, start, err)
     if (.not. allocated(err)) &
@@ -121,9 +122,10 @@ contains
     class(variable_model_type), intent(inout), target :: variable     !< the model as a function of its parameters
     type(free_simulation_type), intent(inout), target :: simulation   !< is started
     type(error_type), allocatable, intent(out) :: err                 !< allocated if it failed
-    type(row_source_type) :: source
+    type(row_source_type), allocatable :: source
     real(wp), allocatable :: row(:)
 
+    allocate (source)
     call new_row_source('mech9d', simulation, source)
     if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
     if (.not. allocated(err)) call source%begin_quantities(err)
@@ -144,7 +146,7 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics              !< gets the errors
     logical, intent(out) :: reported                                  !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept             !< gets the rows as well, for a look at them after the run
-    type(row_source_type) :: source
+    type(row_source_type), allocatable :: source
     type(results_type), target :: results
     type(facts_type) :: facts
     type(hdf5_sink_type), pointer :: hdf5
@@ -152,6 +154,7 @@ contains
     type(error_type), allocatable :: err
     logical :: ready
 
+    allocate (source)
     call new_row_source('mech9d', simulation, source)
     call source%forces%judge(model, plan, start)
     reported = .false.

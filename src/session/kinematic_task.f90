@@ -81,7 +81,7 @@ contains
     type(plan_type) :: plan
     type(state_type) :: start
     type(picture_requests_type) :: pictures
-    type(driven_simulation_type), target :: simulation
+    type(driven_simulation_type), allocatable, target :: simulation
     type(error_type), allocatable :: err
 
     reported = .false.
@@ -106,6 +106,7 @@ contains
       if (allocated(err)) call diagnostics%add_error(err)
       return
     end if
+    allocate (simulation)   ! too large for a small stack
     call new_driven_simulation(model, plan, start, simulation, pictures%any_wanted(), with_masses)
     call carry_out(program_name, options, pictures, model, variable, plan, simulation, diagnostics, reported, kept)
   end subroutine work_driven
@@ -118,11 +119,12 @@ contains
     type(plan_type), intent(in) :: plan                     !< the plan of the mechanism
     type(state_type), intent(in) :: start                   !< assembled position
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(driven_simulation_type), target :: simulation
-    type(row_source_type) :: source
+    type(driven_simulation_type), allocatable, target :: simulation
+    type(row_source_type), allocatable :: source
     real(wp), dimension(size(model%mechanism%pairs)) :: q, dq, ddq
     real(wp), allocatable :: row(:)
 
+    allocate (simulation, source)
     call new_driven_simulation(model, plan, start, simulation)
     call new_row_source('mech9k', simulation, source)
     if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
@@ -145,13 +147,14 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics                !< gets the errors
     logical, intent(out) :: reported                                    !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept               !< gets the rows as well, for a look at them after the run
-    type(row_source_type) :: source
+    type(row_source_type), allocatable :: source
     type(results_type), target :: results
     type(facts_type) :: facts
     type(recording_outcome_type) :: outcome
     type(error_type), allocatable :: err
     logical :: ready
 
+    allocate (source)
     call new_row_source(program_name, simulation, source)
     call source%forces%judge(model, plan, simulation%assembled)
     reported = .false.
