@@ -84,10 +84,10 @@ contains
     self%commas = .false.
     if (len(path) > 4) self%commas = lower(path(len(path) - 3:)) == '.csv'
     if (self%commas) then
-      call self%file%write(comma_line(in_order(names, order)), err)
+      call self%file%write(comma_line(in_order(names, self%order)), err)
     else
-      call self%file%write(comment_lines(title)//comment_lines(program)//unit_line(in_order(units, order)) &
-                           //name_line(in_order(names, order)), err)
+      call self%file%write(comment_lines(title)//comment_lines(program)//unit_line(in_order(units, self%order)) &
+                           //name_line(in_order(names, self%order)), err)
     end if
   end subroutine open_table
 
@@ -175,11 +175,11 @@ contains
   !> Texts in another order, if one is given.
   pure function in_order(texts, order) result(arranged)
     type(string_type), intent(in) :: texts(:)      !< the texts
-    integer, intent(in), optional :: order(:)      !< their numbers in the other order
+    integer, allocatable, intent(in) :: order(:)   !< their numbers in the other order; not allocated: as they are
     type(string_type) :: arranged(size(texts))
 
     arranged = texts
-    if (present(order)) arranged = texts(order)
+    if (allocated(order)) arranged = texts(order)
   end function in_order
 
   !> Write the last rows and close the file; does nothing to a table that is not open. The file is closed
