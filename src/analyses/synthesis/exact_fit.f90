@@ -52,6 +52,7 @@ module mech9_exact_fit
     procedure :: evaluate
     procedure :: has_derivatives
     procedure :: quantity_slopes
+    procedure :: note_interruption
   end type exact_fit_type
 
 contains
@@ -103,7 +104,7 @@ contains
       return
     end if
     has_value = .false.
-    if (self%heeds_interruption) self%was_cut = self%was_cut .or. interrupted()
+    call self%note_interruption()
     if (self%work >= most_work .or. self%was_cut) return
     associate (space => self%space, v => self%varied)
       call place_design(space, space%low + x(:v)*(space%high - space%low), self%design, err)
@@ -117,12 +118,21 @@ contains
         call space%evaluator%evaluate(all_values(space, self%design%x), q_start, .false., quantities, gradient, has_value)
     end associate
     ! a run for quantities may have been interrupted
-    if (.not. has_value .and. self%with_quantities .and. self%heeds_interruption) self%was_cut = self%was_cut .or. interrupted()
-    if (.not. has_value) return
+    if (.not. has_value) then
+      if (self%with_quantities) call self%note_interruption()
+      return
+    end if
     self%q_trial = q_start
     if (self%with_quantities) self%quantities = quantities
     call add_goals(self, values)
   end subroutine evaluate
+
+  !> Ask whether the user has interrupted the program, and remember it, if the fit is to heed this.
+  subroutine note_interruption(self)
+    class(exact_fit_type), intent(inout) :: self            !< the fit
+
+    if (self%heeds_interruption .and. .not. self%was_cut) self%was_cut = interrupted()
+  end subroutine note_interruption
 
   !> The times of all targets.
   subroutine find_times(self, gaps, found)

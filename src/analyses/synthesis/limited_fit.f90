@@ -1,7 +1,6 @@
 !> A fit with limits, and with quantities that should be least or largest: not a sum of squares alone.
 module mech9_limited_fit
   use mech9_kinds, only: wp
-  use mech9_system, only: interrupted
   use mech9_bounded_least_squares, only: residual_values_type
   use mech9_smooth_problem, only: smooth_problem_type
   use mech9_objective, only: quantity_objective
@@ -115,7 +114,7 @@ contains
   logical function is_stopped(self)
     class(limited_fit_type), intent(in) :: self   !< its fit notes the interruption
 
-    self%fit%was_cut = self%fit%was_cut .or. interrupted()
+    call self%fit%note_interruption()
     is_stopped = self%fit%was_cut
   end function is_stopped
 end module mech9_limited_fit

@@ -162,7 +162,8 @@ contains
     real(wp) :: all(size(self%space%values)), value
 
     ! quantities come from runs that are made anew; none are made any more after an interruption
-    holds = allocated(self%space%evaluator) .and. interrupted()
+    holds = .false.
+    if (allocated(self%space%evaluator)) holds = interrupted()
     if (holds) return
     all = self%space%values
     all(self%space%varied) = optimum%x

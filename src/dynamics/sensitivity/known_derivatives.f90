@@ -23,7 +23,8 @@ contains
 
     do i = 1, size(tangents)
       if (knows_forces(model, i)) then
-        if (.not. integrated .or. is_smooth(model, tangents(i))) cycle
+        if (.not. integrated) cycle
+        if (is_smooth(model, tangents(i))) cycle
       end if
       call raise(err, exit_data, merge(failure_unknown_derivative, failure_unknown_forces, integrated))
       err%failure%name = model%parameters(i)%name

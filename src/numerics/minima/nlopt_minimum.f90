@@ -179,7 +179,9 @@ contains
     end if
     search%x = x
     search%evaluations = search%evaluations + 1
-    if (c_associated(search%nlopt) .and. search%problem%is_stopped()) done = force_stop(search%nlopt)
+    if (c_associated(search%nlopt)) then
+      if (search%problem%is_stopped()) done = force_stop(search%nlopt)
+    end if
     call search%problem%evaluate(x, value, gradient, limits, slopes, search%has_value)
     if (search%has_value) search%has_value = ieee_is_finite(value) .and. all(ieee_is_finite(gradient)) .and. &
                                              all(ieee_is_finite(limits)) .and. all(ieee_is_finite(slopes))

@@ -52,7 +52,8 @@ contains
     class(starts_type), intent(inout) :: self        !< the starts
 
     number = all_handed_out
-    if (allocated(self%stopped) .or. interrupted()) return
+    if (allocated(self%stopped)) return
+    if (interrupted()) return
     do while (self%handed_out < size(self%made))
       self%handed_out = self%handed_out + 1
       if (allocated(self%made(self%handed_out)%found)) cycle
