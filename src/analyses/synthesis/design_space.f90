@@ -4,8 +4,7 @@
 !> functions of the parameters, as lengths are, they follow without the readers of the data file.
 module mech9_design_space
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_data
-  use mech9_failure, only: failure_unknown_derivative
+  use mech9_error, only: error_type
   use mech9_pose, only: pose_type
   use mech9_law, only: drive_slot_type
   use mech9_polynomial_law, only: polynomial_law_type
@@ -32,7 +31,7 @@ module mech9_design_space
     real(wp), allocatable :: low(:)                 !< least value of each
     real(wp), allocatable :: high(:)                !< largest value of each
     real(wp), allocatable :: values(:)              !< values of all parameters in the data file
-    logical :: is_affine = .false.                  !< all numbers are affine functions of the parameters
+    logical :: is_affine = .false.                  !< all numbers are affine functions of the parameters, and are set without readers
     logical, allocatable :: is_constant(:)          !< (varied) the derivatives by this parameter are constant
     real(wp), allocatable :: constants(:)           !< numbers of the model, in the order of mech9_mechanism_constants
     real(wp), allocatable :: slopes(:, :)           !< (constants,varied) their derivatives, where they are affine
@@ -81,7 +80,6 @@ contains
     allocate (space%tangents(size(space%varied)))
     do i = 1, size(space%varied)
       call find_tangent(variable, model, plan, space%varied(i), space%tangents(i), err)
-      if (.not. allocated(err)) call refuse_couplings(space%tangents(i), model, space%varied(i), err)
       if (allocated(err)) return
     end do
     call judge_affinity(space)
@@ -97,19 +95,6 @@ contains
     allocate (space%slopes(size(space%constants), size(space%varied)), source=0.0_wp)
     space%is_affine = .true.
   end subroutine fix_design_space
-
-  !> Fail where a parameter changes a coupling: the derivatives of open chains by couplings are not known.
-  subroutine refuse_couplings(tangent, model, number, err)
-    type(tangent_type), intent(in) :: tangent             !< of the parameter
-    type(model_type), intent(in) :: model                 !< the model
-    integer, intent(in) :: number                         !< of the parameter
-    type(error_type), allocatable, intent(out) :: err     !< allocated if it does
-
-    if (.not. any(tangent%couplings%varies)) return
-    call raise(err, exit_data, failure_unknown_derivative)
-    err%failure%name = model%parameters(number)%name
-    err%place = model%parameters(number)%place
-  end subroutine refuse_couplings
 
   !> Find out whether the numbers of the model are affine functions of the parameters, and their slopes.
   subroutine judge_affinity(space)
@@ -141,6 +126,10 @@ contains
       end associate
     end do
     call judge_each(space)
+    do i = 1, size(space%tangents)
+      ! nor can couplings and the curves of pairs
+      if (any(space%tangents(i)%couplings%varies) .or. any(space%tangents(i)%pairs%varies)) return
+    end do
     do i = 1, probes
       x = probe(space, i)
       call constants_at(space, x, above)
@@ -281,9 +270,26 @@ contains
       call align_axes(space%model, model)
       call gather_constants(model, space%plan%length, space%plan%origin, row)
       design%drives = model%problem%drives
+      call place_curves(model, design)
     end if
     call place_constants(row, design)
   end subroutine place_design
+
+  !> Set the couplings of a design's plans, and the pairs without a fixed axis.
+  pure subroutine place_curves(model, design)
+    type(model_type), intent(in) :: model         !< with the values of the design
+    type(design_type), intent(inout) :: design    !< gets them
+    integer :: k
+
+    associate (plan => design%in_space)
+      if (allocated(plan%couplings)) plan%couplings = model%mechanism%couplings
+      do k = 1, plan%n_coordinates
+        if (.not. plan%steps(plan%step_of(k))%is_screw) plan%pairs(k) = model%mechanism%pairs(k)
+      end do
+      design%plan%couplings = plan%couplings
+      design%plan%pairs = plan%pairs
+    end associate
+  end subroutine place_curves
 
   !> Set the numbers of a design's plans and points.
   pure subroutine place_constants(row, design)

@@ -8,12 +8,14 @@ module mech9_open_position
   use mech9_rotation, only: turn, combine, cross
   use mech9_plan, only: plan_type, new_state
   use mech9_state, only: state_type
+  use mech9_branch_stepping, only: set_inputs
   use mech9_frame_motion, only: place_all, point_motion
-  use mech9_twists, only: shift_at
+  use mech9_twists, only: frame_twists_type, shift_at
+  use mech9_pair_changes, only: find_pair_change
   use mech9_design_space, only: design_type
   implicit none
   private
-  public :: open_position_type, new_open_position, find_openings, find_derivatives, point_derivatives, &
+  public :: open_position_type, new_open_position, place_at, find_openings, find_derivatives, point_derivatives, &
     turn_derivatives, frame_derivatives
 
   type :: open_position_type
@@ -42,6 +44,22 @@ contains
     allocate (position%opening(position%equations), position%by_q(position%equations, m), position%by_x(position%equations, p), &
               position%frames(6, p, 0:m), source=0.0_wp)
   end subroutine new_open_position
+
+  !> Place the frames at a position of a design, with the rates of the driven coordinates.
+  subroutine place_at(design, t, q, position, err)
+    type(design_type), intent(in) :: design                 !< placed
+    real(wp), intent(in) :: t                               !< time [s]
+    real(wp), intent(in) :: q(:)                            !< (M) coordinates [rad, m]
+    type(open_position_type), intent(inout) :: position     !< gets frames and rates
+    type(error_type), allocatable, intent(out) :: err       !< allocated if a pair has no pose there
+    real(wp) :: driven(size(q))
+
+    position%state%t = t
+    position%state%q = q
+    driven = q
+    call set_inputs(design%drives, t, driven, position%state%dq, position%state%ddq, err)
+    if (.not. allocated(err)) call place_all(design%in_space, position%state, err)
+  end subroutine place_at
 
   !> Place the frames at the coordinates in the state, and evaluate the equations of the chains.
   subroutine find_openings(design, position, err)
@@ -77,11 +95,13 @@ contains
           call constraint%column(plan, closure%loop%steps(i), closure%loop%signs(i), position%state, &
                                  position%by_q(row + 1:row + constraint%equations, plan%steps(closure%loop%steps(i))%coordinate))
         end do
-        if (closure%coupling == 0) then
-          do p = 1, size(design%x)
+        do p = 1, size(design%x)
+          if (closure%coupling == 0) then
             call open_by_parameter(design, position, c, p, position%by_x(row + 1:row + constraint%equations, p))
-          end do
-        end if
+          else
+            position%by_x(row + 1, p) = coupling_by_parameter(design, position, c, p)
+          end if
+        end do
         row = row + constraint%equations
       end associate
     end do
@@ -91,7 +111,8 @@ contains
   subroutine find_twists(design, position)
     type(design_type), intent(in) :: design                 !< placed, with its tangents
     type(open_position_type), intent(inout) :: position     !< with its frames in place; gets the twists
-    real(wp) :: own(6), along(6)
+    type(frame_twists_type) :: at_rest
+    real(wp) :: own(6), along(6), series(6, 0:2)
     integer :: s, p, k
 
     position%frames(:, :, 0) = 0.0_wp
@@ -110,6 +131,10 @@ contains
               along(1:3) = 0.0_wp
               along(4:6) = step%before%r(:, 3)*tangent%slide(k)*(state%q(k) + step%offset)
               twist = twist + carried(state, step%parent, along)
+            end if
+            if (tangent%pairs(k)%varies) then
+              call find_pair_change(design%in_space, state, at_rest, tangent, s, 0, series)
+              twist = twist + series(:, 0)
             end if
           end associate
         end do
@@ -147,6 +172,26 @@ contains
                                             shift_at(twist, position%state%p(:, closure%closing)), values)
     end associate
   end subroutine open_by_parameter
+
+  !> The derivative of the equation of a coupling by one parameter.
+  real(wp) function coupling_by_parameter(design, position, c, p) result(value)
+    type(design_type), intent(in) :: design                !< placed, with its tangents
+    type(open_position_type), intent(in) :: position       !< with its coordinates
+    integer, intent(in) :: c                               !< number of the closure that is the coupling
+    integer, intent(in) :: p                               !< number of the parameter
+    integer :: i
+
+    value = 0.0_wp
+    associate (number => design%in_space%closures(c)%coupling)
+      associate (tangent => design%tangents(p)%couplings(number), coupling => design%in_space%couplings(number)%coupling)
+        if (.not. tangent%varies) return
+        do i = 1, size(coupling%coordinates)
+          value = value + coupling%varied_term(tangent%change, i, position%state%q(coupling%coordinates(i)), 0)
+        end do
+      end associate
+    end associate
+    value = design%in_space%closures(c)%weight*value
+  end function coupling_by_parameter
 
   !> A point and its derivatives by coordinates and parameters. Without a number it is the origin of the link.
   subroutine point_derivatives(design, position, number, link, place, by_q, by_x)

@@ -114,10 +114,14 @@ contains
     type(model_type), intent(in) :: model                   !< the model
     type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
     character(len=:), allocatable, intent(out) :: text      !< of the data file
+    type(model_type) :: designed
+    type(error_type), allocatable :: err
     character(len=:), allocatable :: history
 
     call history_of_design(program_name//' '//version, model, synthesis, history)
-    call text_of_design(document, model, synthesis%values_of(1), synthesis%optima(1)%q, history, text)
+    ! there is such a model, because its motion was followed
+    call synthesis%space%variable%at(synthesis%values_of(1), designed, err)
+    call text_of_design(document, designed, synthesis%values_of(1), synthesis%optima(1)%q, history, text)
   end subroutine text_of_best
 
   !> Write a row for each distinct design, best first.
