@@ -13,7 +13,7 @@ module mech9_branch
   use mech9_design_space, only: design_type
   implicit none
   private
-  public :: close_near, follow, follow_turn
+  public :: close_near, follow, follow_turn, turning_drives
 
 contains
 
@@ -48,19 +48,12 @@ contains
     integer, intent(in) :: coordinate             !< the driven angle
     logical, intent(out) :: came                  !< it can turn fully
     integer(long), intent(inout) :: work          !< grows by the number of steps
-    type(drive_slot_type) :: drives(size(design%drives))
-    type(polynomial_law_type) :: turning
+    type(drive_slot_type), allocatable :: drives(:)
     type(driven_motion_type) :: driven
     type(state_type) :: state
     type(error_type), allocatable :: err
-    integer :: i
 
-    do i = 1, size(drives)
-      turning%coordinate = design%drives(i)%drive%coordinate
-      turning%coefficients = [q(turning%coordinate), 0.0_wp]
-      if (turning%coordinate == coordinate) turning%coefficients(2) = 1.0_wp
-      allocate (drives(i)%drive, source=turning)
-    end do
+    call turning_drives(design, q, coordinate, drives)
     state = new_state(design%plan)
     state%q = q
     call set_inputs(drives, 0.0_wp, state%q, state%dq, state%ddq, err)
@@ -70,6 +63,24 @@ contains
     came = .not. allocated(err)
     work = work + driven%steps + driven%halvings
   end subroutine follow_turn
+
+  !> Drives that turn one driven angle at a rate of 1 rad/s from a position on, while all others stand still.
+  subroutine turning_drives(design, q, coordinate, drives)
+    type(design_type), intent(in) :: design                        !< any of the designs
+    real(wp), intent(in) :: q(:)                                   !< (M) coordinates of the position [rad, m]
+    integer, intent(in) :: coordinate                              !< the driven angle
+    type(drive_slot_type), allocatable, intent(out) :: drives(:)   !< in the order of those of the design
+    type(polynomial_law_type) :: turning
+    integer :: i
+
+    allocate (drives(size(design%drives)))
+    do i = 1, size(drives)
+      turning%coordinate = design%drives(i)%drive%coordinate
+      turning%coefficients = [q(turning%coordinate), 0.0_wp]
+      if (turning%coordinate == coordinate) turning%coefficients(2) = 1.0_wp
+      allocate (drives(i)%drive, source=turning)
+    end do
+  end subroutine turning_drives
 
   !> Close all chains near the coordinates in the state by Newton's method.
   subroutine close_near(design, t, state, closed)

@@ -6,7 +6,7 @@ module mech9_closed_search
     ended_without_value
   use mech9_smooth_problem, only: smooth_settings_type, smooth_outcome_type, ended_infeasible, ended_nowhere
   use mech9_limited_minimum, only: minimise_within_limits
-  use mech9_objective, only: quantity_objective, quantity_limit, transmission_limit
+  use mech9_objective, only: quantity_objective, assembles_limit
   use mech9_model, only: model_type
   use mech9_design_space, only: design_space_type
   use mech9_free_times, only: choose_pivots, has_good_pivots, gaps_of, parts_of
@@ -35,13 +35,13 @@ module mech9_closed_search
 
 contains
 
-  !> Whether a model asks for a sum of squares without limits that need the derivatives of quantities or angles.
+  !> Whether a model asks for a sum of squares without limits that have numbers.
   pure logical function is_least_squares(model)
     type(model_type), intent(in) :: model   !< the model
 
     associate (objectives => model%request%objectives, limits => model%request%limits)
       is_least_squares = .not. any(objectives%kind == quantity_objective .and. .not. objectives%has_goal) .and. &
-                         .not. any(limits%kind == quantity_limit .or. limits%kind == transmission_limit)
+                         all(limits%kind == assembles_limit)
     end associate
   end function is_least_squares
 
@@ -126,6 +126,8 @@ contains
 
     limited%scale = 1.0_wp
     limited%least = huge(1.0_wp)
+    ! a sum of squares may have used up all steps at the edge of the designs that move
+    limited%fit%work = 0
     call limited%evaluate(at, value, gradient, limits, slopes, found)
     if (.not. found) return
     ! slopes and curvatures are then about one

@@ -2,8 +2,9 @@
 module mech9_design_limits
   use mech9_kinds, only: wp
   use mech9_plan, only: plan_type
-  use mech9_objective, only: limit_type, quantity_limit, transmission_limit
+  use mech9_objective, only: limit_type, quantity_limit, crank_limit, transmission_limit
   use mech9_transmission, only: transmission_type, find_transmission, find_extremes
+  use mech9_crank_limit, only: crank_limit_type, new_crank_limit, find_crank_numbers
   use mech9_exact_fit, only: exact_fit_type
   implicit none
   private
@@ -13,16 +14,17 @@ module mech9_design_limits
     integer :: n = 0                                           !< number of numbers
     type(limit_type), allocatable :: ranges(:)                 !< of quantities
     type(transmission_type), allocatable :: transmissions(:)
+    type(crank_limit_type), allocatable :: cranks(:)
   end type design_limits_type
 
 contains
 
-  !> The limits of a plan that are not kept by the branch alone.
+  !> The limits of a plan that have numbers.
   pure subroutine new_design_limits(plan, all, limits)
     type(plan_type), intent(in) :: plan                   !< the plan of all designs
     type(limit_type), intent(in) :: all(:)                !< all limits of the model
     type(design_limits_type), intent(out) :: limits       !< those that have numbers
-    type(limit_type), allocatable :: angles(:)
+    type(limit_type), allocatable :: angles(:), turns(:)
     logical :: found
     integer :: i
 
@@ -33,7 +35,12 @@ contains
       call find_transmission(plan, angles(i)%coordinate, limits%transmissions(i), found)
       limits%transmissions(i)%least = angles(i)%at_least
     end do
-    limits%n = 2*size(limits%ranges) + 2*size(limits%transmissions)
+    turns = pack(all, all%kind == crank_limit)
+    allocate (limits%cranks(size(turns)))
+    do i = 1, size(turns)
+      call new_crank_limit(plan, turns(i)%coordinate, limits%cranks(i))
+    end do
+    limits%n = 2*size(limits%ranges) + 2*size(limits%transmissions) + sum(limits%cranks%n)
   end subroutine new_design_limits
 
   !> The numbers of all limits of a design. Those of ranges without one end are 1.
@@ -44,7 +51,7 @@ contains
     real(wp), intent(out) :: slopes(:, :)               !< (unknowns,n) their derivatives
     logical, intent(out) :: found                       !< they exist
     real(wp) :: cosines(2), by_x(fit%varied, 2), scale
-    integer :: i, k
+    integer :: i, k, p
 
     numbers = 1.0_wp
     slopes = 0.0_wp
@@ -70,6 +77,17 @@ contains
       numbers(k - 1:k) = cos(limits%transmissions(i)%least) + [cosines(1), -cosines(2)]
       slopes(:fit%varied, k - 1) = by_x(:, 1)*(fit%space%high - fit%space%low)
       slopes(:fit%varied, k) = -by_x(:, 2)*(fit%space%high - fit%space%low)
+    end do
+    k = 2*size(limits%ranges) + 2*size(limits%transmissions)
+    do i = 1, size(limits%cranks)
+      associate (n => limits%cranks(i)%n)
+        call find_crank_numbers(fit, limits%cranks(i), numbers(k + 1:k + n), slopes(:fit%varied, k + 1:k + n), found)
+        if (.not. found) return
+        do p = 1, fit%varied
+          slopes(p, k + 1:k + n) = slopes(p, k + 1:k + n)*(fit%space%high(p) - fit%space%low(p))
+        end do
+        k = k + n
+      end associate
     end do
   end subroutine find_limits
 

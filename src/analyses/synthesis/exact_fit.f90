@@ -8,19 +8,17 @@ module mech9_exact_fit
   use mech9_bounded_least_squares, only: residuals_type, residual_values_type
   use mech9_plan, only: new_state
   use mech9_state, only: state_type
-  use mech9_branch_stepping, only: set_inputs
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_objective, only: timing_free, timing_over, quantity_objective, crank_limit
   use mech9_design_space, only: design_space_type, design_type, place_design, find_tangents, all_values
-  use mech9_open_position, only: open_position_type, find_derivatives
-  use mech9_frame_motion, only: place_all
+  use mech9_open_position, only: open_position_type, place_at, find_derivatives
   use mech9_closed_changes, only: closed_changes_type, find_closed_changes
   use mech9_branch, only: close_near, follow_turn
   use mech9_free_times, only: free_times_type, new_free_times, parts_of, part_by_gap, are_in_order
   use mech9_targets, only: target_type, components_of, difference, difference_derivatives, outer_times
   implicit none
   private
-  public :: exact_fit_type, new_exact_fit, place_at
+  public :: exact_fit_type, new_exact_fit
 
   !> Steps of the motions of one search. A search that creeps along the edge of the designs that can move takes many more, and ends.
   integer(long), parameter :: most_work = 60000
@@ -177,21 +175,6 @@ contains
     group_of_goal = size(self%targets) + 1 + (i - 1)/self%rows
   end function group_of_goal
 
-  !> Place the frames in space at a position of the design.
-  subroutine place_at(self, t, q, err)
-    class(exact_fit_type), intent(inout) :: self            !< the fit
-    real(wp), intent(in) :: t                               !< time [s]
-    real(wp), intent(in) :: q(:)                            !< (M) coordinates [rad, m]
-    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: driven(size(q))
-
-    self%position%state%t = t
-    self%position%state%q = q
-    driven = q
-    call set_inputs(self%design%drives, t, driven, self%position%state%dq, self%position%state%ddq, err)
-    if (.not. allocated(err)) call place_all(self%design%in_space, self%position%state, err)
-  end subroutine place_at
-
   !> Follow the branch of the start through all targets and on to the end of the run.
   subroutine follow_targets(self, q_start, r, has_value)
     class(exact_fit_type), intent(inout) :: self            !< the fit; gets the coordinates at the targets
@@ -290,7 +273,7 @@ contains
     real(wp) :: by_q(self%rows, size(self%q_start)), by_x(self%rows, self%varied), by_t(self%rows)
     integer :: i, j
 
-    call place_at(self, self%times(g), self%q(:, g), err)
+    call place_at(self%design, self%times(g), self%q(:, g), self%position, err)
     has_value = .not. allocated(err)
     if (.not. has_value) return
     call find_derivatives(self%design, self%position)

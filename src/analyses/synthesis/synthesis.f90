@@ -4,6 +4,7 @@ module mech9_synthesis
   use mech9_error, only: error_type
   use mech9_system, only: interrupted
   use mech9_model, only: model_type
+  use mech9_objective, only: crank_limit
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -187,7 +188,10 @@ contains
     parts = (optimum%times(fit%free%target) - fit%start)/(fit%end - fit%start)
     call choose_pivots(parts, fit%free)
     at = [(optimum%x - alone%low)/(alone%high - alone%low), gaps_of(parts, fit%free)]
-    call new_design_limits(alone%plan, alone%model%request%limits, limits)
+    ! the fit follows the turn of cranks; how near it comes to singular positions depends on the size of the plan
+    associate (all_limits => alone%model%request%limits)
+      call new_design_limits(alone%plan, pack(all_limits, all_limits%kind /= crank_limit), limits)
+    end associate
     call new_limited_fit(fit, limits, limited)
     allocate (numbers(limits%n), slopes(fit%n, limits%n))
     call find_value(limited, at, value, holds)

@@ -4,36 +4,28 @@ module mech9_transmission
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_rotation, only: cross
-  use mech9_plan, only: plan_type, step_type, new_state
+  use mech9_plan, only: plan_type, step_type
   use mech9_state, only: state_type
-  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_design_space, only: design_space_type, design_type, new_design
-  use mech9_open_position, only: open_position_type, new_open_position, find_openings, find_derivatives, frame_derivatives
+  use mech9_open_position, only: open_position_type, new_open_position, place_at, find_openings, find_derivatives, &
+    frame_derivatives
   use mech9_closed_changes, only: closed_changes_type, find_closed_changes
-  use mech9_branch, only: close_near, follow
-  use mech9_exact_fit, only: exact_fit_type, place_at
+  use mech9_course_extreme, only: course_number_type, course_place_type, sample_course, find_least
+  use mech9_exact_fit, only: exact_fit_type
   implicit none
   private
   public :: transmission_type, find_transmission, has_transmission_angle, find_extremes
 
-  !> The steps of the plan between which the angle is measured.
-  type :: transmission_type
+  !> The steps of the plan between which the angle is measured. Its number is the cosine of the angle.
+  type, extends(course_number_type) :: transmission_type
     integer :: middle = 0              !< step of the pair at which it is measured
     integer :: ends(2) = 0             !< steps of the other two pairs
     real(wp) :: least = 0.0_wp         !< least angle that is allowed [rad]
+  contains
+    procedure :: find => find_cosine
   end type transmission_type
 
-  !> The cosine of the angle at a position, with its derivatives.
-  type :: cosine_type
-    real(wp) :: t = 0.0_wp                !< time [s]
-    real(wp), allocatable :: q(:)         !< (M) coordinates [rad, m]
-    real(wp) :: value = 0.0_wp            !< the cosine
-    real(wp) :: by_t = 0.0_wp             !< derivative by time [1/s]
-    real(wp), allocatable :: by_x(:)      !< (P) derivatives by the parameters at this time
-  end type cosine_type
-
   integer, parameter :: samples = 72            !< intervals of the run in which extremes are looked for
-  integer, parameter :: refinements = 4         !< steps to each extreme
   real(wp), parameter :: parallel = 1.0e-6_wp   !< sine of the angle between axes that are parallel
 
 contains
@@ -124,125 +116,61 @@ contains
     real(wp), intent(out) :: values(2)                        !< least and largest cosine
     real(wp), intent(out) :: slopes(:, :)                     !< (P,2) their derivatives
     logical, intent(out) :: found                             !< they exist
-    type(cosine_type) :: cosines(0:samples), extreme
-    integer :: i, k
+    type(course_place_type) :: cosines(0:samples), extreme
+    integer :: k
 
-    call sample(fit, transmission, cosines, found)
+    call sample_course(transmission, fit%design, fit%position, fit%q_start, fit%start, fit%end, cosines, found)
     if (.not. found) return
     do k = 1, 2
-      associate (sign_of => merge(-1.0_wp, 1.0_wp, k == 1))
-        i = maxloc(sign_of*cosines%value, dim=1) - 1
-        extreme = cosines(i)
-        ! the extreme lies towards the side to which the cosine still grows
-        if (sign_of*cosines(i)%by_t*(fit%end - fit%start) > 0.0_wp .and. i < samples) then
-          call refine(fit, transmission, sign_of, cosines(i), cosines(i + 1), extreme)
-        else if (sign_of*cosines(i)%by_t*(fit%end - fit%start) < 0.0_wp .and. i > 0) then
-          call refine(fit, transmission, sign_of, cosines(i), cosines(i - 1), extreme)
-        end if
-      end associate
+      call find_least(transmission, merge(1.0_wp, -1.0_wp, k == 1), fit%design, fit%position, cosines, extreme)
       values(k) = extreme%value
       slopes(:, k) = extreme%by_x
     end do
   end subroutine find_extremes
 
-  !> The cosines at equal intervals of the run.
-  subroutine sample(fit, transmission, cosines, found)
-    class(exact_fit_type), intent(inout) :: fit               !< with a design that has a value
-    type(transmission_type), intent(in) :: transmission       !< the pairs
-    type(cosine_type), intent(inout) :: cosines(0:)           !< gets times, coordinates and cosines
-    logical, intent(out) :: found                             !< the motion comes through the run
-    type(driven_motion_type) :: driven
-    type(state_type) :: state
-    type(error_type), allocatable :: err
-    integer :: i
-
-    state = new_state(fit%design%plan)
-    state%q = fit%q_start
-    call close_near(fit%design, fit%start, state, found)
-    if (.not. found) return
-    call start_driven_motion(fit%design%drives, fit%design%plan, state, fit%start, driven, err, derivatives=0)
-    do i = 0, ubound(cosines, 1)
-      cosines(i)%t = fit%start + (fit%end - fit%start)*i/ubound(cosines, 1)
-      if (i > 0 .and. .not. allocated(err)) call advance(fit%design%drives, fit%design%plan, driven, cosines(i)%t, err)
-      found = .not. allocated(err)
-      if (.not. found) return
-      cosines(i)%q = driven%state%q
-      call find_cosine(fit, transmission, cosines(i), found)
-      if (.not. found) return
-    end do
-  end subroutine sample
-
-  !> Find an extreme between two positions by the zero of the derivative in time, which is kept between two places.
-  subroutine refine(fit, transmission, direction, first, last, extreme)
-    class(exact_fit_type), intent(inout) :: fit               !< with its design
-    type(transmission_type), intent(in) :: transmission       !< the pairs
-    real(wp), intent(in) :: direction                         !< 1 for the largest cosine, -1 for the least
-    type(cosine_type), intent(in) :: first                    !< a position from which the extreme lies towards the other one
-    type(cosine_type), intent(in) :: last                     !< the other one
-    type(cosine_type), intent(inout) :: extreme               !< gets the extreme
-    type(cosine_type) :: ends(2), middle
-    logical :: found
-    integer :: i
-
-    ends = [first, last]
-    do i = 1, refinements
-      if (.not. ends(1)%by_t*ends(2)%by_t < 0.0_wp) exit
-      middle = ends(1)
-      middle%t = ends(1)%t - ends(1)%by_t*(ends(2)%t - ends(1)%t)/(ends(2)%by_t - ends(1)%by_t)
-      call follow(fit%design, ends(1)%t, middle%t, middle%q, found)
-      if (found) call find_cosine(fit, transmission, middle, found)
-      if (.not. found) exit
-      if (direction*middle%value >= direction*extreme%value) extreme = middle
-      if (middle%by_t*ends(1)%by_t > 0.0_wp) then
-        ends(1) = middle
-      else
-        ends(2) = middle
-      end if
-    end do
-    if (direction*last%value > direction*extreme%value) extreme = last
-  end subroutine refine
-
   !> The cosine of the angle at a position, and its derivatives.
-  subroutine find_cosine(fit, transmission, cosine, found)
-    class(exact_fit_type), intent(inout) :: fit               !< with its design
-    type(transmission_type), intent(in) :: transmission       !< the pairs
-    type(cosine_type), intent(inout) :: cosine                !< with time and coordinates; gets the cosine
+  subroutine find_cosine(self, design, position, place, found)
+    class(transmission_type), intent(in) :: self              !< the pairs
+    type(design_type), intent(in) :: design                   !< placed, with its tangents
+    type(open_position_type), intent(inout) :: position       !< scratch
+    type(course_place_type), intent(inout) :: place           !< with time and coordinates; gets the cosine
     logical, intent(out) :: found                             !< it exists
     type(closed_changes_type) :: changes
     type(error_type), allocatable :: err
-    real(wp) :: line(3, 2), by_q(3, size(cosine%q), 2), by_x(3, fit%varied, 2), row(size(cosine%q)), part(fit%varied), lengths(2)
+    real(wp) :: line(3, 2), by_q(3, size(place%q), 2), by_x(3, size(design%x), 2), row(size(place%q)), part(size(design%x))
+    real(wp) :: lengths(2)
     integer :: i
 
-    call place_at(fit, cosine%t, cosine%q, err)
+    call place_at(design, place%t, place%q, position, err)
     found = .not. allocated(err)
     if (.not. found) return
-    call find_derivatives(fit%design, fit%position)
-    call find_closed_changes(fit%design, fit%position, changes)
+    call find_derivatives(design, position)
+    call find_closed_changes(design, position, changes)
     do i = 1, 2
-      call find_line(fit%design, fit%position, transmission, i, line(:, i), by_q(:, :, i), by_x(:, :, i))
+      call find_line(design, position, self, i, line(:, i), by_q(:, :, i), by_x(:, :, i))
       lengths(i) = norm2(line(:, i))
     end do
     found = all(lengths > 0.0_wp)
     if (.not. found) return
-    cosine%value = dot_product(line(:, 1), line(:, 2))/product(lengths)
+    place%value = dot_product(line(:, 1), line(:, 2))/product(lengths)
     row = 0.0_wp
     part = 0.0_wp
     do i = 1, 2
       ! only the change across the line turns it
-      associate (across => (line(:, 3 - i)/lengths(3 - i) - cosine%value*line(:, i)/lengths(i))/lengths(i))
+      associate (across => (line(:, 3 - i)/lengths(3 - i) - place%value*line(:, i)/lengths(i))/lengths(i))
         row = row + matmul(across, by_q(:, :, i))
         part = part + matmul(across, by_x(:, :, i))
       end associate
     end do
-    cosine%by_t = dot_product(row, changes%by_t)
-    cosine%by_x = part + matmul(row, changes%by_x)
+    place%by_t = dot_product(row, changes%by_t)
+    place%by_x = part + matmul(row, changes%by_x)
   end subroutine find_cosine
 
   !> The line from the axis of the middle pair to that of another one, or across its slide, in the plane of motion.
   subroutine find_line(design, position, transmission, number, line, by_q, by_x)
     type(design_type), intent(in) :: design                   !< placed, with its tangents
     type(open_position_type), intent(in) :: position          !< with the twists of its frames
-    type(transmission_type), intent(in) :: transmission       !< the pairs
+    class(transmission_type), intent(in) :: transmission      !< the pairs
     integer, intent(in) :: number                             !< 1 or 2: of the other pair
     real(wp), intent(out) :: line(3)                          !< the line [m], or a direction
     real(wp), intent(out) :: by_q(:, :)                       !< (3,M) its derivatives by the coordinates, each in its unit

@@ -7,7 +7,7 @@ module mech9_coupling_constraint
   use mech9_state, only: state_type
   implicit none
   private
-  public :: coupling_constraint_type, find_curves, varied_coupling, coupling_factors, bent_force
+  public :: coupling_constraint_type, find_curves, curve_of, varied_coupling, coupling_factors, bent_force
 
   !> The constraint of one coupling.
   type, extends(constraint_type) :: coupling_constraint_type

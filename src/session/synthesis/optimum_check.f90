@@ -53,8 +53,8 @@ contains
 
     associate (optimum => model%request%optimum)
       if (optimum%method == 'levenberg-marquardt' .and. .not. is_least_squares(model)) then
-        call raise(err, exit_data, 'levenberg-marquardt finds the least sum of squares only, without limits of quantities and '// &
-                   'transmission angles and without quantities that should be least or largest; leave ''method'' out', &
+        call raise(err, exit_data, 'levenberg-marquardt finds the least sum of squares only, without limits but of kind '// &
+                   '''assembles'', and without quantities that should be least or largest; leave ''method'' out', &
                    optimum%place)
       else if (.not. has_limited_minimum .and. (.not. is_least_squares(model) .or. &
                all(optimum%method /= [character(len=20) :: 'auto', 'levenberg-marquardt']))) then
