@@ -103,13 +103,7 @@ contains
     self%seen = self%seen + 1
     self%sums%last = row(self%column)
     if (.not. follows(self) .or. self%family(0) == 0) return
-    if (self%count == most_outputs) then
-      self%t = eoshift(self%t, 1)
-      self%y = eoshift(self%y, 1, dim=2)
-      if (allocated(self%changes)) self%dy = eoshift(self%dy, 1, dim=2)
-      self%count = self%count - 1
-      self%done = self%done - 1
-    end if
+    if (self%count == most_outputs) call forget_first(self)
     self%count = self%count + 1
     self%t(self%count) = row(1)
     self%y(:, self%count) = row(self%family)
@@ -117,6 +111,24 @@ contains
     ! an interval between others is known best
     if (self%count > 2) call add_intervals(self, rule, self%count - 2)
   end subroutine take_output
+
+  !> Forget the earliest of the outputs that are kept.
+  pure subroutine forget_first(self)
+    type(tracked_quantity_type), intent(inout) :: self   !< the quantity
+    integer :: i
+
+    do i = 1, self%count - 1
+      self%t(i) = self%t(i + 1)
+      self%y(:, i) = self%y(:, i + 1)
+    end do
+    if (allocated(self%changes)) then
+      do i = 1, self%count - 1
+        self%dy(:, i, :) = self%dy(:, i + 1, :)
+      end do
+    end if
+    self%count = self%count - 1
+    self%done = self%done - 1
+  end subroutine forget_first
 
   !> Keep the derivatives by parameters of the latest output.
   pure subroutine keep_changes(self, row)
