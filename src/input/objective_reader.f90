@@ -5,8 +5,8 @@ module mech9_objective_reader
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_error, only: error_type
-  use mech9_source, only: source_type, span_type, read_source
-  use mech9_numeral, only: numeral_type, read_numeral
+  use mech9_source, only: span_type
+  use mech9_number_file, only: number_file_type, read_number_file
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, group_or_empty, has_name, get_integer, get_real, get_text, span_of
   use mech9_diagnostics, only: diagnostics_type, printable
@@ -21,7 +21,6 @@ module mech9_objective_reader
 
   !> Sums of fourth powers of larger numbers could be beyond all numbers.
   real(wp), parameter :: largest_number = 1.0e60_wp
-  character(len=*), parameter :: gaps = ' ,;'//achar(9)//achar(13)
 
 contains
 
@@ -274,82 +273,34 @@ contains
     character(len=*), intent(in) :: meaning               !< of the numbers, for messages
     real(wp), allocatable, intent(out) :: rows(:, :)      !< (columns,lines); no lines where errors are reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
-    type(source_type) :: source
+    type(number_file_type) :: lines
     type(error_type), allocatable :: err
     character(len=:), allocatable :: path
-    integer :: number, line, n, found, width
+    integer :: i, found, width
 
     allocate (rows(columns(1), 0))
+    found = diagnostics%count
     path = beside(document%source%name, get_text(group, 'file'))
-    call read_source(path, source, err)
+    call read_number_file(path, columns(size(columns)), lines, diagnostics, err)
     if (allocated(err)) then
       call diagnostics%add(span_of(group, 'file', 1), 'the targets '''//printable(path)//''': '//err%message, err%code)
       return
     end if
-    call diagnostics%add_source(source, number)
-    found = diagnostics%count
-    deallocate (rows)
-    allocate (rows(columns(size(columns)), size(source%line_start)))
-    n = 0
-    width = 0
-    do line = 1, size(source%line_start)
-      call read_line(source, number, line, columns, meaning, width, rows, n, diagnostics)
+    width = columns(1)
+    if (size(lines%counts) > 0) width = lines%counts(1)
+    if (.not. any(columns == width)) width = columns(1)
+    do i = 1, size(lines%counts)
+      if (lines%counts(i) /= width) then
+        call diagnostics%add(lines%spans(i), 'each line holds '//meaning//'; this one has '//counted(lines%counts(i), 'number'))
+      else if (any(abs(lines%numbers(:width, i)) > largest_number)) then
+        call diagnostics%add(lines%spans(i), 'the squares of such numbers cannot be added; change the unit of the whole file')
+      end if
     end do
-    if (diagnostics%count == found .and. n < 2) &
-      call diagnostics%add(span_type(number, 0, 0), 'an objective needs at least two targets, and the file has '//to_text(n))
-    if (diagnostics%count > found) n = 0
-    rows = rows(:max(width, columns(1)), :n)
+    if (diagnostics%count == found .and. size(lines%counts) < 2) &
+      call diagnostics%add(span_type(lines%source, 0, 0), &
+                           'an objective needs at least two targets, and the file has '//to_text(size(lines%counts)))
+    if (diagnostics%count == found) rows = lines%numbers(:width, :)
   end subroutine read_rows
-
-  !> Take the numbers of a line, if it has any.
-  pure subroutine read_line(source, number, line, columns, meaning, width, rows, n, diagnostics)
-    type(source_type), intent(in) :: source               !< the text of the file
-    integer, intent(in) :: number                         !< number of the file as a source, for spans
-    integer, intent(in) :: line                           !< number of the line, from 1
-    integer, intent(in) :: columns(:)                     !< numbers that a line may have, in increasing order
-    character(len=*), intent(in) :: meaning               !< of the numbers, for messages
-    integer, intent(inout) :: width                       !< numbers in the first line that has any; 0: there was none
-    real(wp), intent(inout) :: rows(:, :)                 !< (columns,lines) gets the numbers
-    integer, intent(inout) :: n                           !< how many lines had numbers so far
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
-    type(numeral_type) :: numeral
-    integer :: first, last, at, length, count
-
-    call source%line_bounds(line, first, last)
-    at = index(source%text(first:last), '#')
-    if (at > 0) last = first + at - 2
-    count = 0
-    at = first
-    do
-      if (at > last) exit
-      length = verify(source%text(at:last), gaps)
-      if (length == 0) exit
-      at = at + length - 1
-      length = scan(source%text(at:last)//' ', gaps) - 1
-      count = count + 1
-      call read_numeral(source%text(at:at + length - 1), numeral)
-      if (allocated(numeral%problem)) then
-        call diagnostics%add(span_type(number, at, at + length - 1), ''''//printable(source%text(at:at + length - 1))//''' '// &
-                             numeral%problem)
-        return
-      end if
-      if (abs(numeral%number) > largest_number) then
-        call diagnostics%add(span_type(number, at, at + length - 1), 'the squares of such numbers cannot be added; change the '// &
-                             'unit of the whole file')
-        return
-      end if
-      if (count <= columns(size(columns))) rows(count, n + 1) = numeral%number
-      at = at + length
-    end do
-    if (count == 0) return
-    if (width == 0 .and. any(columns == count)) width = count
-    if (count /= width) then
-      call diagnostics%add(span_type(number, first, max(first, last)), 'each line holds '//meaning//'; this one has '// &
-                           counted(count, 'number'))
-      return
-    end if
-    n = n + 1
-  end subroutine read_line
 
   !> Names one behind the other, with commas between.
   pure function listed(names)

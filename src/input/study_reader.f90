@@ -4,8 +4,7 @@ module mech9_study_reader
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_error, only: error_type
-  use mech9_source, only: source_type, span_type, read_source
-  use mech9_numeral, only: numeral_type, read_numeral
+  use mech9_number_file, only: number_file_type, read_number_file
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, has_name, has_unsound, get_integer, get_text, span_of
   use mech9_diagnostics, only: diagnostics_type, printable
@@ -122,74 +121,32 @@ contains
     end do
   end subroutine check_spreads
 
-  !> Read the values of a list: a line for each run, with the values of all parameters. A line that begins with # is a comment.
+  !> Read the values of a list: a line for each run, with the values of all parameters.
   subroutine read_list(document, group, n_parameters, study, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(group_type), intent(in) :: group                 !< group of the study
     integer, intent(in) :: n_parameters                   !< how many parameters there are
     type(study_type), intent(inout) :: study              !< gets its values and the number of its runs
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
-    type(source_type) :: source
+    type(number_file_type) :: lines
     type(error_type), allocatable :: err
-    integer :: number, line, found
+    integer :: i, found
 
-    call read_source(beside(document%source%name, get_text(group, 'file')), source, err)
+    found = diagnostics%count
+    call read_number_file(beside(document%source%name, get_text(group, 'file')), n_parameters, lines, diagnostics, err)
     if (allocated(err)) then
       call diagnostics%add(span_of(group, 'file', 1), 'the list '''//printable(get_text(group, 'file'))//''': '//err%message, &
                            err%code)
       return
     end if
-    call diagnostics%add_source(source, number)
-    allocate (study%list(n_parameters, size(source%line_start)), source=0.0_wp)
-    found = diagnostics%count
-    study%runs = 0
-    do line = 1, size(source%line_start)
-      call read_line(source, number, line, study%list, study%runs, diagnostics)
+    do i = 1, size(lines%counts)
+      if (lines%counts(i) /= n_parameters) &
+        call diagnostics%add(lines%spans(i), trim(merge('there is ', 'there are', n_parameters == 1))//' '// &
+                             counted(n_parameters, 'parameter')//', and this line has '//counted(lines%counts(i), 'value'))
     end do
+    study%list = lines%numbers
+    study%runs = size(lines%counts)
     if (study%runs == 0 .and. diagnostics%count == found) &
       call diagnostics%add(span_of(group, 'file', 1), 'this file has no values')
   end subroutine read_list
-
-  !> Read the values of one run, if the line has any.
-  pure subroutine read_line(source, number, line, list, runs, diagnostics)
-    type(source_type), intent(in) :: source               !< the text of the list
-    integer, intent(in) :: number                         !< number of the list as a source, for spans
-    integer, intent(in) :: line                           !< number of the line, from 1
-    real(wp), intent(inout) :: list(:, :)                 !< (parameters,lines) the values so far
-    integer, intent(inout) :: runs                        !< how many lines had values so far
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
-    character(len=*), parameter :: separators = ' ,;'//achar(9)//achar(13)//achar(10)
-    type(numeral_type) :: numeral
-    integer :: first, last, at, length, n
-
-    call source%line_bounds(line, first, last)
-    at = index(source%text(first:last), '#')
-    if (at > 0) last = first + at - 2
-    n = 0
-    at = first
-    do
-      if (at > last) exit
-      length = verify(source%text(at:last), separators)
-      if (length == 0) exit
-      at = at + length - 1
-      length = scan(source%text(at:last)//' ', separators) - 1
-      n = n + 1
-      call read_numeral(source%text(at:at + length - 1), numeral)
-      if (allocated(numeral%problem)) then
-        call diagnostics%add(span_type(number, at, at + length - 1), ''''//printable(source%text(at:at + length - 1))//''' '// &
-                             numeral%problem)
-        return
-      end if
-      if (n <= size(list, 1)) list(n, runs + 1) = numeral%number
-      at = at + length
-    end do
-    if (n == 0) return
-    if (n /= size(list, 1)) then
-      call diagnostics%add(span_type(number, first, max(first, last)), &
-                           trim(merge('there is ', 'there are', size(list, 1) == 1))//' '// &
-                           counted(size(list, 1), 'parameter')//', and this line has '//counted(n, 'value'))
-      return
-    end if
-    runs = runs + 1
-  end subroutine read_line
 end module mech9_study_reader
