@@ -42,11 +42,11 @@ module mech9_grammar
                    'a number from a whole run: an extreme, a mean or an integral of a column of the results'), &
     group_row_type('study', .false., '', 'both', &
                    'the sets of parameter values for which --study makes runs'), &
-    group_row_type('objective', .true., '', 'mech9k', &
+    group_row_type('objective', .true., '', 'both', &
                    'a path, a function, poses or a quantity that the mechanism should have, for --optimize'), &
-    group_row_type('limit', .true., '', 'mech9k', &
+    group_row_type('limit', .true., '', 'both', &
                    'a condition that the designs of --optimize must meet'), &
-    group_row_type('optimum', .false., '', 'mech9k', &
+    group_row_type('optimum', .false., '', 'both', &
                    'the search of --optimize for the values of the parameters that meet the objectives best'), &
     group_row_type('time', .false., '', 'both', &
                    'the times of the results: start + (end - start) i/intervals, i = 0 .. intervals'), &

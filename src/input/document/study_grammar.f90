@@ -51,7 +51,7 @@ module mech9_study_grammar
                   '''designs.dat'''), &
     item_row_type('objective', 'kind', 'text', 1, 1, '', needed, '', '', 'path function pose quantity', '', &
                   'a point follows a path, a coordinate a function, a link goes through poses, or a quantity has a value', &
-                  '''path''', program='mech9k'), &
+                  '''path'''), &
     item_row_type('objective', 'point', 'text', 1, 1, '', needed, '', '', '', 'path', &
                   'name of the point that follows the path', '''P''', &
                   program='mech9k'), &
@@ -62,8 +62,7 @@ module mech9_study_grammar
                   'the coordinate that follows the function, by its heading in the results', '''q6''', &
                   program='mech9k'), &
     item_row_type('objective', 'of', 'text', 1, 1, '', needed, '', '', '', 'quantity', &
-                  'name of the &quantity', '''stroke''', &
-                  program='mech9k'), &
+                  'name of the &quantity', '''stroke'''), &
     item_row_type('objective', 'over', 'text', 1, 1, '', optional, '''t''', '', '', 'function', &
                   'the variable of the function: t, or a driven coordinate', '''q5''', &
                   program='mech9k'), &
@@ -80,26 +79,21 @@ module mech9_study_grammar
                   'an angle of 1 rad counts as much as this distance; by default the largest distance between two poses', '0.1', &
                   seldom=.true., program='mech9k'), &
     item_row_type('objective', 'goal', 'real', 1, 1, '', optional, '(none)', '', '', 'quantity', &
-                  'the value that the quantity should have, in the unit of the results', '0.3', &
-                  program='mech9k'), &
+                  'the value that the quantity should have, in the unit of the results', '0.3'), &
     item_row_type('objective', 'make', 'text', 1, 1, '', optional, '''least''', '', 'least largest', 'quantity', &
-                  'without goal: the quantity should be as small as possible, or as large', '''largest''', &
-                  program='mech9k'), &
+                  'without goal: the quantity should be as small as possible, or as large', '''largest'''), &
     item_row_type('objective', 'weight', 'real', 1, 1, '', optional, '1', '>0', '', '', &
                   'factor of its sum of squares, or of the quantity, where there are several objectives', '10', &
-                  seldom=.true., program='mech9k'), &
+                  seldom=.true.), &
     item_row_type('limit', 'kind', 'text', 1, 1, '', needed, '', '', 'quantity assembles crank transmission', '', &
                   'a quantity in a range, assembly through the whole run, a drive that turns fully, or a transmission angle', &
-                  '''quantity''', program='mech9k'), &
+                  '''quantity'''), &
     item_row_type('limit', 'of', 'text', 1, 1, '', needed, '', '', '', 'quantity', &
-                  'name of the &quantity', '''stroke''', &
-                  program='mech9k'), &
+                  'name of the &quantity', '''stroke'''), &
     item_row_type('limit', 'low', 'real', 1, 1, '', optional, '(none)', '', '', 'quantity', &
-                  'the least value that is allowed, in the unit of the results', '0.1', &
-                  program='mech9k'), &
+                  'the least value that is allowed, in the unit of the results', '0.1'), &
     item_row_type('limit', 'high', 'real', 1, 1, '', optional, '(none)', '', '', 'quantity', &
-                  'the largest value that is allowed, in the unit of the results', '0.4', &
-                  program='mech9k'), &
+                  'the largest value that is allowed, in the unit of the results', '0.4'), &
     item_row_type('limit', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', 'crank', &
                   'the driven angle that must be able to turn fully, from its value at the start', '1', &
                   program='mech9k'), &
@@ -110,13 +104,12 @@ module mech9_study_grammar
                   'the least transmission angle that is allowed in the run; it is at most a right angle', '0.7', &
                   program='mech9k'), &
     item_row_type('optimum', 'starts', 'integer', 1, 1, '', optional, '100', '>=1', '', '', &
-                  'number of sets of values at which the search starts', '1000', &
-                  program='mech9k'), &
+                  'number of sets of values at which the search starts', '1000'), &
     item_row_type('optimum', 'seed', 'integer', 1, 1, '', optional, '1', '>=0', '', '', &
                   'another seed gives other starts', '2', &
-                  seldom=.true., program='mech9k'), &
+                  seldom=.true.), &
     item_row_type('optimum', 'method', 'text', 1, 1, '', optional, '''auto''', '', &
                   'auto levenberg-marquardt slsqp mma ccsaq auglag', '', &
                   'method of the search: by default Levenberg and Marquardt''s for sums of squares, otherwise slsqp', &
-                  '''slsqp''', seldom=.true., program='mech9k')]
+                  '''slsqp''', seldom=.true.)]
 end module mech9_study_grammar

@@ -77,7 +77,7 @@ module mech9_options
                 'make what the HDF5 file of a study or search does not have yet'), &
     option_type('merge', needed_argument, 'FILE FILE ...', any_text, .false., both, &
                 'join the HDF5 files of parts of a study to one, that of --hdf5', unlimited_arguments), &
-    option_type('optimize', no_argument, '', any_text, .false., 'mech9k', &
+    option_type('optimize', no_argument, '', any_text, .false., both, &
                 'find the parameters with which the groups &objective are met best'), &
     option_type('dakota', needed_argument, 'PARAMS RESULTS', any_text, .false., both, &
                 'make the run that a parameters file of Dakota asks for', 2), &

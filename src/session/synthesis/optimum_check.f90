@@ -5,13 +5,16 @@ module mech9_optimum_check
   use mech9_error, only: error_type, raise, exit_data
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
+  use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_objective, only: transmission_limit, timing_over
+  use mech9_free_simulation, only: free_simulation_type, new_free_simulation
+  use mech9_explained_assembly, only: assemble_free_start
+  use mech9_objective, only: quantity_objective, quantity_limit, transmission_limit, timing_over
   use mech9_result_units, only: unit_of
   use mech9_targets, only: time_at
   use mech9_limited_minimum, only: has_limited_minimum
   use mech9_quantity_record, only: quantity_record_type
-  use mech9_design_run, only: find_quantities
+  use mech9_design_run, only: find_quantities, is_driven
   use mech9_synthesis, only: synthesis_type
   use mech9_closed_search, only: is_least_squares
   use mech9_transmission, only: has_transmission_angle
@@ -24,7 +27,7 @@ contains
 
   !> Report what no search can find, and prepare the runs for quantities.
   subroutine check_synthesis(program_name, variable, model, start, synthesis, err)
-    character(len=*), intent(in) :: program_name            !< mech9k
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     class(variable_model_type), intent(in) :: variable      !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(state_type), intent(in) :: start                   !< its assembled position
@@ -34,7 +37,9 @@ contains
     type(run_evaluator_type) :: evaluator
     type(model_type) :: asked
 
-    call check_method(model, err)
+    if (program_name == 'mech9d') call check_forced(model, err)
+    if (program_name == 'mech9d' .and. .not. allocated(err)) call check_start(model, err)
+    if (.not. allocated(err)) call check_method(model, err)
     if (.not. allocated(err)) call check_driven_values(model, synthesis, err)
     if (.not. allocated(err)) call check_transmissions(model, synthesis, start, err)
     if (allocated(err) .or. size(used_quantities(model)) == 0) return
@@ -45,6 +50,42 @@ contains
     call new_run_evaluator(program_name, variable, model, evaluator)
     allocate (synthesis%space%evaluator, source=evaluator)
   end subroutine check_synthesis
+
+  !> Report objectives and limits that are about motions which drives alone determine.
+  subroutine check_forced(model, err)
+    type(model_type), intent(in) :: model                 !< the model
+    type(error_type), allocatable, intent(out) :: err     !< allocated if there is one
+    integer :: i
+
+    do i = 1, size(model%request%objectives)
+      if (model%request%objectives(i)%kind == quantity_objective) cycle
+      call raise(err, exit_data, 'mech9d searches by quantities of its runs; give an &objective of kind ''quantity'', or '// &
+                 'search with mech9k, in which drives determine the motion', model%request%objectives(i)%place)
+      return
+    end do
+    do i = 1, size(model%request%limits)
+      if (model%request%limits(i)%kind == quantity_limit) cycle
+      call raise(err, exit_data, 'mech9d keeps limits of quantities of its runs; give a &limit of kind ''quantity'', or '// &
+                 'search with mech9k, in which drives determine the motion', model%request%limits(i)%place)
+      return
+    end do
+  end subroutine check_forced
+
+  !> Report a motion under forces that cannot begin as the data file is written.
+  subroutine check_start(model, err)
+    type(model_type), intent(in) :: model                 !< the model with the values of the data file
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it cannot
+    type(model_type), target :: moving
+    type(free_simulation_type), target :: free
+    type(plan_type) :: plan
+    type(state_type) :: start
+
+    if (is_driven('mech9d', model)) return
+    moving = model
+    call assemble_free_start(moving, plan, start, err)
+    if (.not. allocated(err)) call new_free_simulation(moving, plan, start, free, err)
+    call free%close()
+  end subroutine check_start
 
   !> Report a method that cannot find what is asked for, or that this build does not have.
   subroutine check_method(model, err)

@@ -30,7 +30,7 @@ contains
   !> Make room for all starts, read those that were made before, and open the HDF5 file, where one is asked for. A file that is
   !> continued is written anew, with all places and with the starts that it has; until that is done it stays as it is.
   subroutine open_starts(program_name, options, document, model, synthesis, starts, err)
-    character(len=*), intent(in) :: program_name            !< mech9k
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     type(command_line_type), intent(in) :: options          !< the command line
     type(document_type), intent(in) :: document             !< the data file as groups and items, with the changes by --set
     type(model_type), intent(in) :: model                   !< the model
@@ -69,7 +69,7 @@ contains
 
   !> Write the table and the HDF5 data of the distinct designs, and the data file of the best one.
   subroutine write_results(program_name, options, document, model, synthesis, starts, diagnostics)
-    character(len=*), intent(in) :: program_name            !< mech9k
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     type(command_line_type), intent(in) :: options          !< the command line
     type(document_type), intent(in) :: document             !< the data file
     type(model_type), intent(in) :: model                   !< the model
@@ -109,7 +109,7 @@ contains
 
   !> The data file of the best design.
   subroutine text_of_best(program_name, document, model, synthesis, text)
-    character(len=*), intent(in) :: program_name            !< mech9k
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     type(document_type), intent(in) :: document             !< the data file
     type(model_type), intent(in) :: model                   !< the model
     type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
@@ -127,7 +127,7 @@ contains
   !> Write a row for each distinct design, best first.
   subroutine write_table(path, program_name, model, synthesis, err)
     character(len=*), intent(in) :: path                    !< of the table; '-' is standard output
-    character(len=*), intent(in) :: program_name            !< mech9k
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     type(model_type), intent(in) :: model                   !< the model
     type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed

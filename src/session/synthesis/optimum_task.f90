@@ -18,6 +18,7 @@ module mech9_optimum_task
   use mech9_study_threads, only: threads_of_machine
   use mech9_start_threads, only: make_in_threads
   use mech9_starts, only: starts_type
+  use mech9_held_start, only: held_start_type, hold_start
   use mech9_synthesis, only: synthesis_type, new_synthesis
   use mech9_optimum_check, only: check_synthesis
   use mech9_optimum_results, only: open_starts, write_results, table_of
@@ -33,7 +34,7 @@ contains
 
   !> Carry out the search that a data file describes.
   subroutine work_on_optimum(program_name, options, document, variable, model, diagnostics, reported)
-    character(len=*), intent(in) :: program_name                    !< mech9k
+    character(len=*), intent(in) :: program_name                    !< mech9k or mech9d
     type(command_line_type), intent(in) :: options                  !< the command line
     type(document_type), intent(in) :: document                     !< the data file
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
@@ -41,6 +42,9 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics            !< gets the errors
     logical, intent(out) :: reported                                !< a report was asked for, and it is written
     type(synthesis_type), allocatable, target :: synthesis
+    type(held_start_type), target :: held
+    class(variable_model_type), pointer :: searched
+    type(model_type) :: present
     type(starts_type) :: starts
     type(optimum_pictures_type) :: pictures
     type(plan_type) :: plan
@@ -51,10 +55,18 @@ contains
     reported = .false.
     allocate (synthesis)
     clock = seconds()
+    searched => variable
+    present = model
     call check_request(options, model, err)
     if (.not. allocated(err)) call pictures%open(program_name, options, model, err)
-    if (.not. allocated(err)) call assemble_driven_start(model, plan, start, err)
-    if (.not. allocated(err)) call new_synthesis(variable, model, plan, synthesis, err)
+    if (.not. allocated(err) .and. program_name == 'mech9d') then
+      ! runs follow from forces; the search itself knows the mechanism at their start
+      allocate (held%moving, source=variable)
+      searched => held
+      call hold_start(present, err)
+    end if
+    if (.not. allocated(err)) call assemble_driven_start(present, plan, start, err)
+    if (.not. allocated(err)) call new_synthesis(searched, present, plan, synthesis, err)
     if (.not. allocated(err)) call check_synthesis(program_name, variable, model, start, synthesis, err)
     if (.not. allocated(err)) call open_starts(program_name, options, document, model, synthesis, starts, err)
     if (allocated(err)) then
@@ -62,7 +74,7 @@ contains
       call diagnostics%add_error(err)
       return
     end if
-    call make_starts(program_name, options, variable, model, synthesis, starts, err)
+    call make_starts(program_name, options, searched, model, synthesis, starts, err)
     call synthesis%keep_verified()
     if (.not. options%has('quiet')) call print_optimum(error_unit, model, synthesis, seconds() - clock)
     if (size(synthesis%optima) == 0 .and. .not. allocated(err)) &
@@ -112,7 +124,7 @@ contains
 
   !> Make all starts that are missing. Fails where the user interrupts; the starts so far then count.
   subroutine make_starts(program_name, options, variable, model, synthesis, starts, err)
-    character(len=*), intent(in) :: program_name             !< mech9k
+    character(len=*), intent(in) :: program_name             !< mech9k or mech9d
     type(command_line_type), intent(in) :: options           !< the command line
     class(variable_model_type), intent(in) :: variable       !< the model as a function of its parameters
     type(model_type), intent(in) :: model                    !< the model

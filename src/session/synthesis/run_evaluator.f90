@@ -16,7 +16,7 @@ module mech9_run_evaluator
 
   type, extends(quantity_evaluator_type) :: run_evaluator_type
     private
-    character(len=6) :: program_name = ''                 !< mech9k
+    character(len=6) :: program_name = ''                 !< mech9k or mech9d
     class(variable_model_type), allocatable :: variable   !< the model as a function of its parameters
     integer, allocatable :: used(:)                       !< numbers of the quantities of objectives and limits
     integer, allocatable :: varied(:)                     !< numbers of the parameters that are varied
@@ -33,7 +33,7 @@ contains
 
   !> Prepare an evaluator. It has a model of its own, so that each thread can have a copy.
   subroutine new_run_evaluator(program_name, variable, model, evaluator)
-    character(len=*), intent(in) :: program_name            !< mech9k
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     class(variable_model_type), intent(in) :: variable      !< the model as a function of its parameters; copied
     type(model_type), intent(in) :: model                   !< the model with its objectives and limits
     type(run_evaluator_type), intent(out) :: evaluator      !< ready
