@@ -21,6 +21,7 @@ module mech9_objective_reader
 
   !> Sums of fourth powers of larger numbers could be beyond all numbers.
   real(wp), parameter :: largest_number = 1.0e60_wp
+  integer, parameter :: most_starts = 10**7   !< each takes memory until the search ends
 
 contains
 
@@ -38,6 +39,9 @@ contains
     if (size(numbers) == 0) return
     search = group_or_empty(document, 'optimum')
     model%request%optimum%starts = get_integer(search, 'starts')
+    if (model%request%optimum%starts > most_starts) &
+      call diagnostics%add(span_of(search, 'starts', 1), 'one search makes at most '//to_text(most_starts)// &
+                           ' starts; make several searches with other seeds')
     model%request%optimum%seed = get_integer(search, 'seed')
     if (has_name(search, 'method')) then
       model%request%optimum%method = get_text(search, 'method')

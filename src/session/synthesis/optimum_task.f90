@@ -78,8 +78,10 @@ contains
     call synthesis%keep_verified()
     if (.not. options%has('quiet')) call print_optimum(error_unit, model, synthesis, seconds() - clock)
     if (size(synthesis%optima) == 0 .and. .not. allocated(err)) &
-      call raise(err, exit_assembly, 'no start led to a design that can be assembled and that moves through the whole run; '// &
-                 'give more starts in &optimum, or other ranges of the parameters')
+      call raise(err, exit_assembly, 'no start led to a design that can be assembled and that moves through the whole run'// &
+                 trim(merge(' within all limits', '                  ', size(model%request%limits) > 0))// &
+                 '; give more starts in &optimum, or other ranges of the parameters'// &
+                 trim(merge(' and limits', '           ', size(model%request%limits) > 0)))
     if (allocated(err)) call diagnostics%add_error(err)
     call write_results(program_name, options, document, model, synthesis, starts, diagnostics)
     call pictures%draw(options, variable, synthesis, diagnostics)
