@@ -35,6 +35,7 @@ contains
     q = state%q
     if (.not. abs(to - from) > 0.0_wp) return
     call start_driven_motion(design%drives, design%plan, state, from, driven, err, derivatives=0)
+    driven%stops_short = .true.
     if (.not. allocated(err)) call advance(design%drives, design%plan, driven, to, err)
     came = .not. allocated(err)
     if (came) q = driven%state%q
@@ -59,6 +60,7 @@ contains
     call set_inputs(drives, 0.0_wp, state%q, state%dq, state%ddq, err)
     if (.not. allocated(err)) call place_all(design%plan, state, err)
     if (.not. allocated(err)) call start_driven_motion(drives, design%plan, state, 0.0_wp, driven, err, derivatives=0)
+    driven%stops_short = .true.
     if (.not. allocated(err)) call advance(drives, design%plan, driven, 2.0_wp*pi, err)
     came = .not. allocated(err)
     work = work + driven%steps + driven%halvings

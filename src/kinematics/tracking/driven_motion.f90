@@ -23,7 +23,7 @@ module mech9_driven_motion
   use mech9_block_equations, only: largest_gap
   implicit none
   private
-  public :: driven_motion_type, ball_angles_in_use_type, start_driven_motion, advance, set_inputs
+  public :: driven_motion_type, ball_angles_in_use_type, start_driven_motion, advance, ends_before, set_inputs
 
 
   !> The angles by which a ball joint moves at present.
@@ -46,6 +46,7 @@ module mech9_driven_motion
     real(wp), allocatable :: limit(:)             !< (M) independent coordinates where the motion ends [rad, m]
     type(ball_angles_in_use_type), allocatable :: angles(:)   !< of the ball joints whose angles can be replaced; may be missing
     type(held_rod_type), allocatable :: rods(:)   !< rods one of whose angles is held; may be missing
+    logical :: stops_short = .false.              !< a motion that ends stops where its end is found, and does not go on up to it
     logical :: paused = .false.                   !< the motion waits for other angles of a ball joint, short of the time to go to
   end type driven_motion_type
 
@@ -185,8 +186,7 @@ contains
         call leave_crossing(driven)
         cycle
       end if
-      if (driven%ahead%kind == dead_point .and. .not. (driven%ahead%t - t)*direction > 0.0_wp .and. &
-          (driven%ahead%t - driven%predictor%t)*direction > 0.0_wp) then
+      if (ends_before(driven, t)) then
         call end_motion(drives, plan, driven, err)
         exit
       end if
@@ -210,6 +210,17 @@ contains
       call count_output(plan, driven)
     end if
   end subroutine advance
+
+  !> Whether a dead point that lies ahead ends the motion before it comes to a time.
+  pure logical function ends_before(driven, t)
+    type(driven_motion_type), intent(in) :: driven   !< the driven motion
+    real(wp), intent(in) :: t                        !< the time [s]
+    real(wp) :: direction
+
+    direction = sign(1.0_wp, t - driven%predictor%t)
+    ends_before = driven%ahead%kind == dead_point .and. (driven%ahead%t - driven%predictor%t)*direction > 0.0_wp .and. &
+                  .not. (driven%ahead%t - t)*direction > 0.0_wp
+  end function ends_before
 
   !> Whether the angles of a ball joint are near their singular position, so that others should be taken, or another angle of a rod
   !> should be held.
@@ -301,7 +312,7 @@ contains
     logical :: stuck
 
     t = driven%ahead%t - just_short_of_end*(driven%ahead%t - driven%predictor%t)
-    stuck = .false.
+    stuck = driven%stops_short
     do while (abs(t - driven%predictor%t) > 0.0_wp .and. .not. stuck .and. .not. allocated(err))
       call step_towards(drives, plan, driven%branch_stepper_type, t, stuck, refused_by, err)
     end do
