@@ -10,7 +10,7 @@ module mech9_closed_search
   use mech9_model, only: model_type
   use mech9_design_space, only: design_space_type
   use mech9_free_times, only: choose_pivots, has_good_pivots, gaps_of, parts_of
-  use mech9_exact_fit, only: exact_fit_type
+  use mech9_exact_fit, only: exact_fit_type, begin_at, has_ended
   use mech9_design_limits, only: design_limits_type
   use mech9_limited_fit, only: limited_fit_type, new_limited_fit, find_value
   implicit none
@@ -26,6 +26,8 @@ module mech9_closed_search
     real(wp), allocatable :: times(:)       !< (targets) times of the targets [s]
   end type found_design_type
 
+  !> A difference from a target by this part of the size of the targets is round-off of its position.
+  real(wp), parameter :: same_difference = 1.0e-11_wp
   integer, parameter :: most_pivots = 10     !< changes of the gaps that follow from others
   integer, parameter :: most_restarts = 3    !< of the method for smooth functions, from its own result
   !> A restart that lowers the value by less than this part is the last one.
@@ -55,28 +57,81 @@ contains
     real(wp), intent(in) :: parts(:)                         !< free times as parts of the run
     real(wp), intent(in) :: q(:)                             !< (M) coordinates at the start of the run [rad, m]
     type(found_design_type), intent(out) :: found            !< the design to which the search led
+    real(wp) :: at(fit%n), value
+
+    call search_branch(space, fit, limits, scale, x, parts, q, at, value, found%found)
+    if (.not. found%found) return
+    call follow_design(fit, limits, at, found%value, found%found)
+    if (fit%near%used .and. .not. has_ended(fit) .and. .not. agree(found%found, found%value, value, scale)) then
+      ! runs beside others are not trusted here
+      fit%must_follow = .true.
+      call search_branch(space, fit, limits, scale, x, parts, q, at, value, found%found)
+      fit%must_follow = .false.
+      if (found%found) call follow_design(fit, limits, at, found%value, found%found)
+    end if
+    found%x = space%low + at(:fit%varied)*(space%high - space%low)
+    found%q = fit%q_trial
+    found%times = fit%times
+  end subroutine search_closed
+
+  !> Whether the value of a design that was followed from its start is the one that the search found.
+  pure logical function agree(found, followed, searched, scale)
+    logical, intent(in) :: found          !< the motion comes to the end of the run
+    real(wp), intent(in) :: followed      !< value of the run that was followed
+    real(wp), intent(in) :: searched      !< value that the search found
+    real(wp), intent(in) :: scale         !< size of the targets [m, rad]
+
+    agree = found .and. abs(followed - searched) <= 1.0e-8_wp*abs(searched) + (same_difference*scale)**2
+  end function agree
+
+  !> Follow the run of the design that a search found from its start.
+  subroutine follow_design(fit, limits, at, value, found)
+    type(exact_fit_type), intent(inout), target :: fit       !< the fit, whose start is that of the design
+    type(design_limits_type), intent(in) :: limits           !< the limits
+    real(wp), intent(in) :: at(:)                            !< (n) the place
+    real(wp), intent(out) :: value                           !< its value
+    logical, intent(out) :: found                            !< the motion comes to the end of the run
     type(limited_fit_type) :: limited
-    real(wp) :: at(fit%n), present(size(parts))
+    logical :: before
+
+    call new_limited_fit(fit, limits, limited)
+    before = fit%must_follow
+    fit%must_follow = .true.
+    call find_value(limited, at, value, found)
+    fit%must_follow = before
+  end subroutine follow_design
+
+  !> Improve a design along its branch.
+  subroutine search_branch(space, fit, limits, scale, x, parts, q, at, value, found)
+    type(design_space_type), intent(in) :: space             !< the designs
+    type(exact_fit_type), intent(inout), target :: fit       !< the fit
+    type(design_limits_type), intent(in) :: limits           !< the limits
+    real(wp), intent(in) :: scale                            !< size of the targets [m, rad]
+    real(wp), intent(in) :: x(:)                             !< parameters as parts of their ranges
+    real(wp), intent(in) :: parts(:)                         !< free times as parts of the run
+    real(wp), intent(in) :: q(:)                             !< (M) coordinates at the start of the run [rad, m]
+    real(wp), intent(out) :: at(:)                           !< (n) the place to which the search led
+    real(wp), intent(out) :: value                           !< its value
+    logical, intent(out) :: found                            !< the place has a value within all limits
+    type(limited_fit_type) :: limited
+    real(wp) :: present(size(parts))
     integer :: pass
 
-    fit%q_start = q
-    fit%work = 0
+    call begin_at(q, fit)
     present = parts
+    value = huge(value)
     at(:fit%varied) = x
     call new_limited_fit(fit, limits, limited)
     do pass = 1, most_pivots
       call choose_pivots(present, fit%free)
       at(fit%varied + 1:) = gaps_of(present, fit%free)
-      call search_from_place(space, limited, scale, at, found%found)
+      call search_from_place(space, limited, scale, at, found)
       present = parts_of(at(fit%varied + 1:), fit%free)
-      if (.not. found%found) return
+      if (.not. found) return
       if (has_good_pivots(present, fit%free)) exit
     end do
-    call find_value(limited, at, found%value, found%found)
-    found%x = space%low + at(:fit%varied)*(space%high - space%low)
-    found%q = fit%q_trial
-    found%times = fit%times
-  end subroutine search_closed
+    call find_value(limited, at, value, found)
+  end subroutine search_branch
 
   !> Search from one place, by the method that the user chose.
   subroutine search_from_place(space, limited, scale, at, found)

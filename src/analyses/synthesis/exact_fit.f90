@@ -1,27 +1,36 @@
 !> The fit of a design whose chains are closed: the branch of its start is followed through the whole run, and the differences from
 !> the targets and from the goals of quantities follow. A design that cannot be assembled near the last one, or whose motion does
 !> not come to the end of the run, has no value.
+!>
+!> Beside a design whose run is known, the run of a planar design is found without following it (mech9_neighbouring_run), where this
+!> proves that it has one branch. Elsewhere, and where `must_follow` is set, the run is followed from its start.
 module mech9_exact_fit
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type
   use mech9_system, only: interrupted
+  use mech9_tolerances, only: longest_drive
   use mech9_bounded_least_squares, only: residuals_type, residual_values_type
   use mech9_plan, only: new_state
   use mech9_state, only: state_type
-  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
+  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance, ends_before
   use mech9_objective, only: timing_free, timing_over, quantity_objective, crank_limit
   use mech9_design_space, only: design_space_type, design_type, place_design, find_tangents, all_values
   use mech9_open_position, only: open_position_type, place_at, find_derivatives
   use mech9_closed_changes, only: closed_changes_type, find_closed_changes
   use mech9_branch, only: close_near, follow_turn
+  use mech9_planar_design, only: place_planar_design
+  use mech9_neighbouring_run, only: neighbouring_run_type, new_neighbouring_run, record_position, find_neighbour, keep_run, &
+    find_slopes
   use mech9_free_times, only: free_times_type, new_free_times, parts_of, part_by_gap, are_in_order
   use mech9_targets, only: target_type, components_of, difference, difference_derivatives, outer_times
   implicit none
   private
-  public :: exact_fit_type, new_exact_fit
+  public :: exact_fit_type, new_exact_fit, begin_at, has_ended
 
   !> Steps of the motions of one search. A search that creeps along the edge of the designs that can move takes many more, and ends.
   integer(long), parameter :: most_work = 60000
+  !> Positions that are recorded between two targets.
+  real(wp), parameter :: most_parts = 1.0e4_wp
 
   !> The unknowns are the parameters, each as a part of its range, and the gaps between free times, as parts of the run. A residual
   !> group belongs to each target, and the last ones hold the differences of quantities from their goals.
@@ -43,7 +52,10 @@ module mech9_exact_fit
     real(wp), allocatable :: quantities(:)                  !< values of the quantities of the last design with a value
     type(closed_changes_type) :: changes                    !< scratch
     real(wp), allocatable :: gradient(:, :)                 !< (parameters,quantities) their derivatives by all parameters
-    integer(long) :: work = 0                               !< steps of all motions that were followed
+    type(neighbouring_run_type) :: near                     !< runs beside the last one with derivatives
+    logical :: must_follow = .false.                        !< runs are followed from their starts
+    integer(long) :: work = 0                               !< steps of all motions that were followed, and positions of others
+    integer(long) :: followed = 0                           !< number of runs that were followed
     logical :: heeds_interruption = .true.                  !< designs have no value after the user has interrupted
     logical :: was_cut = .false.                            !< a design had no value for this reason
   contains
@@ -54,6 +66,13 @@ module mech9_exact_fit
   end type exact_fit_type
 
 contains
+
+  !> Whether no design has a value any more: the motions took too many steps, or the user has interrupted.
+  pure logical function has_ended(fit)
+    class(exact_fit_type), intent(in) :: fit   !< the fit
+
+    has_ended = fit%work >= most_work .or. fit%was_cut
+  end function has_ended
 
   !> Prepare a fit.
   subroutine new_exact_fit(space, design, position, targets, fit)
@@ -84,7 +103,18 @@ contains
     allocate (fit%q_start(m), fit%q_trial(m), fit%q(m, size(targets)), fit%times(size(targets)), source=0.0_wp)
     allocate (fit%quantities(size(space%model%request%quantities)), source=0.0_wp)
     allocate (fit%gradient(size(space%values), size(fit%quantities)), source=0.0_wp)
+    call new_neighbouring_run(fit%space, design, targets, fit%near)
   end subroutine new_exact_fit
+
+  !> Begin a search at a position: no run is known.
+  pure subroutine begin_at(q, fit)
+    real(wp), intent(in) :: q(:)                   !< (M) coordinates near the start of the run [rad, m]
+    class(exact_fit_type), intent(inout) :: fit    !< the fit
+
+    fit%q_start = q
+    fit%work = 0
+    fit%near%is_known = .false.
+  end subroutine begin_at
 
   !> The differences from the targets and goals.
   subroutine evaluate(self, x, y, with_derivatives, values, has_value)
@@ -102,8 +132,13 @@ contains
       return
     end if
     has_value = .false.
+    self%near%is_neighbour = .false.
     call self%note_interruption()
-    if (self%work >= most_work .or. self%was_cut) return
+    if (has_ended(self)) return
+    if (self%near%is_known .and. .not. self%must_follow) then
+      call evaluate_near(self, x, values, has_value)
+      if (has_value) return
+    end if
     associate (space => self%space, v => self%varied)
       call place_design(space, space%low + x(:v)*(space%high - space%low), self%design, err)
       if (allocated(err)) return
@@ -124,6 +159,22 @@ contains
     if (self%with_quantities) self%quantities = quantities
     call add_goals(self, values)
   end subroutine evaluate
+
+  !> The differences from the targets in the run beside the known one; without `has_value` the run must be followed.
+  subroutine evaluate_near(self, x, values, has_value)
+    class(exact_fit_type), intent(inout) :: self            !< the fit
+    real(wp), intent(in) :: x(:)                            !< (n) parameters as parts of their ranges, gaps of free times
+    type(residual_values_type), intent(inout) :: values     !< gets the residuals
+    logical, intent(out) :: has_value                       !< the run was found
+
+    associate (space => self%space, v => self%varied)
+      call place_planar_design(space, space%low + x(:v)*(space%high - space%low), self%near%design, self%design)
+      call find_times(self, x(v + 1:), has_value)
+      if (has_value) call find_neighbour(space%plan, self%targets, self%times, self%design, self%near, values%r, self%q_trial, &
+                                         has_value)
+      self%work = self%work + self%near%trial%n
+    end associate
+  end subroutine evaluate_near
 
   !> Ask whether the user has interrupted the program, and remember it, if the fit is to heed this.
   subroutine note_interruption(self)
@@ -186,26 +237,61 @@ contains
     type(error_type), allocatable :: err
     integer :: order(size(self%targets)), i
 
+    self%followed = self%followed + 1
     state = new_state(self%design%plan)
     state%q = q_start
     call close_near(self%design, self%start, state, has_value)
     if (.not. has_value) return
     q_start = state%q
     call start_driven_motion(self%design%drives, self%design%plan, state, self%start, driven, err, derivatives=0)
+    driven%stops_short = .true.
     call sort_times(self%times, self%end - self%start, order)
+    self%near%recorded = 0
+    if (self%near%used) call record_position(self%start, 0, q_start, self%near)
     do i = 1, size(order)
-      if (.not. allocated(err)) call advance(self%design%drives, self%design%plan, driven, self%times(order(i)), err)
+      if (.not. allocated(err)) call go_on(self, self%times(order(i)), order(i), driven, err)
       if (allocated(err)) exit
+      ! the design has no value if its motion does not come to the end of the run
+      if (ends_before(driven, self%end)) exit
       self%q(:, order(i)) = driven%state%q
       call difference(self%targets(order(i)), self%design%plan, self%design, driven%state, r(:, order(i)))
     end do
-    if (.not. allocated(err)) call advance(self%design%drives, self%design%plan, driven, self%end, err)
-    has_value = .not. allocated(err)
+    has_value = .not. (allocated(err) .or. ends_before(driven, self%end))
+    if (has_value) call go_on(self, self%end, 0, driven, err)
+    if (allocated(err)) has_value = .false.
     self%work = self%work + driven%steps + driven%halvings
     do i = 1, size(self%cranks)
       if (has_value) call follow_turn(self%design, q_start, self%cranks(i), has_value, self%work)
     end do
   end subroutine follow_targets
+
+  !> Follow the branch to a time, and record positions on the way, so near to each other that no drive moves far between them.
+  subroutine go_on(self, t, target, driven, err)
+    class(exact_fit_type), intent(inout) :: self            !< the fit; gets the positions
+    real(wp), intent(in) :: t                               !< the time [s]
+    integer, intent(in) :: target                           !< the target that is there; 0: none
+    type(driven_motion_type), intent(inout) :: driven       !< the motion
+    type(error_type), allocatable, intent(out) :: err       !< allocated if the motion does not come there
+    real(wp) :: from, parts
+    integer :: i, n
+
+    from = driven%state%t
+    n = 1
+    if (self%near%used) then
+      do i = 1, size(self%design%drives)
+        associate (drive => self%design%drives(i)%drive)
+          parts = abs(t - from)*drive%greatest_rate(from, t - from)/(longest_drive*self%design%plan%unit_of(drive%coordinate))
+        end associate
+        n = max(n, ceiling(min(parts, most_parts)))
+      end do
+    end if
+    do i = 1, n
+      if (.not. allocated(err)) &
+        call advance(self%design%drives, self%design%plan, driven, merge(t, from + (t - from)*i/n, i == n), err)
+      if (.not. allocated(err) .and. self%near%used) &
+        call record_position(driven%state%t, merge(target, 0, i == n), driven%state%q, self%near)
+    end do
+  end subroutine go_on
 
   !> The order of times in the direction of the run.
   pure subroutine sort_times(times, direction, order)
@@ -237,6 +323,12 @@ contains
 
     ! derivatives are asked for where a search goes on from: other trials start from this assembly
     self%q_start = self%q_trial
+    if (self%near%used) then
+      call keep_run(self%space, self%design, self%near)
+      has_value = self%near%is_known
+      if (has_value) call differentiate_near(self, values)
+      if (has_value) return
+    end if
     call find_tangents(self%space, self%design, err)
     has_value = .not. allocated(err)
     if (has_value) values%by_x = 0.0_wp
@@ -253,6 +345,24 @@ contains
       end associate
     end do
   end subroutine has_derivatives
+
+  !> The derivatives in the known run of a planar design.
+  subroutine differentiate_near(self, values)
+    class(exact_fit_type), intent(inout) :: self            !< the fit
+    type(residual_values_type), intent(inout) :: values     !< gets the derivatives
+    real(wp) :: by_t(self%rows, size(self%targets)), rate
+    integer :: g, i
+
+    call find_slopes(self%space%plan, self%targets, self%design, self%near, values%by_x(:, :self%varied, :), by_t)
+    values%by_x(:, self%varied + 1:, :) = 0.0_wp
+    do g = 1, size(self%targets)
+      do i = 1, self%varied
+        rate = self%space%high(i) - self%space%low(i)
+        values%by_x(:, i, g) = values%by_x(:, i, g)*rate
+      end do
+      call add_times(self, g, by_t(:, g), values%by_x(:, :, g))
+    end do
+  end subroutine differentiate_near
 
   !> The derivatives of a quantity by the varied parameters, as parts of their ranges.
   pure function quantity_slopes(self, number) result(slopes)
@@ -271,7 +381,7 @@ contains
     logical, intent(out) :: has_value                       !< they exist
     type(error_type), allocatable :: err
     real(wp) :: by_q(self%rows, size(self%q_start)), by_x(self%rows, self%varied), by_t(self%rows)
-    integer :: i, j
+    integer :: i
 
     call place_at(self%design, self%times(g), self%q(:, g), self%position, err)
     has_value = .not. allocated(err)
@@ -288,10 +398,21 @@ contains
     do i = 1, self%varied
       by_unknown(:, i) = by_x(:, i)*(self%space%high(i) - self%space%low(i))
     end do
+    call add_times(self, g, by_t, by_unknown)
+  end subroutine differentiate_target
+
+  !> The derivatives of the difference from a target with a free time by the gaps between times.
+  pure subroutine add_times(self, g, by_t, by_unknown)
+    class(exact_fit_type), intent(in) :: self               !< the fit
+    integer, intent(in) :: g                                !< number of the target
+    real(wp), intent(in) :: by_t(:)                         !< (rows) derivatives by its time [1/s]
+    real(wp), intent(inout) :: by_unknown(:, :)             !< (rows,n) gets those by the gaps
+    integer :: i, j
+
     if (self%targets(g)%timing /= timing_free) return
     i = findloc(self%free%target, g, dim=1)
     do j = 1, self%free%n
       by_unknown(:, self%varied + j) = by_t*(self%end - self%start)*part_by_gap(self%free, i, j)
     end do
-  end subroutine differentiate_target
+  end subroutine add_times
 end module mech9_exact_fit

@@ -9,7 +9,7 @@ module mech9_moving_design
   use mech9_sampled_run, only: reach
   use mech9_branch, only: follow
   use mech9_free_times, only: choose_pivots, gaps_of
-  use mech9_exact_fit, only: exact_fit_type
+  use mech9_exact_fit, only: exact_fit_type, begin_at
   use mech9_design_limits, only: design_limits_type
   use mech9_limited_fit, only: limited_fit_type, new_limited_fit, find_value
   implicit none
@@ -73,8 +73,7 @@ contains
       end if
       call follow(design, t, fit%start, q, found)
       if (.not. found) return
-      fit%q_start = q
-      fit%work = 0
+      call begin_at(q, fit)
       call find_value(limited, [x, gaps_of(parts, fit%free)], value, found)
       q = fit%q_trial
     end subroutine try_design
