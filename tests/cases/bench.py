@@ -14,7 +14,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 from mech9_cases import TREE, Checks, text_of
 
 checks = Checks()
-OTHER_TABLES = ['Time per position', 'Growth', 'Mixed structures', 'Memory of mixed structures', 'Other programs']
+OTHER_TABLES = ['Time per position', 'Values of an objective', 'Growth', 'Mixed structures', 'Memory of mixed structures', 'Other programs']
 METHODS = ['auto', 'prince-dormand', 'dormand-prince', 'verner', 'fehlberg', 'merson', 'adams', 'bdf']
 
 
@@ -42,6 +42,16 @@ def check_positions(rows):
             # times stand there with three decimals
             ratio = float(row[2 + k]) / closed[k]
             checks.near(float(row[3 + k]) / ratio, 1.0, 0.05 + 0.0006 / closed[k], f'{row[0]}: the ratio is that of the times')
+
+
+def check_values(rows):
+    checks.equal(len(rows), 5, 'a position, a value, a gradient, and a value that is followed')
+    position = float(rows[1][1])
+    checks.true(position > 0, 'a position takes time', rows)
+    for row in rows[2:]:
+        # times stand there with two decimals; a gradient is a difference of times, which may be anything on a busy machine
+        checks.near(float(row[2]), float(row[1]) / position, 0.05 + 0.01 / position + 0.01 * abs(float(row[2])), f'{row[0]}: the ratio')
+    checks.true(0 < float(rows[2][1]) < float(rows[4][1]), 'a value beside a known run costs less than one that is followed', rows)
 
 
 def check_precision(heading, rows):
@@ -127,6 +137,7 @@ with tempfile.TemporaryDirectory() as folder:
         tables = tables_of(page)
         checks.true('quick run' in page, 'the page says that it was a quick run')
         check_positions(tables['Time per position'])
+        check_values(tables['Values of an objective'])
         error = float(re.search(r'largest acceleration:\n(\S+)\.\n', page).group(1))
         # round-off times the conditioning of a chain
         checks.true(error < 1e-10, 'the accelerations of the four-bar are those of the closed form', error)
