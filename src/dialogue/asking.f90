@@ -2,6 +2,7 @@
 module mech9_asking
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_text, only: string_type, lower
+  use mech9_grammar, only: group_table
   use mech9_paragraph, only: print_paragraph
   use mech9_topics, only: topics
   use mech9_draft_joints, only: joints_text
@@ -70,11 +71,14 @@ contains
   !> The load, point or body of the present question is taken away.
   subroutine leave_out(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    type(question_type) :: question
     character(len=:), allocatable :: name
     logical :: done
 
     associate (interview => conversation%interview)
-      name = heading_of(interview%due(), interview%draft)
+      question = interview%due()
+      name = heading_of(question, interview%draft)
+      if (name == '') name = 'The group &'//trim(group_table(question%group_row)%name)
       call interview%leave_out(done)
     end associate
     conversation%heading = ''

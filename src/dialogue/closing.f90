@@ -148,7 +148,7 @@ contains
         cycle
       end if
       if (is_read(conversation%interview%draft, path)) then
-        call conversation%say(path//' holds points that this mechanism reads; give another name.')
+        call conversation%say(path//' holds numbers that this data file reads; give another name.')
         cycle
       end if
       call agree_to_overwrite(conversation, path, agreed)
@@ -163,12 +163,13 @@ contains
     call conversation%say('Saved in '//path//'; '//conversation%program_name//' '//path//' runs it again.')
   end subroutine save
 
-  !> Whether a data file of this name would be written over the table of a drive or load, or the curve of a pair.
+  !> Whether a data file of this name would be written over a table, a curve or a list that it names.
   logical function is_read(draft, path)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     character(len=*), intent(in) :: path   !< name of the data file
     character(len=:), allocatable :: table
-    character(len=5), parameter :: groups(4) = [character(len=5) :: 'drive', 'load', 'motor', 'pair']
+    character(len=9), parameter :: groups(7) = [character(len=9) :: 'drive', 'load', 'motor', 'pair', 'coupling', 'study', &
+                                                'objective']
     integer :: g, i
 
     is_read = .true.

@@ -208,6 +208,12 @@ contains
     found = .true.
     row = find_group_row(group(:min(len(group), 20)))
     associate (interview => conversation%interview)
+      if (lower(group(:min(len(group), 20))) == 'study' .and. interview%draft%count_of('parameter') == 0) then
+        found = .false.
+        call conversation%say('A study makes runs for values of parameters, and there are no parameters yet; begin with: '// &
+                              'add parameter')
+        return
+      end if
       if (row > 0) then
         do i = 1, size(interview%questions)
           if (interview%questions(i)%group_row /= row .or. .not. interview%questions(i)%is_new) cycle

@@ -242,7 +242,7 @@ def edited_files(talks):
                  ('inertia', ''), ('all is right', 'remove body 2'), ('Removed', 'remove point 1'),
                  ('Removed', 'remove time start'), ('Removed', '?'),
                  ('Give the number', '999'), ('no answer that can be changed', 'zero zero zero zero'),
-                 ('no answer that can be changed', 'add nothing'), ('What can be added: drive, body, load, motor, point, parameter, quantity', ''),
+                 ('no answer that can be changed', 'add nothing'), ('What can be added: drive, body, load, motor, point, parameter, quantity, study, objective,', ''),
                  ('[both]', 'save'), ('data file [p.nml]', '/'),
                  ('exists; overwrite it [no]', 'yes'), ('cannot open', '')]
         talks.pipe(talks.mech9d, steps, 'changes', arguments=('--edit', 'p.nml'), folder=folder)
@@ -454,10 +454,45 @@ def forces_of_drives(talks):
             table = read_table(text_of(os.path.join(folder, 'bar.dat')))
             talks.checks.near(table['F1'], 2 * 9.81 * 0.5 - 3, 1e-14, f'forces {why}: the torque of the drive')
     with tempfile.TemporaryDirectory() as folder:
-        done = talks.pipe(talks.mech9k, BAR + plain + [('all is right', 'add body'), ('What can be added: point, parameter, quantity, objective, limit;', 'quit')],
+        done = talks.pipe(talks.mech9k, BAR + plain + [('all is right', 'add body'), ('What can be added: point, parameter, quantity, study, objective, limit, optimum;', 'quit')],
                           'without forces', folder=folder)
         talks.checks.true(not any(word in done.stderr for word in ('Bodies', 'Gravity', 'Loads')), 'no masses without forces',
                           done.stderr)
+
+
+def new_study(talks):
+    """A study is begun on request once there are parameters; it asks for what it needs of them, and runs at the end."""
+    arm = ("&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /\n"
+           "&drive coordinate=1, kind='polynomial', coefficients=0.4 /\n&point name='P', link=2, position=1,0,0 /\n&time intervals=0 /\n")
+    begun = [('all is right', 'add study'), ('there are no parameters yet; begin with: add parameter', 'add parameter'),
+             ('parameter 1, name', 'reach'), ('sets: ', 'point.position(1)'), ('value', ''), ('all is right', 'add quantity'),
+             ('quantity 1, name', 'place'), ('of: ', 'P.x'), ('take', 'end')]
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'arm.nml')
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(arm)
+        steps = [*begun, ('all is right', 'add study'), ('study, kind [none]', '?'), ('all combinations', 'heap'), ('grid', 'grid'),
+                 ('low: ', '0.5'), ('high: ', 'back'), ('low [0.5]', ''), ('high: ', '2'), ('count: ', '4'), ('all is right', ''), ('[both]', ''),
+                 ('data file [arm.nml]', ''), ('study, change', 'study'), ('4 runs: ', 'done')]
+        talks.pipe(talks.mech9k, steps, 'a new study on a grid', arguments=('--edit', 'arm.nml'), folder=folder)
+        text = text_of(path)
+        talks.checks.true("&study kind='grid' /" in text and 'low=0.5, high=2, count=4' in text, 'a new study: the file has it', text)
+        # another kind needs other names; a study can be taken away, and begun by mistake
+        steps = [('all is right', 'study kind = latin'), ('runs: ', '20'), ('all is right', 'add study'),
+                 ('What can be added: point, parameter, quantity, objective', 'remove study 1'), ('Removed', 'add study'),
+                 ('study, kind [none]', 'latin'), ('runs: ', 'remove'), ('The group &study is left out.', 'none'),
+                 ('all is right', 'add study'), ('kind [none]', 'random'), ('runs: ', '50'), ('all is right', ''), ('[both]', 'save'),
+                 ('data file [arm.nml]', '')]
+        talks.pipe(talks.mech9k, steps, 'another study', arguments=('--edit', 'arm.nml'), folder=folder)
+        talks.checks.true("&study kind='random', runs=50 /" in text_of(path), 'another study: the file has it', text_of(path))
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(arm)
+        steps = [*begun, ('all is right', 'add study'), ('kind [none]', 'sobol'), ('runs: ', '16'), ('spread: ', '0.01'), ('all is right', 'add optimum'),
+                 ('optimum, starts', '?'), ('Each start leads', 'none'), ('all is right', ''), ('[both]', 'save'), ('data file [arm.nml]', '')]
+        talks.pipe(talks.mech9k, steps, 'a new study that draws values', arguments=('--edit', 'arm.nml'), folder=folder)
+        text = text_of(path)
+        talks.checks.true("&study kind='sobol', runs=16 /" in text and 'spread=0.01' in text and '&optimum' not in text,
+                          'a new study that draws values: the file has it', text)
 
 
 def unsaved_runs(talks):
@@ -517,6 +552,7 @@ def main():
     gravity(talks)
     forces_of_drives(talks)
     joints_with_several_freedoms(talks)
+    new_study(talks)
     unsaved_runs(talks)
     refusals(talks)
     cut_off_anywhere(talks)

@@ -73,7 +73,7 @@ def tables_of_drives(checks, program):
         with open(os.path.join(folder, 'motion.txt'), 'w', encoding='utf-8') as file:
             file.write(motion)
         done = piped(program, '--edit', 'driven.nml', folder=folder, answers='time end = 0.5\n\nsave\nmotion.txt\nyes\nnew.nml\n')
-        checks.true('holds points that this mechanism reads' in done.stderr, 'over the table of a drive', done.stderr)
+        checks.true('holds numbers that this data file reads' in done.stderr, 'over the table of a drive', done.stderr)
         checks.equal(text_of(os.path.join(folder, 'motion.txt')), motion, 'the table is as it was')
 
 

@@ -13,7 +13,7 @@ program test_questions
   use mech9_interview, only: interview_type
   use mech9_questions, only: question_type, label_of, find_question, ask_item, ask_seldom, ask_joints, &
                              check_structure, check_start, check_all
-  use mech9_question_words, only: default_type, default_of, prompt_of, words_for
+  use mech9_question_words, only: default_type, default_of, prompt_of, words_for, is_lacking
   use mech9_question_help, only: help_of
   use mech9_explanations, only: find_explanation, explanations
   use mech9_answer, only: read_answer
@@ -26,6 +26,7 @@ program test_questions
   call explained_names(tester)
   call units_of_examples(tester)
   call leaving_out(tester)
+  call studies(tester)
   call proposals(tester)
   call dropped_drives(tester)
   call changed_joints(tester)
@@ -326,6 +327,52 @@ contains
     call tester%is_true(label_of(interview%due()) == 'load(5).kind' .and. interview%questions(interview%at)%is_new, &
                         'another load is asked for in the place of the one that was left out')
   end subroutine leaving_out
+
+  !> A study is begun on request, once, and decides which names of the parameters must be given.
+  subroutine studies(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    type(interview_type) :: interview
+    integer :: number
+    logical :: done
+
+    call begin('mech9d', 'pairs', 'polynomial', interview)
+    interview%outline%asked = .false.
+    interview%at = find_question(interview%questions, 'study(1).kind')
+    call tester%is_true(.not. interview%questions(interview%at)%is_new .and. &
+                        find_question(interview%questions, 'study(2).kind') == 0, 'there is one study')
+    call interview%leave_out(done)
+    number = find_question(interview%questions, 'study(1).kind')
+    call tester%is_true(done .and. interview%draft%count_of('study') == 0, 'a study is left out')
+    call tester%is_true(interview%questions(number)%is_new .and. interview%questions(number)%on_request, &
+                        'a study is begun on request')
+    call needs(tester, interview, '''grid''', .false., [.true., .true., .true., .false.])
+    call needs(tester, interview, '''latin''', .false., [.false., .false., .false., .true.])
+    call needs(tester, interview, '''sobol''', .true., [.false., .true., .false., .false.])
+    call needs(tester, interview, '''list''', .false., [.false., .false., .false., .false.])
+  end subroutine studies
+
+  !> Hold what a study needs of its parameter against what it should need.
+  subroutine needs(tester, interview, kind, has_low, expected)
+    type(tester_type), intent(inout) :: tester           !< counts the checks
+    type(interview_type), intent(inout) :: interview     !< with a parameter
+    character(len=*), intent(in) :: kind                 !< of the study
+    logical, intent(in) :: has_low                       !< the parameter has its least value
+    logical, intent(in) :: expected(4)                   !< low, high, count and spread must be given
+    character(len=6), parameter :: names(4) = [character(len=6) :: 'low', 'high', 'count', 'spread']
+    integer :: i, at
+    logical :: lacks
+
+    call interview%draft%take_away('parameter', 1, 'low')
+    if (has_low) call interview%draft%give('parameter', 1, 'low', '0.2')
+    call interview%draft%give('study', 1, 'kind', kind)
+    call interview%refresh('')
+    do i = 1, size(names)
+      at = find_question(interview%questions, 'parameter(1).'//trim(names(i)))
+      lacks = at > 0
+      if (lacks) lacks = is_lacking(interview%questions(at), interview%draft, interview%outline)
+      call tester%is_true(lacks .eqv. expected(i), kind//': whether '//trim(names(i))//' is asked for')
+    end do
+  end subroutine needs
 
   !> After a slide neither its kind nor its axis is proposed; after a hinge its axis is, also over a slide between.
   !> Gravity has no proposal.

@@ -1,7 +1,7 @@
 !> The texts about a question beyond its prompt: one line where a name comes up first, the answer to `?`, and the answer
 !> to an empty line where the question has no default.
 module mech9_question_help
-  use mech9_grammar, only: item_table, item_row_type
+  use mech9_grammar, only: group_table, item_table, item_row_type
   use mech9_data_help, only: values_text, default_text
   use mech9_draft, only: draft_type, unquoted
   use mech9_topics, only: can_be_left_out
@@ -108,6 +108,7 @@ contains
       otherwise = 'if not given: '//default_text(row)
       if (is_needed(question, draft, outline) .or. row%needed) otherwise = 'must be given'
       if (question%is_new) otherwise = 'Enter where there is no more'
+      if (question%is_new .and. .not. group_table(question%group_row)%repeats) otherwise = 'Enter where there is none'
       text = text//line_end//'Values: '//values_text(row)//unit//'; '//otherwise//'.'//line_end//'For example: '// &
              example_of(row, place, coordinate_kind(question, draft), angle_unit(draft))
     end associate

@@ -10,6 +10,7 @@ module mech9_question_words
   use mech9_draft_joints, only: kind_in, number_in, coordinates_of_pair, kind_of_coordinate
   use mech9_outline, only: outline_type
   use mech9_seldom, only: seldom_rows
+  use mech9_study_needs, only: is_for_study
   use mech9_questions, only: question_type, entry_name, ask_item, ask_seldom, ask_way, &
                              ask_guesses, ask_joints
   implicit none
@@ -142,6 +143,8 @@ contains
         case ('nrg', 'nws', 'rdw')
           is_needed = outline%way == 'vectors'
         end select
+      case ('parameter')
+        is_needed = is_needed .or. is_for_study(draft, question%place, trim(row%name))
       case ('initial')
         if (row%name /= 'coordinate' .and. outline%structure_known) &
           is_needed = is_independent(outline, draft%number('initial', question%place, 'coordinate'))
@@ -204,7 +207,11 @@ contains
       if (question%line > 0) text = '  row '//to_text(question%line)//' of c'
       if (row%group == 'pair' .and. row%name == 'links') &
         text = '  links of pair '//to_text(coordinates_of_pair(draft, question%place))
-      if (question%is_new) text = '  '//trim(row%group)//' '//to_text(question%place)//', '//trim(row%name)
+      if (question%is_new) then
+        text = '  '//trim(row%group)//', '//trim(row%name)
+        if (group_table(question%group_row)%repeats) &
+          text = '  '//trim(row%group)//' '//to_text(question%place)//', '//trim(row%name)
+      end if
       unit = unit_here(question, draft)
       if (unit /= '') text = text//' ('//unit//')'
     end associate

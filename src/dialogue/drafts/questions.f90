@@ -11,6 +11,7 @@ module mech9_questions
   use mech9_draft_joints, only: kind_in, has_joints
   use mech9_outline, only: outline_type, wants_forces
   use mech9_seldom, only: is_seldom, is_used
+  use mech9_study_needs, only: is_for_study
   implicit none
   private
   public :: question_type, make_questions, label_of, find_question, entry_name, is_open
@@ -104,6 +105,7 @@ contains
     character(len=:), allocatable :: group
     integer, allocatable :: rows(:)
     integer :: place
+    logical :: may_begin
 
     group = trim(group_table(group_row)%name)
     rows = rows_of_group(group)
@@ -111,7 +113,6 @@ contains
       call ask_about_structure(draft, outline, topic, group_row, questions, count)
       return
     end if
-    if (any(group == ['study  ', 'optimum']) .and. draft%count_of(group) == 0) return
     if (group == 'user' .and. .not. has_procedures(draft)) return
     if (group == 'cam' .and. .not. may_have_cams(draft)) return
     if (group == 'coupling' .and. draft%number('mechanism', 1, 'coordinates') == 1) return
@@ -119,17 +120,17 @@ contains
       if (outline%program_name == 'mech9k' .or. .not. all(outline%independent)) &
         call append(questions, count, question_type(kind=ask_guesses, topic=topic, group_row=group_row))
     else if (any(item_table(rows)%seldom) .and. group /= 'mechanism' .and. &
-             (all(group /= ['load     ', 'motor    ', 'cam      ', 'coupling ', 'parameter', 'quantity ', &
-                           'objective', 'limit    ']) .or. &
-              draft%count_of(group) > 0)) then
+             (draft%count_of(group) > 0 .or. .not. (is_on_request(group_row) .or. &
+                                                     any(group == ['load    ', 'motor   ', 'cam     ', 'coupling'])))) then
       ! a conversation does not begin with rarely used names; those of the mechanism can be changed by their names, and
-      ! those of loads, motors, cams, couplings, parameters and quantities are for the ones that are there
+      ! those of loads, motors, cams, couplings and of groups that are begun on request are for the ones that are there
       call append(questions, count, question_type(kind=ask_seldom, topic=topic, group_row=group_row))
     end if
-    do place = 1, merge(draft%count_of(group), 1, group_table(group_row)%repeats)
+    may_begin = can_be_left_out(group_row, outline%program_name)
+    do place = 1, merge(draft%count_of(group), 1, group_table(group_row)%repeats .or. may_begin)
       call ask_about_one(draft, outline, question_type(topic=topic, group_row=group_row, place=place), rows, questions, count)
     end do
-    if (can_be_left_out(group_row, outline%program_name)) &
+    if (may_begin .and. (group_table(group_row)%repeats .or. draft%count_of(group) == 0)) &
       call append(questions, count, question_type(topic=topic, group_row=group_row, place=draft%count_of(group) + 1, &
                                                   row=rows(1), is_new=.true., on_request=is_on_request(group_row)))
     if (group == 'initial') call append(questions, count, question_type(kind=check_start, topic=topic))
@@ -184,18 +185,21 @@ contains
     type(question_type), intent(in) :: question  !< the question
     integer :: group
     character(len=:), allocatable :: kind, name
+    logical :: is_wanted
 
     name = trim(group_table(question%group_row)%name)
     associate (row => item_table(question%row))
       is_open = .false.
       if (.not. is_used(outline, row)) return
+      is_wanted = .false.
+      if (name == 'parameter') is_wanted = is_for_study(draft, question%place, trim(row%name))
       group = draft%find(name, question%place)
       kind = ''
       if (group > 0) kind = kind_in(draft, group)
       if (is_numbered(question%group_row) .and. row%name == 'coordinate' .and. &
           .not. can_be_left_out(question%group_row, outline%program_name)) return
       if (row%kinds /= '' .and. (kind == '' .or. .not. takes_kind(row, kind))) return
-      if (is_seldom(outline, row) .and. .not. outline%asked(question%row)) return
+      if (is_seldom(outline, row) .and. .not. (outline%asked(question%row) .or. is_wanted)) return
       if (name == 'pair' .and. row%name == 'links' .and. outline%way == 'pairs') return
       if (replaced(row%name) .and. draft%has(name, question%place, 'dh') &
           .and. .not. draft%has(name, question%place, trim(row%name))) return

@@ -42,7 +42,9 @@ module mech9_topics
                'does that stands at several places. A parameter begun by mistake is left out by remove.'), &
     topic_type('Quantities', 'quantity', 'A quantity is one number from the whole run, such as the stroke of a slider. '// &
                'A quantity begun by mistake is left out by remove.'), &
-    topic_type('Study', 'study', ''), &
+    topic_type('Study', 'study', 'A study makes a run for each of many sets of values of the parameters, and tells how the '// &
+               'quantities change. It is made after the run of this conversation, or by the option --study. '// &
+               'A study begun by mistake is left out by remove.'), &
     topic_type('Objectives', 'objective limit optimum', 'An objective is a path, a function, poses or a quantity that the '// &
                'mechanism should have. A limit is a condition that it must meet. '// &
                'What was begun by mistake is left out by remove.'), &
@@ -87,16 +89,17 @@ contains
   pure logical function is_on_request(group_row)
     integer, intent(in) :: group_row  !< row of the group in group_table
 
-    is_on_request = any(group_table(group_row)%name == ['parameter', 'quantity ', 'objective', 'limit    '])
+    is_on_request = any(group_table(group_row)%name == ['parameter', 'quantity ', 'study    ', 'objective', 'limit    ', &
+                                                        'optimum  '])
   end function is_on_request
 
-  !> Whether there can be any number of groups of a name, which the user begins one by one. In mech9d, drives are among them:
-  !> an independent coordinate without one is free.
+  !> Whether the user begins the groups of a name, and can leave them out. There can be any number of most of them, and one of
+  !> studies and searches. In mech9d, drives are among them: an independent coordinate without one is free.
   pure logical function can_be_left_out(group_row, program_name)
     integer, intent(in) :: group_row              !< row of the group in group_table
     character(len=*), intent(in) :: program_name  !< program of the conversation: mech9k or mech9d
 
-    can_be_left_out = group_table(group_row)%repeats .and. .not. is_numbered(group_row)
+    can_be_left_out = (group_table(group_row)%repeats .or. is_on_request(group_row)) .and. .not. is_numbered(group_row)
     if (group_table(group_row)%name == 'drive') can_be_left_out = program_name == 'mech9d'
   end function can_be_left_out
 end module mech9_topics
