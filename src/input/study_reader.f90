@@ -86,6 +86,7 @@ contains
     integer, intent(out) :: runs                          !< how many points the grid has
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:)
+    character(len=:), allocatable :: missing
     integer(long) :: product
     integer :: i
 
@@ -93,9 +94,9 @@ contains
     product = 1
     runs = 0
     do i = 1, size(parameters)
-      if (.not. parameters(i)%has_range .or. parameters(i)%count == 0) &
-        call diagnostics%add(document%groups(numbers(i))%span, 'parameter '''//parameters(i)%name//''' needs ''low'', ''high'' '// &
-                             'and ''count'' for a study on a grid')
+      missing = names_missing(document%groups(numbers(i)))
+      if (missing /= '') call diagnostics%add(document%groups(numbers(i))%span, 'parameter '''//parameters(i)%name// &
+                                              ''' needs '//missing//' for a study on a grid')
       product = product*max(1, parameters(i)%count)
       if (product > huge(1)) then
         call diagnostics%add(group%span, 'this grid has more than '//to_text(huge(1))//' points')
@@ -104,6 +105,26 @@ contains
     end do
     runs = int(product)
   end subroutine count_grid
+
+  !> The names that a parameter lacks for a grid, in words; empty where it has all of them.
+  pure function names_missing(group) result(words)
+    type(group_type), intent(in) :: group   !< group of the parameter
+    character(len=:), allocatable :: words
+    character(len=*), parameter :: names(3) = [character(len=5) :: 'low', 'high', 'count']
+    integer, allocatable :: missing(:)
+    integer :: i
+
+    missing = pack([1, 2, 3], [(.not. has_name(group, trim(names(i))), i=1, 3)])
+    words = ''
+    do i = 1, size(missing)
+      if (i > 1 .and. i == size(missing)) then
+        words = words//' and '
+      else if (i > 1) then
+        words = words//', '
+      end if
+      words = words//''''//trim(names(missing(i)))//''''
+    end do
+  end function names_missing
 
   !> Report parameters without a spread and without a range, from which no values can be drawn.
   pure subroutine check_spreads(document, parameters, diagnostics)

@@ -169,7 +169,8 @@ def mistakes(cases, mech9k):
     cases.write('0.3 long\n', 'word.dat')
     for text, options, code, message in (
             (parameters(given) + "&study kind='grid' /", (), DATA, "parameter 'rod' needs 'low', 'high' and 'count' for a study on a grid"),
-            (parameters(given, ", low=0.1, high=1") + "&study kind='grid' /", (), DATA, "parameter 'rod' needs 'low', 'high' and 'count'"),
+            (parameters(given, ", low=0.1, high=1") + "&study kind='grid' /", (), DATA, "parameter 'rod' needs 'count' for a study"),
+            (parameters(given, ", count=3") + "&study kind='grid' /", (), DATA, "parameter 'rod' needs 'low' and 'high' for a study"),
             (parameters(given) + "&study kind='sobol', runs=3 /", (), DATA, "parameter 'rod' needs 'spread', or 'low' and 'high'"),
             (parameters(given, given) + "&study kind='random' /", (), DATA, "&study needs 'runs'"),
             (parameters(given, given) + "&study kind='grid', runs=3 /", (), DATA, "'runs' does not belong to studies of kind 'grid'"),

@@ -181,7 +181,9 @@ contains
     if (.not. allocated(self%file%failure)) then
       difference = ''
       if (definition /= '') call tell_difference(self%layout%definition, definition, difference, 'there', 'here')
-      if (difference /= '') call self%file%fail('it is of another study: '//difference)
+      if (difference /= '') call self%file%fail('it is of another study: '//difference//'; continue it with the data '// &
+                                                  'file, the files that this names and the changes by --set that made it, '// &
+                                                  'or make a new one by --hdf5')
     end if
     if (.not. allocated(self%file%failure)) then
       call self%begin_outcomes(.not. writable)

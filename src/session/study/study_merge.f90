@@ -78,7 +78,8 @@ contains
       if (difference == '' .and. files(i)%columns%numbers_of_run() /= files(1)%columns%numbers_of_run()) &
         difference = 'their columns are not the same'
       if (difference == '') cycle
-      call raise(err, exit_file, "'"//paths(1)%text//"' and '"//paths(i)%text//"' are of different studies: "//difference)
+      call raise(err, exit_file, "'"//paths(1)%text//"' and '"//paths(i)%text//"' are of different studies: "//difference// &
+                 '; merge files that one data file made with the same changes by --set')
       return
     end do
   end subroutine open_files

@@ -110,7 +110,7 @@ contains
     self%part = self%file%layout%part
     if (.not. options%has('part') .or. all(options%part() == self%part)) return
     call raise(err, exit_file, "'"//self%paths%hdf5//"' is of part "//to_text(self%part(1))//'/'//to_text(self%part(2))// &
-               ', and --part '//options%argument('part')//' is another one')
+               ', and --part '//options%argument('part')//' is another one; leave out --part to continue the part of the file')
     call self%file%close(at_close)
   end subroutine continue_file
 

@@ -253,7 +253,8 @@ contains
     if (allocated(file%failure)) return
     call tell_difference(text, definition, difference, 'there', 'here')
     if (difference /= '') then
-      call file%fail('it is of another search: '//difference)
+      call file%fail('it is of another search: '//difference//'; continue it with the data file, the files that '// &
+                     'this names and the changes by --set that made it, or make a new one by --hdf5')
     else if (wanted < 1) then
       call file%fail('its number of starts makes no sense')
     else if (wanted > most) then
