@@ -106,16 +106,7 @@ CRANKS = ('&mechanism links=5, coordinates=6 /\n&structure cq=1 /\n'
           + ''.join(f'&initial coordinate={k}, position={0.3 * (-1) ** (k + 1)} /\n' for k in range(2, 7))
           + '&time end=0.5, intervals=2 /\n' + bodies(5))
 # base and coupler of a parallelogram are its longest links, and equally long
-PARALLELOGRAM = """&structure cq=1 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
-&pair coordinate=2, links=2,3, kind='revolute', point=0.5,0,0, axis=0,0,1, moving_point=0,0,0 /
-&pair coordinate=3, links=3,4, kind='revolute', point=1,0,0, axis=0,0,1, moving_point=0.5,0,0 /
-&pair coordinate=4, links=1,4, kind='revolute', point=1,0,0, axis=0,0,1, moving_point=0,0,0 /
-&initial coordinate=2, position=-1 /
-&initial coordinate=4, position=1 /
-&drive coordinate=1, kind='polynomial', coefficients=1,1 /
-&time end=0.5, intervals=2 /
-"""
+PARALLELOGRAM = kinematic.PARALLELOGRAM_CHAIN + '&time end=0.5, intervals=2 /\n'
 
 
 def kind_of(column):

@@ -52,7 +52,7 @@ HELICAL = """&structure cq=1 /
 HELICAL_PARAMETERS = (('tilt', 'pair.axis(1)', 0.1), ('pitch', 'pair.pitch', 0.4), ('c2', 'drive.coefficients(3)', -0.4),
                       ('c1', 'drive.coefficients(2)', 1.5))
 
-PARALLELOGRAM = """&structure cq=1 /
+PARALLELOGRAM_CHAIN = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
 &pair coordinate=2, links=2,3, kind='revolute', point=0.5,0,0, axis=0,0,1, moving_point=0,0,0 /
 &pair coordinate=3, links=3,4, kind='revolute', point=1,0,0, axis=0,0,1, moving_point=0.5,0,0 /
@@ -60,7 +60,8 @@ PARALLELOGRAM = """&structure cq=1 /
 &initial coordinate=2, position=-1 /
 &initial coordinate=4, position=1 /
 &drive coordinate=1, kind='polynomial', coefficients=1,1 /
-&point name='P', link=3, position=0.5,0.1,0 /
+"""
+PARALLELOGRAM = PARALLELOGRAM_CHAIN + """&point name='P', link=3, position=0.5,0.1,0 /
 &parameter name='crank', sets='pair(2).point(1)' /
 &time end={end}, intervals=4 /
 &output sensitivities=.true. /

@@ -17,6 +17,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 import numpy as np
 
 from mech9_cases import Checks, run, skip
+from study_cases import StudyCases
 
 try:
     import h5py
@@ -60,24 +61,6 @@ PENDULUM = """&structure cq=1,2 /
 # Debian's OpenMPI asks root for these; several processes share a core, and a container may forbid them to read each other's memory.
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1', OMPI_MCA_mpi_yield_when_idle='1',
                    OMPI_MCA_btl_vader_single_copy_mechanism='none', OMPI_MCA_btl_sm_single_copy_mechanism='none')
-
-
-class Cases:
-    def __init__(self, checks, folder):
-        self.checks, self.folder = checks, folder
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def write(self, text, name='case.nml'):
-        with open(self.path(name), 'w', encoding='utf-8') as file:
-            file.write(text)
-        return self.path(name)
-
-    def study(self, program, text, *more, why, code=DONE):
-        done = run(program, self.write(text), '--study', '--quiet', *more, folder=self.folder)
-        self.checks.true(done.returncode == code, f'{why}: ends with {code}', f'{done.returncode}: {done.stderr}')
-        return done.stderr
 
 
 def scales_of(item):
@@ -336,7 +319,7 @@ def main():
     checks = Checks()
     mech9k, mech9d = map(os.path.abspath, sys.argv[1:3])
     with tempfile.TemporaryDirectory() as folder:
-        cases = Cases(checks, folder)
+        cases = StudyCases(checks, folder, '--quiet')
         runs_alone(cases, mech9k, SLIDER_CRANK, 'kinematics')
         runs_alone(cases, mech9d, PENDULUM, 'dynamics')
         opened_by_xarray(cases, mech9k)

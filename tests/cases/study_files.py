@@ -17,6 +17,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 import numpy as np
 
 from mech9_cases import Checks, read_table, run, skip, text_of
+from study_cases import StudyCases
 
 try:
     import h5py
@@ -54,24 +55,6 @@ PENDULUM = """&structure cq=1 /
 
 def random_study(runs=RUNS):
     return SLIDER_CRANK + f"&study kind='random', runs={runs}, seed=3 /\n"
-
-
-class Cases:
-    def __init__(self, checks, folder):
-        self.checks, self.folder = checks, folder
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def write(self, text, name='case.nml'):
-        with open(self.path(name), 'w', encoding='utf-8') as file:
-            file.write(text)
-        return self.path(name)
-
-    def study(self, program, text, *more, why, code=DONE):
-        done = run(program, self.write(text), '--study', *more)
-        self.checks.true(done.returncode == code, f'{why}: ends with {code}', f'{done.returncode}: {done.stderr}')
-        return done.stderr
 
 
 def numbers_of(path):
@@ -207,7 +190,7 @@ def parts(cases, mech9k):
     for more in ((), ('--part', '2/4')):
         cases.study(mech9k, text, '--continue', path, *more, why='part continued')
     printed = cases.study(mech9k, text, '--continue', path, '--part', '1/4', why='another part', code=FILE)
-    cases.checks.true("part.h5' is of part 2/4, and --part 1/4 is another one" in printed, 'another part is refused', printed)
+    cases.checks.true("part.h5' is of part 2/4, and --part 1/4 is another one; leave out --part" in printed, 'another part is refused', printed)
     cases.study(mech9k, text, '--part', '31/40', '--hdf5', path, why='no runs')
     cases.checks.true(all(len(values) == 0 for values in numbers_of(path).values()), 'a part without runs')
     cases.study(mech9k, text, '--continue', path, why='no runs')
@@ -261,6 +244,7 @@ def merged(cases, mech9k):
     with open(cases.path('short.h5'), 'wb') as file:
         file.write(open(parts[0], 'rb').read()[:2500])
     for names, message in ((('part1.h5', 'other.h5'), "other.h5' are of different studies: in the first one '&study kind='random', runs=3000"),
+                           (('part1.h5', 'other.h5'), '; merge files that one data file made with the same changes by --set'),
                            (('part1.h5', 'changed.h5', 'part2.h5'), "part2.h5' have different numbers for run 23; make it anew"),
                            (('part1.h5', 'short.h5'), 'truncated file'),
                            (('part1.h5', 'none.h5'), 'there is no such file'),
@@ -305,7 +289,7 @@ def refused(cases, mech9k):
         file['quantities/way'] = [1.0, 2.0]
     for name, text, more, message in (
             ('file.h5', text.replace('seed=3', 'seed=4'), (), "it is of another study: there '&study kind='random', runs=30, seed=3,', here '&study"),
-            ('file.h5', text.replace('runs=30', 'runs=31'), (), 'it is of another study'),
+            ('file.h5', text.replace('runs=30', 'runs=31'), (), 'that made it, or make a new one by --hdf5'),
             ('file.h5', text.replace('0.4, 10', '0.4, 10.5'), (), "here '&drive coordinate=1, kind='polynomial', coefficients=0.4,10.5,'"),
             ('file.h5', text.replace('zero=0,1,0, moving_point=0,0,0', 'zero=0,1,0, moving_point=0,0,0.00012345678'), (),
              "moving_point=0,0,0.00012345678,'"),
@@ -351,7 +335,7 @@ def main():
     checks = Checks()
     mech9k, mech9d = map(os.path.abspath, sys.argv[1:3])
     with tempfile.TemporaryDirectory() as folder:
-        cases = Cases(checks, folder)
+        cases = StudyCases(checks, folder)
         contents(cases, mech9k, random_study(30), (('run', '', '1'), ('crank', 'parameters/', ''), ('rod', 'parameters/', ''), ('stroke', 'quantities/', 'm'),
                                                    ('way', 'quantities/', 'm s'), ('exit_code', '', '1')))
         contents(cases, mech9d, PENDULUM, (('run', '', '1'), ('mass', 'parameters/', ''), ('swing', 'quantities/', 'rad'), ('exit_code', '', '1')))
