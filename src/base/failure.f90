@@ -23,7 +23,7 @@ module mech9_failure
     failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, failure_open_coupling, failure_coupled, &
     failure_off_table, failure_no_neighbours, failure_unknown_derivative, failure_singular_sensitivity, &
     failure_opening_parameter, failure_jump_sensitivity, failure_angles_sensitivity, failure_shared_force, &
-    failure_unknown_forces, last_failure
+    failure_jumping_force, last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
@@ -183,15 +183,15 @@ module mech9_failure
   integer, parameter :: failure_singular_sensitivity = 67
   !> A change of a parameter opens a closed chain: chains, coordinates, name, t.
   integer, parameter :: failure_opening_parameter = 68
-  !> Rates jump at a joint of laws, so that their derivatives by parameters jump: t.
+  !> Rates jump at a joint of laws whose time a parameter sets: name, t.
   integer, parameter :: failure_jump_sensitivity = 69
   !> Other angles are integrated in place of those of the data file, whose derivatives are not known: t.
   integer, parameter :: failure_angles_sensitivity = 70
   !> Equilibrium does not determine the force of a coupling, whose derivatives are not known: number (of the coupling).
   integer, parameter :: failure_shared_force = 71
-  !> A parameter sets numbers by which derivatives of forces are not known: name.
-  integer, parameter :: failure_unknown_forces = 72
-  integer, parameter :: last_failure = failure_unknown_forces
+  !> A parameter sets numbers of a law by which a force jumps, so that derivatives jump: name.
+  integer, parameter :: failure_jumping_force = 72
+  integer, parameter :: last_failure = failure_jumping_force
 
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type

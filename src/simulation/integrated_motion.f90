@@ -16,6 +16,7 @@ module mech9_integrated_motion
   use mech9_coordinate_choice, only: best_independent, carry_over, worth_taking
   use mech9_integrated_vector, only: pack_rates
   use mech9_motion_system, only: motion_system_type, set_motion_system
+  use mech9_joint_passing, only: pass_law_joint => pass_joint
   use mech9_held_angles, only: copy_drives
   use mech9_ball_angles, only: ball_angles_type
   use mech9_dense_output, only: dense_output_type
@@ -380,7 +381,7 @@ contains
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(expectation_type) :: nothing
 
-    call self%system%pass_joint(self%t, self%y, err)
+    call pass_law_joint(self%system, self%t, self%y, err)
     if (allocated(err)) return
     call self%system%resume(nothing)
     call self%system%move_to(self%t, self%y, err)

@@ -5,12 +5,10 @@
 !> accepted step: half the cost of closing them in every evaluation, at the same error (docs/design-decisions.md).
 module mech9_motion_system
   use mech9_kinds, only: wp, long
-  use mech9_tolerances, only: trusted_between_steps, trusted_closing, round_off_of_jumps
+  use mech9_tolerances, only: trusted_between_steps, trusted_closing
   use mech9_error, only: error_type, raise, exit_singular, exit_integrator
   use mech9_failure, only: failure_singular_step, failure_unclosed_step, failure_drive_jumps, failure_no_inertia, &
-    failure_lost_inertia, failure_infinite_rate, failure_jump_sensitivity
-  use mech9_cholesky, only: cholesky_factorize, cholesky_solve
-  use mech9_driven_equations, only: hold
+    failure_lost_inertia, failure_infinite_rate
   use mech9_law, only: drive_slot_type
   use mech9_partition, only: partition_type
   use mech9_motor, only: motor_action_type
@@ -61,6 +59,7 @@ module mech9_motion_system
     procedure :: show_sensitivity
     procedure :: vector
     procedure :: rate
+    procedure :: take_vector
     procedure :: settle
     procedure :: close_near
     procedure :: move_to
@@ -68,7 +67,6 @@ module mech9_motion_system
     procedure :: present => show_present
     procedure :: conditioning
     procedure :: signs
-    procedure :: pass_joint
     procedure :: pass_limits
   end type motion_system_type
 
@@ -223,43 +221,6 @@ contains
     call set_inputs(self%drives, self%state%t, self%state%q, self%state%dq, self%state%ddq, err)
   end subroutine take_vector
 
-  !> Pass a joint of the laws. Where rates of driven coordinates jump, those of the free ones change by the impulse of the drives:
-  !> a_ff (change of dq_f) = -a_fd (change of dq_d).
-  subroutine pass_joint(self, t, y, err)
-    class(motion_system_type), intent(inout) :: self    !< the motion system, afterwards in the interval behind the joint
-    real(wp), intent(in) :: t                           !< time of the joint [s]
-    real(wp), intent(inout) :: y(:)                     !< the vector there; the rates may change
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp), dimension(self%plan%n_coordinates) :: jump
-    real(wp) :: duration
-    integer :: i
-
-    call take_vector(self, t, y, err)
-    if (allocated(err)) return
-    duration = self%model%request%time%end - self%model%request%time%start
-    jump = -self%state%dq
-    call self%interval%begin(self%model, t)
-    call take_vector(self, t, y, err)
-    if (allocated(err)) return
-    where (self%plan%driven)
-      jump = jump + self%state%dq
-    elsewhere
-      jump = 0.0_wp
-    end where
-    if (allocated(self%sensitivity) .and. any(abs(jump)*duration > round_off_of_jumps*self%plan%unit_of)) then
-      call raise(err, exit_singular, failure_jump_sensitivity)
-      err%failure%t = t
-    else if (maxval(abs(jump)) > 0.0_wp) then
-      call take_impulse(self, jump(self%plan%independent), y, err)
-    end if
-    if (allocated(err)) return
-    do i = 1, size(self%drives)
-      associate (k => self%drives(i)%drive%coordinate)
-        y(k) = self%state%q(k)
-      end associate
-    end do
-  end subroutine pass_joint
-
   !> Let the motors work at other limits behind a joint: the one that passes its limit there, and all whose forces jump.
   subroutine pass_limits(self, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system behind the joint, with all rates
@@ -282,33 +243,6 @@ contains
     end if
     call self%present(err)
   end subroutine pass_limits
-
-  !> Change the free rates by the impulse of drives whose rates jump.
-  subroutine take_impulse(self, jump, y, err)
-    class(motion_system_type), intent(inout) :: self    !< the motion system, with the state behind the joint
-    real(wp), intent(in) :: jump(:)                     !< changes of the independent rates, zero for free ones
-    real(wp), intent(inout) :: y(:)                     !< the vector; gets the free rates behind the joint
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp) :: a(size(jump), size(jump)), right(size(jump))
-    integer :: failed_at, i, n
-
-    n = size(jump)
-    call place_all(self%plan, self%state, err)
-    if (.not. allocated(err)) &
-      call find_equations(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, err)
-    if (allocated(err)) return
-    a = self%work%coefficients
-    do i = 1, n
-      right(i) = -dot_product(a(i, :i), jump(:i)) - dot_product(a(i + 1:, i), jump(i + 1:))
-    end do
-    call hold(n, self%dynamics%held, a, right)
-    call cholesky_factorize(n, a, failed_at)
-    if (failed_at > 0) return
-    call cholesky_solve(n, a, right)
-    do i = 1, size(self%plan%free)
-      y(self%plan%n_coordinates + i) = y(self%plan%n_coordinates + i) + right(self%plan%free_places(i))
-    end do
-  end subroutine take_impulse
 
   !> Fail where a drive is elsewhere than its rates have led since the last step: it jumps.
   subroutine check_drives(self, y, err)

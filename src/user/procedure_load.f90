@@ -4,9 +4,10 @@ module mech9_procedure_load
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data, exit_integrator
   use mech9_text, only: to_text
+  use mech9_differentiation, only: half_width, step_count, trial_step, length_along, best_slopes_type
   use mech9_call_fault, only: call_fault_type
   use mech9_motion_view, only: motion_view_type
-  use mech9_force_sum, only: force_sum_type
+  use mech9_force_sum, only: force_sum_type, new_force_sum
   use mech9_load, only: load_type
   use mech9_user_force, only: user_force
   implicit none
@@ -22,6 +23,8 @@ module mech9_procedure_load
     procedure :: mark_coordinates
     procedure :: apply
     procedure :: potential
+    procedure :: numbers
+    procedure :: vary_own
   end type procedure_load_type
 
 contains
@@ -85,4 +88,69 @@ contains
 
     potential = 0.0_wp
   end function potential
+
+  !> The numbers that the procedure receives.
+  pure subroutine numbers(self, values)
+    class(procedure_load_type), intent(in) :: self      !< the procedure load
+    real(wp), allocatable, intent(out) :: values(:)     !< numbers of the group &user
+
+    values = self%parameters
+  end subroutine numbers
+
+  !> Add the derivatives of the forces by a parameter on which these numbers depend. The procedure knows nothing of derivatives:
+  !> they come from differences over wide stencils, to near round-off. Fails where the procedure has no forces beside the present
+  !> numbers.
+  subroutine vary_own(self, change, factor, state, changes, err)
+    class(procedure_load_type), intent(in) :: self      !< the procedure load
+    real(wp), intent(in) :: change(:)                   !< derivatives of its numbers
+    real(wp), intent(in) :: factor                      !< without meaning: these loads have no law
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(best_slopes_type) :: best
+    real(wp) :: values(6*size(changes%force, 2) + size(changes%generalized), -half_width:half_width), h
+    integer :: number, n
+    logical :: good
+
+    if (.not. any(abs(change) > 0.0_wp)) return
+    do number = 1, step_count
+      h = trial_step(number, length_along(self%parameters, change))
+      call sample(self, change, h, state, changes, values, err)
+      if (allocated(err)) cycle
+      call best%offer(values, h, good)
+      if (good) exit
+    end do
+    if (.not. allocated(best%slopes)) return
+    if (allocated(err)) deallocate (err)
+    n = size(changes%force, 2)
+    changes%force = changes%force + reshape(best%slopes(:3*n), [3, n])
+    changes%torque = changes%torque + reshape(best%slopes(3*n + 1:6*n), [3, n])
+    changes%generalized = changes%generalized + best%slopes(6*n + 1:)
+    changes%any_generalized = .true.
+  end subroutine vary_own
+
+  !> The forces of the procedure for numbers on both sides of the present ones. Fails where it has none.
+  subroutine sample(load, change, h, state, changes, values, err)
+    type(procedure_load_type), intent(in) :: load              !< the load
+    real(wp), intent(in) :: change(:)                          !< derivatives of its numbers
+    real(wp), intent(in) :: h                                  !< distance of neighbouring numbers, in units of the parameter
+    type(motion_view_type), intent(in) :: state                !< present motion of links and coordinates
+    type(force_sum_type), intent(in) :: changes                !< of the size of sums of forces
+    real(wp), intent(out) :: values(:, -half_width:)           !< (forces, torques and generalized forces; numbers)
+    type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
+    type(procedure_load_type) :: beside
+    type(force_sum_type) :: sum
+    integer :: i
+
+    beside = load
+    sum = new_force_sum(size(changes%force, 2), size(changes%generalized))
+    do i = -half_width, half_width
+      call sum%clear()
+      beside%parameters = load%parameters + i*h*change
+      call beside%apply(state, sum, err)
+      if (allocated(err) .and. associated(state%fault)) state%fault%found = .false.
+      if (allocated(err)) return
+      values(:, i) = [sum%force, sum%torque, sum%generalized]
+    end do
+  end subroutine sample
 end module mech9_procedure_load

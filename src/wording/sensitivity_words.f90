@@ -2,7 +2,7 @@
 module mech9_sensitivity_words
   use mech9_text, only: to_text
   use mech9_failure, only: failure_type, failure_no_neighbours, failure_unknown_derivative, failure_singular_sensitivity, &
-    failure_opening_parameter, failure_jump_sensitivity, failure_angles_sensitivity, failure_shared_force, failure_unknown_forces
+    failure_opening_parameter, failure_jump_sensitivity, failure_angles_sensitivity, failure_shared_force, failure_jumping_force
   use mech9_block_names, only: chain_names
   implicit none
   private
@@ -29,9 +29,9 @@ contains
       text = 'derivatives by the parameter '''//failure%name//''' do not exist: '//chain_names(failure%chains)//' would not '// &
              'stay closed if it changed alone. Let the parameter set the other dimensions too that must change with it'
     case (failure_jump_sensitivity)
-      text = 'derivatives by the parameters are not computed beyond t = '//to_text(failure%t, 10)//' s, where the rates of '// &
-             'drives jump, and those of free coordinates with them. Give drives without jumps of their rates, end the run '// &
-             'before, or leave out sensitivities and gradients'
+      text = 'derivatives by the parameter '''//failure%name//''' are not computed beyond t = '//to_text(failure%t, 10)// &
+             ' s: it sets this time, at which the rates of drives jump. Give drives without jumps of their rates, end the run '// &
+             'before, leave out the parameter, or sensitivities and gradients'
     case (failure_angles_sensitivity)
       text = 'derivatives by the parameters are not computed at t = '//to_text(failure%t, 10)//' s, where the motion goes on '// &
              'in other angles of a ball joint or of a rod than those of the data file. End the run before, or leave out '// &
@@ -39,9 +39,10 @@ contains
     case (failure_shared_force)
       text = 'derivatives of forces in the pairs are not computed, because equilibrium does not determine the force of '// &
              'coupling '//to_text(failure%number)//'. Leave out reactions, or sensitivities and gradients'
-    case (failure_unknown_forces)
-      text = 'derivatives of forces by the parameter '''//failure%name//''' are not computed: it sets numbers of the user''s '// &
-             'loads. Leave out the parameter, reactions and drive_forces, or sensitivities and gradients'
+    case (failure_jumping_force)
+      text = 'derivatives by the parameter '''//failure%name//''' are not computed: it sets numbers of a law by which the '// &
+             'force of a load or of a motor jumps. Give a law whose value does not jump (and for the setpoint of a '// &
+             'controller its rate), leave out the parameter, or sensitivities and gradients'
     end select
   end subroutine explain_sensitivity
 end module mech9_sensitivity_words

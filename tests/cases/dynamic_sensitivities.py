@@ -334,12 +334,86 @@ def check_smooth_joints(case):
         case.against_runs(text, (('depth', 'body(1).centre(2)', -3.0),), f'joints of {law}')
 
 
+# A five-bar whose first crank a drive turns from rest to rest: one coordinate of its closed chain is free.
+FIVE_BAR = """&structure cq=1,5 /
+&pair coordinate=1, links=1,2, kind='revolute', point=0,0,0, axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', point=0.3,0,0, axis=0,0,1, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', point=0.7,0,0, axis=0,0,1, moving_point=0.6,0,0 /
+&pair coordinate=4, links=4,5, kind='revolute', point=0,0,0, axis=0,0,1, moving_point=0.4,0,0 /
+&pair coordinate=5, links=1,5, kind='revolute', point=0.8,0,0, axis=0,0,1, moving_point=0,0,0 /
+&drive coordinate=1, kind='segments', times=0,0.1,0.37,2, values=1.2,1.2,1.6,1.6, laws='dwell','harmonic','dwell' /
+&initial coordinate=2, position=-0.9 /
+&initial coordinate=3, position=-1.5 /
+&initial coordinate=4, position=0.4 /
+&initial coordinate=5, position=1.4, velocity=0.3 /
+&body link=3, mass=1, centre=0.3,0.05,0, inertia=0,0,0.05,0,0,0 /
+&body link=4, mass=1.5, centre=0.3,0,0, inertia=0,0,0.04,0,0,0 /
+&body link=5, mass=2, centre=0.2,0,0, inertia=0,0,0.03,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&load kind='coordinate', coordinate=5, damping=0.2 /
+&point name='P', link=3, position=0.4,0.2,0 /
+&time end=0.6, intervals=5 /
+"""
+
+
+def check_moving_joints(case):
+    """Times and values of laws in segments as parameters: beyond a joint whose time varies the derivatives of the free rates have
+    jumped by the jump of the accelerations. Outputs lie between the joints."""
+    for law in ('cycloidal', 'harmonic', 'polynomial345'):
+        text = f"""&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /
+&drive coordinate=1, kind='segments', times=0,0.2,0.3,0.7, values=0,0,0.05,0, laws='{law}' /
+&initial coordinate=2, position=0.3 /
+&body link=3, mass=5, centre=0,-3,0 /
+&gravity acceleration=0,-9.81,0 /
+&time end=0.62, intervals=5 /
+"""
+        case.against_runs(text, (('from', 'drive.times(2)', 0.2), ('to', 'drive.times(3)', 0.3), ('over', 'drive.values(3)', 0.05)),
+                          f'times of {law}')
+    case.against_runs(FIVE_BAR, (('from', 'drive.times(2)', 0.1), ('to', 'drive.times(3)', 0.37), 
+                                 ('angle', "'drive.values(3)','drive.values(4)'", 1.6)),
+                      'times of the drive of a five-bar')
+    delayed = (('shift', "'drive.times(2)','drive.times(3)'", 0.1),)
+    text = declared(delayed).replace(' /', ', terms=0,0.27 /')
+    found = case.table(FIVE_BAR + SOLVER + text + '&output sensitivities=.true. /\n')
+    apart = case.sensitivities(FIVE_BAR + SOLVER, (('from', 'drive.times(2)', 0.1), ('to', 'drive.times(3)', 0.37)))
+    for column in ('q5', 'dq5', 'ddq5', 'P.vx', 'E.total'):
+        case.close(found[f'd({column})/d(shift)'], apart[f'd({column})/d(from)'] + apart[f'd({column})/d(to)'], 1e-9,
+                   f'a shift of both times is the sum of both: {column}')
+    bent = FOUR_BAR.replace("law='harmonic', mean=1, amplitude=0.5, angular_frequency=3",
+                            "law='segments', times=0,0.2,0.33,1, values=0,0,1,1, laws='dwell','harmonic','dwell'")
+    case.against_runs(bent, (('from', 'load(2).times(2)', 0.2), ('to', 'load(2).times(3)', 0.33),  ('mass', 'body(2).mass', 1.0)),
+                      'times of the law of a load')
+    led = BEAD.replace("&drive coordinate=1, kind='{law}' /", """&initial coordinate=1, position=0 /
+&body link=2, mass=1, inertia=0.1,0.1,0.1,0,0,0 /
+&motor coordinate=1, kind='pid', proportional=30, derivative=4, integral=5, law='segments', times=0,0.3,1.1,3,
+       values=0,0,1,1, laws='dwell','harmonic','dwell' /""")
+    case.against_runs(led, (('from', 'motor.times(2)', 0.3), ('to', 'motor.times(3)', 1.1)), 'times of the setpoint of a controller')
+
+
+def check_jumps(case):
+    """Rates of drives that jump at known times: derivatives of the free rates change by that of the impulse. The impulse on the bead
+    of the hoop is zero; the five-bar and the open chain in space have one that depends on all dimensions."""
+    jumps = BEAD.format(law="segments', times=0,0.5,3, values=0,1,2, laws='constant-velocity','constant-velocity' / !")
+    case.against_runs(jumps, (('centre', 'body.centre(2)', -0.5), ('fast', 'drive.values(2)', 1.0), ('first', 'initial(1).position', 0.8)),
+                      'a hoop that jumps')
+    bar = FIVE_BAR.replace("laws='dwell','harmonic','dwell'", "laws='dwell','constant-velocity','dwell'")
+    case.against_runs(bar, (('angle', "'drive.values(3)','drive.values(4)'", 1.6), ('rod', 'pair(3).point(1)', 0.7),
+                            ('mass', 'body(1).mass', 1.0), ('centre', 'body(2).centre(1)', 0.3), ('rate', 'initial(4).velocity', 0.3)),
+                      'a five-bar whose drive jumps')
+    drive = "&drive coordinate=1, kind='segments', times=0,0.3,0.6,2, values=0.2,0.2,0.5,0.5, laws='dwell','constant-velocity','dwell' /\n"
+    space = SPATIAL.replace('&initial coordinate=1, position=0.2, velocity=1.5 /\n', drive)
+    case.against_runs(space, (('pitch', 'pair(1).pitch', 0.3), ('tilt', 'pair(2).axis(2)', 0.3), ('far', "'drive.values(3)','drive.values(4)'", 0.5),
+                              ('product', 'body(1).inertia(4)', 0.01), ('stiff', 'load(1).stiffness', 60.0)), 'a chain in space that jumps')
+
+
 def check_refusals(case):
     jumps = BEAD.format(law="segments', times=0,0.5,3, values=0,1,2, laws='constant-velocity','constant-velocity' / !")
-    case.refused(jumps + declared((('centre', 'body.centre(2)', -0.5),)) + '&output sensitivities=.true. /\n', 6,
-                 'derivatives by the parameters are not computed beyond t = 0.5 s, where the rates of drives jump')
+    case.refused(jumps + declared((('when', 'drive.times(2)', 0.5),)) + '&output sensitivities=.true. /\n', 6,
+                 "derivatives by the parameter 'when' are not computed beyond t = 0.5 s: it sets this time, at which the rates of drives jump")
     bent = FOUR_BAR.replace("law='harmonic', mean=1, amplitude=0.5, angular_frequency=3",
-                            "law='segments', times=0,0.2,1, values=0,1,1, laws='harmonic','dwell'")
+                            "law='segments', times=0,0.2,0.3, values=0,0,1, laws='dwell','harmonic', period=0.3")
     case.refused(bent + declared((('push', 'load(2).times(2)', 0.2),)) + '&output sensitivities=.true. /\n', 3,
                  "derivatives by the parameter 'push' are not computed")
     top = """&structure cq=1,2,3 /
@@ -368,6 +442,8 @@ def main():
         check_hdf5(case)
         check_poses(case)
         check_smooth_joints(case)
+        check_moving_joints(case)
+        check_jumps(case)
         check_refusals(case)
         case.against_runs(FOUR_BAR, FOUR_BAR_PARAMETERS, 'four-bar with loads', 2.0**-10)
         case.against_runs(PENDULUM_FOUR_BAR, (('bar', 'pair(2).point(2)', -1.0), ('mass', 'body(1).mass', 20.0),

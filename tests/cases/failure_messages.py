@@ -38,7 +38,6 @@ UNREACHABLE = {
     'lost_angles': 'positions within a step that was made are always found',
     'not_started': 'the programs start each motion',
     'backwards': 'the times of a data file are in order',
-    'unknown_forces': 'numbers of a load of the user lead to it: user_sensitivities.py',
     'interrupted': 'a signal leads to it: interrupted_run.py',
     'interrupted_starts': 'a signal leads to it: interrupted_run.py',
 }
@@ -355,8 +354,15 @@ def free_cases():
         ('no_inertia', four_bar(ROCKER, START), (), DATA,
          ['independent coordinate 1 has no inertia: no link with mass moves with it (apart from those that the independent '
           'coordinates before it move already); give a &body']),
-        ('jump_sensitivity', BODY_ON_DRIVE + by_mass(), (), SINGULAR,
-         ['derivatives by the parameters are not computed beyond t = 0.5 s, where the rates of drives jump']),
+        ('jump_sensitivity', BODY_ON_DRIVE + "&parameter name='when', sets='drive.times(2)' /\n&output sensitivities=.true. /\n", (), SINGULAR,
+         ["derivatives by the parameter 'when' are not computed beyond t = 0.5 s: it sets this time, at which the rates of drives jump. "
+          'Give drives without jumps of their rates, end the run before, leave out the parameter, or sensitivities and gradients']),
+        # the push comes to an end at each period, whose length the parameter sets
+        ('jumping_force', BODY_ON_DRIVE + "&load kind='force', link=3, force=1,0,0, law='segments', "
+         "times=0,0.1,0.3, values=0,0,1, laws='dwell','harmonic', period=0.3 /\n&parameter name='begin', sets='load.times(2)' /\n"
+         "&output sensitivities=.true. /\n", (), DATA,
+         ["derivatives by the parameter 'begin' are not computed: it sets numbers of a law by which the force of a load or of a motor "
+          'jumps. Give a law whose value does not jump (and for the setpoint of a controller its rate), leave out the parameter']),
         ('angles_sensitivity', TUMBLING + by_mass(), (), SINGULAR,
          ['derivatives by the parameters are not computed at t = ', 'in other angles of a ball joint or of a rod']),
         # the load keeps the angles as they are

@@ -11,7 +11,7 @@ program test_explanation
     failure_interrupted_starts, failure_sharp_curve, failure_unknown_method, &
     failure_relative_tolerance, failure_absolute_tolerance, failure_tolerance_count, failure_infinite_rate, &
     failure_infinite_jacobian, failure_few_points, failure_points_order, failure_not_started, failure_backwards, &
-    failure_interrupted, failure_lost_angles, failure_drive_jumps, failure_open_coupling, failure_unknown_forces
+    failure_interrupted, failure_lost_angles, failure_drive_jumps, failure_open_coupling
   use mech9_integration_methods, only: integration_methods
   use mech9_explanation, only: explain
   use mech9_testing, only: tester_type, message_of
@@ -23,7 +23,6 @@ program test_explanation
   call couplings()
   call blocks()
   call motions()
-  call derivatives()
   call stopped_integration()
   call integrations()
   call uses_of_the_library()
@@ -195,16 +194,6 @@ contains
     call says(err, 'the motion cannot go on beyond t = 0.25 s: closed chains 1, 2 together (coordinates 2, 4) cannot follow up '// &
               'to q1 = 30, q3 = 0.5, where coordinate 4 grows beyond all bounds')
   end subroutine motions
-
-  !> Derivatives that are not known.
-  subroutine derivatives()
-    type(error_type), allocatable :: err
-
-    call raise(err, exit_data, failure_unknown_forces)
-    err%failure%name = 'drag'
-    call says(err, 'derivatives of forces by the parameter ''drag'' are not computed: it sets numbers of the user''s loads. '// &
-              'Leave out the parameter, reactions and drive_forces, or sensitivities and gradients')
-  end subroutine derivatives
 
   !> The failure of a system is told with the times of the integration that it ended.
   subroutine stopped_integration()

@@ -1,9 +1,9 @@
-!> Whether the numbers that parameters set are among those by which forces, and motions that follow from forces, have known derivatives.
+!> Whether the numbers that parameters set are among those by which integrated motions have known derivatives.
 module mech9_known_derivatives
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_failure, only: failure_unknown_derivative, failure_unknown_forces
-  use mech9_law, only: law_type
+  use mech9_failure, only: failure_jumping_force
+  use mech9_law, only: law_type, from_inside
   use mech9_model, only: model_type
   use mech9_tangent, only: tangent_type
   implicit none
@@ -12,50 +12,24 @@ module mech9_known_derivatives
 
 contains
 
-  !> Fail with exit_data where a parameter sets numbers by which the forces of a motion have no known derivatives, or, where it is
-  !> integrated, the motion itself.
-  subroutine check_known(model, tangents, integrated, err)
+  !> Fail with exit_data where a parameter sets numbers by which an integrated motion has no known derivatives.
+  subroutine check_known(model, tangents, err)
     type(model_type), intent(in) :: model                 !< the model
     type(tangent_type), intent(in) :: tangents(:)         !< (P) derivatives of its constants
-    logical, intent(in) :: integrated                     !< the motion follows from forces, and has derivatives at all times
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     integer :: i
 
     do i = 1, size(tangents)
-      if (knows_forces(model, i)) then
-        if (.not. integrated) cycle
-        if (is_smooth(model, tangents(i))) cycle
-      end if
-      call raise(err, exit_data, merge(failure_unknown_derivative, failure_unknown_forces, integrated))
+      if (is_smooth(model, tangents(i))) cycle
+      call raise(err, exit_data, failure_jumping_force)
       err%failure%name = model%parameters(i)%name
       err%place = model%parameters(i)%place
       return
     end do
   end subroutine check_known
 
-  !> Whether the derivatives of forces by a parameter are known: numbers of loads must be.
-  pure logical function knows_forces(model, number) result(known)
-    type(model_type), intent(in) :: model        !< the model
-    integer, intent(in) :: number                !< of the parameter
-    real(wp), allocatable :: values(:)
-    logical :: sets_loads
-    integer :: i
-
-    known = .true.
-    sets_loads = .false.
-    do i = 1, size(model%parameters(number)%targets)
-      associate (group => model%parameters(number)%targets(i)%group)
-        sets_loads = sets_loads .or. group == 'load' .or. group == 'motor' .or. group == 'user'
-      end associate
-    end do
-    if (.not. sets_loads) return
-    do i = 1, size(model%mechanism%loads)
-      call model%mechanism%loads(i)%load%constants(values)
-      known = known .and. allocated(values)
-    end do
-  end function knows_forces
-
-  !> Whether no law whose numbers vary has joints: the times of these may vary, and rates jump there.
+  !> Whether no load or motor whose law's numbers vary has a force that jumps: the time of the jump may vary, which changes rates.
+  !> Jumps in the rates of drives are found where they happen.
   logical function is_smooth(model, tangent)
     type(model_type), intent(in) :: model        !< the model
     type(tangent_type), intent(in) :: tangent    !< derivatives by the parameter
@@ -67,21 +41,40 @@ contains
       associate (load => model%mechanism%loads(i)%load)
         if (.not. (tangent%loads(i)%varies .and. allocated(load%law))) cycle
         call load%numbers(values)
-        if (any(abs(tangent%loads(i)%change(size(values) + 1:)) > 0.0_wp)) is_smooth = is_smooth .and. .not. has_joints(load%law)
+        if (.not. any(abs(tangent%loads(i)%change(size(values) + 1:)) > 0.0_wp)) cycle
+        if (jumps(model, load%law)) is_smooth = .false.
       end associate
     end do
-    do i = 1, size(model%problem%drives)
-      if (tangent%drives(i)%varies) is_smooth = is_smooth .and. .not. has_joints(model%problem%drives(i)%drive)
-    end do
-  contains
-
-    !> Whether the pieces of a law join at some time.
-    pure logical function has_joints(law)
-      class(law_type), intent(in) :: law   !< the law
-
-      associate (t => model%request%time%start)
-        has_joints = abs(law%next_joint(t, 1.0_wp)) < huge(t) .or. abs(law%next_joint(t, -1.0_wp)) < huge(t)
-      end associate
-    end function has_joints
   end function is_smooth
+
+  !> Whether the value of a law jumps at a joint in the time of the run, or for the setpoint of a motor its rate, too.
+  logical function jumps(model, law)
+    type(model_type), intent(in) :: model        !< the model
+    class(law_type), intent(in) :: law           !< the law
+    real(wp), parameter :: round_off = 1.0e-9_wp ! of values on both sides of a joint, which lie some units of round-off apart
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: numbers(:)
+    real(wp) :: before(3), behind(3), joint, direction, duration, largest
+    integer :: i
+
+    jumps = .false.
+    call law%constants(numbers)
+    if (.not. allocated(numbers)) return
+    largest = maxval(abs(numbers))
+    joint = model%request%time%start
+    direction = sign(1.0_wp, model%request%time%end - joint)
+    duration = abs(model%request%time%end - joint)
+    ! all joints of one period have this many at most
+    do i = 1, size(numbers) + 1
+      joint = law%next_joint(joint, direction)
+      if ((joint - model%request%time%end)*direction > 0.0_wp) return
+      call law%evaluate(from_inside(joint, -direction), before(1), before(2), before(3), err)
+      if (.not. allocated(err)) call law%evaluate(from_inside(joint, direction), behind(1), behind(2), behind(3), err)
+      if (allocated(err)) cycle      ! the law ends here
+      jumps = abs(behind(1) - before(1)) > round_off*largest
+      if (law%coordinate > 0) jumps = jumps .or. abs(behind(2) - before(2)) > &
+                                      round_off*max(abs(before(2)), abs(behind(2)), largest/duration)
+      if (jumps) return
+    end do
+  end function jumps
 end module mech9_known_derivatives

@@ -52,7 +52,7 @@ contains
     integer :: p
 
     call new_varied_motion(variable, model, plan, self%motion, err)
-    if (.not. allocated(err)) call check_known(model, self%motion%tangents, .true., err)
+    if (.not. allocated(err)) call check_known(model, self%motion%tangents, err)
     if (allocated(err)) return
     call new_force_gradient(model, plan, dynamics, self%motion%tangents, self%gradient)
     associate (n => self%motion%n_parameters)

@@ -22,7 +22,7 @@ module mech9_varied_motion
   use mech9_pair_changes, only: find_pair_change
   implicit none
   private
-  public :: varied_motion_type, new_varied_motion, find_varied_motion, find_varied_points, link_twists
+  public :: varied_motion_type, new_varied_motion, find_varied_motion, find_varied_points, link_twists, vary_drives
 
   !> A pair without a fixed axis that depends on numbers which a parameter changes.
   type :: varied_pair_type
@@ -122,8 +122,7 @@ contains
       call fail_with(failure_singular_sensitivity, exit_singular, self%plan%blocks(b), self%state%t, err)
       return
     end do
-    self%q = 0.0_wp
-    call vary_drives(model, self)
+    call vary_drives(model, self, self%state%t, self%q)
     self%q(:, :, self%plan%free) = self%given
     do b = 1, size(self%plan%blocks)
       do order = 0, 2
@@ -189,19 +188,22 @@ contains
     err%failure%t = t
   end subroutine fail_with
 
-  !> The derivatives of the driven coordinates, which their laws give.
-  subroutine vary_drives(model, self)
+  !> The derivatives of the driven coordinates, which their laws give; those of all others are zero.
+  subroutine vary_drives(model, self, t, q)
     type(model_type), intent(in) :: model             !< the present model
-    type(varied_motion_type), intent(inout) :: self   !< gets the derivatives
+    type(varied_motion_type), intent(in) :: self      !< with the derivatives of constants
+    real(wp), intent(in) :: t                         !< time [s]
+    real(wp), intent(out) :: q(:, 0:, :)              !< (P,0:2,M) derivatives of the coordinates and of their derivatives in time
     real(wp) :: change(0:2)
     integer :: i, p
 
+    q = 0.0_wp
     do p = 1, self%n_parameters
       do i = 1, size(model%problem%drives)
         associate (part => self%tangents(p)%drives(i), drive => model%problem%drives(i)%drive)
           if (.not. part%varies) cycle
-          call drive%vary(part%change, self%state%t, change(0), change(1), change(2))
-          self%q(p, :, drive%coordinate) = change
+          call drive%vary(part%change, t, change(0), change(1), change(2))
+          q(p, :, drive%coordinate) = change
         end associate
       end do
     end do

@@ -5,7 +5,6 @@ module mech9_varied_record
   use mech9_error, only: error_type
   use mech9_variable_model, only: variable_model_type
   use mech9_simulation, only: simulation_type
-  use mech9_known_derivatives, only: check_known
   use mech9_varied_motion, only: varied_motion_type
   use mech9_varied_poses, only: find_varied_poses
   use mech9_varied_forces, only: varied_forces_type, new_varied_forces, find_varied_forces
@@ -119,11 +118,7 @@ contains
     type(error_type), allocatable, intent(out) :: err        !< allocated where derivatives are not known
 
     if (self%with_energies) call new_varied_energy(simulation%model, motion, self%energy)
-    if (self%with_forces) then
-      call check_known(simulation%model, motion%tangents, .false., err)
-      if (allocated(err)) return
-      call new_varied_forces(simulation%model, motion, self%forces, self%with_reactions)
-    end if
+    if (self%with_forces) call new_varied_forces(simulation%model, motion, self%forces, self%with_reactions)
     if (self%with_reactions) call new_varied_reactions(simulation%model, motion, self%reactions, err)
     self%events = size(simulation%events)
   end subroutine make_room
