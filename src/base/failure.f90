@@ -23,7 +23,7 @@ module mech9_failure
     failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, failure_open_coupling, failure_coupled, &
     failure_off_table, failure_no_neighbours, failure_unknown_derivative, failure_singular_sensitivity, &
     failure_opening_parameter, failure_jump_sensitivity, failure_angles_sensitivity, failure_shared_force, &
-    failure_jumping_force, last_failure
+    failure_jumping_force, failure_lost_link, last_failure
 
   ! The assembled position and the choice of the independent coordinates
 
@@ -191,7 +191,10 @@ module mech9_failure
   integer, parameter :: failure_shared_force = 71
   !> A parameter sets numbers of a law by which a force jumps, so that derivatives jump: name.
   integer, parameter :: failure_jumping_force = 72
-  integer, parameter :: last_failure = failure_jumping_force
+  !> The chains of a position are open by much against a short link, whose motion is lost in the round-off of the largest
+  !> lengths: t, gap, tolerance (allowed [m]), size, link, distance (between the pairs of the link).
+  integer, parameter :: failure_lost_link = 73
+  integer, parameter :: last_failure = failure_lost_link
 
   !> A failure: its kind, and the numbers that its kind names.
   type :: failure_type
@@ -215,7 +218,7 @@ module mech9_failure
     real(wp) :: gap = 0.0_wp                    !< by which a chain stays open [m]
     real(wp) :: size = 1.0_wp                   !< length of the mechanism [m]
     real(wp) :: displacement = 0.0_wp           !< at which a chain opens [rad, lengths of the mechanism]
-    real(wp) :: distance = 0.0_wp               !< from dimensions that let a chain move [rad, lengths of the mechanism]
+    real(wp) :: distance = 0.0_wp               !< from dimensions that let a chain move [rad, lengths of the mechanism], or length of a link [m]
     real(wp) :: deviation = 0.0_wp              !< estimated error of a position [rad, m]
     real(wp) :: tolerance = 0.0_wp              !< as the user gave it, or an error that is allowed [m; of positions rad, m]
     real(wp) :: angle_unit = 1.0_wp             !< unit of angles in the data file [rad]

@@ -1,9 +1,9 @@
 !> The last guard of a run: no row whose closed chains are open is ever recorded.
 module mech9_closure_guard
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: largest_closure
+  use mech9_tolerances, only: largest_closure, hidden_part
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_failure, only: failure_open_position
+  use mech9_failure, only: failure_open_position, failure_lost_link
   use mech9_plan, only: plan_type
   implicit none
   private
@@ -19,13 +19,19 @@ contains
     real(wp), intent(in) :: gap               !< largest closure error there [m, rotations times the mechanism's size]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: tolerance
+    logical :: is_lost
 
     tolerance = max(largest_closure, plan%data_tolerance)*plan%length
-    if (gap <= tolerance) return
-    call raise(err, exit_singular, failure_open_position)
+    is_lost = gap > max(hidden_part*plan%least_length, plan%data_tolerance*plan%length)
+    if (gap <= tolerance .and. .not. is_lost) return
+    call raise(err, exit_singular, merge(failure_lost_link, failure_open_position, gap <= tolerance))
     err%failure%t = t
     err%failure%gap = gap
     err%failure%tolerance = tolerance
     err%failure%size = plan%length
+    if (.not. gap <= tolerance) return
+    err%failure%tolerance = hidden_part*plan%least_length
+    err%failure%link = plan%shortest_link
+    err%failure%distance = plan%least_length
   end subroutine check_closure
 end module mech9_closure_guard

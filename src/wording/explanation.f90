@@ -17,7 +17,7 @@ module mech9_explanation
     failure_chain_off_plane, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
     failure_interrupted, failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
     failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve, &
-    failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, failure_coupled
+    failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, failure_coupled, failure_lost_link
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_coupling_words, only: explain_coupling
   use mech9_choice_words, only: explain_choice, longest_list
@@ -290,6 +290,11 @@ contains
              ' s, and '//to_text(failure%tolerance, 3)//' m is allowed ('//to_text(failure%tolerance/failure%size, 1)// &
              ' of the mechanism''s size): its dimensions let it move near the start only; give points and directions with '// &
              'more digits, or a larger &mechanism data_tolerance'
+    case (failure_lost_link)
+      text = 'the closed chains are open by '//to_text(failure%gap, 3)//' m at t = '//to_text(failure%t, 7)// &
+             ' s, by the round-off of lengths of '//to_text(failure%size, 3)//' m, and '//to_text(failure%tolerance, 3)// &
+             ' m is allowed beside link '//to_text(failure%link)//', whose pairs are '//to_text(failure%distance, 3)// &
+             ' m apart: its motion is lost in this round-off; give lengths that differ less'
     case (failure_no_initial_position)
       text = 'the independent coordinate '//to_text(failure%coordinates)//' of this pair has no initial position; '// &
              'give &initial coordinate='//to_text(failure%coordinates)//', position=..., velocity=... /'

@@ -221,6 +221,15 @@ TABLE = """&structure cq=1 /
 &drive coordinate=1, kind='table', file='table.dat' /
 &time start=-1, end=1, intervals=2 /
 """
+LONG_ROD = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1e16,0,0, moving_point=0,0,0 /
+&pair coordinate=4, links=1,4, kind='prismatic', axis=1,0,0, zero=0,1,0, moving_point=0,0,0 /
+&initial coordinate=4, position=1e16 /
+&drive coordinate=1, kind='polynomial', coefficients=0.4, 10 /
+&time end=0.7, intervals=10 /
+"""
 GEARS = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
 &pair coordinate=2, links=1,3, kind='revolute', point=1,0,0, axis=0,0,1 /
@@ -275,6 +284,10 @@ def driven_cases():
         ('open_position', bennett(offset='1e-6'), ('--set', 'mechanism.data_tolerance=5e-7'), SINGULAR,
          ['the closed chains are open by ', ' m is allowed (5e-7 of the mechanism\'s size): its dimensions let it move near the '
           'start only; give points and directions with more digits, or a larger &mechanism data_tolerance']),
+        # the crank of 0.3 m turns, and the slide would move by the round-off of 1e16 m
+        ('lost_link', LONG_ROD, (), SINGULAR,
+         [' m at t = ', ' s, by the round-off of lengths of 1e16 m, and 3e-5 m is allowed beside link 2, whose pairs are 0.3 m apart: '
+          'its motion is lost in this round-off; give lengths that differ less']),
         ('large_block', levers(503), (), STRUCTURE,
          ['3018 coordinates could only be solved for together, and at most 3000 can be; take independent coordinates (cq) nearer '
           'to link 1']),

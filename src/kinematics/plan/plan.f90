@@ -127,6 +127,8 @@ module mech9_plan
     integer :: n_links = 0                          !< N
     integer :: n_coordinates = 0                    !< M
     real(wp) :: length = 1.0_wp                     !< the mechanism's size [m], by which translations are divided
+    real(wp) :: least_length = huge(1.0_wp)         !< length of the shortest link whose pairs are apart [m]
+    integer :: shortest_link = 0                    !< number of that link; 0: none
     real(wp) :: data_tolerance = 0.0_wp             !< allowed residual of redundant equations: rad, parts of `length`
     real(wp) :: origin(3) = 0.0_wp                  !< origin of frame 0 in link 1 [m]
     type(step_type), allocatable :: steps(:)        !< (M)

@@ -20,7 +20,7 @@ module mech9_tolerances
     trusted_crossing_rates, first_move, doubtful_conditioning, worthwhile_improvement, regular_conditioning, &
     refused_conditioning, trusted_closing, trusted_between_steps, steepest_slope, negligible_inertia, &
     doubtful_margin, lesser_share, lesser_share_near, short_way, third_derivative_step, locked, locked_together, balanced, &
-    equal_lengths, balanced_singular, regular_balance, opened_by_parameter, round_off_of_jumps
+    equal_lengths, balanced_singular, regular_balance, opened_by_parameter, round_off_of_jumps, hidden_part, one_point
 
   ! Ranks and singular positions: judged alike by --check, driven motion and dynamics.
 
@@ -84,6 +84,11 @@ module mech9_tolerances
   !> Chains count as closed up to this part of the mechanism's size: a thousand times above the worst round-off that was
   !> measured, far below any accuracy that users need.
   real(wp), parameter :: largest_closure = 1.0e-9_wp
+  !> Chains count as closed up to this part of the shortest link, too: where lengths differ by more than 1e11, the round-off of the
+  !> largest ones hides the motion of the shortest.
+  real(wp), parameter :: hidden_part = 1.0e-4_wp
+  !> Shorter links [m] have pairs in one point but for errors of the data: 0.1 um, more exactly than joints are made.
+  real(wp), parameter :: one_point = 1.0e-7_wp
   !> Independent coordinates are moved to given values in steps of at least this part of the whole distance.
   real(wp), parameter :: least_part_of_carrying = 1.0e-4_wp
   !> Coordinates that differ by less, in their units, belong to one assembly.

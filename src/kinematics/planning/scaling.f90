@@ -1,7 +1,7 @@
 !> The scaling of a mechanism: its size, which is the unit of length, its origin, and the units of its coordinates.
 module mech9_scaling
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: negligible_distance
+  use mech9_tolerances, only: negligible_distance, one_point
   use mech9_pose, only: pose_type, inverse, transformed
   use mech9_pair, only: screw_factors_type, pair_guide_type
   use mech9_mechanism, only: mechanism_type
@@ -17,7 +17,7 @@ contains
   !> Size of the mechanism, and its origin, which is the centre of link 1's pairs.
   !> The size is the largest distance between two pairs of one link, curves included, or the largest initial slide. Where all
   !> links have their pairs in one point, as in spherical mechanisms, it is the largest distance of a point or pair from the
-  !> origin of its link, or 1 m if that is zero.
+  !> origin of its link, or 1 m if that is zero. The shortest link is found, too.
   subroutine find_size(mechanism, start, plan)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     real(wp), intent(in) :: start(:)       !< (M) coordinates at the start [rad, m]
@@ -26,7 +26,7 @@ contains
     type(screw_factors_type) :: factors
     type(pair_guide_type) :: guide
     type(pose_type) :: frame
-    real(wp) :: reach, place(3)
+    real(wp) :: reach, distance, place(3)
     logical :: is_screw
     integer :: k, i
 
@@ -52,8 +52,14 @@ contains
     end do
     plan%origin = 0.5_wp*(low(:, 1) + high(:, 1))
     plan%length = 0.0_wp
+    plan%least_length = huge(1.0_wp)
+    plan%shortest_link = 0
     do k = 1, plan%n_links
-      plan%length = max(plan%length, norm2(high(:, k) - low(:, k)))
+      distance = norm2(high(:, k) - low(:, k))
+      plan%length = max(plan%length, distance)
+      if (distance < one_point .or. distance >= plan%least_length) cycle
+      plan%least_length = distance
+      plan%shortest_link = k
     end do
     do k = 1, plan%n_coordinates
       call mechanism%pairs(k)%pair%guide(guide)
