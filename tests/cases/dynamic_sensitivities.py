@@ -13,7 +13,7 @@ import tempfile
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks, read_table, run
+from mech9_cases import Checks, read_table, run, text_of
 
 # The promise: derivatives within this many times the tolerance, of the largest of their kind.
 TOLERANCES = 100
@@ -319,6 +319,16 @@ def check_poses(case):
                 case.close(found[f'd {data}'][..., p], expected, BY_RUNS, f'{data} of all links by {name}')
 
 
+def check_governor(case):
+    """Stiff springs: the stiff governor of the gallery, by the place of one of its rods and others, over two steps of differences."""
+    text = text_of(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'examples', 'flyball_governor', 'flyball_governor.nml'))
+    text = '\n'.join(line for line in text.splitlines() if not line.startswith(('&solver', '&output'))) + '\n'
+    text = text.replace('end=10.0, intervals=200', 'end=0.6, intervals=4')
+    for part in (2.0**-9, 2.0**-6):
+        case.against_runs(text, (('place', 'pair(3).point(1)', 0.05), ('ball', 'body(2).mass', 5.3), ('stiff', 'load(1).stiffness', 8e5)),
+                          'governor', part)
+
+
 def check_smooth_joints(case):
     """Drives that move between rests by smooth laws have no jumps of their rates but round-off: derivatives go on behind the joints."""
     for law in ('cycloidal', 'polynomial345'):
@@ -441,6 +451,7 @@ def main():
         check_driven(case)
         check_hdf5(case)
         check_poses(case)
+        check_governor(case)
         check_smooth_joints(case)
         check_moving_joints(case)
         check_jumps(case)

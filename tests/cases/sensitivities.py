@@ -234,6 +234,72 @@ def check_four_bar(case):
     case.checks.true(not rows[:, place].any(), 'what cannot matter has derivatives of exactly zero')
 
 
+# name, targets, value: bars of the leg in examples/jansen_leg, by Jansen's letters
+JANSEN_PARAMETERS = (
+    ('j', "'pair(6).moving_point(1)','point(1).position(1)'", 50.0), ('k', "'pair(7).moving_point(1)','point(2).position(1)'", 61.9),
+    ('b', "'pair(6).point(1)'", 41.5), ('c', "'pair(7).point(1)','pair(8).point(1)'", 39.3),
+    ('f', "'pair(10).point(1)','point(4).position(1)'", 39.4), ('g', "'pair(10).moving_point(1)'", 36.7),
+    ('m', "'pair(2).point(1)','pair(3).point(1)'", 15.0), ('across', "'pair(4).point(2)','pair(5).point(2)'", -7.8))
+
+
+def jansen_points(values, t):
+    """J, K, D, F and the foot by intersections of circles, as complex numbers."""
+    j, k, b, c, f, g, m, across = values
+    unit = np.clongdouble(1j)
+    turning = np.longdouble('6.283185307179586')
+    pin = m * np.exp(unit * turning * t)
+    fixed = np.longdouble(-38) + unit * across
+
+    def meet(one, radius, other, radius_of_other, side):
+        """The place at both distances, on the left of the way from one centre to the other where the side is 1."""
+        way = other - one
+        along = (radius**2 - radius_of_other**2 + abs(way)**2) / (2 * abs(way))
+        return one + way / abs(way) * (along + side * unit * np.sqrt(radius**2 - along**2))
+
+    upper = meet(pin, j, fixed, b, -1)
+    lower = meet(pin, k, fixed, c, 1)
+    edge = fixed + (upper - fixed) / b * (np.longdouble('2.6098795180722933') + unit * np.longdouble('40.01497880670621'))
+    knee = meet(edge, f, lower, g, -1)
+    foot = lower + (knee - lower) / g * (np.longdouble('-7.746594005449595') + unit * np.longdouble('48.38378118041967'))
+    return upper, lower, edge, knee, foot
+
+
+def check_jansen(case):
+    """Three closed chains, one after the other: derivatives of all points by the bars, against circles in extended precision. Rates
+    and accelerations are differences in time of these."""
+    lines = text_of(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'examples', 'jansen_leg', 'jansen_leg.nml'))
+    text = '\n'.join(line for line in lines.splitlines() if not line.startswith('&output')).replace('intervals=120', 'intervals=12')
+    text += '\n&output sensitivities=.true. /\n' + ''.join(
+        f"&parameter name='{name}', sets={targets}, value={value!r} /\n" for name, targets, value in JANSEN_PARAMETERS)
+    names, rows = case.table(text)
+    t = rows[:, 0].astype(np.longdouble)
+    values = np.array([value for _, _, value in JANSEN_PARAMETERS], dtype=np.longdouble)
+
+    def points(values, times):
+        return np.array(jansen_points(values, times))
+
+    def moved(values, order):
+        if order == 0:
+            return points(values, t)
+        # the clock is one more value; the leg changes faster with time than with its bars, so that a quarter of the step is taken
+        still, quarter = np.zeros(1, np.longdouble), np.longdouble(0.25)
+
+        def rate(later):
+            return differences(lambda clock: points(values, t + later + quarter * clock[0]), still, 0) / quarter
+
+        if order == 1:
+            return rate(0)
+        return differences(lambda clock: rate(quarter * clock[0]), still, 0) / quarter
+
+    for order, kind in enumerate(('', 'v', 'a')):
+        for number, (name, _, _) in enumerate(JANSEN_PARAMETERS):
+            expected = differences(lambda values: moved(values, order), values, number)
+            mine = np.array([[rows[:, names.index(f'd({point}.{kind}{axis})/d({name})')] for axis in 'xy'] for point in 'J K D F foot'.split()])
+            wanted = np.stack([expected.real, expected.imag], axis=1)
+            case.checks.near(mine, wanted.astype(float), 1e-9, f'leg: derivatives of order {order} in time by {name}',
+                             scale=float(np.abs(wanted).max()))
+
+
 def helical_motion(values, t):
     """q, dq, ddq, and P = point + Rot(axis, q) (position - moving_point) + pitch q/2 pi axis."""
     tilt, pitch, c2, c1 = values
@@ -500,6 +566,7 @@ def main():
         case = Case(checks, directory, *sys.argv[1:3])
         check_four_bar(case)
         check_helical(case)
+        check_jansen(case)
         check_against_runs(case)
         check_segments(case)
         check_identities(case)
