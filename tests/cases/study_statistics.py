@@ -175,6 +175,27 @@ def extreme_numbers(cases):
         check.near(place['linear_deviation'] / size, np.sqrt(sum(variances)), 1e-9, f'{size}: linear deviation')
 
 
+def numbers_apart(picture):
+    """The least gap between neighbouring numbers below the axes of a picture, in widths of a letter; texts are centred there."""
+    gap, rows = np.inf, {}
+    for x, y, text in re.findall(r'translate\(([-\d.]+),([-\d.]+)\)"[^>]*text-anchor="middle">\s*<text>([-+.\de]+)</text>', picture):
+        rows.setdefault(y, []).append((float(x), len(text)))
+    for row in rows.values():
+        row.sort()
+        gap = min([gap, *((there - here) / 9 - (wide + other) / 2 for (here, wide), (there, other) in zip(row, row[1:]))])
+    return gap, sum(map(len, rows.values()))
+
+
+def narrow_axes(cases):
+    """Numbers of many digits do not run into each other below narrow plots: here 0.0179 to 0.0181, and 12345.65 to 12345.71."""
+    for value, spread in ((0.018, 5e-5), (12345.678, 0.01), (-0.5, 0.1), (1e-9, 1e-10), (3e7, 1e6), (0.5, 1e-9)):
+        text = SLIDES.replace("point(1)', spread=0.02", f"point(1)', value={value!r}, spread={spread!r}") + "&study kind='random', runs=200 /\n"
+        for request in ('far,place,speed:place,far:speed:place', 'far:speed:place,far:place', 'far', 'far:speed:place', ','.join(['far'] * 7)):
+            cases.study(text, '--plot', f'narrow.svg:{request}')
+            gap, count = numbers_apart(text_of(os.path.join(cases.folder, 'narrow.svg')))
+            cases.checks.true(gap > 0.5 and count >= 2, f'{request}, {value}: numbers below axes stand apart', f'gap {gap:.2f}, {count} numbers')
+
+
 def plots(cases):
     """Histograms, effects and maps of drawn values and of a grid against those of numpy."""
     check = cases.checks
@@ -254,6 +275,7 @@ def main():
         extreme_numbers(cases)
         if checks.has('gnuplot', 'gnuplot-nox'):
             plots(cases)
+            narrow_axes(cases)
             letters(cases)
         refusals(cases)
     checks.finish()

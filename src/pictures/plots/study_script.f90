@@ -4,7 +4,7 @@ module mech9_study_script
   use mech9_text, only: string_type, to_text
   use mech9_printable, only: printable
   use mech9_gnuplot, only: quoted, quoted_lines, quoted_path
-  use mech9_plot_style, only: plot_style, picture_terminal, picture_title, axis_format, first_colour, second_colour
+  use mech9_plot_style, only: plot_style, picture_terminal, picture_title, axis_format, axis_step, first_colour, second_colour
   use mech9_plot_panels, only: axis_label
   use mech9_plot_blocks, only: block_of, find_layout
   use mech9_study_request, only: panel_type
@@ -16,6 +16,8 @@ module mech9_study_script
   character, parameter :: line_end = achar(10)
   !> Points of a scatter plot: more would hide each other and make large files.
   integer, parameter :: most_points = 2000
+  !> Width of a panel beside its horizontal axis, and more of it beside that of a map, where the scale of colours stands [px].
+  integer, parameter :: beside_axis = 80, beside_map = 80
 
 contains
 
@@ -47,7 +49,7 @@ contains
       text = text//'set multiplot layout '//to_text(down)//','//to_text(across)//' title '//quoted_lines(lines)//line_end
     end if
     do i = 1, size(panels)
-      text = text//panel_commands(i, panels(i), names, units, rows)
+      text = text//panel_commands(i, panels(i), names, units, rows, width/across - beside_axis)
     end do
     if (size(panels) > 1) text = text//'unset multiplot'//line_end
     text = text//'unset output'//line_end
@@ -146,16 +148,19 @@ contains
   end function rectangles_of
 
   !> The commands for one panel of a picture.
-  pure function panel_commands(i, panel, names, units, rows) result(text)
+  pure function panel_commands(i, panel, names, units, rows, width) result(text)
     integer, intent(in) :: i                     !< number of the panel
     type(panel_type), intent(in) :: panel        !< the panel
     type(string_type), intent(in) :: names(:)    !< of the columns
     type(string_type), intent(in) :: units(:)    !< of the columns; empty: not known
     real(wp), intent(in) :: rows(:, :)           !< (columns,runs)
-    character(len=:), allocatable :: text, block
+    integer, intent(in) :: width                 !< length of the horizontal axis [px]
+    character(len=:), allocatable :: text, block, step
 
     block = block_name(i)
-    text = axis_commands(panel, names, units, rows)
+    step = axis_step(ends_of(rows(panel%columns(1), :)), width - merge(beside_map, 0, panel%n > 2))
+    if (step == '') step = 'autofreq'
+    text = axis_commands(panel, names, units, rows)//'set xtics '//step//line_end
     select case (panel%n)
     case (1)
       text = text//'set ylabel ''runs'''//line_end//'set format y ''%g'''//line_end//'set autoscale'//line_end// &
@@ -167,8 +172,8 @@ contains
              line_end//'     '//block//' using 1:2:3 with yerrorbars lw 1.5 pt 7 ps 0.5 lc rgb '''//second_colour//''', \'// &
              line_end//'     '//block//' using 1:2 with lines lw 2 lc rgb '''//second_colour//''''//line_end
     case default
-      text = text//'set autoscale fix'//line_end//'set cblabel '//quoted(axis_label([panel%columns(3)], names, units))//line_end// &
-             'set format cb '//axis_format(ends_of(rows(panel%columns(3), :)))//line_end// &
+      text = text//'set autoscale fix'//line_end//'set cblabel '//quoted(axis_label([panel%columns(3)], names, units))// &
+             ' offset 1.5,0'//line_end//'set format cb '//axis_format(ends_of(rows(panel%columns(3), :)))//line_end// &
              'plot '//block//' using (0.5*($1+$2)):(0.5*($3+$4)):1:2:3:4:5 with boxxyerror fill solid noborder lc palette'//line_end
     end select
   end function panel_commands
