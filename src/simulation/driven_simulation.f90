@@ -9,6 +9,8 @@ module mech9_driven_simulation
   use mech9_planning, only: make_plan
   use mech9_requested, only: requested_by_results, add_forces, leave_out_unrequested
   use mech9_driven_motion, only: driven_motion_type, set_inputs
+  use mech9_driven_counts, only: driven_counts_type, keep_counts, return_to_counts
+  use mech9_batch_products, only: batch_size
   use mech9_ball_angles, only: ball_angles_type
   use mech9_driven_angles, only: begin_with_angles, advance_with_angles
   use mech9_lagrange_types, only: dynamics_plan_type
@@ -27,6 +29,7 @@ module mech9_driven_simulation
     type(ball_angles_type) :: angles     !< of ball joints, as in the data file
     type(dynamics_plan_type), allocatable, private :: dynamics   !< made when energies are asked for first
     type(motion_view_type), allocatable, private :: view         !< of the present state, as loads see it
+    type(driven_counts_type), private :: kept_work(batch_size)   !< of positions that wait for their derivatives
   contains
     procedure :: begin
     procedure :: go_to
@@ -36,6 +39,8 @@ module mech9_driven_simulation
     procedure :: watch_conditioning
     procedure :: energies
     procedure :: count_work
+    procedure :: keep_work
+    procedure :: return_to_work
   end type driven_simulation_type
 
 contains
@@ -163,4 +168,20 @@ contains
     statistics%halvings = self%driven%halvings
     statistics%crossings = self%driven%crossings
   end subroutine count_work
+
+  !> Keep the counts of branch stepping at the present position.
+  subroutine keep_work(self, place)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation
+    integer, intent(in) :: place                           !< number of the position among those that wait
+
+    call keep_counts(self%driven, self%kept_work(place))
+  end subroutine keep_work
+
+  !> Return to the counts at an earlier position.
+  subroutine return_to_work(self, place)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation
+    integer, intent(in) :: place                           !< number of the position among those that waited
+
+    call return_to_counts(self%kept_work(place), self%driven)
+  end subroutine return_to_work
 end module mech9_driven_simulation

@@ -9,6 +9,7 @@ module mech9_simulation
   use mech9_requested, only: requested_type
   use mech9_closure_guard, only: check_closure
   use mech9_variable_model, only: variable_model_type
+  use mech9_batch_products, only: batch_size
   use mech9_sensitivity, only: sensitivity_type, new_sensitivity, take_position
   use mech9_varied_motion, only: varied_motion_type, new_varied_motion, find_varied_motion
   implicit none
@@ -48,6 +49,14 @@ module mech9_simulation
     integer(long) :: evaluations = 0          !< of the accelerations in these runs
   end type estimated_errors_type
 
+  !> Counts and largest numbers of a motion over its positions, up to one of them.
+  type :: position_counts_type
+    integer(long) :: positions = 0                 !< positions that were worked out
+    real(wp) :: worst_closure = 0.0_wp             !< largest closure error [m]
+    real(wp) :: largest_error = 0.0_wp             !< largest estimated error [rad, m]
+    real(wp) :: largest_energy_change = 0.0_wp     !< of the sum of energies, against the start [J]
+  end type position_counts_type
+
   !> A motion. Times are given in order, from the mechanism's start in the direction of its end. It must not be copied.
   type, abstract :: simulation_type
     type(model_type), pointer :: model => null()   !< constant: the mechanism, its problem, and the request for results
@@ -69,6 +78,7 @@ module mech9_simulation
     real(wp) :: largest_energy_change = 0.0_wp     !< of this sum, against the start, with_energies [J]
     type(coordinate_change_type), allocatable :: events(:)   !< changes of the independent coordinates so far
     integer(long), private :: positions = 0        !< positions that were worked out
+    type(position_counts_type), private :: kept(batch_size)   !< of positions that wait for their derivatives
     real(wp), private :: direction = 1.0_wp        !< 1, or -1 where time runs backwards
     type(varied_motion_type), allocatable, private :: varied   !< derivatives of all frames by the parameters, where they are wanted
     class(interruption_type), allocatable, private :: interruption
@@ -78,6 +88,10 @@ module mech9_simulation
     procedure :: visit
     procedure :: stop_if_interrupted
     procedure :: statistics
+    procedure :: keep_counts
+    procedure :: return_to_counts
+    procedure :: keep_work => keep_no_work
+    procedure :: return_to_work => keep_no_work
     procedure :: close => close_nothing
     procedure :: present_for_forces => present_as_shown
     procedure :: begin_sensitivity
@@ -284,6 +298,35 @@ contains
     statistics%positions = self%positions
     call self%count_work(statistics)
   end function statistics
+
+  !> Keep the counts of the present position, which is one of several that wait for their derivatives.
+  subroutine keep_counts(self, place)
+    class(simulation_type), intent(inout) :: self   !< the simulation
+    integer, intent(in) :: place                    !< number of the position among those that wait
+
+    self%kept(place) = position_counts_type(self%positions, self%worst_closure, self%largest_error, self%largest_energy_change)
+    call self%keep_work(place)
+  end subroutine keep_counts
+
+  !> Return to the counts of one of these positions, because the motion ends there: positions after it do not count.
+  subroutine return_to_counts(self, place)
+    class(simulation_type), intent(inout) :: self   !< the simulation
+    integer, intent(in) :: place                    !< number of the position among those that waited
+
+    associate (kept => self%kept(place))
+      self%positions = kept%positions
+      self%worst_closure = kept%worst_closure
+      self%largest_error = kept%largest_error
+      self%largest_energy_change = kept%largest_energy_change
+    end associate
+    call self%return_to_work(place)
+  end subroutine return_to_counts
+
+  !> Keep, or return to, the counts of the work done. There are none unless a simulation says so: its positions do not wait.
+  subroutine keep_no_work(self, place)
+    class(simulation_type), intent(inout) :: self   !< the simulation
+    integer, intent(in) :: place                    !< number of a position among those that wait
+  end subroutine keep_no_work
 
   !> Prepare the derivatives of the motion by all parameters, before the start. Fails where they do not exist. This procedure is for
   !> motions that drives determine.

@@ -6,6 +6,7 @@ Compares the program with itself in part: differences of runs at other values of
 usage: special_sensitivities.py MECH9K MECH9D
 """
 import csv
+import json
 import os
 import sys
 import tempfile
@@ -15,7 +16,7 @@ import numpy as np
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from ball_charts import DRIVE, SLIDER
 from idle_rods import Rssr
-from sensitivities import FOUR_BAR, Case, of_motion
+from sensitivities import FOUR_BAR, PARALLELOGRAM, Case, of_motion
 from mech9_cases import Checks, run
 
 PATH = """&structure cq=1 /
@@ -122,6 +123,27 @@ def check_commas(case):
     case.checks.true(np.array_equal(numbers, rows), 'its numbers')
 
 
+def check_counts(case):
+    """A run that ends at a position without derivatives counts nothing beyond it, although later positions are worked out before the
+    derivatives of this one: the same as a run without derivatives that ends there."""
+    flat = PARALLELOGRAM.replace('coefficients=1,1', 'coefficients=-2,1').replace('position=-1', 'position=2') \
+        .replace('coordinate=4, position=1', 'coordinate=4, position=-2').replace('intervals=4', 'intervals={count}')
+    plain = flat.replace('sensitivities=.true.', 'sensitivities=.false.')
+    facts = []
+    for text, code in ((flat.format(end=4.0, count=16), 6), (plain.format(end=2.0, count=8), 0)):
+        path, report = (os.path.join(case.directory, name) for name in ('counts.nml', 'counts.json'))
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        done = run(case.mech9k, path, '--quiet', '--no-write', '--report', report)
+        case.checks.equal(done.returncode, code, f'counts: code {code}')
+        with open(report, encoding='utf-8') as file:
+            facts.append(json.load(file))
+    case.checks.equal([one['positions'] for one in facts], [8, 9], 'the position without derivatives has no row')
+    for name in ('steps', 'halvings', 'newton_iterations', 'special_positions_passed', 'largest_closure', 'least_conditioning',
+                 'least_conditioning_time', 'frames_placed', 'factorizations', 'rate_solutions', 'acceleration_solutions'):
+        case.checks.equal(facts[0][name], facts[1][name], f'{name} up to a position without derivatives')
+
+
 def main():
     checks = Checks()
     with tempfile.TemporaryDirectory() as directory:
@@ -131,6 +153,7 @@ def main():
         check_gimbal_lock(case)
         check_rods(case)
         check_commas(case)
+        check_counts(case)
     checks.finish()
 
 

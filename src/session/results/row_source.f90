@@ -243,6 +243,7 @@ contains
 
     good = self%waiting
     if (allocated(self%sensitivity)) call find_waiting(self%simulation%model, self%sensitivity, good, err)
+    if (allocated(err)) call self%simulation%return_to_counts(good + 1)
     ! a position whose row failed has derivatives of no use
     good = min(good, self%waiting)
     first = 1
@@ -322,6 +323,7 @@ contains
     if (allocated(self%sensitivity)) then
       call self%simulation%show_sensitivity(self%sensitivity, err)
       if (allocated(err)) return
+      if (self%sensitivity%waiting > 0) call self%simulation%keep_counts(self%sensitivity%waiting)
       if (.not. self%varied%wanted) return
       call self%varied%find(self%simulation, self%columns, err)
       if (allocated(err)) return
