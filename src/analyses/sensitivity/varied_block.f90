@@ -5,6 +5,7 @@ module mech9_varied_block
   use mech9_tolerances, only: singular_conditioning, opened_by_parameter, inexact_dimensions
   use mech9_least_squares, only: least_squares_type, nearly_dependent
   use mech9_cofactors, only: invert_several
+  use mech9_several_inverses, only: most_rows, find_pivot_order, invert_in_order, bound_conditioning
   use mech9_plan, only: plan_type
   use mech9_tangent, only: tangent_type
   use mech9_parameter_support, only: support_type, closure_form, keep_static
@@ -29,6 +30,11 @@ module mech9_varied_block
     type(least_squares_type), allocatable, private :: equations(:)
     logical, private :: by_solver = .false.            !< `solver` serves for all right-hand sides
     logical, private :: has_cofactors = .false.        !< it consists of cofactors
+    logical, private :: together = .false.             !< it is found for several positions together, where these pivots serve
+    integer, allocatable, private :: pivots(:)         !< order of the equations' pivots at the first position of all
+    real(wp), allocatable, private :: matrices(:, :, :)     !< (batch,equations,unknowns) Jacobians in units of the unknowns
+    real(wp), allocatable, private :: eliminated(:, :, :)   !< scratch of the same shape
+    real(wp), allocatable, private :: inverses(:, :, :)     !< (batch,unknowns,equations)
     real(wp), allocatable, private :: jacobian(:, :)   !< (equations,unknowns) in units of the unknowns
     !> (batch,unknowns,equations) share of each opening in each unknown; equations to a multiple of three, those after the last zero.
     real(wp), allocatable, private :: solver(:, :, :)
@@ -82,6 +88,7 @@ contains
       end do
       block%by_solver = rows == 3 .and. unknowns == 3 .or. rows <= (highest + 1)*size(block%parameters)
       block%has_cofactors = rows == 3 .and. unknowns == 3 .and. size(block%forms) == 1
+      block%together = block%by_solver .and. rows == unknowns .and. rows > 3 .and. rows <= most_rows
       if (.not. block%by_solver) block%at_once = most_at_once(rows, unknowns)
       allocate (block%equations(merge(1, block%at_once, block%by_solver)))
       do i = 1, size(block%equations)
@@ -93,6 +100,8 @@ contains
     padded = 3*((rows + 2)/3)
     allocate (block%jacobian(rows, unknowns), block%openings(batch_size, padded), block%right(rows), block%change(unknowns), &
               source=0.0_wp)
+    if (block%together) allocate (block%matrices(batch_size, rows, rows), block%eliminated(batch_size, rows, rows), &
+                                  block%inverses(batch_size, rows, rows), source=0.0_wp)
     allocate (block%solver(batch_size, merge(unknowns, 0, block%by_solver), padded), source=0.0_wp)
   end function new_varied_block
 
@@ -150,10 +159,14 @@ contains
     integer, intent(in) :: n                          !< number of positions
     type(varied_block_type), intent(inout) :: block   !< with the columns of its forms; gets the factors
     integer, intent(out) :: good                      !< positions before the first singular one, or n
+    real(wp) :: bounds(batch_size)
     integer :: i
 
+    bounds(:n) = 0.0_wp
+    if (block%together) call invert_together(n, block, bounds)
     do i = 1, n
       good = i - 1
+      if (bounds(i) >= singular_conditioning) cycle
       call fill_jacobian(block, i)
       associate (equations => block%equations(merge(1, i, block%by_solver)))
         call equations%factorize(block%jacobian)
@@ -163,6 +176,44 @@ contains
     end do
     good = n
   end subroutine factorize
+
+  !> Invert the Jacobians of all positions with the pivots of the first position of the motion. Which positions are found together has
+  !> no effect on the results: other pivots would change them within round-off.
+  subroutine invert_together(n, block, bounds)
+    integer, intent(in) :: n                          !< number of positions
+    type(varied_block_type), intent(inout) :: block   !< with the columns of its forms; gets the shares of openings in unknowns
+    real(wp), intent(inout) :: bounds(batch_size)     !< lower bounds of the conditioning; zero where other pivots are needed
+    integer :: i, j, k, r, u, row, m
+
+    m = size(block%units)
+    row = 0
+    do i = 1, size(block%forms)
+      associate (form => block%forms(i))
+        do j = form%n_given + 1, size(form%steps)
+          u = form%unknowns(j)
+          do r = 1, form%rows
+            do k = 1, n
+              block%matrices(k, row + r, u) = form%columns(k, r, 0, j)*block%units(u)
+            end do
+          end do
+        end do
+        row = row + form%rows
+      end associate
+    end do
+    if (.not. allocated(block%pivots)) then
+      allocate (block%pivots(m))
+      call find_pivot_order(m, block%matrices(1, :, :), block%pivots)
+    end if
+    call invert_in_order(n, batch_size, m, block%pivots, block%matrices, block%eliminated, block%inverses)
+    call bound_conditioning(n, batch_size, m, block%matrices, block%inverses, block%equations(1)%regular_pivot, bounds)
+    do r = 1, m
+      do u = 1, m
+        do k = 1, n
+          block%solver(k, u, r) = -block%units(u)*block%inverses(k, u, r)
+        end do
+      end do
+    end do
+  end subroutine invert_together
 
   !> Invert the Jacobians of three equations in three unknowns at all positions, as far as they are regular.
   subroutine invert(n, block, good)
