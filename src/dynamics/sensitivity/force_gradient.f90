@@ -423,7 +423,7 @@ contains
 
     by_parameters = 0.0_wp
     call by_constants(self%plan, self%d, self%rates, self%held, self%rows, self%link_rows, self%changes, by_parameters)
-    call by_masses(state, self%arithmetic, tangents, self%virtual, self%changes, by_parameters)
+    call by_masses(self%arithmetic, tangents, self%virtual, self%changes, by_parameters)
     call by_loads(self%plan, self%virtual, self%rates, self%loads, by_parameters)
     call by_couplings(model, self%plan, state, tangents, self%rates, self%held, self%rows, self%changes, by_parameters)
     call by_drives(model, self%plan, state, tangents, self%twists, self%d, self%rows, self%changes, by_parameters)

@@ -13,13 +13,14 @@ module mech9_gradient_arithmetic
   !> The bodies of a mechanism in the arithmetic of a plane or of space. Twists have d numbers, a rotation, then the shift of the point
   !> at the origin of frame 0; wrenches have a moment about this origin, then a force.
   type, abstract :: gradient_arithmetic_type
-    integer :: d = 0   !< numbers of a twist
+    integer :: d = 0                        !< numbers of a twist
+    integer, allocatable :: body_frames(:)  !< numbers of the frames in which the bodies are fixed
   contains
     procedure(find_twists_interface), deferred :: find_twists
     procedure(find_wrenches_interface), deferred :: find_wrenches
     procedure(add_rows_interface), deferred :: add_rows
     procedure(flatten_interface), deferred :: flatten_body
-    procedure(by_body_interface), deferred :: by_body
+    procedure(body_wrench_interface), deferred :: body_wrench
     procedure(by_gravity_interface), deferred :: by_gravity
     procedure(find_map_interface), deferred :: find_map
     procedure(carry_interface), deferred :: carry
@@ -54,7 +55,7 @@ module mech9_gradient_arithmetic
       real(wp), intent(inout) :: rows(:, 0:, 0:)            !< (d,0:2,0:M) the sums
     end subroutine add_rows_interface
 
-    !> The change of mass, centre and inertia of a body in the form that `by_body` takes.
+    !> The change of mass, centre and inertia of a body in the form that `body_wrench` takes.
     pure function flatten_interface(self, plan, number, change) result(numbers)
       import :: gradient_arithmetic_type, plan_type, wp
       class(gradient_arithmetic_type), intent(in) :: self   !< the arithmetic
@@ -64,16 +65,15 @@ module mech9_gradient_arithmetic
       real(wp) :: numbers(13)
     end function flatten_interface
 
-    !> The change of the force that a virtual motion requires, by the numbers of a body.
-    pure function by_body_interface(self, state, number, virtual, change) result(row)
+    !> The change of the wrench that a body needs beyond its weight, by its numbers.
+    pure subroutine body_wrench_interface(self, state, number, change, wrench)
       import :: gradient_arithmetic_type, state_type, wp
       class(gradient_arithmetic_type), intent(in) :: self   !< with the motion of the bodies
       type(state_type), intent(in) :: state                 !< the motion
       integer, intent(in) :: number                         !< of the body in this arithmetic
-      real(wp), intent(in) :: virtual(:, 0:)                !< (d,0:M) twists of the frames in the virtual motion
       real(wp), intent(in) :: change(13)                    !< as from `flatten_body`
-      real(wp) :: row
-    end function by_body_interface
+      real(wp), intent(out) :: wrench(:)                    !< (d) on the frame of the body
+    end subroutine body_wrench_interface
 
     !> The change of the force that a virtual motion requires, by gravity.
     pure function by_gravity_interface(self, virtual, change) result(row)

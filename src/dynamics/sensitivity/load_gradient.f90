@@ -172,7 +172,7 @@ contains
     type(model_type), intent(in) :: model                        !< the model
     type(plan_type), intent(in) :: plan                          !< the plan
     class(gradient_arithmetic_type), intent(in) :: arithmetic    !< of the rows
-    real(wp), intent(in) :: virtual(:, 0:)                       !< (d,0:M) twists of the frames in the virtual motion
+    real(wp), intent(in), contiguous :: virtual(:, 0:)           !< (d,0:M) twists of the frames in the virtual motion
     real(wp), intent(in) :: rates(:)                             !< (M) rates of the coordinates in it
     type(load_gradient_type), intent(inout) :: self              !< with the motion as loads read it
     type(gradient_rows_type), intent(inout) :: rows              !< gets the rows
@@ -222,7 +222,7 @@ contains
   subroutine subtract_slopes(plan, arithmetic, virtual, link, self, rows)
     type(plan_type), intent(in) :: plan                          !< the plan
     class(gradient_arithmetic_type), intent(in) :: arithmetic    !< of the rows
-    real(wp), intent(in) :: virtual(:, 0:)                       !< (d,0:M) twists of the frames in the virtual motion
+    real(wp), intent(in), contiguous :: virtual(:, 0:)           !< (d,0:M) twists of the frames in the virtual motion
     integer, intent(in) :: link                                  !< number of the link
     type(load_gradient_type), intent(in) :: self                 !< with the slopes
     type(gradient_rows_type), intent(inout) :: rows              !< gets the rows
@@ -284,7 +284,7 @@ contains
   !> Subtract the changes of the loads' power in a virtual motion, beside the rows, from those of a force.
   pure subroutine by_loads(plan, virtual, rates, self, by_parameters)
     type(plan_type), intent(in) :: plan                  !< the plan
-    real(wp), intent(in) :: virtual(:, 0:)               !< (d,0:M) twists of the frames in the virtual motion
+    real(wp), intent(in), contiguous :: virtual(:, 0:)   !< (d,0:M) twists of the frames in the virtual motion
     real(wp), intent(in) :: rates(:)                     !< (M) rates of the coordinates in it
     type(load_gradient_type), intent(in) :: self         !< with the changes
     real(wp), intent(inout) :: by_parameters(:)          !< (P) derivatives of the force by the parameters

@@ -19,7 +19,9 @@ module mech9_parameter_changes
   type :: changed_body_type
     integer :: parameter = 0                !< number of the parameter
     integer :: body = 0                     !< number of the body in the arithmetic
+    integer :: frame = 0                    !< number of the frame in which it is fixed
     real(wp) :: numbers(13) = 0.0_wp        !< change in the form of the arithmetic
+    real(wp) :: wrench(6) = 0.0_wp          !< the first d numbers: change of the wrench that the body needs, in the present motion
   end type changed_body_type
 
   !> A coupling or a drive whose numbers a parameter changes.
@@ -107,23 +109,29 @@ contains
     do p = 1, size(tangents)
       do i = 1, size(numbers)
         associate (part => tangents(p)%bodies(numbers(i)))
-          if (part%varies) self%bodies = [self%bodies, changed_body_type(p, i, arithmetic%flatten_body(plan, i, part%change))]
+          if (part%varies) self%bodies = [self%bodies, changed_body_type(p, i, arithmetic%body_frames(i), &
+                                                                         arithmetic%flatten_body(plan, i, part%change))]
         end associate
       end do
     end do
   end subroutine list_bodies
 
-  !> Find the twists of constants in the present motion.
+  !> Find the twists of constants, and the wrenches that changed bodies need, in the present motion.
   subroutine find_series(plan, state, twists, tangents, arithmetic, self)
     type(plan_type), intent(in) :: plan                          !< the plan, in the arithmetic
     type(state_type), intent(in) :: state                        !< the motion
     type(frame_twists_type), intent(in) :: twists                !< of its frames
     type(tangent_type), intent(in) :: tangents(:)                !< derivatives of the constants by each parameter
     class(gradient_arithmetic_type), intent(in) :: arithmetic    !< the arithmetic
-    type(parameter_changes_type), intent(inout) :: self          !< gets the twists
+    type(parameter_changes_type), intent(inout) :: self          !< gets the twists and wrenches
     real(wp) :: along(6, 0:2)
     integer :: i
 
+    do i = 1, size(self%bodies)
+      associate (one => self%bodies(i))
+        call arithmetic%body_wrench(state, one%body, one%numbers, one%wrench(:arithmetic%d))
+      end associate
+    end do
     call arithmetic%carry(plan, state, twists, self%constants, self%is_carried, self%series)
     self%is_carried = .true.
     if (self%in_plane) return
@@ -171,18 +179,17 @@ contains
   end subroutine by_constants
 
   !> Add the changes of a force by masses, mass centres, inertia and gravity.
-  subroutine by_masses(state, arithmetic, tangents, virtual, self, by_parameters)
-    type(state_type), intent(in) :: state                        !< the motion
+  subroutine by_masses(arithmetic, tangents, virtual, self, by_parameters)
     class(gradient_arithmetic_type), intent(in) :: arithmetic    !< with the bodies
     type(tangent_type), intent(in) :: tangents(:)                !< derivatives of the constants by each parameter
-    real(wp), intent(in) :: virtual(:, 0:)                       !< (d,0:M) twists of the frames in the virtual motion
-    type(parameter_changes_type), intent(in) :: self             !< the lists
+    real(wp), intent(in), contiguous :: virtual(:, 0:)           !< (d,0:M) twists of the frames in the virtual motion
+    type(parameter_changes_type), intent(in) :: self             !< with the wrenches of changed bodies
     real(wp), intent(inout) :: by_parameters(:)                  !< (P) derivatives of the force by the parameters
     integer :: i
 
     do i = 1, size(self%bodies)
       associate (one => self%bodies(i))
-        by_parameters(one%parameter) = by_parameters(one%parameter) + arithmetic%by_body(state, one%body, virtual, one%numbers)
+        by_parameters(one%parameter) = by_parameters(one%parameter) + pairing(arithmetic%d, one%wrench, virtual(:, one%frame))
       end associate
     end do
     do i = 1, size(self%gravity)

@@ -32,7 +32,7 @@ module mech9_planar_gradient
     procedure :: find_wrenches
     procedure :: add_rows
     procedure :: flatten_body
-    procedure :: by_body
+    procedure :: body_wrench
     procedure :: by_gravity
     procedure :: find_map
     procedure :: carry
@@ -61,6 +61,7 @@ contains
       self%links(i) = mechanism%bodies(numbers(i))%link
     end do
     allocate (self%centres(2, size(numbers)), self%velocities(2, size(numbers)), self%falls(2, size(numbers)), source=0.0_wp)
+    self%body_frames = self%bodies%frame
   end subroutine new_planar_gradient
 
   !> The twists of frames and steps in the present motion.
@@ -155,27 +156,26 @@ contains
     numbers(4) = inertia(3, 3)
   end function flatten_body
 
-  !> The change of the force that a virtual motion requires, by the numbers of a body.
-  pure function by_body(self, state, number, virtual, change) result(row)
+  !> The change of the wrench that a body needs beyond its weight, by its numbers.
+  pure subroutine body_wrench(self, state, number, change, wrench)
     class(planar_gradient_type), intent(in) :: self       !< with the motion of the bodies
     type(state_type), intent(in) :: state                 !< the motion
     integer, intent(in) :: number                         !< of the body in this arithmetic
-    real(wp), intent(in) :: virtual(:, 0:)                !< (3,0:M) twists of the frames in the virtual motion
     real(wp), intent(in) :: change(13)                    !< as from `flatten_body`
-    real(wp) :: row, px, py, x, y
+    real(wp), intent(out) :: wrench(:)                    !< (3) on the frame of the body
+    real(wp) :: x, y
 
-    associate (body => self%bodies(number), fall => self%falls(:, number), s => self%bodies(number)%frame)
-      associate (f => state%planar%pose(:, s), w => state%planar%velocity(1, s), alpha => state%planar%acceleration(1, s), &
-                 turning => virtual(1, s))
-        px = virtual(2, s) - turning*self%centres(2, number)
-        py = virtual(3, s) + turning*self%centres(1, number)
+    associate (body => self%bodies(number), fall => self%falls(:, number), centre => self%centres(:, number), &
+               s => self%bodies(number)%frame)
+      associate (f => state%planar%pose(:, s), w => state%planar%velocity(1, s), alpha => state%planar%acceleration(1, s))
         x = f(1)*change(2) - f(2)*change(3)
         y = f(2)*change(2) + f(1)*change(3)
-        row = change(1)*(px*fall(1) + py*fall(2)) + change(4)*turning*alpha &
-              + body%mass*(turning*(x*fall(2) - y*fall(1)) + alpha*(x*py - y*px) - w**2*(x*px + y*py))
+        wrench(2) = change(1)*fall(1) - body%mass*(alpha*y + w**2*x)
+        wrench(3) = change(1)*fall(2) + body%mass*(alpha*x - w**2*y)
+        wrench(1) = change(4)*alpha + body%mass*(x*fall(2) - y*fall(1)) + centre(1)*wrench(3) - centre(2)*wrench(2)
       end associate
     end associate
-  end function by_body
+  end subroutine body_wrench
 
   !> The change of the force that a virtual motion requires, by gravity.
   pure function by_gravity(self, virtual, change) result(row)

@@ -42,7 +42,7 @@ module mech9_spatial_gradient
     procedure :: find_wrenches
     procedure :: add_rows
     procedure :: flatten_body
-    procedure :: by_body
+    procedure :: body_wrench
     procedure :: by_gravity
     procedure :: find_map
     procedure :: carry
@@ -73,6 +73,7 @@ contains
         body%inertia = inertia_in_axes(plan%link_in_frame(given%link)%r, given%inertia)
       end associate
     end do
+    self%body_frames = self%bodies%frame
   end subroutine new_spatial_gradient
 
   !> The twists of frames and steps in the present motion.
@@ -151,26 +152,31 @@ contains
     numbers(5:13) = reshape(inertia_in_axes(r, reshape(change(5:13), [3, 3])), [9])
   end function flatten_body
 
-  !> The change of the force that a virtual motion requires, by the numbers of a body.
-  pure function by_body(self, state, number, virtual, change) result(row)
+  !> The change of the wrench that a body needs beyond its weight, by its numbers.
+  pure subroutine body_wrench(self, state, number, change, wrench)
     class(spatial_gradient_type), intent(in) :: self      !< with the motion of the bodies
     type(state_type), intent(in) :: state                 !< the motion
     integer, intent(in) :: number                         !< of the body in this arithmetic
-    real(wp), intent(in) :: virtual(:, 0:)                !< (6,0:M) twists of the frames in the virtual motion
     real(wp), intent(in) :: change(13)                    !< as from `flatten_body`
-    real(wp) :: row, w(3), v(3), arm(3), tensor(3, 3)
+    real(wp), intent(out) :: wrench(:)                    !< (6) on the frame of the body
+    real(wp) :: force(3), arm(3), tensor(3, 3)
 
-    associate (body => self%bodies(number), s => self%bodies(number)%frame)
-      w = virtual(1:3, s)
-      v = virtual(4:6, s) + cross(w, body%place)
-      arm = turn(state%r(:, :, s), change(2:4))
-      tensor = inertia_in_axes(state%r(:, :, s), reshape(change(5:13), [3, 3]))
-      row = change(1)*dot_product(v, body%fall) &
-            + body%mass*(dot_product(cross(w, arm), body%fall) &
-                         + dot_product(v, cross(body%alpha, arm) + cross(body%omega, cross(body%omega, arm)))) &
-            + dot_product(w, turn(tensor, body%alpha) + cross(body%omega, turn(tensor, body%omega)))
+    associate (body => self%bodies(number), r => state%r(:, :, self%bodies(number)%frame))
+      force = change(1)*body%fall
+      wrench(1:3) = 0.0_wp
+      if (any(abs(change(2:4)) > 0.0_wp)) then
+        arm = turn(r, change(2:4))
+        force = force + body%mass*(cross(body%alpha, arm) + cross(body%omega, cross(body%omega, arm)))
+        wrench(1:3) = body%mass*cross(arm, body%fall)
+      end if
+      if (any(abs(change(5:13)) > 0.0_wp)) then
+        tensor = inertia_in_axes(r, reshape(change(5:13), [3, 3]))
+        wrench(1:3) = wrench(1:3) + turn(tensor, body%alpha) + cross(body%omega, turn(tensor, body%omega))
+      end if
+      wrench(1:3) = wrench(1:3) + cross(body%place, force)
+      wrench(4:6) = force
     end associate
-  end function by_body
+  end subroutine body_wrench
 
   !> The change of the force that a virtual motion requires, by gravity.
   pure function by_gravity(self, virtual, change) result(row)
