@@ -1,6 +1,7 @@
 !> The sums of all loads as forces and torques on links and generalized forces on coordinates.
 module mech9_force_sum
   use mech9_kinds, only: wp
+  use mech9_zero, only: make_zero
   use mech9_rotation, only: turn, cross
   use mech9_call_fault, only: call_fault_type
   use mech9_motion_view, only: motion_view_type
@@ -46,17 +47,6 @@ contains
     self%any_generalized = .false.
     self%fault%found = .false.
   end subroutine clear
-
-  !> Make numbers zero. The shape is explicit, so that the loop needs no strides.
-  pure subroutine make_zero(n, numbers)
-    integer, intent(in) :: n              !< number of elements
-    real(wp), intent(out) :: numbers(n)   !< all zero afterwards
-    integer :: i
-
-    do i = 1, n
-      numbers(i) = 0.0_wp
-    end do
-  end subroutine make_zero
 
   !> A force at a point of a link. A number that no link has is noted in `fault`, and nothing is added.
   pure subroutine add_force(self, state, link, point, force)

@@ -5,7 +5,7 @@
 !> for all positions: a product of zero is never formed.
 module mech9_linear_form
   use mech9_kinds, only: wp
-  use mech9_batch_products, only: batch_size, set_three, add_three, add_three_to, add_to
+  use mech9_batch_products, only: batch_size, sum_three, add_three_to, add_to
   implicit none
   private
   public :: linear_form_type, new_linear_form, put_share, keep_double, find_values, find_sizes, solve_for
@@ -238,10 +238,8 @@ contains
 
     do u = 1, unknowns - 2, 3
       associate (i => coordinates(u), j => coordinates(u + 1), k => coordinates(u + 2))
-        call set_three(n, solver(1, u, 1), solver(1, u, 2), solver(1, u, 3), openings(1, 1), openings(1, 2), openings(1, 3), &
-                       q(1, order, i), q(1, order, j), q(1, order, k))
-        do r = 4, rows, 3
-          call add_three(n, solver(1, u, r), solver(1, u, r + 1), solver(1, u, r + 2), openings(1, r), openings(1, r + 1), &
+        do r = 1, rows, 3
+          call sum_three(n, r == 1, solver(1, u, r), solver(1, u, r + 1), solver(1, u, r + 2), openings(1, r), openings(1, r + 1), &
                          openings(1, r + 2), q(1, order, i), q(1, order, j), q(1, order, k))
         end do
       end associate

@@ -13,7 +13,7 @@ module mech9_force_gradient
   use mech9_plan, only: plan_type, new_state
   use mech9_state, only: state_type
   use mech9_arithmetics, only: set_in_space
-  use mech9_frame_motion, only: place_all, spread_all_velocities, spread_all_accelerations
+  use mech9_placed_motion, only: place_motion
   use mech9_block_solver, only: block_work_type, new_block_work, factorize_block
   use mech9_coupling_constraint, only: bent_force
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
@@ -191,38 +191,19 @@ contains
     type(lagrange_work_type), intent(inout) :: work      !< of the run, with B and the factors of the closed chains
     type(force_gradient_type), intent(inout) :: self     !< gets the derivatives
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    integer :: b
 
     if (self%own_frames) then
-      call place_motion(present, self, err)
-      if (.not. allocated(err)) call find_from_frames(model, self%state, motion, work%jacobian%b, self%blocks, self, err)
+      call place_motion(present, self%plan, self%state, err)
+      if (allocated(err)) return
+      do b = 1, size(self%plan%blocks)
+        if (self%plan%blocks(b)%equations > 0) call factorize_block(self%plan, self%plan%blocks(b), self%state, self%blocks(b))
+      end do
+      call find_from_frames(model, self%state, motion, work%jacobian%b, self%blocks, self, err)
     else
       call find_from_frames(model, present, motion, work%jacobian%b, work%blocks, self, err)
     end if
   end subroutine find_force_gradient
-
-  !> Place the frames of the present motion in space, and factorize the closed chains there.
-  subroutine place_motion(present, self, err)
-    type(state_type), intent(in) :: present               !< the present motion
-    type(force_gradient_type), intent(inout) :: self      !< gets its frames
-    type(error_type), allocatable, intent(out) :: err     !< allocated if a pair has no pose
-    integer :: b
-
-    self%state%t = present%t
-    self%state%q = present%q
-    self%state%dq = present%dq
-    self%state%ddq = present%ddq
-    if (allocated(present%motor)) then
-      self%state%motor = present%motor
-      self%state%limited = present%limited
-    end if
-    call place_all(self%plan, self%state, err)
-    if (allocated(err)) return
-    call spread_all_velocities(self%plan, self%state)
-    call spread_all_accelerations(self%plan, self%state)
-    do b = 1, size(self%plan%blocks)
-      if (self%plan%blocks(b)%equations > 0) call factorize_block(self%plan, self%plan%blocks(b), self%state, self%blocks(b))
-    end do
-  end subroutine place_motion
 
   !> Find the derivatives in a motion whose frames are in place.
   subroutine find_from_frames(model, state, motion, b, blocks, self, err)

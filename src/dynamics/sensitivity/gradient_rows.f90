@@ -6,6 +6,7 @@
 !> rows of their loops, in the same way as forces of constraint make the forces of dependent coordinates zero.
 module mech9_gradient_rows
   use mech9_kinds, only: wp
+  use mech9_zero, only: make_zero
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type
@@ -53,17 +54,6 @@ contains
     call make_zero(size(rows%frames), rows%frames)
     call make_zero(size(rows%coordinates), rows%coordinates)
   end subroutine clear_rows
-
-  !> Make numbers zero. The shape is explicit, so that the loop needs no strides.
-  pure subroutine make_zero(n, numbers)
-    integer, intent(in) :: n              !< number of elements
-    real(wp), intent(out) :: numbers(n)   !< all zero afterwards
-    integer :: i
-
-    do i = 1, n
-      numbers(i) = 0.0_wp
-    end do
-  end subroutine make_zero
 
   !> Add the rows of each frame to those of its parent.
   pure subroutine sum_inward(plan, n, sums)

@@ -13,7 +13,7 @@ module mech9_varied_motion
   use mech9_plan, only: plan_type, block_type, new_state
   use mech9_state, only: state_type
   use mech9_arithmetics, only: set_in_space
-  use mech9_frame_motion, only: place_all, spread_all_velocities, spread_all_accelerations
+  use mech9_placed_motion, only: place_motion
   use mech9_block_solver, only: block_work_type, new_block_work, factorize_block
   use mech9_coupling_constraint, only: varied_coupling
   use mech9_frame_variation, only: third_derivatives_type, new_third_derivatives, find_third_derivatives
@@ -113,7 +113,7 @@ contains
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     integer :: b, order
 
-    call place_motion(present, self, err)
+    call find_twists(present, self, err)
     if (allocated(err)) return
     do b = 1, size(self%plan%blocks)
       if (self%plan%blocks(b)%equations == 0) cycle
@@ -143,25 +143,15 @@ contains
     end do
   end subroutine find_varied_points
 
-  !> Place the frames of the present motion in space.
-  subroutine place_motion(present, self, err)
+  !> Place the frames of the present motion in space, with their twists and those by which pairs change.
+  subroutine find_twists(present, self, err)
     type(state_type), intent(in) :: present               !< the present motion
     type(varied_motion_type), intent(inout) :: self       !< gets its frames
     type(error_type), allocatable, intent(out) :: err     !< allocated if a pair has no pose
     integer :: i
 
-    self%state%t = present%t
-    self%state%q = present%q
-    self%state%dq = present%dq
-    self%state%ddq = present%ddq
-    if (allocated(present%motor)) then
-      self%state%motor = present%motor
-      self%state%limited = present%limited
-    end if
-    call place_all(self%plan, self%state, err)
+    call place_motion(present, self%plan, self%state, err)
     if (allocated(err)) return
-    call spread_all_velocities(self%plan, self%state)
-    call spread_all_accelerations(self%plan, self%state)
     call find_third_derivatives(self%plan, self%state, self%third, err)
     if (allocated(err)) return
     call find_frame_twists(self%state, self%numbers, 2, self%motion)
@@ -172,7 +162,7 @@ contains
                               pair%slope)
       end associate
     end do
-  end subroutine place_motion
+  end subroutine find_twists
 
   !> Fail because of the chains of a block.
   pure subroutine fail_with(kind, code, block, t, err)
