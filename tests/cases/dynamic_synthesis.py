@@ -128,6 +128,26 @@ def slider_crank(cases):
     is_recovered(cases, designs, dict(stiffness=1, rod=1, angle=np.pi/2), 'slider-crank', value=1e-18, tolerance=1e-7)
 
 
+def motor(cases):
+    """Voltage and resistance of a motor are found again from the angle of its crank at two times; designs with runs of too many steps
+    have no value, and the search goes on."""
+    text = text_of(os.path.join(TREE, 'examples', 'motor_crank', 'motor_crank.nml'))
+    text = text.replace('end=2, intervals=400', 'end=0.6, intervals=12')
+    text = text.replace("&output table='motor_crank.dat', reactions=.true., reaction_pairs=1 /", '')
+    text += "&quantity name='early', of='q1', take='at', at=0.3 /\n&quantity name='late', of='q1', take='end' /\n"
+    done = run(cases.program, cases.write(text), '--no-write')
+    wanted = {line.split()[0]: float(line.split()[2]) for line in done.stderr.splitlines() if line.split()[1:2] == ['=']}
+    cases.checks.equal(sorted(wanted), ['early', 'late'], 'motor: the numbers of the motion')
+    text += ''.join(f"&objective kind='quantity', of='{name}', goal={value!r} /\n" for name, value in wanted.items())
+    text += "&parameter name='voltage', sets='motor(1).voltage', value=10, low=5, high=20 /\n"
+    text += "&parameter name='resistance', sets='motor(1).resistance', value=1, low=0.4, high=2 /\n&optimum starts=3 /\n"
+    designs, _, _ = cases.search(text, 'motor')
+    is_recovered(cases, designs, dict(voltage=12, resistance=0.8), 'motor', value=1e-18, tolerance=1e-6)
+    stiff = OSCILLATOR.replace('high=300', 'high=1e12').replace('1e-12 /', '1e-12, maximum_steps=200 /')
+    designs, _, _ = cases.search(stiff + "&objective kind='quantity', of='x', goal=0 /\n&optimum starts=3 /\n", 'stiff springs')
+    cases.checks.near(designs['k'][0], 2*(2*np.pi)**2, 1e-6, 'stiff springs: the first start has a value', scale=80)
+
+
 def driven(cases):
     """The counterweight of a lever that is driven at a constant rate: its drive needs no torque."""
     text = BALANCED.replace("&initial coordinate=1, position=0.2 /", "&drive coordinate=1, kind='polynomial', coefficients=0.2,12.566370614359172 /")
@@ -139,10 +159,10 @@ def driven(cases):
 
 
 def bits(cases):
-    """The same bits from one, two and three threads, and from a search that is continued."""
+    """The same bits from one, two and four threads, and from a search that is continued."""
     text = OSCILLATOR + "&objective kind='quantity', of='x', goal=0.02 /\n&objective kind='quantity', of='a', weight=1e-4 /\n&optimum starts=6 /\n"
     tables = []
-    for count in (1, 2, 3):
+    for count in (1, 2, 4):
         table, file = (os.path.join(cases.folder, f'threads{count}.{kind}') for kind in ('dat', 'h5'))
         done = run(cases.program, cases.write(text), '--optimize', '--table', table, '--threads', str(count), '--hdf5', file)
         cases.checks.true(done.returncode == DONE, f'{count} threads', done.stderr)
@@ -181,7 +201,7 @@ def main():
     checks = Checks()
     with tempfile.TemporaryDirectory() as folder:
         cases = Cases(checks, folder, sys.argv[1])
-        for case in (springs, starts, balance, slider_crank, driven, bits, refusals):
+        for case in (springs, starts, balance, slider_crank, motor, driven, bits, refusals):
             case(cases)
     checks.finish()
 

@@ -237,15 +237,20 @@ def times_that_meet(cases):
 
 
 def threads(cases):
-    """The same bits from one, two and three threads."""
-    limit = "&limit kind='transmission', coordinate=3, at_least=40 /\n"
-    tables = []
-    for count in (1, 2, 3):
-        table = os.path.join(cases.folder, f'threads{count}.dat')
-        done = run(cases.program, cases.write(ROUGH + QUANTITIES + STROKE + limit), '--optimize', '--table', table, '--threads', str(count))
-        cases.checks.true(done.returncode == DONE, f'{count} threads', done.stderr)
-        tables.append(text_of(table))
-    cases.checks.true(tables[0] == tables[1] == tables[2], 'the same bits from any number of threads')
+    """The same bits from one, two and four threads."""
+    transmission_angle = "&limit kind='transmission', coordinate=3, at_least=40 /\n"
+    made = cases.motion(with_numbers(FOUR_BAR, **MADE))
+    targets(cases, [made['P.x'][4:20:3], 1.05*made['P.y'][4:20:3]])
+    path = "&objective kind='path', point='P', file='targets.dat' /\n"
+    for why, text in (('a stroke', ROUGH + QUANTITIES + STROKE + transmission_angle),
+                      ('a path and a crank', ROUGH + path + "&limit kind='crank', coordinate=1 /\n")):
+        tables = []
+        for count in (1, 2, 4):
+            table = os.path.join(cases.folder, f'threads{count}.dat')
+            done = run(cases.program, cases.write(text), '--optimize', '--table', table, '--threads', str(count))
+            cases.checks.true(done.returncode == DONE, f'{why}: {count} threads', done.stderr)
+            tables.append(text_of(table))
+        cases.checks.true(tables[0] == tables[1] == tables[2], f'{why}: the same bits from any number of threads')
 
 
 def refusals(cases):
