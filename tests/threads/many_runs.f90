@@ -15,6 +15,11 @@ module many_runs
   use mech9_row_source, only: row_source_type, new_row_source
   use mech9_varied_document, only: varied_document_type, new_varied_document
   use mech9_run_maker, only: run_maker_type, made_run_type
+  use mech9_variable_model, only: variable_model_type
+  use mech9_held_start, only: held_start_type, hold_start
+  use mech9_synthesis, only: synthesis_type, new_synthesis
+  use mech9_closed_search, only: found_design_type
+  use mech9_optimum_check, only: check_synthesis
   implicit none
   private
   public :: run_type, list_runs, carry_out, same
@@ -39,14 +44,15 @@ contains
       'reference/dynamics_fig1', 'cases/malformed/errors_together', 'reference/kinematics_general_7r', &
       'reference/dynamics_fivebar', 'reference/kinematics_bennett', 'reference/dynamics_open_chain', &
       'reference/kinematics_fig1_driven_at_q1', 'cases/malformed/links_apart', &
-      'reference/dynamics_spatial_slider_crank', 'reference/kinematics_slider_crank', 'threads/study']
+      'reference/dynamics_spatial_slider_crank', 'reference/kinematics_slider_crank', 'threads/study', 'threads/search', &
+      'threads/forced_search']
     integer :: i, which
 
     allocate (runs(count))
     do i = 1, count
       which = 1 + modulo(i - 1, size(names))
       runs(i)%file = folder//'/'//trim(names(which))//'.nml'
-      runs(i)%dynamic = index(names(which), '/dynamics') > 0
+      runs(i)%dynamic = index(names(which), '/dynamics') > 0 .or. index(names(which), '/forced') > 0
     end do
   end subroutine list_runs
 
@@ -68,6 +74,11 @@ contains
     if (model%request%study%kind /= '') then
       call make_study(document, diagnostics, model, run%rows)
       run%done = .true.
+      return
+    end if
+    if (size(model%request%objectives) > 0) then
+      call search(document, diagnostics, model, run%dynamic, run%rows, err)
+      run%done = .not. allocated(err)
       return
     end if
     ! short, so that the threads begin and end often
@@ -101,6 +112,46 @@ contains
       rows(2 + size(made%values):, i) = made%quantities
     end do
   end subroutine make_study
+
+  !> Search for a design from some starts.
+  subroutine search(document, diagnostics, model, dynamic, rows, err)
+    type(document_type), intent(in) :: document          !< the data file
+    type(diagnostics_type), intent(in) :: diagnostics    !< of its reading
+    type(model_type), intent(in) :: model                !< with the values of the data file
+    logical, intent(in) :: dynamic                       !< the motion follows from forces
+    real(wp), allocatable, intent(out) :: rows(:, :)     !< a column for each start: value and parameters of its best design
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    type(varied_document_type), target :: varied
+    type(held_start_type), target :: held
+    class(variable_model_type), pointer :: searched
+    type(model_type) :: present
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(synthesis_type), target :: synthesis
+    type(found_design_type), allocatable :: found(:)
+    integer :: i, best
+
+    call new_varied_document(document, diagnostics%sources, .not. dynamic, varied)
+    searched => varied
+    present = model
+    if (dynamic) then
+      allocate (held%moving, source=varied)
+      searched => held
+      call hold_start(present, err)
+      if (allocated(err)) return
+    end if
+    call assemble_driven(present, plan, start, err)
+    if (.not. allocated(err)) call new_synthesis(searched, present, plan, synthesis, err)
+    if (.not. allocated(err)) call check_synthesis(merge('mech9d', 'mech9k', dynamic), varied, model, start, synthesis, err)
+    if (allocated(err)) return
+    allocate (rows(1 + size(synthesis%space%varied), model%request%optimum%starts), source=0.0_wp)
+    do i = 1, size(rows, 2)
+      call synthesis%make_start(synthesis%space, model%request%optimum%seed, i, found)
+      best = minloc(found%value, dim=1)
+      rows(1, i) = found(best)%value
+      if (found(best)%found) rows(2:, i) = found(best)%x
+    end do
+  end subroutine search
 
   subroutine follow(model, rows, err)
     type(model_type), intent(in), target :: model       !< the model

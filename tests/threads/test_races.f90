@@ -18,7 +18,7 @@ contains
     logical :: failed
 
     call get_command_argument(1, folder)
-    call list_runs(trim(folder), 12, alone)
+    call list_runs(trim(folder), 14, alone)
     do k = 1, size(alone)
       call carry_out(alone(k))
     end do
