@@ -179,6 +179,8 @@ def killed(cases, command, text, whole, why, victim=None):
         if i >= 2 and partly > 0:
             break
         path = f'killed{i}.h5'
+        if os.path.exists(cases.path(path)):     # of an earlier check, whose runs are others
+            os.remove(cases.path(path))
         process = subprocess.Popen([*command, cases.path('case.nml'), '--study', '--quiet', '--hdf5', path], cwd=cases.folder, env=ENVIRONMENT,
                                    stderr=subprocess.DEVNULL, start_new_session=True)
         patience = time.monotonic() + 60
