@@ -36,7 +36,7 @@ contains
 
     call system%take_vector(t, y, err)
     if (allocated(err)) return
-    duration = system%model%request%time%end - system%model%request%time%start
+    duration = abs(system%model%request%time%end - system%model%request%time%start)
     jumps(:, 1) = -system%state%dq
     call vary_laws(system, varied)
     call system%interval%begin(system%model, t)

@@ -344,6 +344,32 @@ def check_smooth_joints(case):
         case.against_runs(text, (('depth', 'body(1).centre(2)', -3.0),), f'joints of {law}')
 
 
+# A pendulum on a slide that a drive moves in segments.
+CARRIED = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /
+&drive coordinate=1, kind='segments', {law} /
+&initial coordinate=2, position=0.3 /
+&body link=3, mass=5, centre=0,-3,0 /
+&gravity acceleration=0,-9.81,0 /
+&time {times}, intervals=5 /
+"""
+# A double pendulum on such a slide, whose joint a controller with a limit moves.
+CONTROLLED = """&structure cq=1,2,3 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=0,-1,0 /
+&drive coordinate=1, kind='segments', times=0,0.2,0.4,2, values=0,0,0.05,0.05, laws='dwell','constant-velocity','dwell' /
+&motor coordinate=3, kind='pid', proportional=30, derivative=4, integral=5, limit=20, law='segments', times=0,0.3,0.5,2,
+       values=0,0,1,1, laws='dwell','cycloidal','dwell' /
+&initial coordinate=2, position=0.3 /
+&initial coordinate=3, position=0.1 /
+&body link=3, mass=2, centre=0,-0.5,0, inertia=0,0,0.1,0,0,0 /
+&body link=4, mass=1, centre=0.1,-0.5,0, inertia=0,0,0.1,0,0,0 /
+&load kind='coordinate', coordinate=2, damping=0.5 /
+&gravity acceleration=0,-9.81,0 /
+&time end=0.8, intervals=5 /
+"""
 # A five-bar whose first crank a drive turns from rest to rest: one coordinate of its closed chain is free.
 FIVE_BAR = """&structure cq=1,5 /
 &pair coordinate=1, links=1,2, kind='revolute', point=0,0,0, axis=0,0,1 /
@@ -370,15 +396,7 @@ def check_moving_joints(case):
     """Times and values of laws in segments as parameters: beyond a joint whose time varies the derivatives of the free rates have
     jumped by the jump of the accelerations. Outputs lie between the joints."""
     for law in ('cycloidal', 'harmonic', 'polynomial345'):
-        text = f"""&structure cq=1,2 /
-&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
-&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /
-&drive coordinate=1, kind='segments', times=0,0.2,0.3,0.7, values=0,0,0.05,0, laws='{law}' /
-&initial coordinate=2, position=0.3 /
-&body link=3, mass=5, centre=0,-3,0 /
-&gravity acceleration=0,-9.81,0 /
-&time end=0.62, intervals=5 /
-"""
+        text = CARRIED.format(law=f"times=0,0.2,0.3,0.7, values=0,0,0.05,0, laws='{law}'", times='end=0.62')
         case.against_runs(text, (('from', 'drive.times(2)', 0.2), ('to', 'drive.times(3)', 0.3), ('over', 'drive.values(3)', 0.05)),
                           f'times of {law}')
     case.against_runs(FIVE_BAR, (('from', 'drive.times(2)', 0.1), ('to', 'drive.times(3)', 0.37), 
@@ -402,6 +420,21 @@ def check_moving_joints(case):
     case.against_runs(led, (('from', 'motor.times(2)', 0.3), ('to', 'motor.times(3)', 1.1)), 'times of the setpoint of a controller')
 
 
+def check_repeated_joints(case):
+    """Laws that repeat and go on from period to period, motions back in time, and two laws with a joint at the same time."""
+    text = CARRIED.format(law="times=0,0.1,0.25,0.3, values=0,0.02,0.05,0.05, laws='harmonic','harmonic','dwell', period=0.3", times='end=1.13')
+    # the longer steps of others would move a joint over a time of the results
+    case.against_runs(text, (('period', "'drive.period','drive.times(4)'", 0.3), ('mid', 'drive.times(3)', 0.25)), 'a law that repeats', 2.0**-11)
+    text = CARRIED.format(law="times=-2,-0.5,-0.3,2, values=0,0,0.05,0.05, laws='dwell','harmonic','dwell'", times='start=0, end=-0.9')
+    case.against_runs(text, (('from', 'drive.times(2)', -0.5), ('to', 'drive.times(3)', -0.3)), 'back in time')
+    text = text.replace('harmonic', 'constant-velocity')
+    case.against_runs(text, (('centre', 'body.centre(2)', -3.0), ('far', "'drive.values(3)','drive.values(4)'", 0.05)), 'jumps back in time')
+    second = "values=0,0,0.07,0.07, laws='dwell','harmonic','dwell' /\n"
+    text = SPATIAL.replace('&initial coordinate=1, position=0.2, velocity=1.5 /\n', "&drive coordinate=1, kind='segments', times=0,0.3,0.4,2, " + second)
+    text = text.replace('&initial coordinate=3, position=0.1, velocity=0.2 /\n', "&drive coordinate=3, kind='segments', times=0,0.3,0.6,2, " + second)
+    case.against_runs(text, (('one', 'drive(1).times(2)', 0.3), ('other', 'drive(2).times(3)', 0.6)), 'two joints at the same time')
+
+
 def check_jumps(case):
     """Rates of drives that jump at known times: derivatives of the free rates change by that of the impulse. The impulse on the bead
     of the hoop is zero; the five-bar and the open chain in space have one that depends on all dimensions."""
@@ -416,6 +449,8 @@ def check_jumps(case):
     space = SPATIAL.replace('&initial coordinate=1, position=0.2, velocity=1.5 /\n', drive)
     case.against_runs(space, (('pitch', 'pair(1).pitch', 0.3), ('tilt', 'pair(2).axis(2)', 0.3), ('far', "'drive.values(3)','drive.values(4)'", 0.5),
                               ('product', 'body(1).inertia(4)', 0.01), ('stiff', 'load(1).stiffness', 60.0)), 'a chain in space that jumps')
+    case.against_runs(CONTROLLED, (('mass', 'body(2).mass', 1.0), ('when', 'motor.times(2)', 0.3), ('far', "'drive.values(3)','drive.values(4)'", 0.05),
+                                   ('bar', 'pair(3).point(2)', -1.0), ('limit', 'motor.limit', 20.0)), 'a jump beside a controller')
 
 
 def check_refusals(case):
@@ -454,6 +489,7 @@ def main():
         check_governor(case)
         check_smooth_joints(case)
         check_moving_joints(case)
+        check_repeated_joints(case)
         check_jumps(case)
         check_refusals(case)
         case.against_runs(FOUR_BAR, FOUR_BAR_PARAMETERS, 'four-bar with loads', 2.0**-10)
