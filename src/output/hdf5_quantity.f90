@@ -18,6 +18,7 @@ module mech9_hdf5_quantity
   !> Columns that are copied as one piece, on the average.
   integer, parameter :: shortest_piece = 8
 
+  !> A data set over the rows of a series, which takes some of their columns.
   type :: quantity_type
     integer(hid_t) :: data_set = -1
     character(len=:), allocatable :: name, long_name, unit
