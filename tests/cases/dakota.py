@@ -167,7 +167,7 @@ def mistakes(cases, mech9k):
                                 (standard([('crank', 0.25), ('crank', 0.3)], [('far', 1)]), "the variable 'crank' stands there twice"),
                                 (good.replace('2.500000000000000e-01', 'long'), "params.in:2: 'long' is not a number"),
                                 (good.replace('1 ASV_1', '9 ASV_1'), 'params.in:4: the active set vector has numbers from 0 to 7'),
-                                (standard([('crank', 0.25)], [('far', 1)], (1,)).replace('1 DVV', '2 DVV'), 'params.in:6: there are 1 variables'),
+                                (standard([('crank', 0.25)], [('far', 1)], (1,)).replace('1 DVV', '2 DVV'), 'params.in:6: there is 1 variable, and this is the number of none'),
                                 (good.replace('1 variables', '2 variables'), "params.in:4: the number of functions is expected here"),
                                 ('\n'.join(good.splitlines()[:3]), 'the file ends before'),
                                 (good.replace('1 variables', '-1 variables'), 'params.in:1: this is no length of a list'),

@@ -7,6 +7,7 @@ module mech9_dakota_file
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, add_place, exit_data
   use mech9_text, only: string_type, to_text, lower
+  use mech9_counted, only: counted
   use mech9_source, only: source_type, read_source
   use mech9_numeral, only: numeral_type, read_numeral
   use mech9_printable, only: printable
@@ -179,8 +180,8 @@ contains
 
     do i = 1, size(numbers)
       if (numbers(i) >= 1.0_wp .and. numbers(i) <= size(request%variables)) cycle
-      call fail_at(source, line - 1 - size(numbers) + i, 'there are '//to_text(size(request%variables))// &
-                   ' variables, and this is the number of none', err)
+      call fail_at(source, line - 1 - size(numbers) + i, trim(merge('there is ', 'there are', size(request%variables) == 1))// &
+                   ' '//counted(size(request%variables), 'variable')//', and this is the number of none', err)
       return
     end do
     request%by = nint(numbers)
