@@ -274,6 +274,41 @@ def balance(checks, program, folder):
     search.tells('0.500000', '0.666667')
 
 
+def door_closer(checks, program, folder):
+    """The door's motion by its own equation: the arm turns as the triangle of arm and forearm tells, and its torque does the door's work."""
+    search = Search(checks, program, folder, 'door_closer', plot=False)
+    best = search.best
+
+    def arm_angle(door):
+        way = complex(best['bracket'], 0.08)*np.exp(-1j*door) - complex(0.22, 0.06)
+        # the way points from the closer back towards the hinge: its negative has no jump of the angle
+        return np.angle(-way) - np.pi - np.arccos((0.21**2 + abs(way)**2 - 0.35**2)/(2*0.21*abs(way)))
+
+    start = np.radians(90)
+    # of central differences, whose error is its square
+    step = 1e-5
+    motion = search.motion()
+    turns = round((np.radians(motion['q2'][0]) - arm_angle(start))/(2*np.pi))
+
+    def acceleration(door, rate):
+        ratio = (arm_angle(door + step) - arm_angle(door - step))/(2*step)
+        torque = -best['stiffness']*(arm_angle(door) + 2*np.pi*turns - np.radians(best['rest'])) - best['damping']*ratio*rate
+        return torque*ratio/(2.7 + 40*0.45**2)
+
+    door, rate, h, at = start, 0.0, 0.001, []
+    for k in range(5000):
+        a = acceleration(door, rate)
+        b = acceleration(door + h/2*rate, rate + h/2*a)
+        c = acceleration(door + h/2*rate + h*h/4*a, rate + h/2*b)
+        d = acceleration(door + h*rate + h*h/2*b, rate + h*c)
+        door, rate = door + h*rate + h*h/6*(a + b + c), rate + h/6*(a + 2*b + 2*c + d)
+        if k % 1000 == 999:
+            at.append(np.degrees(door))
+    checks.near(motion['q1'][20::20], at, 1e-6, 'door closer: its motion, by tolerances of 1e-8', scale=1.0)
+    search.has_value(np.sum((np.array(at) - [65, 40, 20, 8, 2])**2), 'its value')
+    search.tells(', '.join(f'{angle:.2f}' for angle in at), f"{best['stiffness']:.3f}", f"{best['bracket']:.5f}")
+
+
 SPATIAL_ERROR = 0.0209
 DWELL_ERROR, SWING = 0.028, 45
 
@@ -283,6 +318,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for check in (five_points, eighteen_points, straight_line, functions, spatial, dwell, poses, balance):
             check(checks, sys.argv[1], folder)
+        door_closer(checks, sys.argv[2], folder)
     checks.finish()
 
 
