@@ -122,6 +122,25 @@ def recovered_planar(cases):
     cases.checks.near(two['value'][0], 5*one['value'][0], 1e-9, 'weights are factors of the sums of squares')
 
 
+def several_drives(cases):
+    """A harmonic drive stands before one whose coefficients are set for each design."""
+    text = FOUR_BAR.replace('cq=1', 'cq=1,5').replace("kind='polynomial', coefficients=10, 30", "kind='harmonic', mean=60, amplitude=50, angular_frequency=30")
+    text = text.replace("link=3, position=0.7,0.6,0", 'link=5, position=0.3,0,0')
+    text += """&pair coordinate=5, links=3,5, kind='revolute', axis=0,0,1, point=0.7,0.6,0, moving_point=0,0,0 /
+&drive coordinate=5, kind='polynomial', coefficients=20, 15 /
+"""
+    made = cases.motion(with_numbers(text, CRANK=0.5, COUPLER=1.8, ROCKER=1.5))
+    targets(cases, [made['t'][::3], made['P.x'][::3], made['P.y'][::3]])
+    text = with_numbers(text, CRANK=0.4, COUPLER=2.2, ROCKER=1.9) + LENGTHS
+    text += "&objective kind='path', point='P', file='targets.dat', timing='given' /\n&optimum starts=4 /\n"
+    lengths = dict(crank=0.5, coupler=1.8, rocker=1.5)
+    designs, _, _ = cases.search(text, 'two drives')
+    is_recovered(cases, designs, lengths, 'two drives')
+    text = text.replace('coefficients=20, 15', 'coefficients=50, 15') + "&parameter name='angle', sets='drive(2).coefficients(1)', low=-30, high=60 /\n"
+    designs, _, _ = cases.search(text, 'two drives, one with a parameter')
+    is_recovered(cases, designs, dict(lengths, angle=20), 'two drives, one with a parameter')
+
+
 def recovered_spatial(cases):
     """A length, a place and the direction of an axis of a spatial crank and rocker: the numbers are not affine in the parameters."""
     rsur = text_of(os.path.join(TREE, 'examples', 'rsur', 'rsur.nml')) + SPATIAL
@@ -220,6 +239,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         cases = Cases(checks, folder, sys.argv[1])
         recovered_planar(cases)
+        several_drives(cases)
         recovered_spatial(cases)
         eighteen_points(cases)
         mistakes(cases)

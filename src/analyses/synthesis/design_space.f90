@@ -19,8 +19,8 @@ module mech9_design_space
   use mech9_quantity_evaluator, only: quantity_evaluator_type
   implicit none
   private
-  public :: design_space_type, design_type, new_design_space, new_design, place_design, find_tangents, drive_changes, &
-    fix_design_space, all_values
+  public :: design_space_type, design_type, new_design_space, new_design, place_design, place_drives, find_tangents, &
+    drive_changes, fix_design_space, all_values
 
   !> The data that all designs share. A copy needs a model as a function of its own.
   type :: design_space_type
@@ -249,21 +249,11 @@ contains
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     real(wp), allocatable :: row(:)
     type(model_type) :: model
-    integer :: i, at
 
     design%x = x
     if (space%is_affine) then
       row = space%constants + matmul(space%slopes, x - space%values(space%varied))
-      at = space%drives_at
-      do i = 1, size(design%drives)
-        associate (drive => design%drives(i)%drive)
-          select type (drive)
-          type is (polynomial_law_type)
-            drive%coefficients = row(at + 1:at + size(drive%coefficients))
-            at = at + size(drive%coefficients)
-          end select
-        end associate
-      end do
+      call place_drives(space, x, design)
     else
       call space%variable%at(all_values(space, x), model, err)
       if (allocated(err)) return
@@ -274,6 +264,32 @@ contains
     end if
     call place_constants(row, design)
   end subroutine place_design
+
+  !> Give the drives of a design their numbers, which are affine functions of the parameters. Only polynomials change with them.
+  pure subroutine place_drives(space, x, design)
+    type(design_space_type), intent(in) :: space         !< the designs
+    real(wp), intent(in) :: x(:)                         !< values of the varied parameters
+    type(design_type), intent(inout) :: design           !< gets the numbers of its drives
+    real(wp), allocatable :: others(:)
+    integer :: i, j, at
+
+    at = space%drives_at
+    do i = 1, size(design%drives)
+      associate (drive => design%drives(i)%drive)
+        select type (drive)
+        type is (polynomial_law_type)
+          do j = 1, size(drive%coefficients)
+            drive%coefficients(j) = space%constants(at + j) &
+                                    + dot_product(space%slopes(at + j, :), x - space%values(space%varied))
+          end do
+          at = at + size(drive%coefficients)
+        class default
+          call drive%constants(others)
+          if (allocated(others)) at = at + size(others)
+        end select
+      end associate
+    end do
+  end subroutine place_drives
 
   !> Set the couplings of a design's plans, and the pairs without a fixed axis.
   pure subroutine place_curves(model, design)

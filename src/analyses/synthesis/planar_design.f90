@@ -3,9 +3,8 @@ module mech9_planar_design
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_pose, only: transformed
-  use mech9_polynomial_law, only: polynomial_law_type
   use mech9_planar_numbers, only: planar_design_type, numbers_of_point, place_numbers
-  use mech9_design_space, only: design_space_type, design_type, place_design
+  use mech9_design_space, only: design_space_type, design_type, place_design, place_drives
   implicit none
   private
   public :: new_planar_design, place_planar_design
@@ -94,26 +93,4 @@ contains
     call place_numbers(x, planar)
     if (planar%moves_drives) call place_drives(space, x, design)
   end subroutine place_planar_design
-
-  !> Give the drives of a design their numbers.
-  pure subroutine place_drives(space, x, design)
-    type(design_space_type), intent(in) :: space         !< the designs
-    real(wp), intent(in) :: x(:)                         !< (varied) values of the parameters
-    type(design_type), intent(inout) :: design           !< gets the numbers of its drives
-    integer :: i, j, at
-
-    at = space%drives_at
-    do i = 1, size(design%drives)
-      associate (drive => design%drives(i)%drive)
-        select type (drive)
-        type is (polynomial_law_type)
-          do j = 1, size(drive%coefficients)
-            drive%coefficients(j) = space%constants(at + j) &
-                                    + dot_product(space%slopes(at + j, :), x - space%values(space%varied))
-          end do
-          at = at + size(drive%coefficients)
-        end select
-      end associate
-    end do
-  end subroutine place_drives
 end module mech9_planar_design
