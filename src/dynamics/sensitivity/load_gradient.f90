@@ -1,7 +1,8 @@
 !> Loads in the derivatives of required forces: what they do to the wrenches that frames need, to the rows of a force in a virtual
 !> motion, and to this force by numbers of their own.
 !>
-!> Kinds whose formula is not known, such as users' loads, have no rows. Their forces vary with the whole motion of each parameter.
+!> Kinds whose formula is not known, such as users' loads, have no rows. Their forces vary with the whole motion of each parameter, or,
+!> where they act on free coordinates, as motors mostly do, with the motion of these alone.
 module mech9_load_gradient
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -28,6 +29,7 @@ module mech9_load_gradient
     integer :: parameter = 0                       !< number of the parameter
     integer :: load = 0                            !< number of the load
     logical :: by_motion = .false.                 !< they change with the motion
+    logical :: by_free = .false.                   !< they change with the motion of free coordinates alone
     integer, allocatable :: links(:)               !< on which it acts, and whose motion it reads
     integer, allocatable :: coordinates(:)         !< on which it acts, and which it reads
     real(wp), allocatable :: wrenches(:, :)        !< (d,links) change of its forces on these links
@@ -49,11 +51,11 @@ module mech9_load_gradient
 
 contains
 
-  !> Whether some loads vary with the whole motion of each parameter.
+  !> Whether some loads vary with the whole motion of each parameter, beyond that of the free coordinates.
   pure logical function reads_motions(self)
     type(load_gradient_type), intent(in) :: self     !< the loads
 
-    reads_motions = any(self%changed%by_motion)
+    reads_motions = any(self%changed%by_motion .and. .not. self%changed%by_free)
   end function reads_motions
 
   !> Room for the loads of a model.
@@ -97,9 +99,14 @@ contains
     type(changed_load_type), intent(in) :: one                      !< the load
     type(changed_load_type), allocatable, intent(inout) :: list(:)  !< the list that grows
     type(changed_load_type) :: whole
+    integer :: i
 
     whole = one
     call list_marked(model, plan, [one%load], whole%links, whole%coordinates)
+    whole%by_free = size(whole%links) == 0
+    do i = 1, size(whole%coordinates)
+      whole%by_free = whole%by_free .and. any(plan%free == whole%coordinates(i))
+    end do
     allocate (whole%wrenches(d, size(whole%links)), whole%generalized(size(whole%coordinates)), source=0.0_wp)
     list = [list, whole]
   end subroutine append
@@ -247,7 +254,7 @@ contains
     end associate
   end subroutine subtract_slopes
 
-  !> Find the changes of the loads' forces beside their rows: by their own numbers, and by the whole motion. Fails where a load does.
+  !> Find the changes of the loads' forces beside their rows: by their own numbers, and by the motion. Fails where a load does.
   subroutine vary_loads(model, arithmetic, motion, self, err)
     type(model_type), intent(in) :: model                        !< the model
     class(gradient_arithmetic_type), intent(in) :: arithmetic    !< of the wrenches
@@ -267,7 +274,8 @@ contains
                  part => motion%tangents(self%changed(i)%parameter)%loads(self%changed(i)%load))
         call self%change%clear()
         if (one%by_motion) then
-          call show_change(one%parameter, twists, motion, self%links, self%view, self%moved)
+          call show_change(one%parameter, twists, motion, self%links(:merge(0, size(self%links), one%by_free)), self%view, &
+                           self%moved)
           call load%vary(self%view, self%moved, self%change, err)
         else
           call load%vary_numbers(part%change, self%view, self%change, err)

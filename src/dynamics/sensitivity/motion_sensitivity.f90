@@ -140,9 +140,11 @@ contains
       self%values(:, :, 2) = 0.0_wp
       call give(self)
       call find_varied_motion(model, state, self%motion, err)
-      if (.not. allocated(err)) call find_motor_rates(model, self, err)
-      if (allocated(err)) return
+    else
+      call give_to_motors(state, self)
     end if
+    if (.not. allocated(err)) call find_motor_rates(model, self, err)
+    if (allocated(err)) return
     call find_force_gradient(model, state, self%motion, work, self%gradient, err)
     if (allocated(err)) return
     associate (gradient => self%gradient, n => size(self%motion%plan%free), m => self%motion%n_parameters)
@@ -226,6 +228,25 @@ contains
     call find_varied_motion(model, state, self%motion, err)
     if (.not. allocated(err)) call find_varied_points(model, self%motion)
   end subroutine complete
+
+  !> Give the present motion, and the derivatives of the free coordinates and of their rates, to motors, which all act on such coordinates.
+  pure subroutine give_to_motors(state, self)
+    type(state_type), intent(in) :: state                   !< the motion
+    class(motion_sensitivity_type), intent(inout) :: self   !< the derivatives
+    integer :: i
+
+    if (size(self%motors, 2) == 0) return
+    self%motion%state%t = state%t
+    self%motion%state%q = state%q
+    self%motion%state%dq = state%dq
+    self%motion%state%ddq = state%ddq
+    self%motion%state%motor = state%motor
+    self%motion%state%limited = state%limited
+    do i = 1, size(self%motion%plan%free)
+      self%motion%q(:, 0:1, self%motion%plan%free(i)) = self%values(:, i, 0:1)
+    end do
+    self%motion%motor = self%motors(:, :, 0)
+  end subroutine give_to_motors
 
   !> Give the derivatives of the free coordinates to those of the whole motion.
   pure subroutine give(self)
