@@ -94,7 +94,7 @@ contains
     product = 1
     runs = 0
     do i = 1, size(parameters)
-      missing = names_missing(document%groups(numbers(i)))
+      call find_missing_names(document%groups(numbers(i)), missing)
       if (missing /= '') call diagnostics%add(document%groups(numbers(i))%span, 'parameter '''//parameters(i)%name// &
                                               ''' needs '//missing//' for a study on a grid')
       product = product*max(1, parameters(i)%count)
@@ -107,9 +107,9 @@ contains
   end subroutine count_grid
 
   !> The names that a parameter lacks for a grid, in words; empty where it has all of them.
-  pure function names_missing(group) result(words)
-    type(group_type), intent(in) :: group   !< group of the parameter
-    character(len=:), allocatable :: words
+  pure subroutine find_missing_names(group, words)
+    type(group_type), intent(in) :: group                        !< group of the parameter
+    character(len=:), allocatable, intent(out) :: words          !< the names, in apostrophes
     character(len=*), parameter :: names(3) = [character(len=5) :: 'low', 'high', 'count']
     integer, allocatable :: missing(:)
     integer :: i
@@ -124,7 +124,7 @@ contains
       end if
       words = words//''''//trim(names(missing(i)))//''''
     end do
-  end function names_missing
+  end subroutine find_missing_names
 
   !> Report parameters without a spread and without a range, from which no values can be drawn.
   pure subroutine check_spreads(document, parameters, diagnostics)
