@@ -7,7 +7,7 @@
 # a compiler that cannot link.
 packages_build="gfortran libc6-dev cmake ninja-build liblapack-dev libsundials-dev libsundials-fortran-dev libedit-dev libhdf5-dev libexpat1-dev libnlopt-dev"
 packages_pictures="gnuplot-nox graphviz"
-packages_tests="python3 python3-numpy python3-h5py python3-xarray python3-h5netcdf python3-pandas hdf5-tools groff-base libopenmpi-dev openmpi-bin"
+packages_tests="python3 python3-pytest python3-numpy python3-h5py python3-xarray python3-h5netcdf python3-pandas hdf5-tools groff-base libopenmpi-dev openmpi-bin"
 packages_browser="chromium"
 
 # The packages among the arguments that are not installed.

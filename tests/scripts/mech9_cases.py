@@ -1,10 +1,11 @@
-"""Tools that the scripts in tests/cases share: running a program, reading tables, counting checks.
+"""Tools that the tests share: running a program, reading tables, counting checks.
 
-Needs numpy only. A script makes a Checks, checks, and leaves through its finish().
+Needs numpy only. A test of pytest takes the fixture `checks`; a script makes a Checks, checks, and leaves through its finish().
 """
 import json
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -83,6 +84,14 @@ class Checks:
         self.left_out('there is no /dev/full here')
         return False
 
+    def verdict(self):
+        """For pytest: fail where a check did, or where there was none; skip where something was left out."""
+        if self.failed or not (self.passed or self.missing):
+            raise AssertionError(f'{self.failed} of {self.passed + self.failed} checks failed (see FAILED below)')
+        if self.missing:
+            import pytest
+            pytest.skip('; '.join(self.missing))
+
     def finish(self):
         print(f'{self.passed} checks passed, {self.failed} failed')
         for why in self.missing:
@@ -98,11 +107,17 @@ def skip(why):
     sys.exit(SKIPPED)
 
 
+# How many times longer than its processor time a program may take by the clock: other work may fill the machine.
+PATIENCE = 20
+
+
 def run(program, *arguments, folder=None, stdin='', timeout=120):
-    """Run a program; gives its completed process with text in stdout and stderr."""
+    """Run a program; gives its completed process with text in stdout and stderr. It may take `timeout` seconds of processor time."""
+    def limit():
+        resource.setrlimit(resource.RLIMIT_CPU, (timeout, resource.getrlimit(resource.RLIMIT_CPU)[1]))
     return subprocess.run([os.fspath(program), *map(os.fspath, arguments)], cwd=folder, input=stdin,
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors='replace',
-                          timeout=timeout)
+                          timeout=PATIENCE * timeout, preexec_fn=limit)
 
 
 def text_of(path):

@@ -1,21 +1,26 @@
 !> The second set given as data: valid ones in any order are taken, and each kind of inconsistency is
 !> found, named and placed.
-program test_structural_vectors
+module test_structural_vectors
   use mech9_text, only: to_text
   use mech9_structure, only: structure_type, finding_type
   use mech9_structural_vectors, only: structural_vectors_type, chain_type, chains_of, structure_from_vectors
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: tester
-
-  call good_vectors(tester)
-  call wrong_sizes(tester)
-  call wrong_numbers(tester)
-  call wrong_chains(tester)
-  call wrong_closures(tester)
-  call tester%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('good_vectors')) call good_vectors(tester)
+    if (tester%runs('wrong_sizes')) call wrong_sizes(tester)
+    if (tester%runs('wrong_numbers')) call wrong_numbers(tester)
+    if (tester%runs('wrong_chains')) call wrong_chains(tester)
+    if (tester%runs('wrong_closures')) call wrong_closures(tester)
+  end subroutine run
 
   !> The second set of Fig. 1, with nrw by its definition.
   function fig_1() result(vectors)
@@ -220,4 +225,4 @@ contains
     vectors%nrw = [1, 1, 1, 1, 2, 2, 2, 2, 3]
     call one_finding(tester, vectors, 'nrw', 1, 'must start with 0', 'nrw starting with 1')
   end subroutine wrong_closures
-end program test_structural_vectors
+end module test_structural_vectors

@@ -1,23 +1,29 @@
 !> The first set of structural data: good data are taken, and each kind of bad data is found, named and
 !> placed, with nothing found twice.
-program test_structure
+module test_structure
   use mech9_text, only: to_text
   use mech9_structure, only: structure_type, finding_type, structure_from_matrix, structure_from_pairs, &
     check_pair_links
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   !> Fig. 1 of the paper, pairs 1 to 7.
   integer, parameter :: fig_1(2, 7) = reshape([1, 6, 5, 6, 3, 5, 2, 3, 1, 2, 1, 4, 3, 4], [2, 7])
-  type(tester_type) :: tester
-
-  call good_data(tester)
-  call bad_matrices(tester)
-  call bad_pairs(tester)
-  call bad_independent(tester)
-  call disagreeing_pairs(tester)
-  call tester%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('good_data')) call good_data(tester)
+    if (tester%runs('bad_matrices')) call bad_matrices(tester)
+    if (tester%runs('bad_pairs')) call bad_pairs(tester)
+    if (tester%runs('bad_independent')) call bad_independent(tester)
+    if (tester%runs('disagreeing_pairs')) call disagreeing_pairs(tester)
+  end subroutine run
 
   !> The matrix of pairs, by (7).
   function matrix_of(n, links) result(c)
@@ -190,4 +196,4 @@ contains
     call check_pair_links(structure, links, findings)
     call one_finding(tester, findings, 'links', [3, 0], 'pair 3', 'a pair against the structural data')
   end subroutine disagreeing_pairs
-end program test_structure
+end module test_structure

@@ -1,6 +1,6 @@
 !> The transformation of the first set into the second one: the paper's Fig. 1, the rules taken
 !> literally, and the definitions of the vectors on random structures of many kinds.
-program test_transformation
+module test_transformation
   use mech9_text, only: to_text
   use mech9_structure, only: structure_type, finding_type, structure_from_matrix, structure_from_pairs
   use mech9_structural_vectors, only: structural_vectors_type, chain_type, chains_of, structure_from_vectors
@@ -10,15 +10,20 @@ program test_transformation
   use literal_transformation, only: transform_literally
   use vector_definition, only: what_is_wrong
   implicit none
-  type(tester_type) :: tester
-
-  call fig_1(tester)
-  call small_cases(tester)
-  call follows_rules(tester)
-  call holds_definitions(tester)
-  call tester%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('fig_1')) call fig_1(tester)
+    if (tester%runs('small_cases')) call small_cases(tester)
+    if (tester%runs('follows_rules')) call follows_rules(tester)
+    if (tester%runs('holds_definitions')) call holds_definitions(tester)
+  end subroutine run
 
   !> Transform pairs with the links l(1),l(2), l(3),l(4), ...; they must be good data.
   subroutine transform_pairs(tester, n, l, cq, vectors)
@@ -175,4 +180,4 @@ contains
 
     text = trim(kind_names(kind))//', '//to_text(n)//' links, seed '//to_text(seed)
   end function named
-end program test_transformation
+end module test_transformation

@@ -3,7 +3,7 @@
 !>
 !> The hardest kind is the ladder with rungs as long as it has rungs: there each label is mended as
 !> often as half a rung is long, so the work grows with the power 1.5 of the links.
-program test_transformation_growth
+module test_transformation_growth
   use mech9_kinds, only: wp, long
   use mech9_text, only: to_text
   use mech9_structure, only: structure_type
@@ -13,15 +13,20 @@ program test_transformation_growth
   use random_structures, only: random_structure, n_kinds, kind_names
   use vector_definition, only: what_is_wrong
   implicit none
-  type(tester_type) :: tester
-  integer :: kind
-
-  do kind = 1, n_kinds
-    call check_growth(tester, kind)
-  end do
-  call tester%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+    integer :: kind
+
+    do kind = 1, n_kinds
+      if (tester%runs(trim(kind_names(kind)))) call check_growth(tester, kind)
+    end do
+  end subroutine run
 
   subroutine check_growth(tester, kind)
     type(tester_type), intent(inout) :: tester   !< counts the checks
@@ -77,4 +82,4 @@ contains
     end do
     pairs = pairs/seeds
   end subroutine measure
-end program test_transformation_growth
+end module test_transformation_growth

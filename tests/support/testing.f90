@@ -1,5 +1,9 @@
-!> The smallest test harness: named checks that say why their number is right, and a count.
-!> A test program makes a `tester_type`, checks, and calls `finish`, which ends with 1 on any failure.
+!> A small test harness: named checks that say why their number is right, and a count.
+!> The unit tests of a floor are one program. Each of its suites is a module with a subroutine `run`, which asks `runs` before
+!> each of its cases. The words of the command line select what is run:
+!>    unit_structure                        all suites
+!>    unit_structure vectors graphs/trees   one suite, and one case of another
+!>    unit_structure --list                 prints the names of all cases
 module mech9_testing
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -8,10 +12,20 @@ module mech9_testing
   private
   public :: tester_type, message_of
 
+  integer, parameter :: longest_name = 120
+
   type :: tester_type
     integer :: passed = 0
     integer :: failed = 0
+    character(len=:), allocatable :: tree                       ! folder of the project
+    character(len=longest_name), private, allocatable :: selected(:)   ! suites and cases to run; all where there are none
+    character(len=:), private, allocatable :: suite             ! the present suite
+    logical, private :: only_lists = .false.
+    integer, private :: n_cases = 0
   contains
+    procedure :: start
+    procedure :: enters
+    procedure :: runs
     procedure :: is_true
     procedure :: near
     procedure :: no_error
@@ -31,6 +45,47 @@ contains
     call explain(explained)
     message = explained%message
   end function message_of
+
+  !> Read the words of the command line.
+  subroutine start(self, tree)
+    class(tester_type), intent(inout) :: self   !< selects suites and cases
+    character(len=*), intent(in) :: tree        !< folder of the project
+    integer :: i
+
+    self%tree = tree
+    allocate (self%selected(command_argument_count()))
+    do i = 1, size(self%selected)
+      call get_command_argument(i, self%selected(i))
+      if (self%selected(i) == '--list') self%only_lists = .true.
+    end do
+    if (self%only_lists) self%selected = self%selected(1:0)
+  end subroutine start
+
+  !> Begin a suite; true where it, or one of its cases, is selected.
+  function enters(self, suite) result(answer)
+    class(tester_type), intent(inout) :: self   !< notes the suite
+    character(len=*), intent(in) :: suite       !< name of the suite
+    logical :: answer
+
+    self%suite = suite
+    answer = size(self%selected) == 0 .or. any(self%selected == suite) .or. any(index(self%selected, suite//'/') == 1)
+  end function enters
+
+  !> Whether a case of the present suite is to run.
+  function runs(self, case_name) result(answer)
+    class(tester_type), intent(inout) :: self   !< knows the suite and what is selected
+    character(len=*), intent(in) :: case_name   !< name of the case
+    logical :: answer
+
+    answer = size(self%selected) == 0 .or. any(self%selected == self%suite) .or. &
+             any(self%selected == self%suite//'/'//case_name)
+    if (.not. answer) return
+    self%n_cases = self%n_cases + 1
+    if (self%only_lists) then
+      print '(3a)', self%suite, '/', case_name
+      answer = .false.
+    end if
+  end function runs
 
   !> Check that a condition holds.
   subroutine is_true(self, condition, why)
@@ -91,6 +146,8 @@ contains
   subroutine finish(self)
     class(tester_type), intent(in) :: self   !< counts the checks
 
+    if (self%only_lists) return
+    if (allocated(self%selected) .and. self%n_cases == 0) print '(a)', 'no case has the given name; --list prints the names'
     print '(i0,a,i0,a)', self%passed, ' checks passed, ', self%failed, ' failed'
     if (self%failed > 0 .or. self%passed == 0) stop 1
   end subroutine finish
