@@ -1,20 +1,16 @@
 """Dead points, ranges, crossings of branches and conditioning through the whole program, by closed forms.
 
 Compares the program with itself in part: positions with and without accelerations; all else is closed forms.
-
-usage: special_positions.py MECH9K MECH9D
 """
 import json
 import math
 import os
 import re
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import Checks, read_table, run, text_of
+from mech9_cases import read_table, run, text_of
 
 # The promised accuracy of limits; the program does a thousand times better.
 LIMIT = 1e-9
@@ -74,8 +70,8 @@ def limit(lengths, diagonal):
 
 
 class Cases:
-    def __init__(self, program, folder):
-        self.program, self.folder, self.checks = program, folder, Checks()
+    def __init__(self, program, folder, checks):
+        self.program, self.folder, self.checks = program, folder, checks
 
     def run(self, text, *options):
         path = os.path.join(self.folder, 'case.nml')
@@ -84,25 +80,35 @@ class Cases:
         return run(self.program, path, *options, folder=self.folder)
 
 
-def dead_point(s):
+@pytest.fixture
+def s(checks, mech9k, tmp_path):
+    return Cases(mech9k, tmp_path, checks)
+
+
+@pytest.fixture
+def dynamic(checks, mech9d, tmp_path):
+    return Cases(mech9d, tmp_path, checks)
+
+
+@pytest.mark.parametrize('intervals', [3, 50, 4000])
+def test_dead_point(s, intervals):
     """The run ends with code 6; the message names time, chain, coordinates and limit; the table is kept."""
     lengths = (1.2, 0.7, 0.9, 0.4)
     end = limit(lengths, lengths[2] + lengths[3])
     report = os.path.join(s.folder, 'report.json')
-    for intervals in (3, 50, 4000):
-        done = s.run(four_bar(lengths, (40.0, 100.0), 3.0, intervals), '--table', '-', '--report', report)
-        s.checks.equal(done.returncode, 6, 'a dead point: exit code 6')
-        s.checks.equal(json.loads(text_of(report))['exit_code'], 6, 'which the report tells, too')
-        found = re.search(r'cannot go on beyond t = (\S+) s: closed chain 1 \(coordinates 2, 3, 4\) '
-                          r'reaches a dead point at q1 = (\S+) ', done.stderr)
-        if s.checks.true(found, 'the message names time, chain, coordinates and driven coordinate', done.stderr):
-            s.checks.near(float(found[2]), end, LIMIT, 'the limit by its closed form')
-            s.checks.near(float(found[1]), (end - 40.0) / 100.0, LIMIT, 'the time by its closed form')
-        table = read_table(done.stdout)
-        expected = [3.0 * i / intervals for i in range(intervals + 1) if 40.0 + 300.0 * i / intervals < end]
-        s.checks.near(table['t'], expected, 1e-15, 'all results before the dead point are kept, none beyond')
-        s.checks.true(all(np.all(np.isfinite(column)) for column in table.values()), 'and all are regular')
-        s.checks.true(np.all(table['closure'] < 1e-13 * lengths[0]), 'and closed')
+    done = s.run(four_bar(lengths, (40.0, 100.0), 3.0, intervals), '--table', '-', '--report', report)
+    s.checks.equal(done.returncode, 6, 'a dead point: exit code 6')
+    s.checks.equal(json.loads(text_of(report))['exit_code'], 6, 'which the report tells, too')
+    found = re.search(r'cannot go on beyond t = (\S+) s: closed chain 1 \(coordinates 2, 3, 4\) '
+                      r'reaches a dead point at q1 = (\S+) ', done.stderr)
+    if s.checks.true(found, 'the message names time, chain, coordinates and driven coordinate', done.stderr):
+        s.checks.near(float(found[2]), end, LIMIT, 'the limit by its closed form')
+        s.checks.near(float(found[1]), (end - 40.0) / 100.0, LIMIT, 'the time by its closed form')
+    table = read_table(done.stdout)
+    expected = [3.0 * i / intervals for i in range(intervals + 1) if 40.0 + 300.0 * i / intervals < end]
+    s.checks.near(table['t'], expected, 1e-15, 'all results before the dead point are kept, none beyond')
+    s.checks.true(all(np.all(np.isfinite(column)) for column in table.values()), 'and all are regular')
+    s.checks.true(np.all(table['closure'] < 1e-13 * lengths[0]), 'and closed')
 
 
 # a block on a line across and in a slot of the crank, which guides it to r = 0.3/sin q1 from its pin
@@ -121,29 +127,32 @@ SLOT = """
 """
 
 
-def escaping(s):
+@pytest.mark.parametrize('intervals', [3, 30, 3000])
+def test_slide_without_bounds(s, intervals):
     """The block is nowhere when slot and line become parallel: it is followed far out, and then the end is told."""
-    for intervals in (3, 30, 3000):
-        done = s.run(SLOT.format(intervals=intervals), '--table', '-')
-        s.checks.equal(done.returncode, 6, 'a slide without bounds: exit code 6')
-        found = re.search(r'cannot go on beyond t = (\S+) s: closed chain 1 \(coordinates 2, 3, 4\) cannot follow up to '
-                          r'q1 = (\S+), where coordinate [24] grows beyond all bounds', done.stderr)
-        if s.checks.true(found, 'the message names time, chain, driven coordinate and what grows', done.stderr):
-            # seven digits are told
-            s.checks.near([float(found[1]) / 2.4, float(found[2]) / 180.0], 1.0, 1e-6, 'the end is at half a turn')
-        table = read_table(done.stdout)
-        # a hundred sizes of the mechanism out, at 0.35 m each, it is still half a degree from there
-        near = np.array([t for t in np.arange(intervals + 1) * 3.0 / intervals if 60.0 + 50.0 * t < 179.5])
-        if s.checks.true(len(table['t']) >= len(near), 'all results before it are kept', table['t'][-1]):
-            s.checks.near(table['t'][:len(near)], near, 1e-15, 'at their times')
-        # round-off of an angle times r/0.3 < 115
-        s.checks.near(table['q2'] * np.sin(np.radians(table['q1'])) / 0.3, 1.0, 1e-13, 'where slot and line cross')
+    done = s.run(SLOT.format(intervals=intervals), '--table', '-')
+    s.checks.equal(done.returncode, 6, 'a slide without bounds: exit code 6')
+    found = re.search(r'cannot go on beyond t = (\S+) s: closed chain 1 \(coordinates 2, 3, 4\) cannot follow up to '
+                      r'q1 = (\S+), where coordinate [24] grows beyond all bounds', done.stderr)
+    if s.checks.true(found, 'the message names time, chain, driven coordinate and what grows', done.stderr):
+        # seven digits are told
+        s.checks.near([float(found[1]) / 2.4, float(found[2]) / 180.0], 1.0, 1e-6, 'the end is at half a turn')
+    table = read_table(done.stdout)
+    # a hundred sizes of the mechanism out, at 0.35 m each, it is still half a degree from there
+    near = np.array([t for t in np.arange(intervals + 1) * 3.0 / intervals if 60.0 + 50.0 * t < 179.5])
+    if s.checks.true(len(table['t']) >= len(near), 'all results before it are kept', table['t'][-1]):
+        s.checks.near(table['t'][:len(near)], near, 1e-15, 'at their times')
+    # round-off of an angle times r/0.3 < 115
+    s.checks.near(table['q2'] * np.sin(np.radians(table['q1'])) / 0.3, 1.0, 1e-13, 'where slot and line cross')
+
+
+def test_motion_that_ends_before_it_escapes(s):
     done = s.run(SLOT.format(intervals=30), '--table', '-', '--set', 'time.end=2.3')
     s.checks.equal(done.returncode, 0, 'a motion that ends before it is whole')
 
 
-def ranges(s):
-    """--range: limits on both sides in the units of the file, a full turn, none."""
+def test_range_between_limits(s):
+    """--range: limits on both sides in the units of the file."""
     lengths = (1.0, 0.75, 1.0, 0.4)
     lower, upper = limit(lengths, 0.6), limit(lengths, 1.4)
     done = s.run(four_bar(lengths, (0.5 * (lower + upper), 1.0), 1.0, 1), '--range')
@@ -154,8 +163,14 @@ def ranges(s):
     s.checks.near(float(words[0][2]), lower, LIMIT, 'the lower limit')
     s.checks.near(float(words[0][3]), upper, LIMIT, 'the upper limit')
     s.checks.true('deg   closed chain 1 (coordinates 2, 3, 4)' in done.stdout, 'unit and what limits it', done.stdout)
+
+
+def test_range_of_a_full_turn(s):
     done = s.run(four_bar((0.4, 0.15, 0.35, 0.3), (10.0, 1.0), 1.0, 1), '--range')
     s.checks.true('full turn' in done.stdout, 'a crank that turns fully', done.stdout)
+
+
+def test_range_without_limits(s):
     done = s.run("""
 &mechanism links=3, coordinates=2 /
 &structure cq=1,2 /
@@ -165,6 +180,9 @@ def ranges(s):
 &drive coordinate=2, kind='polynomial', coefficients=0.0 /
 """, '--range')
     s.checks.equal(len(re.findall('no limit up to', done.stdout)), 4, 'a slide and a screw without an end, both ways')
+
+
+def test_range_takes_no_argument(s):
     s.checks.equal(s.run('', '--range', '--range=1').returncode, 2, '--range takes no argument')
 
 
@@ -176,7 +194,7 @@ def check_parallel(s, table, rate, closer=1):
     s.checks.near(table['dq4'] / rate, 1.0, AT_CROSSING[1] * closer ** 2, 'at the same rate')
 
 
-def passed(s):
+def test_crossing_that_is_passed(s):
     """A parallelogram through its flat positions, of which outputs meet one exactly; the report tells of it."""
     text = four_bar((1.0, 0.4, 1.0, 0.4), (60.0, 240.0), 2.25, 54)
     report = os.path.join(s.folder, 'report.json')
@@ -191,7 +209,7 @@ def passed(s):
     s.checks.equal(values['special_positions_passed'], 3, 'and so does its JSON')
 
 
-def flat_start(s):
+def test_start_in_a_crossing_is_refused(s):
     """A start in a flat position is refused with the rates of both ways: a parallelogram's coupler keeps its direction."""
     done = s.run(four_bar((1.0, 0.4, 1.0, 0.4), (0.0, 240.0), 1.0, 10), '--table', '-')
     s.checks.equal(done.returncode, 6, 'a flat start is refused')
@@ -203,50 +221,53 @@ def flat_start(s):
                   'the way of the parallelogram, in the units of the file', done.stderr)
 
 
-def positions_only(s):
-    """Without accelerations, or rates, the same positions and the same ends: what lies ahead is seen as well."""
-    flat = (1.0, 0.4, 1.0, 0.4)
-    table = 60.0 + 12.0 * np.arange(11)
-    with open(os.path.join(s.folder, 'drive.txt'), 'w', encoding='utf-8') as file:
-        file.writelines(f'{i / 10!r} {value!r}\n' for i, value in enumerate(table.tolist()))
-    motions = {f'a parallelogram, {n} intervals': four_bar(flat, (60.0, 240.0, 30.0), 2.25, n) for n in (3, 54, 777)}
-    motions.update({f'a dead point, {n} intervals': four_bar((1.2, 0.7, 0.9, 0.4), (40.0, 100.0), 3.0, n)
-                    for n in (3, 50, 4000)})
-    motions.update({f'an escape, {n} intervals': SLOT.format(intervals=n) for n in (3, 30, 3000)})
-    motions['the end of a table'] = four_bar(flat, (60.0, 0.0), 1.0, 30).replace(
-        "kind='polynomial', coefficients=60.0, 0.0", "kind='table', file='drive.txt'")
-    report = os.path.join(s.folder, 'report.json')
-    for why, text in motions.items():
-        done = s.run(text, '--table', '-', '--report', report)
-        whole, counts = read_table(done.stdout), json.loads(text_of(report))
-        for derivatives in (0, 1):
-            less = s.run(text, '--table', '-', '--report', report, '--set', f'output.derivatives={derivatives}')
-            case = f'{why}, {derivatives} derivatives'
-            s.checks.equal(less.returncode, done.returncode, f'{case}: the same exit code')
-            s.checks.equal(re.findall(r'cannot go on.*', less.stderr), re.findall(r'cannot go on.*', done.stderr),
-                           f'{case}: for the same reason at the same time')
-            found = json.loads(text_of(report))
-            s.checks.equal(found['special_positions_passed'], counts['special_positions_passed'],
-                           f'{case}: passes as many special positions')
-            if len(whole['t']) > 500:
-                s.checks.true(found['acceleration_solutions'] < 0.5 * counts['acceleration_solutions'],
-                              f'{case}: it goes on without accelerations beyond them', found['acceleration_solutions'])
-            table = read_table(less.stdout)
-            if not s.checks.equal(list(table['t']), list(whole['t']), f'{case}: the same times'):
-                continue
-            for name in table:
-                if name[0] == 'q':
-                    # beside and in a special position they are those of a polynomial through positions near by
-                    s.checks.near(table[name], whole[name], LIMIT, f'{case}: {name}')
-
-
-def end_of_table(s):
-    """A drive by a table that ends just in the flat position of a parallelogram: rates there by their limit."""
+@pytest.fixture
+def drive_table(s):
+    """A table of a drive that ends just in the flat position of a parallelogram."""
     with open(os.path.join(s.folder, 'drive.txt'), 'w', encoding='utf-8') as file:
         file.writelines(f'{i / 10!r} {60.0 + 12.0 * i!r}\n' for i in range(11))
-    text = four_bar((1.0, 0.4, 1.0, 0.4), (60.0, 0.0), 1.0, 30).replace("kind='polynomial', coefficients=60.0, 0.0",
-                                                                         "kind='table', file='drive.txt'")
-    done = s.run(text, '--table', '-')
+
+
+FLAT = (1.0, 0.4, 1.0, 0.4)
+BY_TABLE = four_bar(FLAT, (60.0, 0.0), 1.0, 30).replace("kind='polynomial', coefficients=60.0, 0.0", "kind='table', file='drive.txt'")
+MOTIONS = {f'a parallelogram, {n} intervals': four_bar(FLAT, (60.0, 240.0, 30.0), 2.25, n) for n in (3, 54, 777)}
+MOTIONS.update({f'a dead point, {n} intervals': four_bar((1.2, 0.7, 0.9, 0.4), (40.0, 100.0), 3.0, n) for n in (3, 50, 4000)})
+MOTIONS.update({f'an escape, {n} intervals': SLOT.format(intervals=n) for n in (3, 30, 3000)})
+MOTIONS['the end of a table'] = BY_TABLE
+
+
+@pytest.mark.usefixtures('drive_table')
+@pytest.mark.parametrize('why', MOTIONS)
+def test_positions_without_accelerations(s, why):
+    """Without accelerations, or rates, the same positions and the same ends: what lies ahead is seen as well."""
+    text, report = MOTIONS[why], os.path.join(s.folder, 'report.json')
+    done = s.run(text, '--table', '-', '--report', report)
+    whole, counts = read_table(done.stdout), json.loads(text_of(report))
+    for derivatives in (0, 1):
+        less = s.run(text, '--table', '-', '--report', report, '--set', f'output.derivatives={derivatives}')
+        case = f'{why}, {derivatives} derivatives'
+        s.checks.equal(less.returncode, done.returncode, f'{case}: the same exit code')
+        s.checks.equal(re.findall(r'cannot go on.*', less.stderr), re.findall(r'cannot go on.*', done.stderr),
+                       f'{case}: for the same reason at the same time')
+        found = json.loads(text_of(report))
+        s.checks.equal(found['special_positions_passed'], counts['special_positions_passed'],
+                       f'{case}: passes as many special positions')
+        if len(whole['t']) > 500:
+            s.checks.true(found['acceleration_solutions'] < 0.5 * counts['acceleration_solutions'],
+                          f'{case}: it goes on without accelerations beyond them', found['acceleration_solutions'])
+        table = read_table(less.stdout)
+        if not s.checks.equal(list(table['t']), list(whole['t']), f'{case}: the same times'):
+            continue
+        for name in table:
+            if name[0] == 'q':
+                # beside and in a special position they are those of a polynomial through positions near by
+                s.checks.near(table[name], whole[name], LIMIT, f'{case}: {name}')
+
+
+@pytest.mark.usefixtures('drive_table')
+def test_table_that_ends_in_a_crossing(s):
+    """Rates there are found by their limit."""
+    done = s.run(BY_TABLE, '--table', '-')
     s.checks.equal(done.returncode, 0, 'a table that ends in a special position')
     if done.returncode == 0:
         table = read_table(done.stdout)
@@ -290,7 +311,7 @@ def compare_conditioning(s, text, name):
     s.checks.true('least conditioning' in done.stderr, f'{name}: also in words', done.stderr)
 
 
-def conditioning(s):
+def test_conditioning(s):
     """The column is the least singular value of the loop's matrix; the report has its least value and when."""
     text = four_bar(CONDITIONED, (0.0, 360.0), 1.0, 90, more='&output conditioning=.true. /')
     compare_conditioning(s, text, 'mech9k')
@@ -324,7 +345,7 @@ def two_chains(first, second, at):
     return '\n'.join(lines + ['&time start=0, end=1, intervals=90 /', '&output conditioning=.true. /']) + '\n'
 
 
-def conditioning_of_chains(s):
+def test_conditioning_of_two_chains(s):
     """Of two chains that are solved one after the other it is that of the worse one, now the first, now the second."""
     first, second, at = CONDITIONED, (0.4, 0.16, 0.35, 0.3), 0.5
     report = os.path.join(s.folder, 'report.json')
@@ -346,15 +367,16 @@ def conditioning_of_chains(s):
     s.checks.equal(sorted(block['unknowns']), [[2, 3, 4], [6, 7, 8]][worse[row]], 'and in which chain')
 
 
-def conditioning_of_motion(s):
+def test_conditioning_of_a_free_motion(dynamic):
     """The same of a four-bar whose crank is thrown."""
-    compare_conditioning(s, four_bar(CONDITIONED, (0.0,), 1.0, 90, more="""&initial coordinate=1, position=0, velocity=300 /
+    compare_conditioning(dynamic, four_bar(CONDITIONED, (0.0,), 1.0, 90, more="""&initial coordinate=1, position=0, velocity=300 /
 &body link=2, mass=1, centre=0,0,0, inertia=0.1,0.1,0.1,0,0,0 /
 &output conditioning=.true. /"""), 'mech9d')
 
 
-def flat_positions_of_motion(s):
+def test_crossings_of_a_free_motion(dynamic):
     """Dynamics of a parallelogram: no coordinate serves in its flat positions; the chain is named."""
+    s = dynamic
     moving = '''&initial coordinate=1, position={start!r}, velocity=240.0 /
                 &body link=2, mass=1.0, centre=0.2,0,0, inertia=0.01,0.01,0.02,0,0,0 /'''
     for start, words in ((0.0, ['start a little beside it']), (60.0, ['cannot go on from t = '])):
@@ -365,18 +387,3 @@ def flat_positions_of_motion(s):
             s.checks.true(word in done.stderr, f'dynamics of a parallelogram from {start} degrees: says {word!r}', done.stderr)
     times = read_table(done.stdout)['t']
     s.checks.near(times, np.arange(5) / 10.0, 1e-15, 'the table holds what lies before the flat position')
-
-
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        s = Cases(os.path.abspath(sys.argv[1]), folder)
-        for case in (dead_point, escaping, ranges, passed, flat_start, positions_only, end_of_table, conditioning,
-                     conditioning_of_chains):
-            case(s)
-        s.program = os.path.abspath(sys.argv[2])
-        conditioning_of_motion(s)
-        flat_positions_of_motion(s)
-        s.checks.finish()
-
-
-main()

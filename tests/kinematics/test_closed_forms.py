@@ -2,19 +2,15 @@
 
 Compares the program with itself in part: a structure given by its matrix and by its structural vectors; all else is
 closed forms.
-
-usage: closed_forms.py MECH9K
 """
 import os
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
 import data_file
 from jets import Jet, arctan, check_coordinate, check_point, cos, sin
-from mech9_cases import POSITION, REFERENCE, Checks, run, table_of, text_of, tolerance_of
+from mech9_cases import POSITION, REFERENCE, run, table_of, text_of, tolerance_of
 
 HARMONIC = "kind='harmonic', mean=0.2, amplitude=0.7, angular_frequency=3.0, phase=0.4"
 
@@ -25,8 +21,8 @@ def harmonic(t):
 
 
 class Cases:
-    def __init__(self, program, folder):
-        self.program, self.folder, self.checks = program, folder, Checks()
+    def __init__(self, program, folder, checks):
+        self.program, self.folder, self.checks = program, folder, checks
 
     def write(self, name, text):
         path = os.path.join(self.folder, name)
@@ -38,7 +34,12 @@ class Cases:
         return table_of(self.program, self.write('case.nml', text))
 
 
-def helix(s):
+@pytest.fixture
+def s(checks, mech9k, tmp_path):
+    return Cases(mech9k, tmp_path, checks)
+
+
+def test_helical_pair(s):
     """A point beside the axis of a helical pair: it turns by q and advances by pitch q/(2 pi)."""
     table = s.table(f"""
 &mechanism links=2, coordinates=1 /
@@ -53,7 +54,7 @@ def helix(s):
     check_point(s.checks, table, 'P', (0.1 + 0.5 * cos(q), 0.5 * sin(q), 0.2 + 0.3 / (2 * np.pi) * q), 'helix')
 
 
-def denavit_hartenberg(s):
+def test_denavit_hartenberg(s):
     """Three pairs in Denavit-Hartenberg form, against the product of their matrices with jets as entries."""
     rows = [('revolute', (0.3, 0.5, 0.1, 0.2)), ('prismatic', (0.2, -1.1, 0.4, 0.7)), ('helical', (0.1, 0.3, 0.2, -0.4))]
     pairs = ''.join(f"&pair coordinate={k}, links={k},{k + 1}, kind='{kind}', dh={a},{alpha},{d},{theta}"
@@ -82,7 +83,7 @@ def denavit_hartenberg(s):
     check_point(s.checks, table, 'P', (x, y, z), 'Denavit-Hartenberg')
 
 
-def universal_joint(s):
+def test_universal_joint(s):
     """Cardan's joint, a spherical chain: tan q4 = cos(beta) tan q1 for shafts at the angle beta."""
     beta = 0.6
     c, n = float(np.cos(beta)), float(np.sin(beta))
@@ -100,49 +101,62 @@ def universal_joint(s):
     check_coordinate(s.checks, table, 4, arctan(c * (sin(q) / cos(q))), 'universal joint')
 
 
-def table_drive(s):
-    """A table of few points: met at its times, and smooth: between rows close to a knot nothing jumps."""
-    times = np.linspace(0.0, 2.0, 9)
-    values = np.sin(1.7 * times) + 0.1 * times
-    s.write('drive.txt', '# t q\n' + ''.join(f'{t!r} {q!r}\n' for t, q in zip(times.tolist(), values.tolist())))
-    text = """
+# A drive by a table of few points.
+TIMES = np.linspace(0.0, 2.0, 9)
+VALUES = np.sin(1.7 * TIMES) + 0.1 * TIMES
+BY_TABLE = """
 &mechanism links=2, coordinates=1 /
 &structure cq=1 /
 &pair coordinate=1, links=1,2, kind='revolute', point=0,0,0, axis=0,0,1 /
 &drive coordinate=1, kind='table', file='drive.txt' /
 &time start={start!r}, end={end!r}, intervals={intervals} /
 """
-    table = s.table(text.format(start=0.0, end=2.0, intervals=8))
-    s.checks.near(table['q1'], values, POSITION, 'the table drive goes through its points')
+
+
+@pytest.fixture
+def by_table(s):
+    """The motion by BY_TABLE, at some times."""
+    s.write('drive.txt', '# t q\n' + ''.join(f'{t!r} {q!r}\n' for t, q in zip(TIMES.tolist(), VALUES.tolist())))
+    return lambda start, end, intervals: s.table(BY_TABLE.format(start=start, end=end, intervals=intervals))
+
+
+def test_table_drive_goes_through_its_points(s, by_table):
+    table = by_table(0.0, 2.0, 8)
+    s.checks.near(table['q1'], VALUES, POSITION, 'the table drive goes through its points')
     # with names above the points, as spreadsheets write them
-    s.write('named.csv', '# measured\n\n"time [s]", angle  # in rad\n' + ''.join(f'{t!r},{q!r}\n' for t, q in zip(times.tolist(), values.tolist())))
-    named = s.table(text.format(start=0.0, end=2.0, intervals=8).replace('drive.txt', 'named.csv'))
+    s.write('named.csv', '# measured\n\n"time [s]", angle  # in rad\n' + ''.join(f'{t!r},{q!r}\n' for t, q in zip(TIMES.tolist(), VALUES.tolist())))
+    named = s.table(BY_TABLE.format(start=0.0, end=2.0, intervals=8).replace('drive.txt', 'named.csv'))
     s.checks.true(np.array_equal(named['q1'], table['q1']), 'a line of names before the points is skipped')
+
+
+@pytest.mark.parametrize('knot', TIMES[1:-1].tolist())
+def test_table_drive_is_smooth(s, by_table, knot):
+    """Between rows close to a knot nothing jumps."""
     step = 1e-6
-    for knot in times[1:-1].tolist():
-        near = s.table(text.format(start=knot - step, end=knot + step, intervals=2))
-        # a continuous piecewise linear ddq changes by slope*step; slopes of this curve are below 20
-        s.checks.near(near['ddq1'], near['ddq1'][1], 20 * step, f'ddq1 is continuous at t = {knot}')
-        s.checks.near((near['q1'][2] - near['q1'][0]) / (2 * step), near['dq1'][1], 1e-8,
-                      f'dq1 is the slope of q1 at t = {knot}')   # differences: eps/step = 2e-10, curvature step^2
+    near = by_table(knot - step, knot + step, 2)
+    # a continuous piecewise linear ddq changes by slope*step; slopes of this curve are below 20
+    s.checks.near(near['ddq1'], near['ddq1'][1], 20 * step, f'ddq1 is continuous at t = {knot}')
+    s.checks.near((near['q1'][2] - near['q1'][0]) / (2 * step), near['dq1'][1], 1e-8,
+                  f'dq1 is the slope of q1 at t = {knot}')   # differences: eps/step = 2e-10, curvature step^2
 
 
-def second_set(s):
+@pytest.mark.parametrize('name, vectors', [
+    ('kinematics_slider_crank', 'nrg=1,2,3,4,1 nws=0,1,2,3,4 rdw=1,1,0,0,0 nrw=0,0,0,0,1'),
+    ('kinematics_fig1', 'nrg=1,2,3,4,1,1,6,5,3 nws=0,5,4,7,6,0,1,2,3 rdw=1,1,0,0,0,1,0,0,0')], ids=['slider_crank', 'fig1'])
+def test_structural_vectors_as_data(s, name, vectors):
     """The structural vectors given as data make the same motion as the coincidence matrix."""
-    for name, vectors in (('kinematics_slider_crank', 'nrg=1,2,3,4,1 nws=0,1,2,3,4 rdw=1,1,0,0,0 nrw=0,0,0,0,1'),
-                          ('kinematics_fig1', 'nrg=1,2,3,4,1,1,6,5,3 nws=0,5,4,7,6,0,1,2,3 rdw=1,1,0,0,0,1,0,0,0')):
-        path = os.path.join(REFERENCE, name + '.nml')
-        groups = data_file.parse(text_of(path))
-        words = dict(item.split('=') for item in vectors.split())
-        given = {key: [int(number) for number in value.split(',')] for key, value in words.items()}
-        text = data_file.write([(group, given if group == 'structure' else items) for group, items in groups])
-        first, second = table_of(s.program, path), s.table(text)
-        for column in first:
-            if column != 'closure':
-                s.checks.near(second[column], first[column], tolerance_of(column), f'{name} by the second set: {column}')
+    path = os.path.join(REFERENCE, name + '.nml')
+    groups = data_file.parse(text_of(path))
+    words = dict(item.split('=') for item in vectors.split())
+    given = {key: [int(number) for number in value.split(',')] for key, value in words.items()}
+    text = data_file.write([(group, given if group == 'structure' else items) for group, items in groups])
+    first, second = table_of(s.program, path), s.table(text)
+    for column in first:
+        if column != 'closure':
+            s.checks.near(second[column], first[column], tolerance_of(column), f'{name} by the second set: {column}')
 
 
-def not_linked(s):
+def test_user_pair_without_a_procedure_is_refused(s):
     """A user pair without a user's procedure is a mistake that is explained."""
     path = s.write('user.nml', """
 &mechanism links=2, coordinates=1 /
@@ -153,14 +167,3 @@ def not_linked(s):
     done = run(s.program, path, '--no-write', folder=s.folder)
     s.checks.equal(done.returncode, 3, 'a user pair without a procedure: exit code 3')
     s.checks.true('none is linked' in done.stderr, 'the message says that none is linked', done.stderr)
-
-
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        s = Cases(os.path.abspath(sys.argv[1]), folder)
-        for case in (helix, denavit_hartenberg, universal_joint, table_drive, second_set, not_linked):
-            case(s)
-        s.checks.finish()
-
-
-main()

@@ -1,15 +1,13 @@
-"""One reference mechanism: the program's table against values from extended precision.
-
-usage: reference.py MECH9K NAME      (tests/reference/NAME.nml and NAME.csv)
-"""
+"""Reference mechanisms (tests/reference/*.nml): the program's tables against values from extended precision (*.csv)."""
 import os
-import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
 import data_file
-from mech9_cases import REFERENCE, Checks, read_csv, table_of, text_of, tolerance_of
+from mech9_cases import REFERENCE, read_csv, table_of, text_of, tolerance_of
+
+MECHANISMS = ('fig1', 'fig1_driven_at_q1', 'slider_crank', 'spatial_slider_crank', 'bennett', 'general_7r')
 
 
 def size_of(path):
@@ -19,12 +17,11 @@ def size_of(path):
                for name in ('point', 'moving_point') if name in items)
 
 
-def main():
-    mech9k, name = sys.argv[1:3]
-    data = os.path.join(REFERENCE, name + '.nml')
-    expected = read_csv(os.path.join(REFERENCE, name + '.csv'))
+@pytest.mark.parametrize('name', MECHANISMS)
+def test_motion_against_extended_precision(checks, mech9k, name):
+    data = os.path.join(REFERENCE, f'kinematics_{name}.nml')
+    expected = read_csv(os.path.join(REFERENCE, f'kinematics_{name}.csv'))
     table = table_of(mech9k, data)
-    checks = Checks()
 
     rows = [int(np.argmin(np.abs(table['t'] - t))) for t in expected['t']]
     checks.near(table['t'][rows], expected['t'], 1e-15, 'the times of the reference are in the table')
@@ -33,7 +30,3 @@ def main():
             checks.near(table[column][rows], values, tolerance_of(column), f'{name}: {column}')
     checks.true('closure' in table and np.max(np.abs(table['closure'])) <= 1e-13 * size_of(data),
                 'chains close to 1e-13 of the size in every row', np.max(np.abs(table.get('closure', np.nan))))
-    checks.finish()
-
-
-main()

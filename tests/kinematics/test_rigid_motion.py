@@ -4,18 +4,17 @@ The frame's side of every pair at link 1 is moved by a random rotation and shift
 the data file stays. Coordinates must stay the same and points must move with the frame.
 
 Compares the program with itself: one mechanism with the system of link 1 in two places.
-
-usage: rigid_motion.py MECH9K NAME SEEDS      (tests/reference/NAME.nml)
 """
 import os
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
 import data_file
-from mech9_cases import ACCELERATION, POSITION, REFERENCE, VELOCITY, Checks, table_of, text_of
+from mech9_cases import ACCELERATION, POSITION, REFERENCE, VELOCITY, table_of, text_of
+
+# of tests/reference
+MECHANISMS = ('fig1', 'fig1_driven_at_q1', 'slider_crank', 'spatial_slider_crank', 'bennett', 'general_7r')
 
 
 def default_zero(axis):
@@ -73,24 +72,20 @@ def compare(checks, still, moved, rotation, shift, why):
                         f'{why}: {point}{components[0]} moves with the frame')
 
 
-def main():
-    mech9k, name, seeds = sys.argv[1], sys.argv[2], int(sys.argv[3])
-    data = os.path.join(REFERENCE, name + '.nml')
-    text = text_of(data)
-    still = table_of(mech9k, data)
-    checks = Checks()
-    for seed in range(seeds):
-        generator = np.random.default_rng(seed)
-        rotation, shift = random_rotation(generator), generator.uniform(-2.0, 2.0, 3)
-        groups = data_file.parse(text)
-        move_frame(groups, rotation, shift)
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, 'moved.nml')
-            with open(path, 'w', encoding='utf-8') as file:
-                file.write(data_file.write(groups))
-            moved = table_of(mech9k, path)
-        compare(checks, still, moved, rotation, shift, f'{name}, seed {seed}')
-    checks.finish()
+@pytest.fixture(scope='module', params=MECHANISMS)
+def mechanism(request, mech9k):
+    """Its name, its data file as text, and the table of its motion."""
+    data = os.path.join(REFERENCE, f'kinematics_{request.param}.nml')
+    return request.param, text_of(data), table_of(mech9k, data)
 
 
-main()
+@pytest.mark.parametrize('seed', range(5))
+def test_coordinates_do_not_depend_on_the_frame(checks, mech9k, tmp_path, mechanism, seed):
+    name, text, still = mechanism
+    generator = np.random.default_rng(seed)
+    rotation, shift = random_rotation(generator), generator.uniform(-2.0, 2.0, 3)
+    groups = data_file.parse(text)
+    move_frame(groups, rotation, shift)
+    path = tmp_path / 'moved.nml'
+    path.write_text(data_file.write(groups), encoding='utf-8')
+    compare(checks, still, table_of(mech9k, path), rotation, shift, f'{name}, seed {seed}')
