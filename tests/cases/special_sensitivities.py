@@ -14,9 +14,8 @@ import tempfile
 import numpy as np
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from ball_charts import DRIVE, SLIDER
-from idle_rods import Rssr
 from sensitivities import FOUR_BAR, PARALLELOGRAM, Case, of_motion
+from ball_mechanisms import DRIVE, SLIDER, Rssr
 from mech9_cases import Checks, run
 
 PATH = """&structure cq=1 /

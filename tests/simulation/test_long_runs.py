@@ -1,16 +1,13 @@
 """Chains stay closed however long a run is: mech9k over many positions, mech9d over a long time.
 
 Compares the program with itself in part: positions before and after whole turns; closures are round-off by themselves.
-
-usage: long_runs.py MECH9K MECH9D POSITIONS SECONDS
 """
 import os
-import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import REFERENCE, TREE, Checks, report_of, table_of
+from mech9_cases import REFERENCE, TREE, report_of, table_of
 
 EPSILON = np.finfo(float).eps
 FIG1 = os.path.join(REFERENCE, 'kinematics_fig1.nml')
@@ -22,7 +19,13 @@ SIZE = 4.0             # longer than any side of Fig. 1 [m]
 CLOSED = 32 * EPSILON
 
 
-def many_positions(checks, mech9k, positions):
+@pytest.fixture
+def positions(build):
+    """A million in the optimised build; with checks at run time they would take minutes."""
+    return 1000000 if build.optimised else 20000
+
+
+def test_many_positions_stay_closed(checks, mech9k, positions):
     """Fig. 1 turns and turns. Its coordinates grow with the turns, and no chain can be closed better than the last
     digit of its coordinates allows: an error of half a digit in each of the five of the longer chain."""
     turns = positions // A_TURN
@@ -34,8 +37,9 @@ def many_positions(checks, mech9k, positions):
                 f'{positions} positions stay closed', report['largest_closure'])
 
 
-def same_after_turns(checks, mech9k, turns):
+def test_everything_is_back_after_turns(checks, mech9k, positions):
     """After whole turns everything is where it was, but for the digits that the coordinates have lost."""
+    turns = positions // A_TURN
     first = table_of(mech9k, FIG1, '--set', 'time.end=0', '--set', 'time.intervals=0')
     end = turns * 2 * np.pi / 6.0
     last = table_of(mech9k, FIG1, '--set', f'time.end={end!r}', '--set', f'time.intervals={turns * 10}')
@@ -46,21 +50,10 @@ def same_after_turns(checks, mech9k, turns):
         checks.true(abs(difference) <= 8 * EPSILON * (0.5 + 6.0 * end), f'q{k} after {turns} turns', difference)
 
 
-def long_time(checks, mech9d, seconds):
+def test_long_time_stays_closed(checks, build, mech9d):
     """Coordinates that swing do not grow, and closures have no part of the integrator's error."""
+    seconds = 10000 if build.optimised else 50
     report = report_of(mech9d, N_FOUR_BAR, '--set', f'time.end={seconds}', '--set', 'time.intervals=50')
     # links of 1 m, three in each chain
     checks.true(report['largest_closure'] <= CLOSED * 3.0, f'{seconds} s stay closed',
                 report['largest_closure'])
-
-
-def main():
-    mech9k, mech9d, positions, seconds = *sys.argv[1:3], int(sys.argv[3]), int(sys.argv[4])
-    checks = Checks()
-    many_positions(checks, mech9k, positions)
-    same_after_turns(checks, mech9k, positions // A_TURN)
-    long_time(checks, mech9d, seconds)
-    checks.finish()
-
-
-main()

@@ -1,13 +1,7 @@
-"""A coordinate whose motion moves no mass is refused in dynamics, also where rates that are round-off give it some.
+"""A coordinate whose motion moves no mass is refused in dynamics, also where rates that are round-off give it some."""
+import pytest
 
-usage: no_inertia.py MECH9D
-"""
-import os
-import sys
-import tempfile
-
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks, run
+from mech9_cases import run
 
 DONE, DATA = 0, 3
 
@@ -33,19 +27,11 @@ ROD = """
 SPINNING = "&body link=5, mass=1e-9, centre=0.7,0.25,0.35, inertia=1e-12,1e-12,1e-12,0,0,0 /\n"
 
 
-def main():
-    mech9d, checks = os.path.abspath(sys.argv[1]), Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        for text, code in ((ROD, DATA), (ROD + SPINNING, DONE)):
-            path = os.path.join(folder, 'rod.nml')
-            with open(path, 'w', encoding='utf-8') as file:
-                file.write(text)
-            done = run(mech9d, path, '--table', '-', '--quiet', folder=folder)
-            checks.equal(done.returncode, code, f'a rod that turns about itself, exit code {code}: {done.stderr}')
-            if code == DATA:
-                checks.true('independent coordinate 4 has no inertia' in done.stderr, 'the coordinate is named', done.stderr)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()
+@pytest.mark.parametrize('text, code', [(ROD, DATA), (ROD + SPINNING, DONE)], ids=['without_mass', 'with_little_mass'])
+def test_rod_that_turns_about_itself(checks, mech9d, tmp_path, text, code):
+    path = tmp_path / 'rod.nml'
+    path.write_text(text, encoding='utf-8')
+    done = run(mech9d, path, '--table', '-', '--quiet', folder=tmp_path)
+    checks.equal(done.returncode, code, f'a rod that turns about itself, exit code {code}: {done.stderr}')
+    if code == DATA:
+        checks.true('independent coordinate 4 has no inertia' in done.stderr, 'the coordinate is named', done.stderr)

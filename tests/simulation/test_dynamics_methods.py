@@ -3,8 +3,6 @@ come to one motion, those of one step at their theoretical order.
 
 Compares the program with itself: the ends of one motion by all methods of integration.
 
-usage: dynamics_methods.py MECH9D
-
 The order is that of the error against the number of steps, from the tolerance 1e-7 on: with the few dozen steps
 of coarser ones the error is not yet a power of the step. Steps are chosen by tolerance, not halved, so that the error
 lies above or below its trend as steps happen to end: three quarters of the order must be reached, and a steeper fall
@@ -17,13 +15,12 @@ auto costs little more than the better one of prince-dormand and bdf, and tells 
 """
 import math
 import os
-import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
 import tolerance_factors
-from mech9_cases import REFERENCE, Checks, table_and_report
+from mech9_cases import REFERENCE, table_and_report
 
 ORDERS = {'merson': 4, 'dormand-prince': 5, 'verner': 6, 'fehlberg': 8, 'prince-dormand': 8}
 TOLERANCES = [10.0 ** -k for k in range(4, 13)]
@@ -58,7 +55,8 @@ def growth(mech9d):
     return max(largest)
 
 
-def check_multistep(checks, mech9d, name):
+@pytest.mark.parametrize('name', HARD_MOTIONS)
+def test_multistep_methods(checks, mech9d, name):
     """Errors of adams and bdf at the end of a motion, against those of prince-dormand at the same tolerance."""
     data, end = tolerance_factors.MOTIONS[name]
     truth = tolerance_factors.end_of(mech9d, data, end, 'prince-dormand', 1e-14)
@@ -71,19 +69,24 @@ def check_multistep(checks, mech9d, name):
                         f'{name}, {method}, {tolerance:g}: the error is that of its tolerance', error)
 
 
-def check_automatic(checks, mech9d):
-    """A motion that is not stiff is that of prince-dormand; a stiff one goes on by bdf."""
-    def motion(name, method):
-        data, end = tolerance_factors.MOTIONS[name]
-        return table_and_report(mech9d, data, '--set', f'solver.method={method}', '--set', 'solver.relative_tolerance=1e-8',
-                                '--set', 'solver.absolute_tolerance=1e-8', '--set', f'time.end={end!r}', '--set', 'time.intervals=50')
+def motion(mech9d, name, method):
+    data, end = tolerance_factors.MOTIONS[name]
+    return table_and_report(mech9d, data, '--set', f'solver.method={method}', '--set', 'solver.relative_tolerance=1e-8',
+                            '--set', 'solver.absolute_tolerance=1e-8', '--set', f'time.end={end!r}', '--set', 'time.intervals=50')
 
-    explicit, _ = motion('Andrews, 0.03 s', 'prince-dormand')
-    table, report = motion('Andrews, 0.03 s', 'auto')
+
+def test_automatic_method_of_a_motion_that_is_not_stiff(checks, mech9d):
+    """It is prince-dormand."""
+    explicit, _ = motion(mech9d, 'Andrews, 0.03 s', 'prince-dormand')
+    table, report = motion(mech9d, 'Andrews, 0.03 s', 'auto')
     checks.true(all(np.array_equal(table[name], explicit[name]) for name in explicit), 'Andrews: auto is prince-dormand')
     checks.equal([report['method'], report['method_changes'], report['implicit_steps']], ['auto', 0, 0], 'Andrews: the report says so')
-    implicit, report_of_bdf = motion('flyball governor, 10 s', 'bdf')
-    table, report = motion('flyball governor, 10 s', 'auto')
+
+
+def test_automatic_method_of_a_stiff_motion(checks, mech9d):
+    """It goes on by bdf."""
+    implicit, report_of_bdf = motion(mech9d, 'flyball governor, 10 s', 'bdf')
+    table, report = motion(mech9d, 'flyball governor, 10 s', 'auto')
     checks.true(report['evaluations'] <= 1.05 * report_of_bdf['evaluations'], 'governor: hardly more evaluations than bdf',
                 (report['evaluations'], report_of_bdf['evaluations']))
     checks.equal(report['method_changes'], 1, 'governor: one change')
@@ -93,35 +96,33 @@ def check_automatic(checks, mech9d):
     checks.true(error < 200e-8, 'governor: the same motion', error)
 
 
-def main():
-    mech9d = sys.argv[1]
-    checks = Checks()
-    check_automatic(checks, mech9d)
-    for name in HARD_MOTIONS:
-        check_multistep(checks, mech9d, name)
-    ends = {method: [end_of(mech9d, method, tolerance) for tolerance in TOLERANCES]
-            for method in [*ORDERS, 'adams', 'bdf']}
-    # an error in a step: its root of the mean square, over the one coordinate and its rate, is at most the tolerance
-    step_error = math.sqrt(2) * growth(mech9d)
+@pytest.fixture(scope='module')
+def step_error(mech9d):
+    """An error in a step: its root of the mean square, over the one coordinate and its rate, is at most the tolerance."""
+    return math.sqrt(2) * growth(mech9d)
+
+
+@pytest.fixture(scope='module')
+def truth(mech9d):
+    """The motion itself is the end by the method of highest order."""
+    return end_of(mech9d, 'prince-dormand', TOLERANCES[-1])[0]
+
+
+@pytest.mark.parametrize('method', [*ORDERS, 'adams', 'bdf'])
+def test_errors_follow_the_tolerance(checks, mech9d, step_error, truth, method):
+    runs = [end_of(mech9d, method, tolerance) for tolerance in TOLERANCES]
     print(f'an error in a step is at most {step_error:.3g} tolerances in any coordinate or rate later on')
-    # the motion itself is the end by the method of highest order
-    truth = ends['prince-dormand'][-1][0]
-    for method, runs in ends.items():
-        errors = [float(np.max(np.abs(end - truth) / np.maximum(1, np.abs(truth)))) for end, _, _ in runs]
-        steps = [count for _, count, _ in runs]
-        print(method, ' '.join(f'{error:.1e}/{count}' for error, count in zip(errors, steps)))
-        # the errors of all steps add up; with the least tolerance all methods end at one motion
-        checks.true(all(error <= count * step_error * tolerance for error, count, tolerance in zip(errors, steps, TOLERANCES)),
-                    f'{method}: errors at the end are at most those of all steps', errors)
-        checks.true(all((jacobians > 0) == (method == 'bdf') for _, _, jacobians in runs),
-                    f'{method}: Jacobians are counted where the method takes them', [run[2] for run in runs])
-        if method in ORDERS:
-            first = TOLERANCES.index(1e-7)
-            # to the last error that stands out of round-off, 1e-13 of angles of some radians
-            last = max(i for i, error in enumerate(errors) if error > 1e-12)
-            slope = math.log(errors[first] / errors[last]) / math.log(steps[last] / steps[first])
-            checks.true(slope >= 0.75 * ORDERS[method], f'{method} is of order {ORDERS[method]}', slope)
-    checks.finish()
-
-
-main()
+    errors = [float(np.max(np.abs(end - truth) / np.maximum(1, np.abs(truth)))) for end, _, _ in runs]
+    steps = [count for _, count, _ in runs]
+    print(method, ' '.join(f'{error:.1e}/{count}' for error, count in zip(errors, steps)))
+    # the errors of all steps add up; with the least tolerance all methods end at one motion
+    checks.true(all(error <= count * step_error * tolerance for error, count, tolerance in zip(errors, steps, TOLERANCES)),
+                f'{method}: errors at the end are at most those of all steps', errors)
+    checks.true(all((jacobians > 0) == (method == 'bdf') for _, _, jacobians in runs),
+                f'{method}: Jacobians are counted where the method takes them', [run[2] for run in runs])
+    if method in ORDERS:
+        first = TOLERANCES.index(1e-7)
+        # to the last error that stands out of round-off, 1e-13 of angles of some radians
+        last = max(i for i, error in enumerate(errors) if error > 1e-12)
+        slope = math.log(errors[first] / errors[last]) / math.log(steps[last] / steps[first])
+        checks.true(slope >= 0.75 * ORDERS[method], f'{method} is of order {ORDERS[method]}', slope)

@@ -1,15 +1,11 @@
-"""The examples of dynamics against reference trajectories, at tolerances that fall.
-
-usage: dynamics_examples.py MECH9D NAME      NAME of a problem below
-"""
+"""The examples of dynamics against reference trajectories, at tolerances that fall."""
 import os
-import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
 import data_file
-from mech9_cases import ACCELERATION, POSITION, REFERENCE, TREE, Checks, read_csv, table_and_report, text_of
+from mech9_cases import ACCELERATION, POSITION, REFERENCE, TREE, read_csv, table_and_report, text_of
 
 ANGLES = ('beta', 'theta', 'gamma', 'phi', 'delta', 'omega', 'epsilon')
 TOLERANCES = (1e-4, 1e-7, 1e-10, 1e-12)
@@ -98,10 +94,9 @@ PROBLEMS = {
 }
 
 
-def main():
-    mech9d, name = sys.argv[1:3]
+@pytest.mark.parametrize('name', PROBLEMS)
+def test_example_against_its_reference(checks, mech9d, name):
     problem = PROBLEMS[name]()
-    checks = Checks()
     errors = []
     for tolerance in problem.tolerances:
         table, report = table_and_report(mech9d, problem.data, '--set', f'solver.relative_tolerance={tolerance}',
@@ -120,11 +115,12 @@ def main():
     checks.true(errors[-1] <= 1e-9, f'{name}: the error falls below 1e-9', errors)
     problem.also(checks, table, report['steps'] * tolerance, problem.growth * tolerance)
 
+
+@pytest.mark.parametrize('name', PROBLEMS)
+def test_example_as_it_stands(checks, mech9d, name):
+    """Right with the tolerance of its own data file."""
+    problem = PROBLEMS[name]()
     own = dict(data_file.parse(text_of(problem.data)))['solver']['relative_tolerance'][0]
     as_it_stands, _ = table_and_report(mech9d, problem.data)
     checks.true(problem.error(as_it_stands) <= problem.growth * float(own),
                 f'{name}: right with the tolerance of its own data file', problem.error(as_it_stands))
-    checks.finish()
-
-
-main()

@@ -1,19 +1,16 @@
 """An accuracy that is asked for: no coordinate and no point is wrong by more at any output, and the column `error` tells how
 wrong they are. Where the accuracy cannot be had, the run ends with a message before the first row that would not have it.
 
-usage: requested_accuracy.py MECH9D
-
 Truth is a reference in extended precision, or a run at the least tolerance, whose own error is seen from a run by another method.
 Estimates must be right to a factor of five where the error is above a hundred times this round-off.
 """
 import os
-import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import REFERENCE, TREE, Checks, read_csv, read_table, run, table_and_report, table_of, text_of
+from mech9_cases import REFERENCE, TREE, read_csv, read_table, run, table_and_report, table_of, text_of
 from tolerance_factors import MOTIONS
 
 EXAMPLES = os.path.join(TREE, 'examples')
@@ -41,7 +38,10 @@ def check_rows(checks, why, table, report, accuracy, errors, noise):
                 (np.min(ratio), np.max(ratio)) if any(clear) else None)
 
 
-def check_motion(checks, mech9d, name, method, accuracies):
+@pytest.mark.parametrize('name, method, accuracies', [
+    *[(name, 'prince-dormand', (1e-4, 1e-8)) for name in MOTIONS if name not in (STIFF, LONG)],
+    (STIFF, 'auto', (1e-6,)), ('Fig. 1, 1 s', 'merson', (1e-6,)), ('Andrews, 0.03 s', 'adams', (1e-6,))])
+def test_errors_within_the_accuracy(checks, mech9d, name, method, accuracies):
     data, end = MOTIONS[name]
     common = ['--set', f'time.end={float(end)!r}', '--set', 'time.intervals=40']
 
@@ -60,24 +60,25 @@ def check_motion(checks, mech9d, name, method, accuracies):
         check_rows(checks, f'{name}, {method}, {accuracy:g}', table, report, accuracy, errors, noise)
 
 
-def check_reference(checks, mech9d, name):
+@pytest.mark.parametrize('accuracy', [1e-5, 1e-8])
+@pytest.mark.parametrize('name', REFERENCES)
+def test_errors_against_references(checks, mech9d, name, accuracy):
     data, reference, columns = REFERENCES[name]
     expected = read_csv(os.path.join(REFERENCE, reference + '.csv'))
-    for accuracy in (1e-5, 1e-8):
-        table, report = table_and_report(mech9d, os.path.join(EXAMPLES, data + '.nml'), '--set', f'solver.accuracy={accuracy}')
-        rows = [int(np.argmin(np.abs(table['t'] - t))) for t in expected['t']]
-        same = np.abs(table['t'][rows] - expected['t']) < 1e-12
-        rows = np.array(rows)[same]
-        errors = np.max([np.abs(table[ours][rows] - expected[theirs][same]) for ours, theirs in columns.items()], axis=0)
-        checks.true(len(rows) > 3 and np.max(errors) <= accuracy, f'{name}, {accuracy:g}: right against the reference',
-                    np.max(errors))
-        largest = np.max(table['error'][rows])
-        checks.true(0.2 * np.max(errors) < largest < 5 * np.max(errors), f'{name}, {accuracy:g}: so is the estimate',
-                    (largest, np.max(errors)))
-        checks.equal(report['accuracy'], accuracy, f'{name}: the report tells what was asked for')
+    table, report = table_and_report(mech9d, os.path.join(EXAMPLES, data + '.nml'), '--set', f'solver.accuracy={accuracy}')
+    rows = [int(np.argmin(np.abs(table['t'] - t))) for t in expected['t']]
+    same = np.abs(table['t'][rows] - expected['t']) < 1e-12
+    rows = np.array(rows)[same]
+    errors = np.max([np.abs(table[ours][rows] - expected[theirs][same]) for ours, theirs in columns.items()], axis=0)
+    checks.true(len(rows) > 3 and np.max(errors) <= accuracy, f'{name}, {accuracy:g}: right against the reference',
+                np.max(errors))
+    largest = np.max(table['error'][rows])
+    checks.true(0.2 * np.max(errors) < largest < 5 * np.max(errors), f'{name}, {accuracy:g}: so is the estimate',
+                (largest, np.max(errors)))
+    checks.equal(report['accuracy'], accuracy, f'{name}: the report tells what was asked for')
 
 
-def check_chaos(checks, mech9d):
+def test_chaotic_motion_ends_in_time(checks, mech9d):
     """A double pendulum forgets its start within a minute: the rows that are written have the accuracy."""
     data, _ = MOTIONS['double pendulum, 5 s']
     words = ['--set', 'solver.accuracy=1e-6', '--set', 'time.end=60', '--set', 'time.intervals=600']
@@ -97,30 +98,20 @@ def check_chaos(checks, mech9d):
     checks.true(np.max(error) <= 5e-6, 'no row is wrong', np.max(error))
 
 
-def check_words(checks, mech9d):
-    data = os.path.join(EXAMPLES, 'pendulum', 'pendulum.nml')
-    done = run(mech9d, data, '--table', '-', '--set', 'solver.accuracy=1e-17')
+PENDULUM = os.path.join(EXAMPLES, 'pendulum', 'pendulum.nml')
+
+
+def test_accuracy_beyond_round_off_is_refused(checks, mech9d):
+    done = run(mech9d, PENDULUM, '--table', '-', '--set', 'solver.accuracy=1e-17')
     checks.equal(done.returncode, 7, 'less than round-off is refused')
     checks.true('at t = 0 s' in done.stderr, 'at the start', done.stderr)
-    done = run(mech9d, data, '--set', 'solver.accuracy=-1')
+
+
+def test_negative_accuracy_is_refused(checks, mech9d):
+    done = run(mech9d, PENDULUM, '--set', 'solver.accuracy=-1')
     checks.equal(done.returncode, 3, 'an accuracy is not negative')
-    table = table_of(mech9d, data)
+
+
+def test_no_column_without_an_accuracy(checks, mech9d):
+    table = table_of(mech9d, PENDULUM)
     checks.true('error' not in table, 'without an accuracy there is no such column', list(table))
-
-
-def main():
-    mech9d = sys.argv[1]
-    checks = Checks()
-    for name in MOTIONS.keys() - {STIFF, LONG}:
-        check_motion(checks, mech9d, name, 'prince-dormand', (1e-4, 1e-8))
-    check_motion(checks, mech9d, STIFF, 'auto', (1e-6,))
-    check_motion(checks, mech9d, 'Fig. 1, 1 s', 'merson', (1e-6,))
-    check_motion(checks, mech9d, 'Andrews, 0.03 s', 'adams', (1e-6,))
-    for name in REFERENCES:
-        check_reference(checks, mech9d, name)
-    check_chaos(checks, mech9d)
-    check_words(checks, mech9d)
-    checks.finish()
-
-
-main()

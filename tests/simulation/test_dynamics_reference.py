@@ -1,24 +1,22 @@
-"""One reference mechanism of dynamics at its start: positions, rates, accelerations, coefficients of motion
-and kinetic energy against values from extended precision. The data file is run as it stands.
-
-usage: dynamics_reference.py MECH9D NAME      (tests/reference/NAME.nml and NAME.csv)
+"""Reference mechanisms of dynamics (tests/reference) at their starts: positions, rates, accelerations, coefficients of motion
+and kinetic energy against values from extended precision. The data files are run as they stand.
 """
 import os
-import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import ACCELERATION, REFERENCE, VELOCITY, Checks, read_csv, run, table_and_report, tolerance_of
+from mech9_cases import ACCELERATION, REFERENCE, VELOCITY, read_csv, run, table_and_report, tolerance_of
+
+MECHANISMS = ('fig1', 'fivebar', 'open_chain', 'spatial_slider_crank')
 
 
-def main():
-    mech9d, name = sys.argv[1:3]
-    data = os.path.join(REFERENCE, name + '.nml')
-    expected = read_csv(os.path.join(REFERENCE, name + '.csv'))
+@pytest.mark.parametrize('name', MECHANISMS)
+def test_start_against_extended_precision(checks, mech9d, name):
+    data = os.path.join(REFERENCE, f'dynamics_{name}.nml')
+    expected = read_csv(os.path.join(REFERENCE, f'dynamics_{name}.csv'))
     table, report = table_and_report(mech9d, data)
     coefficients = {f'a({c["p"]},{c["r"]})': c['value'] for c in report['coefficients']}
-    checks = Checks()
 
     checks.equal(table['t'][0], expected['t'][0], 'the first row is the start')
     checks.equal(len(table['t']), 101, 'all rows are there')
@@ -36,13 +34,15 @@ def main():
     checks.true(np.all(table['closure'] <= 1e-13 * report['size']), 'chains close to 1e-13 of the size in every row',
                 np.max(table['closure']))
 
+
+@pytest.mark.parametrize('name', MECHANISMS)
+def test_check_shows_coefficients_of_motion(checks, mech9d, name):
+    data = os.path.join(REFERENCE, f'dynamics_{name}.nml')
+    _, report = table_and_report(mech9d, data)
     shown = run(mech9d, data, '--check')
     checks.equal(shown.returncode, 0, '--check ends well')
-    for column, value in coefficients.items():
+    for c in report['coefficients']:
+        column, value = f'a({c["p"]},{c["r"]})', c['value']
         lines = [line for line in shown.stdout.splitlines() if line.strip().startswith(column)]
         checks.true(len(lines) == 1 and abs(float(lines[0].split('=')[1]) - value) <= 1e-15 * abs(value),
                     f'--check shows {column}', shown.stdout)
-    checks.finish()
-
-
-main()

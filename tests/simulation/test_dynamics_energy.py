@@ -1,16 +1,12 @@
-"""Energy over long runs: without dissipation it stays, with dampers and given forces it changes by their power.
-
-usage: dynamics_energy.py MECH9D
-"""
+"""Energy over long runs: without dissipation it stays, with dampers and given forces it changes by their power."""
 import os
-import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
 import data_file
-from mech9_cases import REFERENCE, Checks, table_and_report, text_of
+from mech9_cases import REFERENCE, table_and_report, text_of
 
 # Seconds, and tolerances. The five-bar whirls through nearly singular positions of whichever coordinates it is described
 # by, some twenty of them in 10 s, each over within milliseconds; its motion is chaotic: rounding decides how near to such a
@@ -36,7 +32,9 @@ def run_of(mech9d, groups, *options):
         return table_and_report(mech9d, path, *options)
 
 
-def check_balance(checks, mech9d, name, end, tolerances):
+@pytest.mark.parametrize('name, end, tolerance', [(name, end, tolerance) for name, (end, tolerances) in CONSERVATIVE.items()
+                                                  for tolerance in tolerances])
+def test_energy_without_dissipation(checks, mech9d, name, end, tolerance):
     """A long run of the reference mechanism without its damper: each step errs by at most the tolerance in the rates, whose
     squares the energy holds, and so by twice the tolerance in the energy. Such errors have either sign; their sum grows like
     the root of the number of steps, and stays below three standard deviations of a sum of random ones."""
@@ -45,17 +43,16 @@ def check_balance(checks, mech9d, name, end, tolerances):
         items.pop('damping', None)
         if group == 'time':
             items['end'], items['intervals'] = [end], [200]
-    for tolerance in tolerances:
-        changes = []
-        for like in LIKE if name in CHAOTIC else (1.0,):
-            solver = {'relative_tolerance': [like * tolerance], 'absolute_tolerance': [like * tolerance]}
-            found, report = run_of(mech9d, groups + [('solver', solver)])
-            total = found['E.total']
-            checks.true(np.max(np.abs(found['ddq1'])) > 0.5, f'{name}: it is accelerated')
-            changes.append(np.max(np.abs(total - total[0])) / np.max(found['E.kinetic']) / np.sqrt(report['steps']))
-        print(f'{name}: {np.median(changes) / tolerance:.2g} tolerances times the root of {report["steps"]} steps')
-        checks.true(np.median(changes) <= 3 * 2 * tolerance, f'{name}: energy at the tolerance {tolerance:.0e}',
-                    f'it changed by {np.median(changes):.3e} of its largest value over the root of the number of steps')
+    changes = []
+    for like in LIKE if name in CHAOTIC else (1.0,):
+        solver = {'relative_tolerance': [like * tolerance], 'absolute_tolerance': [like * tolerance]}
+        found, report = run_of(mech9d, groups + [('solver', solver)])
+        total = found['E.total']
+        checks.true(np.max(np.abs(found['ddq1'])) > 0.5, f'{name}: it is accelerated')
+        changes.append(np.max(np.abs(total - total[0])) / np.max(found['E.kinetic']) / np.sqrt(report['steps']))
+    print(f'{name}: {np.median(changes) / tolerance:.2g} tolerances times the root of {report["steps"]} steps')
+    checks.true(np.median(changes) <= 3 * 2 * tolerance, f'{name}: energy at the tolerance {tolerance:.0e}',
+                f'it changed by {np.median(changes):.3e} of its largest value over the root of the number of steps')
 
 
 # Generalized and spatial loads whose power can be told from the columns of the table. Link 4 of Fig. 1 is at the
@@ -84,7 +81,7 @@ def power_of_loads(found):
             'coordinate': 1.1 * found['dq7'] - 0.6 * found['dq7'] ** 2}
 
 
-def check_power(checks, mech9d):
+def test_energy_changes_by_the_power_of_loads(checks, mech9d):
     """Eighth-order differences of E.total over the rows against the power from rates in the same rows."""
     groups = groups_of('dynamics_fig1') + data_file.parse(POWERED)
     for group, items in groups:
@@ -104,15 +101,3 @@ def check_power(checks, mech9d):
     # the integration's noise, 1e-12 of some 100 J, divided by h; truncation, h^8/630 of the ninth derivative, is
     # smaller while the motion changes over 20 ms and more
     checks.near(slope / scale, sum(powers.values()) / scale, 1e-7, 'dE/dt is the power of the loads')
-
-
-def main():
-    mech9d = sys.argv[1]
-    checks = Checks()
-    for name, (end, tolerances) in CONSERVATIVE.items():
-        check_balance(checks, mech9d, name, end, tolerances)
-    check_power(checks, mech9d)
-    checks.finish()
-
-
-main()

@@ -3,8 +3,6 @@ the end of one.
 
 Compares the program with itself: a row inside a step and the same row at the end of a run.
 
-usage: dynamics_outputs.py MECH9D
-
 The oracle for a row of a Runge-Kutta method is a run that ends at its time: the last step of a run ends there exactly.
 Both runs take the same steps but for the last two, whose errors are at most the tolerances, relative and absolute, of
 each variable, in a mean over the n variables: a single one may have sqrt(n) times that. Two such errors and one tolerance
@@ -12,12 +10,11 @@ for what lies between the ends are allowed. (Multistep methods take other steps 
 holds them to closed forms.)
 """
 import os
-import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import REFERENCE, TREE, Checks, table_and_report, table_of
+from mech9_cases import REFERENCE, TREE, table_and_report, table_of
 
 EXAMPLES = os.path.join(TREE, 'examples')
 # data file, independent coordinates, variables, end [s]
@@ -41,7 +38,8 @@ def settings(method, tolerance, end, intervals):
     return [word for name, value in words.items() for word in ('--set', f'{name}={value}')]
 
 
-def check_run(checks, mech9d, name, method, tolerance):
+@pytest.mark.parametrize('name, method, tolerance', RUNS)
+def test_outputs_inside_steps(checks, mech9d, name, method, tolerance):
     data, independent, variables, end = MOTIONS[name]
     why = f'{name}, {method}, {tolerance:g}'
     columns = [letter + str(k) for k in independent for letter in ('q', 'dq')]
@@ -68,13 +66,3 @@ def check_run(checks, mech9d, name, method, tolerance):
     print(f'{why}: {report["steps"]} steps, {report["evaluations"]} evaluations, with 2000 outputs '
           f'{report_of_many["evaluations"]}, error inside steps {worst:.2g} tolerances')
     checks.true(worst <= allowed, f'{why}: a row inside a step is as accurate as the end of one', worst)
-
-
-def main():
-    checks = Checks()
-    for name, method, tolerance in RUNS:
-        check_run(checks, sys.argv[1], name, method, tolerance)
-    checks.finish()
-
-
-main()

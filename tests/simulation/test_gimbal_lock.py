@@ -2,18 +2,14 @@
 
 Integrals of motion, the same motion in another order of turns, a pendulum in one plane, Taylor's series at outputs in gimbal
 lock. The run in its own angles, which a load of no consequence enforces, compares the program with itself.
-
-usage: gimbal_lock.py MECH9D
 """
 import json
 import os
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import Checks, read_table, run, text_of
+from mech9_cases import read_table, run, text_of
 
 SINGULAR = 6
 G, MASS, ARM, ACROSS, ALONG = 9.81, 1.0, 0.1, 0.002, 0.001      # a symmetric top: inertia about its centre
@@ -68,8 +64,8 @@ def top(q, dq, axes=(X, Y, Z), end=2.0, intervals=200, extra='', tolerance=1e-9)
 class Session:
     """The program in a folder of its own."""
 
-    def __init__(self, folder, mech9d):
-        self.folder, self.mech9d, self.checks = folder, os.path.abspath(mech9d), Checks()
+    def __init__(self, folder, mech9d, checks):
+        self.folder, self.mech9d, self.checks = folder, mech9d, checks
 
     def run(self, data, why, *options, code=0):
         with open(os.path.join(self.folder, 'run.nml'), 'w', encoding='utf-8') as file:
@@ -80,6 +76,11 @@ class Session:
             return done.stderr, None
         with open(os.path.join(self.folder, 'run.json'), encoding='utf-8') as report:
             return read_table(text_of(os.path.join(self.folder, 'run.dat'))), json.load(report)
+
+
+@pytest.fixture
+def session(checks, mech9d, tmp_path):
+    return Session(tmp_path, mech9d, checks)
 
 
 def check_same(checks, table, other, columns, tolerance, why):
@@ -98,24 +99,24 @@ POINT = [f'P.{order}{axis}' for order in ('', 'v', 'a') for axis in 'xyz']
 ANGLES = [f'{order}{k}' for order in ('q', 'dq', 'ddq') for k in (1, 2, 3)]
 
 
-def check_ways_past_the_lock(session):
+@pytest.mark.parametrize('spin', [5.0, 0.1, 1e-3, 1e-6, 1e-9, 0.0])
+def test_ways_past_the_lock(session, spin):
     """Near by, nearer, and through: first integrals, few steps, and the motion in another order of turns, which has no lock there."""
     checks = session.checks
-    for spin in (5.0, 0.1, 1e-3, 1e-6, 1e-9, 0.0):
-        why = f'a top with {spin:g} rad/s'
-        q, dq = np.array([0.1, 1.2, 0.0]), np.array([0.0, 3.0, spin])
-        table, report = session.run(top(q, dq), why)
-        if report is None or len(table['t']) != 201:
-            return
-        checks.true(report['steps'] <= 600, f'{why}: few steps', report['steps'])
-        checks.true(any(event['replaced'] == [1, 2, 3] for event in report['events']), f'{why}: the report tells of it')
-        # 200 steps, each with an error of the tolerance of rates up to 20 a second in motions that part by e per 0.1 s at most
-        check_integrals(checks, table, 1e-6, why)
-        start = {f'{name}{k + 1}': values[[k]] for name, values in (('q', q), ('dq', dq)) for k in range(3)}
-        start['t'] = np.zeros(1)
-        r, omega = motion_of(start, (X, Y, Z))
-        other, _ = session.run(top(*turned_start(r[0], omega[0]), axes=(X, Z, Y)), f'{why}, in another order')
-        check_same(checks, table, other, POINT, 1e-5, f'{why}: in another order of turns')
+    why = f'a top with {spin:g} rad/s'
+    q, dq = np.array([0.1, 1.2, 0.0]), np.array([0.0, 3.0, spin])
+    table, report = session.run(top(q, dq), why)
+    if report is None or not checks.equal(len(table['t']), 201, f'{why}: all rows are there'):
+        return
+    checks.true(report['steps'] <= 600, f'{why}: few steps', report['steps'])
+    checks.true(any(event['replaced'] == [1, 2, 3] for event in report['events']), f'{why}: the report tells of it')
+    # 200 steps, each with an error of the tolerance of rates up to 20 a second in motions that part by e per 0.1 s at most
+    check_integrals(checks, table, 1e-6, why)
+    start = {f'{name}{k + 1}': values[[k]] for name, values in (('q', q), ('dq', dq)) for k in range(3)}
+    start['t'] = np.zeros(1)
+    r, omega = motion_of(start, (X, Y, Z))
+    other, _ = session.run(top(*turned_start(r[0], omega[0]), axes=(X, Z, Y)), f'{why}, in another order')
+    check_same(checks, table, other, POINT, 1e-5, f'{why}: in another order of turns')
 
 
 def turned_start(r, omega):
@@ -126,21 +127,21 @@ def turned_start(r, omega):
     return q, np.linalg.solve(np.column_stack(([1.0, 0.0, 0.0], second, r[:, 1])), omega)
 
 
-def check_against_own_angles(session):
+@pytest.mark.parametrize('q, dq', [((0, 1.2, 0), (0.1, 3, 0)), ((0.3, 0.3, 0.2), (3, 8, 7)), ((0.1, 1.0, 0.0), (0, 0, 60))])
+def test_against_own_angles(session, q, dq):
     """At a distance of 0.03 rad the angles of the data file can be integrated themselves."""
     checks = session.checks
-    for q, dq in (((0, 1.2, 0), (0.1, 3, 0)), ((0.3, 0.3, 0.2), (3, 8, 7)), ((0.1, 1.0, 0.0), (0, 0, 60))):
-        why = f'from {q}, {dq}'
-        table, report = session.run(top(q, dq, end=1.0), why)
-        own, steady = session.run(top(q, dq, end=1.0, extra=STEADY), f'{why}, in its own angles')
-        checks.true(report['events'] != [] and steady['events'] == [], f'{why}: with and without other angles')
-        for column in ANGLES:
-            # 1e-9 over the square of the distance for rates, and over its cube for accelerations
-            limit = {'q': 1e-7, 'dq': 1e-6, 'ddq': 1e-5}[column[:-1]]
-            checks.near(table[column], own[column], limit, f'{why}: {column}', scale=10.0)
+    why = f'from {q}, {dq}'
+    table, report = session.run(top(q, dq, end=1.0), why)
+    own, steady = session.run(top(q, dq, end=1.0, extra=STEADY), f'{why}, in its own angles')
+    checks.true(report['events'] != [] and steady['events'] == [], f'{why}: with and without other angles')
+    for column in ANGLES:
+        # 1e-9 over the square of the distance for rates, and over its cube for accelerations
+        limit = {'q': 1e-7, 'dq': 1e-6, 'ddq': 1e-5}[column[:-1]]
+        checks.near(table[column], own[column], limit, f'{why}: {column}', scale=10.0)
 
 
-def check_through_in_a_plane(session):
+def test_through_the_lock_in_a_plane(session):
     """A pendulum that swings through the lock in one plane: the second angle goes on beyond 90 degrees, as that of one hinge does."""
     checks = session.checks
     table, report = session.run(top((0, 0.4, 0), (0, 1, 0)), 'a pendulum in a plane')
@@ -156,28 +157,26 @@ def check_through_in_a_plane(session):
             checks.near(table[f'{order}{k}'], 0.0, 1e-9, f'{order}{k} stays zero', scale=1.0)
 
 
-def check_outputs_in_the_lock(session):
+@pytest.mark.parametrize('q, dq', [((0.5, QUARTER, 0.1), (2, 1, 3)), ((0.5, -QUARTER, 0.1), (2, -3, 20)), ((0, QUARTER, 0), (0, 3, 0))])
+def test_outputs_in_the_lock(session, q, dq):
     """A start in the lock itself: its rates and accelerations continue the motion after it, by Taylor's series."""
     checks = session.checks
-    for q, dq in (((0.5, QUARTER, 0.1), (2, 1, 3)), ((0.5, -QUARTER, 0.1), (2, -3, 20)), ((0, QUARTER, 0), (0, 3, 0))):
-        step = 2.5e-4
-        table, report = session.run(top(q, dq, end=4 * step, intervals=4), f'a start in gimbal lock, {q}, {dq}')
-        checks.near(table['q1'][0], q[0], 1e-14, 'the start is the given one')
-        checks.equal(report['events'][0]['t'], 0.0, 'other angles from the start')
-        for k in (1, 2, 3):
-            value, rate, acceleration = (table[f'{order}{k}'] for order in ('q', 'dq', 'ddq'))
-            # Hermite's formula: the value after a step follows from rates and accelerations, but for step**5/720 times the fifth
-            # derivative, of some 80**5: 4e-12; an error of 1e-3 in an acceleration would be 5e-12
-            three = value[1] - value[0] - step * (rate[0] + rate[1]) / 2 - step**2 * (acceleration[0] - acceleration[1]) / 12
-            checks.true(abs(three) <= 1e-11, f'{q}, {dq}: coordinate {k} goes on as it begins', three)
+    step = 2.5e-4
+    table, report = session.run(top(q, dq, end=4 * step, intervals=4), f'a start in gimbal lock, {q}, {dq}')
+    checks.near(table['q1'][0], q[0], 1e-14, 'the start is the given one')
+    checks.equal(report['events'][0]['t'], 0.0, 'other angles from the start')
+    for k in (1, 2, 3):
+        value, rate, acceleration = (table[f'{order}{k}'] for order in ('q', 'dq', 'ddq'))
+        # Hermite's formula: the value after a step follows from rates and accelerations, but for step**5/720 times the fifth
+        # derivative, of some 80**5: 4e-12; an error of 1e-3 in an acceleration would be 5e-12
+        three = value[1] - value[0] - step * (rate[0] + rate[1]) / 2 - step**2 * (acceleration[0] - acceleration[1]) / 12
+        checks.true(abs(three) <= 1e-11, f'{q}, {dq}: coordinate {k} goes on as it begins', three)
 
 
-def check_random_turns(session):
-    """A body that tumbles for many turns on a joint of any three perpendicular axes, with links the other way round: the angles
-    give the position of the body at any time, are continuous, and their rates are their derivatives."""
-    checks = session.checks
+def random_tops(count):
+    """Data files of bodies on joints of three axes in any position, with the second pair the other way round."""
     random = np.random.default_rng(5)
-    for trial in range(3):
+    for trial in range(count):
         base = np.linalg.qr(random.normal(size=(3, 3)))[0]
         axes = [base[:, 0], base[:, 1], np.cos(trial) * base[:, 2] + np.sin(trial) * base[:, 0]]
         text = [','.join(repr(float(x)) for x in axis) for axis in axes]
@@ -185,26 +184,33 @@ def check_random_turns(session):
         data = top(q, dq, end=6.0, intervals=3000, tolerance=1e-10)
         for k, axis in enumerate((X, Y, Z)):
             data = data.replace(f"kind='revolute', axis={axis} /", f"kind='revolute', axis= {text[k]}, point=0.1,0.2,0.3 /")
-        data = data.replace('links=2,3', 'links=3,2')
-        why = f'random turns {trial}'
-        table, report = session.run(data, why)
-        replaced = [len(event['replaced']) > 0 for event in report['events']]
-        checks.true(replaced.count(True) > 1 and replaced.count(False) > 1, f'{why}: it went forth and back', replaced)
-        change = np.max(np.abs(table['E.total'] - table['E.total'][0]))
-        checks.true(change <= 1e-6, f'{why}: energy', change)
-        own, _ = session.run(data + STEADY, f'{why}, in its own angles')
-        early = table['t'] <= 1.0
-        for column in ('q1', 'q2', 'q3', 'P.x', 'P.vy', 'P.az'):
-            checks.near(table[column][early], own[column][early], 1e-5, f'{why}: {column}', scale=10.0)
-        for k in (1, 2, 3):
-            step = np.diff(table[f'q{k}'])
-            checks.true(np.max(np.abs(step)) < 3.5, f'{why}: q{k} does not jump by whole turns', np.max(np.abs(step)))
-            rates, slow = table[f'dq{k}'], np.abs(table[f'ddq{k}']) < 1e3
-            slow = slow[1:] & slow[:-1]
-            # the trapezoidal rule errs by a twelfth of the cube of the step times the third derivative
-            errors = np.abs(step - 0.002 * (rates[1:] + rates[:-1]) / 2)[slow]
-            checks.true(np.max(errors) < 1e-3, f'{why}: dq{k} is the rate of q{k}', np.max(errors))
-        print(f'{why}: {report["steps"]} steps, {len(report["events"])} changes, energy {change:.1e} J')
+        yield data.replace('links=2,3', 'links=3,2')
+
+
+@pytest.mark.parametrize('data', random_tops(3), ids=range(3))
+def test_random_turns(session, data):
+    """A body that tumbles for many turns on a joint of any three perpendicular axes, with links the other way round: the angles
+    give the position of the body at any time, are continuous, and their rates are their derivatives."""
+    checks = session.checks
+    why = 'random turns'
+    table, report = session.run(data, why)
+    replaced = [len(event['replaced']) > 0 for event in report['events']]
+    checks.true(replaced.count(True) > 1 and replaced.count(False) > 1, f'{why}: it went forth and back', replaced)
+    change = np.max(np.abs(table['E.total'] - table['E.total'][0]))
+    checks.true(change <= 1e-6, f'{why}: energy', change)
+    own, _ = session.run(data + STEADY, f'{why}, in its own angles')
+    early = table['t'] <= 1.0
+    for column in ('q1', 'q2', 'q3', 'P.x', 'P.vy', 'P.az'):
+        checks.near(table[column][early], own[column][early], 1e-5, f'{why}: {column}', scale=10.0)
+    for k in (1, 2, 3):
+        step = np.diff(table[f'q{k}'])
+        checks.true(np.max(np.abs(step)) < 3.5, f'{why}: q{k} does not jump by whole turns', np.max(np.abs(step)))
+        rates, slow = table[f'dq{k}'], np.abs(table[f'ddq{k}']) < 1e3
+        slow = slow[1:] & slow[:-1]
+        # the trapezoidal rule errs by a twelfth of the cube of the step times the third derivative
+        errors = np.abs(step - 0.002 * (rates[1:] + rates[:-1]) / 2)[slow]
+        checks.true(np.max(errors) < 1e-3, f'{why}: dq{k} is the rate of q{k}', np.max(errors))
+    print(f'{why}: {report["steps"]} steps, {len(report["events"])} changes, energy {change:.1e} J')
 
 
 def chain(independent, start, rate):
@@ -226,7 +232,7 @@ def chain(independent, start, rate):
     return '\n'.join(groups) + '\n'
 
 
-def check_chains(session):
+def test_two_ball_joints_and_a_four_bar(session):
     """Two ball joints and a four-bar: angles of both are replaced, also while the four-bar gets another independent coordinate at its
     dead point. Its crank as this coordinate, and angles as they are, give the same motion."""
     checks = session.checks
@@ -248,33 +254,24 @@ def check_chains(session):
         checks.true(change <= 1e-6, f'energy {why}', change)
 
 
-def check_where_it_cannot_be(session):
-    """Loads on the angles themselves keep them; then the message names the lock. Gimbals with inertia have no lock."""
+def test_start_in_the_lock_with_a_load(session):
+    """Loads on the angles themselves keep them; then the message names the lock."""
     checks = session.checks
     message, _ = session.run(top((0, QUARTER, 0), (0, 3, 0), extra=STEADY), 'a start in the lock with a load', code=SINGULAR)
     checks.true('gimbal lock at t = 0 s' in message and 'coordinates 1, 3' in message, 'the message names it', message)
+
+
+def test_way_into_the_lock_with_a_load(session):
+    checks = session.checks
     # stopped soon, so that the test is short: as many steps as it would take anywhere else
     message, _ = session.run(top((0, 1.2, 0), (0, 3, 1e-6), extra=STEADY), 'a way into the lock with a load',
                              '--set', 'solver.maximum_steps=500', code=SINGULAR)
     checks.true('gimbal lock at t = 0.06624' in message and 'coordinates 1, 3' in message, 'the message names it', message)
     checks.true('stiff' not in message, 'and no stiffness', message)
+
+
+def test_gimbals_with_inertia_have_no_lock(session):
+    checks = session.checks
     gimbals = '&body link=2, mass=0, inertia=1e-4,1e-4,1e-4,0,0,0 /\n'
     table, report = session.run(top((0, 1.2, 0), (0, 3, 1e-6), extra=gimbals), 'gimbals with inertia')
     checks.equal(report['events'], [], 'they keep their angles')
-
-
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        session = Session(folder, sys.argv[1])
-        check_ways_past_the_lock(session)
-        check_against_own_angles(session)
-        check_through_in_a_plane(session)
-        check_outputs_in_the_lock(session)
-        check_random_turns(session)
-        check_chains(session)
-        check_where_it_cannot_be(session)
-    session.checks.finish()
-
-
-if __name__ == '__main__':
-    main()

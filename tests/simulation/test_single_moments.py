@@ -4,17 +4,11 @@ The oracle is the same mechanism with whole tensors: n n' I against n n' I + (1 
 too. Only the moment about n enters the equations of such a link, so that both motions are the same.
 
 Compares the program with itself: links with one moment of inertia and with whole tensors.
-
-usage: single_moments.py MECH9D
 """
-import os
-import sys
-import tempfile
-
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import Checks, run, table_of
+from mech9_cases import run, table_of
 
 DATA = 3
 
@@ -67,47 +61,40 @@ def four_bar(n, across):
     return FOUR_BAR.format(n=numbers(n), m=numbers(-np.asarray(n)), g=numbers(-9.81 * e2), **at, **inertias)
 
 
-def main():
-    program = os.path.abspath(sys.argv[1])
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, 'case.nml')
-
-        def write(text):
-            with open(path, 'w', encoding='utf-8') as file:
-                file.write(text)
-
-        def same_motion(single, whole, name):
-            tables = []
-            for text in (single, whole):
-                write(text)
-                tables.append(table_of(program, path))
-            for column in tables[1]:
-                if column != 'closure':
-                    # the same equations; round-off of the tensors changes steps, whose errors of 1e-12 grow a hundredfold
-                    checks.near(tables[0][column], tables[1][column], 1e-9, f'{name}: {column}')
-
-        def refused(text, *words):
-            write(text)
-            done = run(program, path, '--check', folder=folder)
-            checks.equal(done.returncode, DATA, f'{words}: exit code')
-            for one in words:
-                checks.true(one in done.stderr, f'says {one}', done.stderr)
-
-        for n in ([0, 0, 1], [1, 0, 0], [0, 0.6, 0.8], [2 / 3, -1 / 3, 2 / 3]):
-            same_motion(four_bar(np.array(n, float), 0), four_bar(np.array(n, float), 0.5), f'normal {n}')
-        # a link between that only the slide and the turn about z move
-        same_motion(ARM.format(arm='0,0,0.4,0,0,0', last='0.1,0.1,0.1,0,0,0'),
-                    ARM.format(arm='0.2,0.2,0.4,0,0,0', last='0.1,0.1,0.1,0,0,0'), 'arm')
-
-        refused(ARM.format(arm='0,0.4,0,0,0,0', last='0.1,0.1,0.1,0,0,0'), 'yy exceeds', 'pair 2 lets link 3 turn otherwise')
-        refused(ARM.format(arm='0,0,0.4,0,0,0', last='0,0,0.1,0,0,0'), 'zz exceeds', 'pair 3 lets link 4 turn otherwise',
-                'give all three moments')
-        refused(ARM.format(arm='0,0,0.4,0,0,0', last='0.1,0,0,0,0,0'), 'xx exceeds', 'pair 2 lets link 4 turn otherwise')
-        # two moments are neither a body's nor one moment
-        refused(ARM.format(arm='0,0.1,0.4,0,0,0', last='0.1,0.1,0.1,0,0,0'), 'zz exceeds the sum of the two others')
-    checks.finish()
+def same_motion(checks, program, folder, single, whole):
+    path, tables = folder / 'case.nml', []
+    for text in (single, whole):
+        path.write_text(text, encoding='utf-8')
+        tables.append(table_of(program, path))
+    for column in tables[1]:
+        if column != 'closure':
+            # the same equations; round-off of the tensors changes steps, whose errors of 1e-12 grow a hundredfold
+            checks.near(tables[0][column], tables[1][column], 1e-9, column)
 
 
-if __name__ == '__main__':
-    main()
+@pytest.mark.parametrize('normal', [[0, 0, 1], [1, 0, 0], [0, 0.6, 0.8], [2 / 3, -1 / 3, 2 / 3]], ids=['z', 'x', 'in_yz', 'oblique'])
+def test_four_bar_in_any_plane(checks, mech9d, tmp_path, normal):
+    normal = np.array(normal, float)
+    same_motion(checks, mech9d, tmp_path, four_bar(normal, 0), four_bar(normal, 0.5))
+
+
+def test_arm(checks, mech9d, tmp_path):
+    """A link between that only the slide and the turn about z move."""
+    same_motion(checks, mech9d, tmp_path, ARM.format(arm='0,0,0.4,0,0,0', last='0.1,0.1,0.1,0,0,0'),
+                ARM.format(arm='0.2,0.2,0.4,0,0,0', last='0.1,0.1,0.1,0,0,0'))
+
+
+@pytest.mark.parametrize('arm, last, words', [
+    ('0,0.4,0,0,0,0', '0.1,0.1,0.1,0,0,0', ['yy exceeds', 'pair 2 lets link 3 turn otherwise']),
+    ('0,0,0.4,0,0,0', '0,0,0.1,0,0,0', ['zz exceeds', 'pair 3 lets link 4 turn otherwise', 'give all three moments']),
+    ('0,0,0.4,0,0,0', '0.1,0,0,0,0,0', ['xx exceeds', 'pair 2 lets link 4 turn otherwise']),
+    # two moments are neither a body's nor one moment
+    ('0,0.1,0.4,0,0,0', '0.1,0.1,0.1,0,0,0', ['zz exceeds the sum of the two others'])],
+    ids=['of_another_axis', 'of_a_link_behind', 'about_its_own_axis', 'two'])
+def test_moments_that_are_not_enough(checks, mech9d, tmp_path, arm, last, words):
+    path = tmp_path / 'case.nml'
+    path.write_text(ARM.format(arm=arm, last=last), encoding='utf-8')
+    done = run(mech9d, path, '--check', folder=tmp_path)
+    checks.equal(done.returncode, DATA, f'{words}: exit code')
+    for one in words:
+        checks.true(one in done.stderr, f'says {one}', done.stderr)
