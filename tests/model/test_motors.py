@@ -4,23 +4,20 @@ reactions and drive forces; refusals with place and remedy.
 
 Compares the program with itself in part: a controller without an integral part is a spring with a damper; other numbers of
 coordinates; other methods of integration.
-
-usage: motors.py MECH9K MECH9D
 """
 import math
 import os
-import sys
-import tempfile
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks, read_table, run, text_of
+from mech9_cases import read_table, run, text_of
 
 TIGHT = '&solver relative_tolerance=1e-11, absolute_tolerance=1e-12 /\n'
 # Errors of steps at 1e-11 add up over some hundred steps of motions that do not enlarge them: 100 tolerances.
 NEAR = 1e-9
 METHODS = ('auto', 'verner', 'adams', 'bdf')
+LINEAR_MOTOR = "&motor coordinate=1, kind='dc', voltage=10, resistance=2, inductance=0.1, constant=3 /\n"
 
 FLYWHEEL = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
@@ -104,6 +101,11 @@ class Runs:
             self.checks.true(word in done.stderr, f'{why}: {word}', done.stderr)
 
 
+@pytest.fixture
+def runs(checks, mech9k, mech9d, tmp_path):
+    return Runs(checks, mech9k, mech9d, tmp_path)
+
+
 def follow_linear(table, a, start, names, runs, why, tolerance=NEAR):
     """Compare columns with the motion x' = a x, of which they are the first numbers."""
     step = exponential(a*(table['t'][1] - table['t'][0]))
@@ -124,38 +126,51 @@ def dc_matrix(voltage, resistance, inductance, coupling, inertia, stiffness=0.0,
                      [0, 0, 0, 0]])
 
 
-def direct_current(runs):
-    """Spinning up a flywheel, with roots that are real or not; through a gear; against a spring; a linear motor."""
-    names = ['q1', 'dq1', 'M1.current']
-    for inductance in (0.001, 0.05):
-        for ratio in (1.0, -4.0):
-            motor = (f"&motor coordinate=1, kind='dc', voltage=24, resistance=0.6, inductance={inductance!r}, constant=0.3, "
-                     f'gear_ratio={ratio!r} /\n')
-            table = runs.table(FLYWHEEL + motor + TIGHT + time(1.0) + '&output reactions=.true. /\n')
-            follow_linear(table, dc_matrix(24, 0.6, inductance, 0.3*ratio, 0.02), [0, 0, 0, 1], names, runs,
-                          f'flywheel, L = {inductance}, gear {ratio}')
-            runs.checks.near(table['M1.torque'], 0.3*ratio*table['M1.current'], 1e-14, 'torque by current')
-            runs.checks.near(table['R1.mz'], table['M1.torque'], 1e-13, 'the reaction holds the torque of the motor',
-                             scale=np.abs(table['M1.torque']).max())
-    motor = "&motor coordinate=1, kind='dc', voltage=10, resistance=2, inductance=0.1, constant=3 /\n"
-    table = runs.table(SLIDE + motor + TIGHT + time(3.0))
-    follow_linear(table, dc_matrix(10, 2, 0.1, 3, 2, 50, 1), [0, 0, 0, 1], names, runs, 'a linear motor against a spring')
+STATES = ['q1', 'dq1', 'M1.current']
+
+
+@pytest.mark.parametrize('ratio', [1.0, -4.0])
+@pytest.mark.parametrize('inductance', [0.001, 0.05])
+def test_spinning_up_a_flywheel(runs, inductance, ratio):
+    """With roots that are real or not; through a gear."""
+    motor = (f"&motor coordinate=1, kind='dc', voltage=24, resistance=0.6, inductance={inductance!r}, constant=0.3, "
+             f'gear_ratio={ratio!r} /\n')
+    table = runs.table(FLYWHEEL + motor + TIGHT + time(1.0) + '&output reactions=.true. /\n')
+    follow_linear(table, dc_matrix(24, 0.6, inductance, 0.3*ratio, 0.02), [0, 0, 0, 1], STATES, runs,
+                  f'flywheel, L = {inductance}, gear {ratio}')
+    runs.checks.near(table['M1.torque'], 0.3*ratio*table['M1.current'], 1e-14, 'torque by current')
+    runs.checks.near(table['R1.mz'], table['M1.torque'], 1e-13, 'the reaction holds the torque of the motor',
+                     scale=np.abs(table['M1.torque']).max())
+
+
+def test_linear_motor_against_a_spring(runs):
+    table = runs.table(SLIDE + LINEAR_MOTOR + TIGHT + time(3.0))
+    follow_linear(table, dc_matrix(10, 2, 0.1, 3, 2, 50, 1), [0, 0, 0, 1], STATES, runs, 'a linear motor against a spring')
+
+
+def test_stall_torque_against_a_spring(runs):
     held = FLYWHEEL + "&load kind='coordinate', coordinate=1, stiffness=40, damping=0.8 /\n"
     motor = "&motor coordinate=1, kind='dc', voltage=24, resistance=0.6, inductance=0.01, constant=0.3 /\n"
     table = runs.table(held + motor + TIGHT + time(8.0))
     runs.checks.near(table['M1.torque'][-1], 0.3*24/0.6, 1e-8, 'stall torque against a spring')
     runs.checks.near(table['q1'][-1], 0.3*24/0.6/40, 1e-8, 'the spring holds the stall torque')
-    # without inductance: J w' = k (U - k w)/R
-    table = runs.table(FLYWHEEL + motor.replace('inductance=0.01, ', '') + TIGHT + time(1.0))
+
+
+def test_motor_without_inductance(runs):
+    """J w' = k (U - k w)/R."""
+    motor = "&motor coordinate=1, kind='dc', voltage=24, resistance=0.6, constant=0.3 /\n"
+    table = runs.table(FLYWHEEL + motor + TIGHT + time(1.0))
     rate = 0.3**2/0.6/0.02
     speed = 24/0.3*(1 - np.exp(-rate*table['t']))
     runs.checks.near(table['dq1'], speed, NEAR, 'without inductance: speed', scale=80)
     runs.checks.near(table['M1.current'], (24 - 0.3*speed)/0.6, NEAR, 'without inductance: current', scale=40)
 
 
-def voltages(runs):
-    """Voltages by laws of time, their joints included, by several methods."""
-    motor = "&motor coordinate=1, kind='dc', {voltage} resistance=0.6, inductance=0.01, constant=0.3, {law} /\n"
+BY_LAW = "&motor coordinate=1, kind='dc', {voltage} resistance=0.6, inductance=0.01, constant=0.3, {law} /\n"
+
+
+@pytest.mark.parametrize('method', METHODS)
+def test_harmonic_voltage(runs, method):
     omega, phase = 17.0, 0.4
     law = f"law='harmonic', mean=0.5, amplitude=1, angular_frequency={omega}, phase={phase}"
     a = np.zeros((6, 6))
@@ -163,15 +178,17 @@ def voltages(runs):
     a[2, 4] = 12/0.01
     a[4, 5], a[5, 4] = omega, -omega
     start = [0, 0, 0, 1, math.sin(phase), math.cos(phase)]
-    for method in METHODS:
-        solver = TIGHT.replace('&solver', f"&solver method='{method}',")
-        table = runs.table(FLYWHEEL + motor.format(voltage='voltage=12,', law=law) + solver + time(1.0))
-        follow_linear(table, a, start, ['q1', 'dq1', 'M1.current'], runs, f'harmonic voltage, {method}')
-    # the law alone gives volts; pieces of constant velocity and dwells: a linear system in each
+    solver = TIGHT.replace('&solver', f"&solver method='{method}',")
+    table = runs.table(FLYWHEEL + BY_LAW.format(voltage='voltage=12,', law=law) + solver + time(1.0))
+    follow_linear(table, a, start, STATES, runs, f'harmonic voltage, {method}')
+
+
+def test_voltage_in_segments(runs):
+    """The law alone gives volts; pieces of constant velocity and dwells: a linear system in each."""
     law = ("law='segments', times=0,0.1,0.3,0.5,0.8, values=0,24,24,-5,0, "
            "laws='constant-velocity','dwell','constant-velocity','constant-velocity', period=0.8")
     pieces = [(0.1, 240.0), (0.2, 0.0), (0.2, -145.0), (0.3, 5/0.3)]
-    table = runs.table(FLYWHEEL + motor.format(voltage='', law=law) + TIGHT + time(1.6, 160))
+    table = runs.table(FLYWHEEL + BY_LAW.format(voltage='', law=law) + TIGHT + time(1.6, 160))
     b = np.zeros((5, 5))
     b[:4, :4] = dc_matrix(0, 0.6, 0.01, 0.3, 0.02)
     b[2, 4] = 1/0.01
@@ -185,7 +202,7 @@ def voltages(runs):
             x = step@x
     states.append(x)
     states = np.array(states)
-    for i, name in enumerate(['q1', 'dq1', 'M1.current']):
+    for i, name in enumerate(STATES):
         runs.checks.near(table[name], states[:, i], NEAR, f'voltage in segments: {name}', scale=np.abs(states[:, i]).max())
 
 
@@ -200,7 +217,7 @@ def four_bar_angles(q):
     return math.atan2(cy - by, cx - bx), math.atan2(cy, cx - 0.6)
 
 
-def four_bar(runs):
+def test_four_bar(runs):
     """The motor on the crank of a four-bar linkage against an integration of the one equation J q'' + J' q'^2/2 = torques."""
     numbers = {'a': 1, 'b': 2, 'c': 3, 'd': 4}
     text = FOUR_BAR.format(**numbers)
@@ -246,7 +263,7 @@ def four_bar(runs):
     states = np.array(states)
     # Runge and Kutta's method with steps of 1 ms, where the fastest root is 40/s: (0.04)^4/120 of the numbers, 2e-8, adds up to
     # less than 1e-6
-    for i, name in enumerate(['q1', 'dq1', 'M1.current']):
+    for i, name in enumerate(STATES):
         runs.checks.near(table[name], states[:, i], 1e-6, f'motor on a four-bar: {name}', scale=np.abs(states[:, i]).max())
     others = {'a': 3, 'b': 1, 'c': 4, 'd': 2}
     other = runs.table(FOUR_BAR.format(**others) + run_of)
@@ -258,7 +275,7 @@ def four_bar(runs):
     runs.checks.near(other['M1.current'], table['M1.current'], 1e-8, 'current with other numbers', scale=15)
 
 
-def work(runs):
+def test_work(runs):
     """The work of drives, motors and loads is the change of energy."""
     motor = "&motor coordinate=2, kind='dc', voltage=6, resistance=0.7, inductance=0.05, constant=0.4, law='harmonic', " \
             'amplitude=1, angular_frequency=5 /\n'
@@ -277,21 +294,20 @@ def work(runs):
                      scale=np.abs(table['M1.torque']).max())
 
 
-def as_spring(runs):
+@pytest.mark.parametrize('text, k', [(ARM, 2), (FOUR_BAR.format(a=1, b=2, c=3, d=4).split('&motor')[0], 1)], ids=['open', 'closed'])
+def test_controller_as_a_spring(runs, text, k):
     """A controller without an integral part is a spring with a damper, in open and closed chains, with a drive beside it."""
     output = '&output drive_forces=.true., reactions=.true. /\n'
-    closed = FOUR_BAR.format(a=1, b=2, c=3, d=4).split('&motor')[0]
-    for text, k in ((ARM, 2), (closed, 1)):
-        motor = f"&motor coordinate={k}, kind='pid', proportional=30, derivative=0.6, setpoint=0.9 /\n"
-        spring = f"&load kind='coordinate', coordinate={k}, stiffness=30, damping=0.6, rest=0.9 /\n"
-        one = runs.table(text + motor + TIGHT + time(1.0, 50) + output)
-        two = runs.table(text + spring + TIGHT + time(1.0, 50) + output)
-        for name in two:
-            if not name.startswith('E.') and name != 'closure':
-                # both integrate the same equations; the state of the motor stays zero, so that steps are the same
-                runs.checks.near(one[name], two[name], 1e-8, f'controller as a spring: {name}', scale=max(1.0, np.abs(two[name]).max()))
-        expected = 30*(0.9 - one[f'q{k}']) - 0.6*one[f'dq{k}']
-        runs.checks.near(one['M1.torque'], expected, 1e-12, 'force of the controller', scale=30)
+    motor = f"&motor coordinate={k}, kind='pid', proportional=30, derivative=0.6, setpoint=0.9 /\n"
+    spring = f"&load kind='coordinate', coordinate={k}, stiffness=30, damping=0.6, rest=0.9 /\n"
+    one = runs.table(text + motor + TIGHT + time(1.0, 50) + output)
+    two = runs.table(text + spring + TIGHT + time(1.0, 50) + output)
+    for name in two:
+        if not name.startswith('E.') and name != 'closure':
+            # both integrate the same equations; the state of the motor stays zero, so that steps are the same
+            runs.checks.near(one[name], two[name], 1e-8, f'controller as a spring: {name}', scale=max(1.0, np.abs(two[name]).max()))
+    expected = 30*(0.9 - one[f'q{k}']) - 0.6*one[f'dq{k}']
+    runs.checks.near(one['M1.torque'], expected, 1e-12, 'force of the controller', scale=30)
 
 
 class Controlled:
@@ -356,32 +372,35 @@ class Controlled:
         return np.array(states), passings
 
 
-def controllers(runs):
+@pytest.mark.parametrize('numbers, least, why', [
+    ((200, 300, 20, 1e9, 0.3, 0.0, 1.0), 0, 'no limit'),
+    ((200, 300, 20, 25, 0.3, 0.0, 1.0), 1, 'limit at the start'),
+    ((200, 300, 0, 12, 0.2, 0.3, 6.0), 8, 'PI at both limits'),
+    ((300, 0, 5, 14, 0.1, 0.4, 5.0), 5, 'PD at both limits'),
+    ((300, 900, 8, 15, 0.0, 0.4, 6.0), 5, 'PID at both limits')], ids=['free', 'limit_at_the_start', 'PI', 'PD', 'PID'])
+def test_controllers(runs, numbers, least, why):
     """PID controllers with and without limit, by several methods."""
-    cases = [((200, 300, 20, 1e9, 0.3, 0.0, 1.0), 0, 'no limit'),
-             ((200, 300, 20, 25, 0.3, 0.0, 1.0), 1, 'limit at the start'),
-             ((200, 300, 0, 12, 0.2, 0.3, 6.0), 8, 'PI at both limits'),
-             ((300, 0, 5, 14, 0.1, 0.4, 5.0), 5, 'PD at both limits'),
-             ((300, 900, 8, 15, 0.0, 0.4, 6.0), 5, 'PID at both limits')]
-    for numbers, least, why in cases:
-        p, i, d, limit, mean, amplitude, omega = numbers
-        text = SLIDE + (f"&motor coordinate=1, kind='pid', proportional={p}, integral={i}, derivative={d}, "
-                        + ('' if limit > 1e6 else f'limit={limit}, ')
-                        + (f"law='harmonic', mean={mean}, amplitude={amplitude}, angular_frequency={omega} /\n" if amplitude
-                           else f'setpoint={mean} /\n'))
-        controlled = Controlled(*numbers)
-        states = None
-        for method in METHODS if least > 1 else METHODS[:1]:
-            table = runs.table(text + TIGHT.replace('&solver', f"&solver method='{method}',") + time(4.0, 200))
-            if states is None:
-                states, passings = controlled.motion(table['t'])
-                runs.checks.true(passings >= least, f'{why}: the limit is passed often enough', passings)
-            for k, name in enumerate(['q1', 'dq1', 'M1.integral']):
-                runs.checks.near(table[name], states[:, k], NEAR, f'{why}, {method}: {name}', scale=1.0)
-            force = np.clip(states@controlled.demand, -limit, limit)
-            # gains of some hundreds enlarge the errors of the state
-            runs.checks.near(table['M1.torque'], force, 1e3*NEAR, f'{why}, {method}: the force', scale=1.0)
-    # a setpoint with joints, in degrees: the same motion as in radians
+    p, i, d, limit, mean, amplitude, omega = numbers
+    text = SLIDE + (f"&motor coordinate=1, kind='pid', proportional={p}, integral={i}, derivative={d}, "
+                    + ('' if limit > 1e6 else f'limit={limit}, ')
+                    + (f"law='harmonic', mean={mean}, amplitude={amplitude}, angular_frequency={omega} /\n" if amplitude
+                       else f'setpoint={mean} /\n'))
+    controlled = Controlled(*numbers)
+    states = None
+    for method in METHODS if least > 1 else METHODS[:1]:
+        table = runs.table(text + TIGHT.replace('&solver', f"&solver method='{method}',") + time(4.0, 200))
+        if states is None:
+            states, passings = controlled.motion(table['t'])
+            runs.checks.true(passings >= least, f'{why}: the limit is passed often enough', passings)
+        for k, name in enumerate(['q1', 'dq1', 'M1.integral']):
+            runs.checks.near(table[name], states[:, k], NEAR, f'{why}, {method}: {name}', scale=1.0)
+        force = np.clip(states@controlled.demand, -limit, limit)
+        # gains of some hundreds enlarge the errors of the state
+        runs.checks.near(table['M1.torque'], force, 1e3*NEAR, f'{why}, {method}: the force', scale=1.0)
+
+
+def test_setpoint_in_degrees(runs):
+    """A setpoint with joints: the same motion as in radians."""
     turned = FLYWHEEL + "&load kind='coordinate', coordinate=1, stiffness=3, damping=0.1 /\n"
     motor = "&motor coordinate=1, kind='pid', proportional=5, integral=9, derivative=0.4, limit=2, law='segments', {law} /\n"
     law = "times=0,0.5,1, values=0,{0},0, laws='cycloidal','harmonic', period=1"
@@ -409,58 +428,77 @@ def roots_of(table):
     return np.array(sorted(roots, key=lambda z: (round(z.real, 6), z.imag)))
 
 
-def at_rest(runs):
-    """Equilibria, modes and linearised equations of motion with motors."""
-    def same_roots(table, matrix, why):
-        roots = np.array(sorted(np.linalg.eigvals(matrix), key=lambda z: (round(z.real, 6), z.imag)))
-        found = roots_of(table)
-        if runs.checks.equal(len(found), len(roots), f'{why}: number of roots'):
-            runs.checks.near(np.abs(found - roots), 0, 1e-9*np.abs(roots).max(), f'{why}: roots', scale=1.0)
+def same_roots(runs, table, matrix, why):
+    roots = np.array(sorted(np.linalg.eigvals(matrix), key=lambda z: (round(z.real, 6), z.imag)))
+    found = roots_of(table)
+    if runs.checks.equal(len(found), len(roots), f'{why}: number of roots'):
+        runs.checks.near(np.abs(found - roots), 0, 1e-9*np.abs(roots).max(), f'{why}: roots', scale=1.0)
 
-    motor = "&motor coordinate=1, kind='dc', voltage=10, resistance=2, inductance=0.1, constant=3 /\n"
+
+# --- equilibria, modes and linearised equations of motion ---
+
+def test_linear_motor_at_rest(runs):
+    motor = LINEAR_MOTOR
     table = runs.table(SLIDE + motor, '--equilibrium')
     runs.checks.near([table['q1'][0], table['M1.current'][0], table['M1.torque'][0], table['stable'][0]], [0.3, 5, 15, 1], 1e-12,
                      'a linear motor against a spring')
     matrix = dc_matrix(10, 2, 0.1, 3, 2, 50, 1)[:3, :3]
-    same_roots(runs.table(SLIDE + motor, '--modes'), matrix, 'a linear motor against a spring')
+    same_roots(runs, runs.table(SLIDE + motor, '--modes'), matrix, 'a linear motor against a spring')
     quasi = motor.replace('inductance=0.1, ', '')
-    same_roots(runs.table(SLIDE + quasi, '--modes'), [[0, 1], [-25, -(1 + 9/2)/2]], 'without inductance')
+    same_roots(runs, runs.table(SLIDE + quasi, '--modes'), [[0, 1], [-25, -(1 + 9/2)/2]], 'without inductance')
+
+
+def test_flywheel_at_rest(runs):
     still = FLYWHEEL + "&motor coordinate=1, kind='dc', voltage=0, resistance=0.6, inductance=0.01, constant=0.3 /\n"
     table = runs.table(still, '--modes')
-    same_roots(table, dc_matrix(0, 0.6, 0.01, 0.3, 0.02)[:3, :3], 'a flywheel without voltage')
+    same_roots(runs, table, dc_matrix(0, 0.6, 0.01, 0.3, 0.02)[:3, :3], 'a flywheel without voltage')
     runs.checks.true(0.0 in table['eigenvalue.re'], 'its place does not matter: a root is zero', table['eigenvalue.re'])
     runs.checks.equal(runs.table(still, '--equilibrium')['stable'][0], 1.0, 'it is stable, neutral included')
     done = run(runs.mech9d, runs.path(still.replace('voltage=0', 'voltage=24')), '--equilibrium', folder=runs.folder)
     runs.checks.equal(done.returncode, 5, 'a motor that nothing holds has no place of rest')
-    # m l^2 + J = 0.42; held at 0.5 by the integral alone
-    pid = "&motor coordinate=1, kind='pid', proportional=40, integral=30, derivative=6, limit={}, setpoint=0.5 /\n"
+
+
+# m l^2 + J = 0.42; held at 0.5 by the integral alone
+HOLDING = "&motor coordinate=1, kind='pid', proportional=40, integral=30, derivative=6, limit={}, setpoint=0.5 /\n"
+
+
+@pytest.mark.parametrize('more', ['', "&motor coordinate=1, kind='dc', voltage=3, resistance=0.6, inductance=0.02, constant=0.3 /\n"],
+                         ids=['alone', 'with_a_motor'])
+def test_pendulum_held_by_a_controller(runs, more):
     weight = 2*9.81*0.4
-    for more in ('', "&motor coordinate=1, kind='dc', voltage=3, resistance=0.6, inductance=0.02, constant=0.3 /\n"):
-        held = weight*math.cos(0.5) - (0.3*3/0.6 if more else 0)
-        table = runs.table(PENDULUM + pid.format(50) + more, '--equilibrium')
-        runs.checks.near([table['q1'][0], table['M1.torque'][0], table['M1.integral'][0]], [0.5, held, held/30], 1e-12,
-                         'a controller holds a pendulum')
-        matrix = np.zeros((4, 4))
-        matrix[0, 1] = 1
-        matrix[1] = np.array([weight*math.sin(0.5) - 40, -6, 30, 0.3])/0.42
-        matrix[2, 0] = -1
-        matrix[3] = [0, -0.3/0.02, 0, -0.6/0.02]
-        n = 4 if more else 3
-        same_roots(runs.table(PENDULUM + pid.format(50) + more, '--modes'), matrix[:n, :n], 'a held pendulum')
-    done = run(runs.mech9d, runs.path(PENDULUM + pid.format(2)), '--equilibrium', folder=runs.folder)
+    held = weight*math.cos(0.5) - (0.3*3/0.6 if more else 0)
+    table = runs.table(PENDULUM + HOLDING.format(50) + more, '--equilibrium')
+    runs.checks.near([table['q1'][0], table['M1.torque'][0], table['M1.integral'][0]], [0.5, held, held/30], 1e-12,
+                     'a controller holds a pendulum')
+    matrix = np.zeros((4, 4))
+    matrix[0, 1] = 1
+    matrix[1] = np.array([weight*math.sin(0.5) - 40, -6, 30, 0.3])/0.42
+    matrix[2, 0] = -1
+    matrix[3] = [0, -0.3/0.02, 0, -0.6/0.02]
+    n = 4 if more else 3
+    same_roots(runs, runs.table(PENDULUM + HOLDING.format(50) + more, '--modes'), matrix[:n, :n], 'a held pendulum')
+
+
+def test_controller_that_is_too_weak(runs):
+    done = run(runs.mech9d, runs.path(PENDULUM + HOLDING.format(2)), '--equilibrium', folder=runs.folder)
     runs.checks.equal(done.returncode, 5, 'a controller that is too weak')
-    # the modes of a four-bar with a motor are the roots of its motion: a small deviation decays with the slowest
+
+
+def test_motor_without_voltage_moves_no_place_of_rest(runs):
     text = FOUR_BAR.format(a=1, b=2, c=3, d=4).replace('voltage=12', 'voltage=0')
     one = runs.table(text, '--equilibrium')
     two = runs.table(text.split('&motor')[0], '--equilibrium')
     runs.checks.near(one['q1'], two['q1'], 1e-9, 'a motor without voltage does not move the place of rest')
+
+
+def test_linearised_motion_with_a_motor(runs):
     try:
         import h5py
     except ImportError:
         runs.checks.left_out('h5py is not installed (Debian: python3-h5py)')
         return
     path = os.path.join(runs.folder, 'linear.h5')
-    done = run(runs.mech9d, runs.path(SLIDE + motor), '--linear', path, folder=runs.folder)
+    done = run(runs.mech9d, runs.path(SLIDE + LINEAR_MOTOR), '--linear', path, folder=runs.folder)
     runs.checks.equal(done.returncode, 0, '--linear with a motor')
     with h5py.File(path, 'r') as file:
         space = file['state_space']
@@ -474,46 +512,61 @@ def at_rest(runs):
         runs.checks.equal(names, ['Q1', 'M1.voltage'], 'names of the inputs')
 
 
-def refusals(runs):
-    dc = "&motor coordinate={k}, kind='dc', voltage={u}, resistance={r}, inductance={l}, constant={c} /\n"
-    good = {'k': 1, 'u': 12, 'r': 0.6, 'l': 0.01, 'c': 0.3}
-    pid = "&motor coordinate=1, kind='pid', {more} /\n"
-    runs.refused(FLYWHEEL + dc.format(**{**good, 'r': 0}), ["'resistance' must be >0"], 'no resistance')
-    runs.refused(FLYWHEEL + dc.format(**{**good, 'r': -2}), ["'resistance' must be >0"], 'negative resistance')
-    runs.refused(FLYWHEEL + dc.format(**{**good, 'l': -1}), ["'inductance'"], 'negative inductance')
-    runs.refused(FLYWHEEL + dc.format(**{**good, 'c': 0}), ["'constant' must be >0"], 'no torque')
-    runs.refused(FLYWHEEL + dc.format(**{**good, 'k': 3}), ['there is no coordinate 3; they are 1 to 1'], 'no such coordinate')
-    runs.refused(FLYWHEEL + dc.format(**good).replace('voltage=12, ', ''), ['no voltage', 'voltage=', 'law='], 'no voltage')
-    runs.refused(FLYWHEEL + dc.format(**good).replace(' /', ', gear_ratio=0 /'), ['gear_ratio=0'], 'no gear')
-    runs.refused(FLYWHEEL + dc.format(**good).replace(' /', ', proportional=1 /'), ["does not belong to motors of kind 'dc'"],
-                 'a gain of a motor')
-    runs.refused(FLYWHEEL + pid.format(more='proportional=1'), ['no setpoint', 'setpoint=', 'law='], 'no setpoint')
-    runs.refused(FLYWHEEL + pid.format(more="proportional=1, setpoint=1, law='polynomial', coefficients=1"), ['given twice'],
-                 'two setpoints')
-    runs.refused(FLYWHEEL + pid.format(more='setpoint=1'), ['no gain'], 'no gain')
-    runs.refused(FLYWHEEL + pid.format(more='setpoint=1, proportional=-1'), ["'proportional'"], 'a negative gain')
-    for limit in (0, -3):
-        runs.refused(FLYWHEEL + pid.format(more=f'setpoint=1, proportional=1, limit={limit}'), ["'limit' must be >0"],
-                     f'limit {limit}')
-    runs.refused(FLYWHEEL + 2*pid.format(more='setpoint=1, integral=1'), ['two never come to rest'], 'two integral parts')
-    runs.refused(FLYWHEEL + pid.format(more='setpoint=1, integral=1, limit=3'), ['integral part alone'], 'integral part with limit')
-    done = run(runs.mech9d, runs.path(FLYWHEEL + pid.format(more="proportional=1, law='segments', times=0,1, values=0,1, "
-                                                                 "laws='harmonic'") + time(2.0)), '--no-write', folder=runs.folder)
+DC = "&motor coordinate={k}, kind='dc', voltage={u}, resistance={r}, inductance={l}, constant={c} /\n"
+GOOD = {'k': 1, 'u': 12, 'r': 0.6, 'l': 0.01, 'c': 0.3}
+PID = "&motor coordinate=1, kind='pid', {more} /\n"
+REFUSED = {
+    'no resistance': (DC.format(**{**GOOD, 'r': 0}), ["'resistance' must be >0"]),
+    'negative resistance': (DC.format(**{**GOOD, 'r': -2}), ["'resistance' must be >0"]),
+    'negative inductance': (DC.format(**{**GOOD, 'l': -1}), ["'inductance'"]),
+    'no torque': (DC.format(**{**GOOD, 'c': 0}), ["'constant' must be >0"]),
+    'no such coordinate': (DC.format(**{**GOOD, 'k': 3}), ['there is no coordinate 3; they are 1 to 1']),
+    'no voltage': (DC.format(**GOOD).replace('voltage=12, ', ''), ['no voltage', 'voltage=', 'law=']),
+    'no gear': (DC.format(**GOOD).replace(' /', ', gear_ratio=0 /'), ['gear_ratio=0']),
+    'a gain of a motor': (DC.format(**GOOD).replace(' /', ', proportional=1 /'), ["does not belong to motors of kind 'dc'"]),
+    'no setpoint': (PID.format(more='proportional=1'), ['no setpoint', 'setpoint=', 'law=']),
+    'two setpoints': (PID.format(more="proportional=1, setpoint=1, law='polynomial', coefficients=1"), ['given twice']),
+    'no gain': (PID.format(more='setpoint=1'), ['no gain']),
+    'a negative gain': (PID.format(more='setpoint=1, proportional=-1'), ["'proportional'"]),
+    'limit 0': (PID.format(more='setpoint=1, proportional=1, limit=0'), ["'limit' must be >0"]),
+    'limit -3': (PID.format(more='setpoint=1, proportional=1, limit=-3'), ["'limit' must be >0"]),
+    'two integral parts': (2*PID.format(more='setpoint=1, integral=1'), ['two never come to rest']),
+    'integral part with limit': (PID.format(more='setpoint=1, integral=1, limit=3'), ['integral part alone'])}
+
+
+@pytest.mark.parametrize('why', REFUSED)
+def test_motors_that_are_refused(runs, why):
+    motor, words = REFUSED[why]
+    runs.refused(FLYWHEEL + motor, words, why)
+
+
+def test_setpoint_that_ends_before_the_run(runs):
+    motor = PID.format(more="proportional=1, law='segments', times=0,1, values=0,1, laws='harmonic'")
+    done = run(runs.mech9d, runs.path(FLYWHEEL + motor + time(2.0)), '--no-write', folder=runs.folder)
     runs.checks.equal(done.returncode, 3, 'a setpoint that ends before the run')
     runs.checks.true('law in segments of the motor 1 has no value after t = 1 s' in done.stderr, 'the motor is named', done.stderr)
+
+
+def test_motors_of_coordinates_that_are_not_free(runs):
     text = FOUR_BAR.format(a=1, b=2, c=3, d=4)
     runs.refused(text.replace('&motor coordinate=1', '&motor coordinate=3'),
                  ['coordinate 3 is dependent and cannot have a motor', 'cq = 3 would make it independent'], 'a dependent coordinate')
-    runs.refused(ARM + dc.format(**good), ['coordinate 1 has the drive of line 8', 'leave one of the two out'], 'a driven coordinate')
-    done = run(runs.mech9d, runs.path(FLYWHEEL + dc.format(**good)), '--check', folder=runs.folder)
+    runs.refused(ARM + DC.format(**GOOD), ['coordinate 1 has the drive of line 8', 'leave one of the two out'], 'a driven coordinate')
+
+
+def test_check_of_a_motor(runs):
+    done = run(runs.mech9d, runs.path(FLYWHEEL + DC.format(**GOOD)), '--check', folder=runs.folder)
     runs.checks.equal(done.returncode, 0, '--check of a motor')
 
 
-def other_outputs(runs):
-    """HDF5 and mech9k."""
-    motors = ("&motor coordinate=2, kind='pid', proportional=30, integral=20, setpoint=0.9 /\n"
-              "&motor coordinate=2, kind='dc', voltage=6, resistance=0.7, constant=0.4 /\n")
-    text = ARM + motors + time(1.0)
+
+MOTORS = ("&motor coordinate=2, kind='pid', proportional=30, integral=20, setpoint=0.9 /\n"
+          "&motor coordinate=2, kind='dc', voltage=6, resistance=0.7, constant=0.4 /\n")
+
+
+def test_columns_of_motors(runs):
+    """In the table and in the HDF5 file."""
+    text = ARM + MOTORS + time(1.0)
     path = os.path.join(runs.folder, 'case.h5')
     table = runs.table(text, '--hdf5', path)
     names = [name for name in table if name.startswith('M')]
@@ -528,22 +581,13 @@ def other_outputs(runs):
                 runs.checks.true(np.array_equal(file[name.replace('.', '_')][:], table[name]), f'{name} in the HDF5 file')
             runs.checks.equal(file['M2_current'].attrs['units'].decode() if hasattr(file['M2_current'].attrs['units'], 'decode')
                               else str(file['M2_current'].attrs['units']), 'A', 'unit of the current')
-    # in mech9k all is driven: the motor is left out, and the drive shows the torque that it would have to give
+
+
+def test_mech9k_leaves_motors_out(runs):
+    """There all is driven, and the drive shows the torque that the motor would have to give."""
     text = ARM.replace('&drive coordinate=1', "&drive coordinate=2, kind='polynomial', coefficients=0.4,1 /\n&drive coordinate=1")
     output = '&output drive_forces=.true. /\n'
     one = runs.table(text.replace('&initial coordinate=2, position=0.4 /\n', '') + time(1.0) + output, program=runs.mech9k)
-    two = runs.table(text.replace('&initial coordinate=2, position=0.4 /\n', '') + motors + time(1.0) + output, program=runs.mech9k)
+    two = runs.table(text.replace('&initial coordinate=2, position=0.4 /\n', '') + MOTORS + time(1.0) + output, program=runs.mech9k)
     runs.checks.equal(sorted(one), sorted(two), 'mech9k has no columns of motors')
     runs.checks.true(all(np.array_equal(one[name], two[name]) for name in one), 'mech9k leaves motors out')
-
-
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        runs = Runs(checks, sys.argv[1], sys.argv[2], folder)
-        for part in (direct_current, voltages, four_bar, work, as_spring, controllers, at_rest, refusals, other_outputs):
-            part(runs)
-    checks.finish()
-
-
-main()

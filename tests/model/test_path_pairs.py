@@ -2,26 +2,22 @@
 
 Compares the program with itself in part: paths on lines, circles and helices against pairs with fixed axes, other numbers of
 links and coordinates, a curve in the moving link; all else is closed forms and identities.
-
-usage: path_pairs.py MECH9K MECH9D
 """
 import math
 import os
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import Checks, run, table_of, text_of
+from mech9_cases import run, table_of, text_of
 
 DATA, SINGULAR, FILE = 3, 6, 8
 GRAVITY = '&gravity acceleration=0,-9.81,0 /\n'
 
 
 class Cases:
-    def __init__(self, mech9k, mech9d, folder):
-        self.mech9k, self.mech9d, self.folder, self.checks = mech9k, mech9d, folder, Checks()
+    def __init__(self, mech9k, mech9d, folder, checks):
+        self.mech9k, self.mech9d, self.folder, self.checks = mech9k, mech9d, folder, checks
 
     def write(self, name, text):
         path = os.path.join(self.folder, name)
@@ -40,6 +36,11 @@ class Cases:
         error = float(np.max(np.abs(table[name] - expected)))
         self.checks.true(error <= tolerance, f'{why}: {name} differs by {error:.3g}, and {tolerance:.3g} is allowed')
         return error
+
+
+@pytest.fixture
+def s(checks, mech9k, mech9d, tmp_path):
+    return Cases(mech9k, mech9d, tmp_path, checks)
 
 
 def closed(points):
@@ -71,13 +72,13 @@ CRANK = """&structure cq=1 /
 """
 
 
-def line(s):
+def test_straight_line(s):
     """A slider-crank whose slide is a straight path through points at uneven distances, against one with a prismatic pair."""
     along = np.array([2.0, -1.0]) / math.sqrt(5.0)
     s.curve([d * along for d in (0.0, 0.13, 0.4, 0.5, 0.93, 1.3)])
     exact = s.table(CRANK.format(guide="&pair coordinate=3, links=1,4, kind='prismatic', axis=2,-1,0, moving_axis=1,0,0, zero=0,0,1, "
                                        "moving_zero=0,0,1 /"))
-    for orientation, moved in (('fixed', ''), ('tangent', '')):
+    for orientation in ('fixed', 'tangent'):
         # a fixed link system stays parallel to that of link 1, the other one has its x axis along the line
         table = s.table(CRANK.format(guide=f"&pair coordinate=3, links=1,4, kind='path', file='curve.dat', orientation='{orientation}' /"))
         for name in ('q1', 'q2', 'q3', 'P.x', 'P.y', 'dq3', 'P.vx'):
@@ -86,7 +87,7 @@ def line(s):
             s.near(table, name, exact[name], 1e-10, f'straight path, {orientation}')
 
 
-def circle(s):
+def test_circle(s):
     """A four-bar whose rocker is a block on a circle: the errors fall with the sixth, fifth and fourth power of the distance."""
     four_bar = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
@@ -116,7 +117,7 @@ def circle(s):
     s.checks.true(errors[2, 0] < 1e-8, f'a circle of 128 points is nearly exact: {errors[2]}')
 
 
-def ellipse(s):
+def test_ellipse(s):
     """A quarter of the length of an ellipse leads to its next vertex."""
     a, b, n = 0.8, 0.3, 400
     angle = 2 * math.pi * np.arange(n + 1) / n
@@ -144,7 +145,7 @@ def ellipse(s):
                   f"a link that turns with an ellipse turns by its curvature: {np.abs(spin - quarter * curvature).max()}")
 
 
-def helix(s):
+def test_helix(s):
     """A helix against a helical pair that moves a point beside its axis."""
     radius, pitch, n = 0.2, 0.3, 400
     rise = pitch / (2 * math.pi)
@@ -162,27 +163,27 @@ def helix(s):
         s.near(table, f'P.{name}', exact[f'P.{name}'], tolerance, 'helix')
 
 
-def tautochrone(s):
+@pytest.mark.parametrize('start', [0.02, 0.2, 0.39])
+@pytest.mark.parametrize('orientation', ['fixed', 'tangent'])
+def test_tautochrone(s, orientation, start):
     """Beads on a cycloid swing harmonically about its lowest point, whatever their start: s'' = -g s/(4 a)."""
     a = 0.1
     angle = np.linspace(-0.9 * math.pi, 0.9 * math.pi, 241)
     s.curve(np.c_[a * (angle + np.sin(angle)), a * (1 - np.cos(angle))])
     middle = 4 * a * math.sin(0.45 * math.pi)     # arc length from the end to the lowest point
     frequency = math.sqrt(9.81 / (4 * a))
-    for orientation in ('fixed', 'tangent'):
-        for start in (0.02, 0.2, 0.39):
-            # a body with inertia on a link that turns would swing otherwise
-            table = s.table(f"""&pair coordinate=1, links=1,2, kind='path', file='curve.dat', orientation='{orientation}' /
+    # a body with inertia on a link that turns would swing otherwise
+    table = s.table(f"""&pair coordinate=1, links=1,2, kind='path', file='curve.dat', orientation='{orientation}' /
 &structure cq=1 /
 &initial coordinate=1, position={start!r} /
 &body link=2, mass=0.7 /
 {GRAVITY}&time end=5, intervals=50 /
 &solver relative_tolerance=1e-11, absolute_tolerance=1e-12 /
 """, s.mech9d)
-            # the frequency of a curve of 241 points differs by some 1e-9, over 25 rad
-            s.near(table, 'q1', middle + (start - middle) * np.cos(frequency * table['t']), 2e-8, f'tautochrone from {start}')
-            energy = table['E.total']
-            s.checks.true(np.max(np.abs(energy - energy[0])) < 1e-9, f'a bead keeps its energy: {np.ptp(energy)}')
+    # the frequency of a curve of 241 points differs by some 1e-9, over 25 rad
+    s.near(table, 'q1', middle + (start - middle) * np.cos(frequency * table['t']), 2e-8, f'tautochrone from {start}')
+    energy = table['E.total']
+    s.checks.true(np.max(np.abs(energy - energy[0])) < 1e-9, f'a bead keeps its energy: {np.ptp(energy)}')
 
 
 def trefoil(n=80):
@@ -191,7 +192,7 @@ def trefoil(n=80):
     return closed(np.c_[(2 + np.cos(3 * t)) * np.cos(2 * t), (2 + np.cos(3 * t)) * np.sin(2 * t), np.sin(3 * t)] * 0.1)
 
 
-def knot(s):
+def test_body_on_a_knot(s):
     """A heavy body that turns with a closed curve in space: exact derivatives, energy, and the same motion with other numbers."""
     s.curve(trefoil())
     body = """&body link={link}, mass=1.3, centre=0.02,0.03,-0.01, inertia=0.01,0.02,0.015,0.001,0.002,-0.001 /
@@ -219,7 +220,11 @@ def knot(s):
     # round-off and errors of integration of the same equations in another order
     for name in ('q1', 'P.x', 'P.y', 'P.z'):
         s.near(other, name, table[name], 1e-7, 'knot with other numbers')
-    # differences over 1e-4 s of a driven motion
+
+
+def test_rates_on_a_knot(s):
+    """They are the differences over 1e-4 s of a driven motion."""
+    s.curve(trefoil())
     moved = s.table("""&pair coordinate=1, links=1,2, kind='path', file='curve.dat', orientation='tangent' /
 &structure cq=1 /
 &drive coordinate=1, kind='polynomial', coefficients=0.1, 1.5, 0.3 /
@@ -235,7 +240,7 @@ def knot(s):
         s.checks.true(np.max(np.abs(rate - moved[f'P.a{axis}'][1:-1])) < 1e-3, f'accelerations on a knot are exact, {axis}')
 
 
-def carried_curve(s):
+def test_curve_in_the_moving_link(s):
     """A curve in the moving link: the motion is the inverse one. A pin that is fixed in link 1 guides a slotted plate."""
     s.curve(trefoil())
     file = "kind='path', file='curve.dat', orientation='tangent'"
@@ -260,56 +265,74 @@ def carried_curve(s):
         s.near(back, f'O.a{x}', -np.sum(spun_rate[i] * place + 2 * spun[i] * rate + turned[i] * bent, axis=0), 1e-9, 'inverse motion')
 
 
-def forces(s):
+@pytest.mark.parametrize('orientation', ['fixed', 'tangent'])
+def test_forces_on_a_circle(s, orientation):
     """A body that is driven round a circle upright in gravity: force and moment of the guide, force of the drive."""
     n, radius, mass, speed = 256, 0.4, 2.5, 1.7
     angle = 2 * math.pi * np.arange(n + 1) / n
     s.curve(closed(np.c_[radius * np.cos(angle), radius * np.sin(angle)]))
-    for orientation, spin in (('fixed', 0.0), ('tangent', 1.0)):
-        table = s.table(f"""&pair coordinate=1, links=1,2, kind='path', file='curve.dat', orientation='{orientation}' /
+    table = s.table(f"""&pair coordinate=1, links=1,2, kind='path', file='curve.dat', orientation='{orientation}' /
 &structure cq=1 /
 &drive coordinate=1, kind='polynomial', coefficients=0, {speed} /
 &body link=2, mass={mass}, inertia=0.1,0.2,0.3,0,0,0 /
 {GRAVITY}&output reactions=.true., drive_forces=.true. /
 &time end=2, intervals=40 /
 """)
-        turn = speed * table['t'] / radius
-        centripetal = mass * speed ** 2 / radius
-        # curvatures of a circle of 256 points are known to 1e-8
-        s.near(table, 'R1.fx', -centripetal * np.cos(turn), 1e-6, f'force on a circle, {orientation}')
-        s.near(table, 'R1.fy', -centripetal * np.sin(turn) + mass * 9.81, 1e-6, f'force on a circle, {orientation}')
-        for name in ('fz', 'mx', 'my', 'mz'):
-            s.near(table, f'R1.{name}', 0.0, 1e-6, f'force on a circle, {orientation}')
-        # power of the drive is that against gravity
-        s.near(table, 'F1', mass * 9.81 * np.cos(turn), 1e-5, f'drive on a circle, {orientation}')
+    turn = speed * table['t'] / radius
+    centripetal = mass * speed ** 2 / radius
+    # curvatures of a circle of 256 points are known to 1e-8
+    s.near(table, 'R1.fx', -centripetal * np.cos(turn), 1e-6, f'force on a circle, {orientation}')
+    s.near(table, 'R1.fy', -centripetal * np.sin(turn) + mass * 9.81, 1e-6, f'force on a circle, {orientation}')
+    for name in ('fz', 'mx', 'my', 'mz'):
+        s.near(table, f'R1.{name}', 0.0, 1e-6, f'force on a circle, {orientation}')
+    # power of the drive is that against gravity
+    s.near(table, 'F1', mass * 9.81 * np.cos(turn), 1e-5, f'drive on a circle, {orientation}')
 
 
-def ends(s):
-    """A motion that comes to an end of an open curve ends there, in both programs, with the time and the coordinate."""
-    s.curve([(0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (2.0, 0.0)])
-    pair = "&pair coordinate=1, links=1,2, kind='path', file='curve.dat' /\n&structure cq=1 /\n&time end=3, intervals=30 /\n"
-    for program, motion, time in ((s.mech9k, "&drive coordinate=1, kind='polynomial', coefficients=0.5, 1 /\n", 1.5),
-                                  (s.mech9k, "&drive coordinate=1, kind='polynomial', coefficients=0.5, -1 /\n", 0.5),
-                                  (s.mech9d, "&initial coordinate=1, position=0.5, velocity=1 /\n&body link=2, mass=1 /\n"
-                                             "&gravity acceleration=0,0,0 /\n", 1.5)):
-        done = run(program, s.write('case.nml', pair + motion), '--table', os.path.join(s.folder, 'table.dat'))
-        s.checks.equal(done.returncode, SINGULAR, f'the end of a curve ends a motion: {done.stderr}')
-        s.checks.true('case.nml:1:1: coordinate 1 comes to an end of its curve at t = ' in done.stderr, done.stderr)
-        told = float(done.stderr.split('curve at t = ')[1].split(' s')[0]) if 'curve at t = ' in done.stderr else math.nan
-        # mech9k tells the first output beyond the end
-        s.checks.true(abs(told - time) < 0.11, f'the end of a curve is reached at {time}, and told is {told}')
-        last = text_of(os.path.join(s.folder, 'table.dat')).splitlines()[-1].split()
-        s.checks.true(float(last[0]) <= time + 1e-9, 'nothing is recorded beyond the end')
-    exactly = s.table(pair + "&drive coordinate=1, kind='polynomial', coefficients=0, 0.66666666666666663 /\n")
+# a curve of 2 m with ends, and a link on it
+WITH_ENDS = [(0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (2.0, 0.0)]
+ON_CURVE = "&pair coordinate=1, links=1,2, kind='path', file='curve.dat' /\n&structure cq=1 /\n&time end=3, intervals=30 /\n"
+
+
+@pytest.mark.parametrize('motion, time', [
+    ("&drive coordinate=1, kind='polynomial', coefficients=0.5, 1 /\n", 1.5),
+    ("&drive coordinate=1, kind='polynomial', coefficients=0.5, -1 /\n", 0.5),
+    ('&initial coordinate=1, position=0.5, velocity=1 /\n&body link=2, mass=1 /\n&gravity acceleration=0,0,0 /\n', 1.5)],
+    ids=['driven', 'driven_backwards', 'free'])
+def test_end_of_a_curve_ends_a_motion(s, motion, time):
+    """The motion ends there, in both programs, with the time and the coordinate."""
+    s.curve(WITH_ENDS)
+    done = run(s.mech9k if 'drive' in motion else s.mech9d, s.write('case.nml', ON_CURVE + motion), '--table', os.path.join(s.folder, 'table.dat'))
+    s.checks.equal(done.returncode, SINGULAR, f'the end of a curve ends a motion: {done.stderr}')
+    s.checks.true('case.nml:1:1: coordinate 1 comes to an end of its curve at t = ' in done.stderr, done.stderr)
+    told = float(done.stderr.split('curve at t = ')[1].split(' s')[0]) if 'curve at t = ' in done.stderr else math.nan
+    # mech9k tells the first output beyond the end
+    s.checks.true(abs(told - time) < 0.11, f'the end of a curve is reached at {time}, and told is {told}')
+    last = text_of(os.path.join(s.folder, 'table.dat')).splitlines()[-1].split()
+    s.checks.true(float(last[0]) <= time + 1e-9, 'nothing is recorded beyond the end')
+
+
+def test_motion_from_end_to_end(s):
+    s.curve(WITH_ENDS)
+    exactly = s.table(ON_CURVE + "&drive coordinate=1, kind='polynomial', coefficients=0, 0.66666666666666663 /\n")
     s.near(exactly, 'q1', exactly['t'] * 2 / 3, 1e-15, 'from end to end')
-    # a start beyond an end is no end of a motion: it is told with the place of its number
-    for start, place in (("&drive coordinate=1, kind='polynomial', coefficients=2.5, 1 /\n", 'case.nml:4:1'),
-                         ("&drive coordinate=1, kind='polynomial', coefficients=-0.1, 1 /\n", 'case.nml:4:1'),
-                         ('&initial coordinate=1, position=2.5 /\n&body link=2, mass=1 /\n', 'case.nml:4:33')):
-        done = run(s.mech9k if 'drive' in start else s.mech9d, s.write('case.nml', pair + start), '--check')
-        s.checks.equal(done.returncode, DATA, f'a start beyond an end is refused: {done.stderr}')
-        s.checks.true(place in done.stderr and 'and its curve leads from 0 to 2 m; start on the curve' in done.stderr, done.stderr)
-    # a closed chain: the crank pulls the block beyond the end
+
+
+@pytest.mark.parametrize('start, place', [
+    ("&drive coordinate=1, kind='polynomial', coefficients=2.5, 1 /\n", 'case.nml:4:1'),
+    ("&drive coordinate=1, kind='polynomial', coefficients=-0.1, 1 /\n", 'case.nml:4:1'),
+    ('&initial coordinate=1, position=2.5 /\n&body link=2, mass=1 /\n', 'case.nml:4:33')],
+    ids=['drive_beyond', 'drive_before', 'initial_beyond'])
+def test_start_beyond_an_end_is_refused(s, start, place):
+    """It is no end of a motion: it is told with the place of its number."""
+    s.curve(WITH_ENDS)
+    done = run(s.mech9k if 'drive' in start else s.mech9d, s.write('case.nml', ON_CURVE + start), '--check')
+    s.checks.equal(done.returncode, DATA, f'a start beyond an end is refused: {done.stderr}')
+    s.checks.true(place in done.stderr and 'and its curve leads from 0 to 2 m; start on the curve' in done.stderr, done.stderr)
+
+
+def test_closed_chain_at_the_end_of_a_curve(s):
+    """The crank pulls the block beyond the end."""
     s.curve([(0.0, 0.0), (0.3, 0.0), (0.6, 0.0), (0.8, 0.0)])
     done = run(s.mech9k, s.write('case.nml', CRANK.format(guide="&pair coordinate=3, links=1,4, kind='path', file='curve.dat' /")
                                  .replace('coefficients=0.3, 4', 'coefficients=3, -4').replace('position=1 ', 'position=0.7 ')), '--no-write')
@@ -317,46 +340,57 @@ def ends(s):
     s.checks.true('coordinate 3 comes to an end of its curve at t = ' in done.stderr, done.stderr)
 
 
-def refusals(s):
-    """Bad files of curves are refused with their line and a remedy."""
-    text = ("&pair coordinate=1, links=1,2, kind='path', file='curve.dat'{} /\n&structure cq=1 /\n"
+ONE_PATH = ("&pair coordinate=1, links=1,2, kind='path', file='curve.dat'{} /\n&structure cq=1 /\n"
             "&drive coordinate=1, kind='polynomial', coefficients=0.5 /\n")
-    square = '0 0\n1 0\n1 1\n0 1\n'
-    for points, names, code, words in (
-            ('0 0\n1 0\n1 1\n', '', DATA, 'curve.dat: a smooth curve needs at least 4 points, and the file has 3; the pair in line 1 of'),
-            ('0 0\n1 0\n1 1\n0 0\n', '', DATA, 'curve.dat:4:1: a smooth curve needs at least 4 different points, and this closed one has 3; add points'),
-            ('', '', DATA, "curve.dat': the file is empty"),
-            ('# nothing\n', '', DATA, 'curve.dat: a smooth curve needs at least 4 points, and the file has 0'),
-            ('0 0\n1 0\n1 0\n1 1\n0 1\n', '', DATA, 'curve.dat:3:1: this point repeats the one before it'),
-            ('0 0\n1 0\n1 x\n0 1\n', '', DATA, "curve.dat:3:3: 'x' is not a number"),
-            ('0 0\n1 nan\n1 1\n0 1\n', '', DATA, "curve.dat:2:3: 'nan'"),
-            ('0 0\n1 0 0\n1 1\n0 1\n', '', DATA, 'this one has 3 numbers and those before it have 2'),
-            ('0\n1\n2\n3\n', '', DATA, 'x and y in a plane or x, y and z in space; this one has 1 number'),
-            ('0 0\n1 0\n1e200 1\n0 1\n', '', DATA, 'is too large or too small'),
-            (square, ', closed=.true.', DATA, 'the ends of the curve are 1 m apart; repeat the first point at the end of its file'),
-            (square + '0 0.001\n', '', DATA, 'curve.dat:5:1: the last point misses the first one by 0.001 m'),
-            (square + '0 0.001\n', ', closed=.false.', 0, ''),
-            (square + '0 0\n', '', 0, ''),
-            (square + '0 0\n', ', closed=.false.', 0, ''),
-            ('x y\n' + square, '', 0, ''),
-            (square, ", orientation='along'", DATA, "unknown orientation 'along'; it is one of: fixed tangent"),
-            (square, ', axis=0,0,0', DATA, 'the axis of pair 1 is zero'),
-            (square, ', moving_axis=1,0,0, moving_zero=2,0,0', DATA, 'the moving_zero of pair 1 lies along the axis'),
-            (square, ', pitch=0.1', DATA, 'pitch'),
-            (square, ', dh=1,0,0,0', DATA, 'dh'),
-            # a figure of eight touches itself
-            ('0 0\n1 1\n2 0\n1 -1\n0 0\n-1 1\n-2 0\n-1 -1\n0 0\n', '', 0, '')):
-        s.write('curve.dat', points)
-        done = run(s.mech9k, s.write('case.nml', text.format(names)), '--check')
-        s.checks.equal(done.returncode, code, f'{names} {points!r}: {done.stderr}')
-        s.checks.true(words in done.stderr, f'said of {names} {points!r}: {words}', done.stderr)
-    os.remove(os.path.join(s.folder, 'curve.dat'))
-    done = run(s.mech9k, s.write('case.nml', text.format('')), '--check')
+SQUARE = '0 0\n1 0\n1 1\n0 1\n'
+FILES_OF_CURVES = [
+    ('0 0\n1 0\n1 1\n', '', DATA, 'curve.dat: a smooth curve needs at least 4 points, and the file has 3; the pair in line 1 of'),
+    ('0 0\n1 0\n1 1\n0 0\n', '', DATA, 'curve.dat:4:1: a smooth curve needs at least 4 different points, and this closed one has 3; add points'),
+    ('', '', DATA, "curve.dat': the file is empty"),
+    ('# nothing\n', '', DATA, 'curve.dat: a smooth curve needs at least 4 points, and the file has 0'),
+    ('0 0\n1 0\n1 0\n1 1\n0 1\n', '', DATA, 'curve.dat:3:1: this point repeats the one before it'),
+    ('0 0\n1 0\n1 x\n0 1\n', '', DATA, "curve.dat:3:3: 'x' is not a number"),
+    ('0 0\n1 nan\n1 1\n0 1\n', '', DATA, "curve.dat:2:3: 'nan'"),
+    ('0 0\n1 0 0\n1 1\n0 1\n', '', DATA, 'this one has 3 numbers and those before it have 2'),
+    ('0\n1\n2\n3\n', '', DATA, 'x and y in a plane or x, y and z in space; this one has 1 number'),
+    ('0 0\n1 0\n1e200 1\n0 1\n', '', DATA, 'is too large or too small'),
+    (SQUARE, ', closed=.true.', DATA, 'the ends of the curve are 1 m apart; repeat the first point at the end of its file'),
+    (SQUARE + '0 0.001\n', '', DATA, 'curve.dat:5:1: the last point misses the first one by 0.001 m'),
+    (SQUARE + '0 0.001\n', ', closed=.false.', 0, ''),
+    (SQUARE + '0 0\n', '', 0, ''),
+    (SQUARE + '0 0\n', ', closed=.false.', 0, ''),
+    ('x y\n' + SQUARE, '', 0, ''),
+    (SQUARE, ", orientation='along'", DATA, "unknown orientation 'along'; it is one of: fixed tangent"),
+    (SQUARE, ', axis=0,0,0', DATA, 'the axis of pair 1 is zero'),
+    (SQUARE, ', moving_axis=1,0,0, moving_zero=2,0,0', DATA, 'the moving_zero of pair 1 lies along the axis'),
+    (SQUARE, ', pitch=0.1', DATA, 'pitch'),
+    (SQUARE, ', dh=1,0,0,0', DATA, 'dh'),
+    # a figure of eight touches itself
+    ('0 0\n1 1\n2 0\n1 -1\n0 0\n-1 1\n-2 0\n-1 -1\n0 0\n', '', 0, '')]
+
+
+@pytest.mark.parametrize('points, names, code, words', FILES_OF_CURVES, ids=[
+    'three_points', 'closed_by_three', 'empty', 'comment_alone', 'repeated_point', 'no_number', 'nan', 'unequal_lines', 'one_column',
+    'too_large', 'closed_but_apart', 'nearly_closed', 'nearly_closed_but_open', 'closed', 'ends_that_meet_but_open', 'line_of_names',
+    'orientation', 'zero_axis', 'zero_along_the_axis', 'pitch', 'dh', 'figure_of_eight'])
+def test_files_of_curves(s, points, names, code, words):
+    """Bad files of curves are refused with their line and a remedy."""
+    s.write('curve.dat', points)
+    done = run(s.mech9k, s.write('case.nml', ONE_PATH.format(names)), '--check')
+    s.checks.equal(done.returncode, code, f'{names} {points!r}: {done.stderr}')
+    s.checks.true(words in done.stderr, f'said of {names} {points!r}: {words}', done.stderr)
+
+
+def test_curve_that_does_not_exist(s):
+    done = run(s.mech9k, s.write('case.nml', ONE_PATH.format('')), '--check')
     s.checks.equal(done.returncode, FILE, f'a curve that does not exist: {done.stderr}')
     s.checks.true("case.nml:1:50: the curve '" in done.stderr, done.stderr)
 
 
-def symbols(s):
+@pytest.mark.parametrize('links, orientation, symbol, curve', [
+    ('1,3', 'tangent', 'block', 'curve'), ('1,3', 'fixed', 'plate sheet', 'curve'),
+    ('2,3', 'tangent', 'block', 'cam'), ('2,3', 'fixed', 'plate sheet', 'cam')])
+def test_symbols(s, links, orientation, symbol, curve):
     """A link that turns with its curve is a block on it, another one a square; a closed curve of a moving link is a cam."""
     angle = 2 * math.pi * np.arange(25) / 24
     s.curve(closed(np.c_[np.cos(angle), np.sin(angle)]))
@@ -367,17 +401,15 @@ def symbols(s):
 &drive coordinate=2, kind='polynomial', coefficients=0, 1 /
 """
     picture = os.path.join(s.folder, 'path.svg')
-    for links, orientation, symbol, curve in (('1,3', 'tangent', 'block', 'curve'), ('1,3', 'fixed', 'plate sheet', 'curve'),
-                                              ('2,3', 'tangent', 'block', 'cam'), ('2,3', 'fixed', 'plate sheet', 'cam')):
-        done = run(s.mech9k, s.write('case.nml', text.format(links=links, orientation=orientation)), '--no-write', '--sketch', picture)
-        s.checks.equal(done.returncode, 0, f'a path is drawn: {done.stderr}')
-        drawn = text_of(picture)
-        other = {'block': 'plate sheet', 'plate sheet': 'block'}[symbol]
-        s.checks.true(f'<g class="{symbol}' in drawn and f'<g class="{other}' not in drawn, f'{orientation}: the symbol is {symbol}')
-        s.checks.true(f'<g class="{curve}' in drawn, f'links {links}: the curve is drawn as {curve}')
+    done = run(s.mech9k, s.write('case.nml', text.format(links=links, orientation=orientation)), '--no-write', '--sketch', picture)
+    s.checks.equal(done.returncode, 0, f'a path is drawn: {done.stderr}')
+    drawn = text_of(picture)
+    other = {'block': 'plate sheet', 'plate sheet': 'block'}[symbol]
+    s.checks.true(f'<g class="{symbol}' in drawn and f'<g class="{other}' not in drawn, f'{orientation}: the symbol is {symbol}')
+    s.checks.true(f'<g class="{curve}' in drawn, f'links {links}: the curve is drawn as {curve}')
 
 
-def mobility(s):
+def test_mobility_anywhere_on_a_curve(s):
     """Ranks do not depend on where on its curve a pair stands: at an inflection, on a straight part, in a chain of slides."""
     x = np.linspace(-1.0, 1.0, 41)
     s.curve(np.c_[x, 0.2 * x ** 3])
@@ -397,15 +429,3 @@ def mobility(s):
     s.near(table, 'ddq3', 1.2 * (0.5 * table['t']) * 0.25, 1e-6, 'a block on a cubic')
     done = run(s.mech9k, s.write('case.nml', chain.format(start=half)), '--check')
     s.checks.true('rank 2' in done.stdout, f'the chain has two equations: {done.stdout}')
-
-
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        s = Cases(sys.argv[1], sys.argv[2], folder)
-        for case in (line, circle, ellipse, helix, tautochrone, knot, carried_curve, forces, ends, refusals, symbols, mobility):
-            case(s)
-        s.checks.finish()
-
-
-if __name__ == '__main__':
-    main()
