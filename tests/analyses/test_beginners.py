@@ -2,18 +2,14 @@
 
 The dimensions are held against closed forms: the lengths of a four-bar that was laid out from them in any plane, and the
 lengths and twists of Denavit-Hartenberg parameters.
-
-usage: beginners.py MECH9K MECH9D
 """
 import os
 import re
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import Checks, run
+from mech9_cases import run
 
 DONE, STRUCTURE, ASSEMBLY = 0, 4, 5
 
@@ -85,9 +81,8 @@ MISTAKES = [
 
 
 class Cases:
-    def __init__(self, mech9k, mech9d, folder):
-        self.mech9k, self.mech9d = os.path.abspath(mech9k), os.path.abspath(mech9d)
-        self.folder, self.checks = folder, Checks()
+    def __init__(self, mech9k, mech9d, folder, checks):
+        self.mech9k, self.mech9d, self.folder, self.checks = mech9k, mech9d, folder, checks
 
     def check(self, program, text, code=DONE):
         path = os.path.join(self.folder, 'case.nml')
@@ -96,6 +91,11 @@ class Cases:
         done = run(program, path, '--check', folder=self.folder)
         self.checks.true(done.returncode == code, f'exit code {code}', f'{done.returncode}\n{text}{done.stdout}{done.stderr}')
         return done
+
+
+@pytest.fixture
+def s(checks, mech9k, mech9d, tmp_path):
+    return Cases(mech9k, mech9d, tmp_path, checks)
 
 
 def table_of_links(printed):
@@ -108,7 +108,7 @@ def numbers(values):
     return ','.join(repr(float(value)) for value in values)
 
 
-def lengths_of_links(s):
+def test_lengths_of_links(s):
     """A four-bar from its lengths, in any plane and place; an axis may point either way, a point lie anywhere on it."""
     random = np.random.default_rng(12)
     for unit, turn in (('rad', np.pi), ('deg', 180.0)):
@@ -132,7 +132,7 @@ def lengths_of_links(s):
             s.checks.near(table[key], [length, angle, length], 6e-6, f'{key}: six digits are printed')
 
 
-def twists(s):
+def test_twists(s):
     """Denavit-Hartenberg parameters: a is the distance of skew axes, alpha their angle."""
     parameters = [(0.7, 0.6, 0.2, 0.1), (0.4, 2.1, -0.3, 0.9), (0.0, np.pi / 2, 0.5, 0.0), (0.25, 0.0, 0.1, 0.3)]
     text = '&structure cq=1,2,3,4,5 /\n'
@@ -145,11 +145,15 @@ def twists(s):
         s.checks.near(table[k + 1, k, k + 1][:2], [a, alpha], 6e-6, f'the common normal and the twist of link {k + 1}')
 
 
-def other_links(s):
-    """Slides have no place; links with many pairs get the distances around; long lists are cut."""
+def test_dimensions_at_a_slide(s):
+    """A slide has no place."""
     table = table_of_links(s.check(s.mech9k, SLIDER_CRANK).stdout)
     s.checks.near(table[1, 1, 4][:2], [0.1, np.pi / 2], 6e-6, 'the offset of the slide')
     s.checks.true(table[1, 1, 4][2] is None and table[4, 3, 4][2] is None, 'the point of a slide may lie anywhere on it')
+
+
+def test_dimensions_of_a_star(s):
+    """A link with many pairs gets the distances around; a long list is cut."""
     star = '&structure cq={} /\n'.format(','.join(str(k) for k in range(1, 61)))
     for k in range(1, 61):
         star += (f"&pair coordinate={k}, links=1,{k + 1}, kind='{'prismatic' if k < 3 else 'revolute'}', axis=0,0,1, point={k},0,0 /\n"
@@ -162,67 +166,68 @@ def other_links(s):
     s.checks.true(len(table) == 40 and 'and 20 more lines' in printed, 'forty lines at most', printed)
 
 
-def mistakes(s):
-    for text, code, (right, wrong), line, words in MISTAKES:
-        s.check(s.mech9k, text)
-        s.checks.equal(text.count(right), 1, f'{right} is there once')
-        done = s.check(s.mech9k, text.replace(right, wrong), code)
-        s.checks.true(words in done.stderr, f'says {words}', done.stderr)
-        s.checks.true(f'case.nml:{line}:1: ' in done.stderr, f'{words}: in line {line}', done.stderr)
-        s.checks.true('dimensions of the links' in done.stdout, 'the dimensions are shown where nothing can be assembled', done.stdout)
-    # dimensions that are known to few digits have axes that are nearly parallel
+@pytest.mark.parametrize('text, code, change, line, words', MISTAKES, ids=[
+    'long_coupler', 'long_frame', 'oblique_axis', 'slightly_oblique_axis', 'axis_across', 'axes_of_a_link', 'height_of_a_pin',
+    'slide_along_the_axes', 'oblique_slide', 'axis_across_of_a_slider_crank', 'height_of_a_slide', 'missed_centre'])
+def test_mistakes(s, text, code, change, line, words):
+    right, wrong = change
+    s.check(s.mech9k, text)
+    s.checks.equal(text.count(right), 1, f'{right} is there once')
+    done = s.check(s.mech9k, text.replace(right, wrong), code)
+    s.checks.true(words in done.stderr, f'says {words}', done.stderr)
+    s.checks.true(f'case.nml:{line}:1: ' in done.stderr, f'{words}: in line {line}', done.stderr)
+    s.checks.true('dimensions of the links' in done.stdout, 'the dimensions are shown where nothing can be assembled', done.stdout)
+
+
+def test_axes_that_are_nearly_parallel(s):
+    """Dimensions that are known to few digits have such axes."""
     near = FOUR_BAR.replace('axis=0,0,1, point=1,0,0', 'axis=0,1e-7,1, point=1,0,0').replace('point=0.9,0,0', 'point=900,0,0')
     done = s.check(s.mech9k, '&mechanism data_tolerance=1e-5 /\n' + near, ASSEMBLY)
     s.checks.true('link 1 is 900 m long' in done.stderr and 'parallel' not in done.stderr, 'what is tolerated is not odd', done.stderr)
 
 
-def notes(s):
-    for coefficients, unit, words in (('0, 360', 'rad', 'the drive of coordinate 1 has the rate 360 rad/s, 57.3 turns a second'),
-                                      ('90, 1', 'rad', 'the drive of coordinate 1 has the angle 90 rad, more than a turn'),
-                                      ('0, 6.28', 'deg', 'the drive of coordinate 1 has the rate 6.28 degrees a second'),
-                                      ('0, -3.14159', 'deg', 'the rate -3.14159 degrees a second'),
-                                      ('0, 10', 'rad', None), ('1.2, 314.16', 'rad', None), ('0, 360', 'deg', None), ('0, 0', 'deg', None)):
-        text = f"&mechanism angle_unit='{unit}' /\n" + FOUR_BAR.replace('coefficients=0, 6.5', f'coefficients={coefficients}')
-        printed = s.check(s.mech9k, text).stdout
-        s.checks.equal('note:' in printed, words is not None, f'{coefficients} {unit}: a note where it is due')
-        s.checks.true(words is None or words in printed, f'says {words}', printed)
-    for values, words in ((dict(velocity=1, crank=2, rod=1), None),
-                          (dict(velocity=720, crank=2, rod=1), 'the start of coordinate 1 has the rate 720 rad/s'),
-                          (dict(velocity=1, crank=2, rod=0), 'note: link 5 has no mass, while others have')):
-        text = ROD.format(**values)
-        if values['rod'] == 0:
-            # a link of the ball joint has the mass instead, so that the spin has inertia
-            text += '&body link=6, mass=1, inertia=1,1,1,0,0,0 /\n'
-        done = s.check(s.mech9d, text)
-        s.checks.equal('note:' in done.stdout, words is not None, f'{values}: a note where it is due')
-        s.checks.true(words is None or words in done.stdout, f'says {words}', done.stdout)
+@pytest.mark.parametrize('coefficients, unit, words', [
+    ('0, 360', 'rad', 'the drive of coordinate 1 has the rate 360 rad/s, 57.3 turns a second'),
+    ('90, 1', 'rad', 'the drive of coordinate 1 has the angle 90 rad, more than a turn'),
+    ('0, 6.28', 'deg', 'the drive of coordinate 1 has the rate 6.28 degrees a second'),
+    ('0, -3.14159', 'deg', 'the rate -3.14159 degrees a second'),
+    ('0, 10', 'rad', None), ('1.2, 314.16', 'rad', None), ('0, 360', 'deg', None), ('0, 0', 'deg', None)],
+    ids=['degrees_as_radians', 'angle_in_degrees', 'radians_as_degrees', 'half_a_turn_in_radians', 'fast', 'motor', 'degrees', 'still'])
+def test_notes_on_drives(s, coefficients, unit, words):
+    text = f"&mechanism angle_unit='{unit}' /\n" + FOUR_BAR.replace('coefficients=0, 6.5', f'coefficients={coefficients}')
+    printed = s.check(s.mech9k, text).stdout
+    s.checks.equal('note:' in printed, words is not None, f'{coefficients} {unit}: a note where it is due')
+    s.checks.true(words is None or words in printed, f'says {words}', printed)
+
+
+@pytest.mark.parametrize('velocity, rod, words', [
+    (1, 1, None), (720, 1, 'the start of coordinate 1 has the rate 720 rad/s'), (1, 0, 'note: link 5 has no mass, while others have')])
+def test_notes_on_rates_and_masses(s, velocity, rod, words):
+    text = ROD.format(velocity=velocity, crank=2, rod=rod)
+    if rod == 0:
+        # a link of the ball joint has the mass instead, so that the spin has inertia
+        text += '&body link=6, mass=1, inertia=1,1,1,0,0,0 /\n'
+    done = s.check(s.mech9d, text)
+    s.checks.equal('note:' in done.stdout, words is not None, 'a note where it is due')
+    s.checks.true(words is None or words in done.stdout, f'says {words}', done.stdout)
+
+
+def test_body_of_the_frame(s):
     printed = s.check(s.mech9d, ROD.format(velocity=1, crank=1, rod=1)).stdout
     for words in ('note: link 1 is the frame, which does not move: its &body has no effect', 'note: link 2 has no mass'):
         s.checks.true(words in printed, f'says {words}', printed)
 
 
-def overconstrained(s):
+@pytest.mark.parametrize('a, b', [(1.0, 1.5), (1.0, 1.2)])
+def test_overconstrained_chain_is_not_idle(s, a, b):
     """A whole chain that moves although it is overconstrained is not idle: no two links at its ends stand still."""
-    for a, b in ((1.0, 1.5), (1.0, 1.2)):
-        twist = np.pi / 6
-        other = np.arcsin(b / a * np.sin(twist))
-        text = '&structure cq=1 /\n'
-        for k, (links, length, angle) in enumerate((((1, 2), a, twist), ((2, 3), b, other), ((3, 4), a, twist), ((4, 1), b, other)), 1):
-            text += f"&pair coordinate={k}, links={links[0]},{links[1]}, kind='revolute', dh={length!r},{float(angle)!r},0,0 /\n"
-        text += "&drive coordinate=1, kind='polynomial', coefficients=0.5 /\n&initial coordinate=2, position=3 /\n"
-        text += '&initial coordinate=3, position=-0.5 /\n&initial coordinate=4, position=-3 /\n'
-        printed = s.check(s.mech9k, text).stdout
-        s.checks.true('closed chain 1: 3 of its 6 equations redundant' in printed, 'Bennett', printed)
-        s.checks.true('idle' not in printed, 'the chain moves as a whole', printed)
-
-
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        s = Cases(sys.argv[1], sys.argv[2], folder)
-        for case in (lengths_of_links, twists, other_links, mistakes, notes, overconstrained):
-            case(s)
-    s.checks.finish()
-
-
-if __name__ == '__main__':
-    main()
+    twist = np.pi / 6
+    other = np.arcsin(b / a * np.sin(twist))
+    text = '&structure cq=1 /\n'
+    for k, (links, length, angle) in enumerate((((1, 2), a, twist), ((2, 3), b, other), ((3, 4), a, twist), ((4, 1), b, other)), 1):
+        text += f"&pair coordinate={k}, links={links[0]},{links[1]}, kind='revolute', dh={length!r},{float(angle)!r},0,0 /\n"
+    text += "&drive coordinate=1, kind='polynomial', coefficients=0.5 /\n&initial coordinate=2, position=3 /\n"
+    text += '&initial coordinate=3, position=-0.5 /\n&initial coordinate=4, position=-3 /\n'
+    printed = s.check(s.mech9k, text).stdout
+    s.checks.true('closed chain 1: 3 of its 6 equations redundant' in printed, 'Bennett', printed)
+    s.checks.true('idle' not in printed, 'the chain moves as a whole', printed)

@@ -2,18 +2,14 @@
 
 Pendulums, masses on springs, bars in slots, a bead on a rotating hoop, balanced beams; the same mechanism in other independent
 coordinates and units (which compares the program with itself), and vibrations measured in motions.
-
-usage: equilibrium.py MECH9D
 """
 import os
 import re
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import Checks, read_table, run, text_of
+from mech9_cases import read_table, run, text_of
 
 G = 9.81
 USAGE, DATA, ASSEMBLY, SINGULAR, FILE = 2, 3, 5, 6, 8
@@ -54,13 +50,18 @@ class Case:
     def table(self, data, *options):
         result = self(data, *options)
         if result.returncode != 0:
-            raise SystemExit(f'{options} fails: {result.stderr}')
+            raise RuntimeError(f'{options} fails: {result.stderr}')
         return read_table(result.stdout)
 
     def roots(self, data):
         """Eigenvalues of the modes, those with positive imaginary part and real ones."""
         table = self.table(data, '--modes')
         return table['eigenvalue.re'] + 1j * table['eigenvalue.im']
+
+
+@pytest.fixture
+def case(mech9d, tmp_path):
+    return Case(mech9d, tmp_path)
 
 
 def near_roots(checks, roots, expected, tolerance, why):
@@ -74,33 +75,48 @@ def pendulum(position=0.5, extra=''):
     return mechanism(2, 1, [1], pair(1, '1,2'), body(2, 2.0, '0,-0.5,0', 0.1), GRAVITY, initial(1, position), extra)
 
 
-def check_pendulum(checks, case):
-    omega = np.sqrt(2.0 * G * 0.5 / (0.1 + 2.0 * 0.25))
+# its angular frequency: sqrt(m g a/I)
+OMEGA = np.sqrt(2.0 * G * 0.5 / (0.1 + 2.0 * 0.25))
+
+
+def test_modes_of_a_pendulum(checks, case):
     modes = case.table(pendulum(), '--modes')
-    checks.near(modes['frequency'], [omega / (2 * np.pi)], EXACT, 'a compound pendulum vibrates with sqrt(m g a/I)')
+    checks.near(modes['frequency'], [OMEGA / (2 * np.pi)], EXACT, 'a compound pendulum vibrates with sqrt(m g a/I)')
     checks.near([modes['eigenvalue.re'][0], modes['damping'][0]], [0, 0], 0.0, 'and without damping exactly so')
     checks.near(modes['q1.re'], [1], 0.0, 'its shape is 1')
+    roots = case.roots(pendulum(3.1))
+    checks.near(roots.real, [OMEGA, -OMEGA], EXACT, 'a growth and a decay are two modes')
+    degrees = pendulum(30.0).replace('links=2,', "links=2, angle_unit='deg',", 1)
+    near_roots(checks, case.roots(degrees), [1j * OMEGA], EXACT, 'degrees change nothing')
+
+
+def test_top_of_a_pendulum(checks, case):
     up = case.table(pendulum(3.0), '--equilibrium')
-    checks.near([up['q1'][0], up['growth'][0]], [np.pi, omega], EXACT, 'near its top it stays there, and falls at that rate')
+    checks.near([up['q1'][0], up['growth'][0]], [np.pi, OMEGA], EXACT, 'near its top it stays there, and falls at that rate')
     checks.equal(up['stable'][0], 0.0, 'which is not stable')
-    for start in (np.pi / 2, 2.0, -2.5, 1.0, 0.0):
-        down = case.table(pendulum(start), '--equilibrium')
-        checks.near([down['q1'][0], down['stable'][0], down['growth'][0]], [0, 1, 0], EXACT, f'from {start:.2f} it falls to its rest')
+
+
+@pytest.mark.parametrize('start', [np.pi / 2, 2.0, -2.5, 1.0, 0.0])
+def test_pendulum_falls_to_its_rest(checks, case, start):
+    down = case.table(pendulum(start), '--equilibrium')
+    checks.near([down['q1'][0], down['stable'][0], down['growth'][0]], [0, 1, 0], EXACT, f'from {start:.2f} it falls to its rest')
+
+
+def test_random_starts_of_a_pendulum(checks, case):
     both = case.table(pendulum(), '--equilibrium', '--starts', '20', '--table', '-', '--report', 'both.json')
     reached = re.findall(r'"starts": (\d+)', text_of(os.path.join(case.folder, 'both.json')))
     checks.equal(sum(map(int, reached)), 21, 'each start, and the initial position, leads to one of the equilibria')
     checks.near(both['q1'], [0, np.pi], EXACT, 'random starts find both equilibria, each once')
     checks.near(both['stable'], [1, 0], 0.0, 'and tell which is stable')
-    roots = case.roots(pendulum(3.1))
-    checks.near(roots.real, [omega, -omega], EXACT, 'a growth and a decay are two modes')
-    degrees = pendulum(30.0).replace('links=2,', "links=2, angle_unit='deg',", 1)
-    near_roots(checks, case.roots(degrees), [1j * omega], EXACT, 'degrees change nothing')
-    for length in (1e-9, 1e9):
-        far = mechanism(2, 1, [1], pair(1, '1,2'), body(2, 1e-30, f'{length!r},0,0'), GRAVITY, initial(1, 0.5))
-        near_roots(checks, case.roots(far), [1j * np.sqrt(G / length)], EXACT, f'a pendulum of {length} m and 1e-30 kg')
 
 
-def check_wound_pendulum(checks, case):
+@pytest.mark.parametrize('length', [1e-9, 1e9])
+def test_pendulum_of_any_length(checks, case, length):
+    far = mechanism(2, 1, [1], pair(1, '1,2'), body(2, 1e-30, f'{length!r},0,0'), GRAVITY, initial(1, 0.5))
+    near_roots(checks, case.roots(far), [1j * np.sqrt(G / length)], EXACT, f'a pendulum of {length} m and 1e-30 kg')
+
+
+def test_wound_pendulum(checks, case):
     """A torsion spring that knows whole turns: every angle that is found is a root of m g a sin q + k q."""
     stiffness = 1.0
     data = pendulum(0.5, f"&load kind='coordinate', coordinate=1, stiffness={stiffness} /")
@@ -111,23 +127,35 @@ def check_wound_pendulum(checks, case):
     checks.near(table['stable'], G * np.cos(q) + stiffness > 0, 0.0, 'and stays where the torque rises')
 
 
-def check_damped_mass(checks, case):
-    mass, stiffness = 2.0, 50.0
-    for damping in (0.0, 3.0, 20.0, 30.0):
-        data = mechanism(2, 1, [1], pair(1, '1,2', 'prismatic', axis='0,1,0'), body(2, mass, '0,0,0'), GRAVITY, initial(1, 0.3),
-                         f"&load kind='coordinate', coordinate=1, stiffness={stiffness}, damping={damping} /")
-        rest = case.table(data, '--equilibrium')
-        checks.near(rest['q1'], [-mass * G / stiffness], EXACT, 'a mass on a spring sinks by m g/k')
-        expected = np.roots([mass, damping, stiffness])
-        expected = np.sort_complex(expected[expected.imag >= 0])
-        roots = np.sort_complex(case.roots(data))
-        checks.equal(len(roots), len(expected), f'damping {damping}: a pair of roots, or two real ones')
-        # the double root of critical damping is known to the root of round-off
-        checks.near(np.array([roots.real, roots.imag]), np.array([expected.real, expected.imag]),
-                    1e-7 if damping == 20.0 else EXACT, f'damping {damping}: the roots of m s^2 + c s + k', scale=5.0)
-    modes = case.table(data.replace('damping=30.0', 'damping=4.0'), '--modes')
-    checks.near(modes['damping'], [4.0 / (2 * np.sqrt(mass * stiffness))], EXACT, 'damping is a part of the critical one')
-    free = case.roots(mechanism(2, 1, [1], pair(1, '1,2', 'prismatic', axis='1,0,0'), body(2, mass, '0,0,0'), initial(1, 0.3),
+MASS, STIFFNESS = 2.0, 50.0
+
+
+def mass_on_a_spring(damping):
+    return mechanism(2, 1, [1], pair(1, '1,2', 'prismatic', axis='0,1,0'), body(2, MASS, '0,0,0'), GRAVITY, initial(1, 0.3),
+                     f"&load kind='coordinate', coordinate=1, stiffness={STIFFNESS}, damping={damping} /")
+
+
+@pytest.mark.parametrize('damping', [0.0, 3.0, 20.0, 30.0])
+def test_damped_mass(checks, case, damping):
+    data = mass_on_a_spring(damping)
+    rest = case.table(data, '--equilibrium')
+    checks.near(rest['q1'], [-MASS * G / STIFFNESS], EXACT, 'a mass on a spring sinks by m g/k')
+    expected = np.roots([MASS, damping, STIFFNESS])
+    expected = np.sort_complex(expected[expected.imag >= 0])
+    roots = np.sort_complex(case.roots(data))
+    checks.equal(len(roots), len(expected), f'damping {damping}: a pair of roots, or two real ones')
+    # the double root of critical damping is known to the root of round-off
+    checks.near(np.array([roots.real, roots.imag]), np.array([expected.real, expected.imag]),
+                1e-7 if damping == 20.0 else EXACT, f'damping {damping}: the roots of m s^2 + c s + k', scale=5.0)
+
+
+def test_part_of_the_critical_damping(checks, case):
+    modes = case.table(mass_on_a_spring(4.0), '--modes')
+    checks.near(modes['damping'], [4.0 / (2 * np.sqrt(MASS * STIFFNESS))], EXACT, 'damping is a part of the critical one')
+
+
+def test_damper_without_a_spring(checks, case):
+    free = case.roots(mechanism(2, 1, [1], pair(1, '1,2', 'prismatic', axis='1,0,0'), body(2, MASS, '0,0,0'), initial(1, 0.3),
                                 "&load kind='coordinate', coordinate=1, damping=3 /"))
     checks.near(free.real, [0, -1.5], EXACT, 'without a spring one root is zero and the other -c/m')
 
@@ -137,7 +165,7 @@ def double_pendulum(q1=0.2, q2=-0.1):
                      GRAVITY, initial(1, q1), initial(2, q2))
 
 
-def check_double_pendulum(checks, case):
+def test_double_pendulum(checks, case):
     modes = case.table(double_pendulum(), '--modes')
     omega = np.sqrt(G * np.array([2 - np.sqrt(2), 2 + np.sqrt(2)]))
     checks.near(modes['eigenvalue.im'], omega, EXACT, 'equal double pendulum: sqrt((2 -+ sqrt 2) g/l)')
@@ -164,18 +192,18 @@ def bar_in_slots(independent, start):
                      *[initial(k, value) for k, value in enumerate(start, 1)])
 
 
-def check_bar_in_slots(checks, case):
+@pytest.mark.parametrize('independent', [1, 2, 3, 4])
+def test_bar_in_slots(checks, case, independent):
     length = 1.2
     omega = np.sqrt(3.0 * G * length / 2 / (3.0 * length**2 / 4 + 0.2))
     # the bar hangs down: q2 = pi; the upper slider goes down from its place at q = 0, 1.2 above the origin
     angle = 2.5
     start = [length * np.sin(angle), angle, -angle, length * np.cos(angle) - length]
-    for independent in (1, 2, 3, 4):
-        rest = case.table(bar_in_slots(independent, start), '--equilibrium')
-        checks.near([rest['q2'][0], rest['q4'][0]], [np.pi, -2 * length], 1e-10,
-                    f'a bar in two slots hangs down, also where q{independent} is at its dead point')
-        # a flat minimum in q4 is known in q2 to the root of round-off if q4 is kept
-        near_roots(checks, case.roots(bar_in_slots(independent, start)), [1j * omega], 1e-9, f'it vibrates the same by q{independent}')
+    rest = case.table(bar_in_slots(independent, start), '--equilibrium')
+    checks.near([rest['q2'][0], rest['q4'][0]], [np.pi, -2 * length], 1e-10,
+                f'a bar in two slots hangs down, also where q{independent} is at its dead point')
+    # a flat minimum in q4 is known in q2 to the root of round-off if q4 is kept
+    near_roots(checks, case.roots(bar_in_slots(independent, start)), [1j * omega], 1e-9, f'it vibrates the same by q{independent}')
 
 
 def four_bar(independent, scale=1.0, q=(-0.2, 1.8, -0.1, 1.45)):
@@ -197,22 +225,29 @@ def four_bar(independent, scale=1.0, q=(-0.2, 1.8, -0.1, 1.45)):
                      *[initial(k, value) for k, value in enumerate(q, 1)])
 
 
-def check_four_bar(checks, case):
-    reference = case.roots(four_bar(1))
-    checks.true(np.all(abs(reference) > 0.1), 'the four-bar vibrates')
+@pytest.fixture
+def eigenvalues(checks, case):
+    """Those of the four-bar by its first coordinate."""
+    roots = case.roots(four_bar(1))
+    checks.true(np.all(abs(roots) > 0.1), 'the four-bar vibrates')
+    return roots
+
+
+@pytest.mark.parametrize('independent', [2, 3, 4])
+def test_four_bar_by_other_coordinates(checks, case, eigenvalues, independent):
     place = case.table(four_bar(1), '--equilibrium')
-    for independent in (2, 3, 4):
-        start = [place[f'q{k}'][0] + (0.02 if k == independent else 0.0) for k in range(1, 5)]
-        data = four_bar(independent, q=start)
-        checks.near(case.table(data, '--equilibrium')['q1'], place['q1'], 1e-9, 'the rest does not depend on cq')
-        roots = case.roots(data)
-        near_roots(checks, roots, reference, 1e-9, 'nor do the eigenvalues')
-    for scale in (1e-3, 1e3):
-        roots = case.roots(four_bar(1, scale))
-        near_roots(checks, roots, reference, 1e-9, f'nor on the size, {scale}')
+    start = [place[f'q{k}'][0] + (0.02 if k == independent else 0.0) for k in range(1, 5)]
+    data = four_bar(independent, q=start)
+    checks.near(case.table(data, '--equilibrium')['q1'], place['q1'], 1e-9, 'the rest does not depend on cq')
+    near_roots(checks, case.roots(data), eigenvalues, 1e-9, 'nor do the eigenvalues')
 
 
-def check_limit(checks, case):
+@pytest.mark.parametrize('scale', [1e-3, 1e3])
+def test_four_bar_of_any_size(checks, case, eigenvalues, scale):
+    near_roots(checks, case.roots(four_bar(1, scale)), eigenvalues, 1e-9, f'eigenvalues do not depend on the size, {scale}')
+
+
+def test_crank_at_its_limit(checks, case):
     """A torque on a crank that cannot turn round: it rests at its limit, where the crank is at its dead point."""
     data = mechanism(4, 4, [1], pair(1, '1,2'), pair(2, '2,3', point='0.7,0,0', more=', moving_point=0,0,0'),
                      pair(3, '3,4', point='0.9,0,0', more=', moving_point=0.4,0,0'), pair(4, '1,4', point='1.2,0,0',
@@ -231,11 +266,17 @@ def hoop(speed, start):
                      f"&drive coordinate=1, kind='polynomial', coefficients=0.3,{float(speed)!r} /", initial(2, start))
 
 
-def check_hoop(checks, case):
-    critical = np.sqrt(G / 0.5)
-    slow, fast = 0.7 * critical, 1.6 * critical
+CRITICAL = np.sqrt(G / 0.5)
+
+
+def test_bead_on_a_slow_hoop(checks, case):
+    critical, slow = CRITICAL, 0.7 * CRITICAL
     near_roots(checks, case.roots(hoop(slow, 0.2)), [1j * np.sqrt(critical**2 - slow**2)], EXACT,
                 'a bead on a hoop that turns slowly vibrates about the bottom, slower than at rest')
+
+
+def test_bead_on_a_fast_hoop(checks, case):
+    critical, fast = CRITICAL, 1.6 * CRITICAL
     angle = np.arccos((critical / fast)**2)
     up = case.table(hoop(fast, 0.8), '--equilibrium')
     checks.near([up['q2'][0], up['stable'][0]], [angle, 1], EXACT, 'on a fast hoop it rests beside the bottom')
@@ -246,7 +287,7 @@ def check_hoop(checks, case):
                 'the bottom has become unstable')
 
 
-def check_forces(checks, case):
+def test_forces_at_rest(checks, case):
     speed = 1.6 * np.sqrt(G / 0.5)
     table = case.table(hoop(speed, 0.8) + '&output drive_forces=.true., reactions=.true. /\n', '--equilibrium')
     names = list(table)
@@ -261,26 +302,27 @@ def slide_with(loads, start=0.0):
     return mechanism(2, 1, [1], pair(1, '1,2', 'prismatic', axis='1,0,0'), initial(1, start), body(2, 1, '0,0,0'), *loads)
 
 
-def check_cancelling(checks, case):
+@pytest.mark.parametrize('loads, start, expected, why', [
+    (["&load kind='coordinate', coordinate=1, stiffness=20, rest=-1, force=3 /"], 0.0, -0.85, 'a spring and a force in one load'),
+    ([f"&load kind='coordinate', coordinate=1, force={force} /" for force in (0.1, 0.2, -0.3)], 0.0, 0.0, 'three forces'),
+    (["&load kind='spring', links=1,2, position=-0.13,0,0, second_position=0.1,0,0, stiffness=1234.567, free_length=0.3333 /"], 0.2, 0.1033,
+     'a spring of its free length')], ids=['in_one_load', 'three_forces', 'free_length'])
+def test_forces_that_cancel(checks, case, loads, start, expected, why):
     """Forces that cancel each other, within one load or among several, leave round-off of their parts."""
-    free = '&load kind=\'spring\', links=1,2, position=-0.13,0,0, second_position=0.1,0,0, stiffness=1234.567, free_length=0.3333 /'
-    for loads, start, expected, why in (
-            (["&load kind='coordinate', coordinate=1, stiffness=20, rest=-1, force=3 /"], 0.0, -0.85, 'a spring and a force in one load'),
-            ([f"&load kind='coordinate', coordinate=1, force={force} /" for force in (0.1, 0.2, -0.3)], 0.0, 0.0, 'three forces'),
-            ([free], 0.2, 0.1033, 'a spring of its free length')):
-        found = case.table(slide_with(loads, start), '--equilibrium')
-        checks.near(found['q1'], [expected], EXACT, f'{why} that cancel: the position')
+    found = case.table(slide_with(loads, start), '--equilibrium')
+    checks.near(found['q1'], [expected], EXACT, f'{why} that cancel: the position')
 
 
-def check_words(checks, case):
+@pytest.mark.parametrize('damping, words', [
+    (0.0, 'its lowest frequency is 1.59155 Hz'),
+    (40.0, f'it does not oscillate: deviations shrink by the factor e within {1 / (20 - 300 ** 0.5):.4g} s')], ids=['free', 'damped'])
+def test_words_on_the_return(checks, case, damping, words):
     """The way in which a mass returns: its frequency, or the slower of two rates beyond critical damping."""
-    for damping, words in ((0.0, 'its lowest frequency is 1.59155 Hz'),
-                           (40.0, f'it does not oscillate: deviations shrink by the factor e within {1 / (20 - 300 ** 0.5):.4g} s')):
-        load = f"&load kind='coordinate', coordinate=1, stiffness=100, damping={damping} /"
-        with open(os.path.join(case.folder, 'case.nml'), 'w', encoding='utf-8') as file:
-            file.write(slide_with([load]))
-        said = run(case.program, 'case.nml', '--equilibrium', folder=case.folder)
-        checks.true(words in said.stdout + said.stderr, f'damping {damping}: how it returns', said.stdout + said.stderr)
+    load = f"&load kind='coordinate', coordinate=1, stiffness=100, damping={damping} /"
+    with open(os.path.join(case.folder, 'case.nml'), 'w', encoding='utf-8') as file:
+        file.write(slide_with([load]))
+    said = run(case.program, 'case.nml', '--equilibrium', folder=case.folder)
+    checks.true(words in said.stdout + said.stderr, f'damping {damping}: how it returns', said.stdout + said.stderr)
 
 
 def balanced_beam(start):
@@ -290,45 +332,54 @@ def balanced_beam(start):
                      f"&load kind='spring', links=1,2, position=0,0.8,0, second_position=0.5,0,0, stiffness={float(stiffness)!r} /")
 
 
-def check_balanced_beam(checks, case):
-    for start in (0.0, 0.3, 1.1, -2.0):
-        rest = case.table(balanced_beam(start), '--equilibrium')
-        checks.near([rest['q1'][0], rest['stable'][0], rest['growth'][0]], [start, 1, 0], 1e-15, 'a balanced beam stays where it is')
-        modes = case.table(balanced_beam(start), '--modes')
-        checks.equal(len(modes['mode']), 1, 'it has one mode')
-        checks.near([modes['frequency'][0], modes['damping'][0]], [0, 0], 0.0, 'of frequency zero')
+@pytest.mark.parametrize('start', [0.0, 0.3, 1.1, -2.0])
+def test_balanced_beam(checks, case, start):
+    rest = case.table(balanced_beam(start), '--equilibrium')
+    checks.near([rest['q1'][0], rest['stable'][0], rest['growth'][0]], [start, 1, 0], 1e-15, 'a balanced beam stays where it is')
+    modes = case.table(balanced_beam(start), '--modes')
+    checks.equal(len(modes['mode']), 1, 'it has one mode')
+    checks.near([modes['frequency'][0], modes['damping'][0]], [0, 0], 0.0, 'of frequency zero')
 
 
-def check_statics(checks, case):
-    """Two slides in a row on springs of 10 N/m and 20 N/m (or -20 N/m), and 4 N on the second one: it rests where 20 q2 = 4, with mass
-    or without. Without the mass of some link there is no growth, and the stiffness alone tells whether the position is stable."""
-    def slides(stiffness, *masses):
-        return mechanism(3, 2, [1, 2], pair(1, '1,2', 'prismatic', axis='1,0,0'), pair(2, '2,3', 'prismatic', axis='1,0,0'),
-                         initial(1, 0.1), initial(2, 0.0), "&load kind='coordinate', coordinate=1, stiffness=10 /",
-                         f"&load kind='coordinate', coordinate=2, stiffness={stiffness}, force=4 /",
-                         *[body(link, 1.0, '0,0,0') for link in masses])
-    for masses in ((), (2,), (3,), (2, 3)):
-        for stiffness, stable in ((20, 1), (-20, 0)):
-            table = case.table(slides(stiffness, *masses), '--equilibrium')
-            why = f'slides of {stiffness} N/m with masses on links {masses}'
-            checks.near([table['q1'][0], table['q2'][0]], [0, 4 / stiffness], EXACT, f'{why}: the position', scale=1)
-            checks.equal(table['stable'].tolist(), [stable], f'{why}: stable or not')
-            checks.equal(bool(np.isnan(table['growth'][0])), masses != (2, 3), f'{why}: no growth without inertia')
-    for options in (('--modes',), ('--linear', 'l.h5')):
-        result = case(slides(20, 3), *options)
-        checks.equal(result.returncode, DATA, f'{options} need inertia')
-        checks.true('independent coordinate 2 has no inertia' in result.stderr, f'{options}: the coordinate is named', result.stderr)
-    # a ball joint of three hinges in gimbal lock: the forces do not tell whether it rests, although it has inertia elsewhere
+def slides(stiffness, *masses):
+    """Two slides in a row on springs, the second one of this stiffness, with 4 N on it."""
+    return mechanism(3, 2, [1, 2], pair(1, '1,2', 'prismatic', axis='1,0,0'), pair(2, '2,3', 'prismatic', axis='1,0,0'),
+                     initial(1, 0.1), initial(2, 0.0), "&load kind='coordinate', coordinate=1, stiffness=10 /",
+                     f"&load kind='coordinate', coordinate=2, stiffness={stiffness}, force=4 /",
+                     *[body(link, 1.0, '0,0,0') for link in masses])
+
+
+@pytest.mark.parametrize('stiffness, stable', [(20, 1), (-20, 0)])
+@pytest.mark.parametrize('masses', [(), (2,), (3,), (2, 3)], ids=['no_mass', 'first_mass', 'second_mass', 'both_masses'])
+def test_statics(checks, case, masses, stiffness, stable):
+    """Slides with springs of 10 N/m and 20 N/m (or -20 N/m) rest where 20 q2 = 4, with mass or without. Without the mass of some link
+    there is no growth, and the stiffness alone tells whether the position is stable."""
+    table = case.table(slides(stiffness, *masses), '--equilibrium')
+    why = f'slides of {stiffness} N/m with masses on links {masses}'
+    checks.near([table['q1'][0], table['q2'][0]], [0, 4 / stiffness], EXACT, f'{why}: the position', scale=1)
+    checks.equal(table['stable'].tolist(), [stable], f'{why}: stable or not')
+    checks.equal(bool(np.isnan(table['growth'][0])), masses != (2, 3), f'{why}: no growth without inertia')
+
+
+@pytest.mark.parametrize('options', [('--modes',), ('--linear', 'l.h5')], ids=['modes', 'linear'])
+def test_modes_need_inertia(checks, case, options):
+    result = case(slides(20, 3), *options)
+    checks.equal(result.returncode, DATA, f'{options} need inertia')
+    checks.true('independent coordinate 2 has no inertia' in result.stderr, f'{options}: the coordinate is named', result.stderr)
+
+
+@pytest.mark.parametrize('option', ['--equilibrium', '--modes'])
+def test_gimbal_lock_is_refused(checks, case, option):
+    """A ball joint of three hinges: the forces do not tell whether it rests, although it has inertia elsewhere."""
     ball = mechanism(4, 3, [1, 2, 3], *[pair(k, f'{k},{k + 1}', axis=axis) for k, axis in enumerate(('1,0,0', '0,1,0', '0,0,1'), 1)],
                      *[initial(k, np.pi / 2 if k == 2 else 0) for k in (1, 2, 3)], body(4, 1.0, '0,0,0', 1.0))
-    for options in (('--equilibrium',), ('--modes',)):
-        result = case(ball, *options)
-        checks.equal(result.returncode, SINGULAR, f'{options}: no equilibrium is told in gimbal lock')
-        checks.true('gimbal lock' in result.stderr and 'coordinates 1, 3 can move together' in result.stderr, f'{options}: it is named',
-                    result.stderr)
+    result = case(ball, option)
+    checks.equal(result.returncode, SINGULAR, f'{option}: no equilibrium is told in gimbal lock')
+    checks.true('gimbal lock' in result.stderr and 'coordinates 1, 3 can move together' in result.stderr, f'{option}: it is named',
+                result.stderr)
 
 
-def check_many_starts(checks, case):
+def test_cost_of_many_starts(checks, case):
     """A mass that rests everywhere: a row for nearly each start, at a cost that grows with their number. Twice as many starts take
     twice as long; when all equilibria were copied for each new one, it was more than four times."""
     anywhere = mechanism(2, 1, [1], pair(1, '1,2', 'prismatic', axis='1,0,0'), body(2, 1.0, '0,0,0'), initial(1, 0.0))
@@ -341,7 +392,7 @@ def check_many_starts(checks, case):
     checks.true(seconds[1] < 3 * seconds[0] + 0.1, 'twice as many starts take twice as long', seconds)
 
 
-def check_free_body(checks, case):
+def test_two_masses_on_a_rail(checks, case):
     """Two masses on a rail, joined by a spring: one mode is the motion of both."""
     data = mechanism(3, 2, [1, 2], pair(1, '1,2', 'prismatic', axis='1,0,0'), pair(2, '2,3', 'prismatic', axis='1,0,0'),
                      body(2, 1.0, '0,0,0'), body(3, 3.0, '0,0,0'), initial(1, 0.3), initial(2, 0.4),
@@ -355,7 +406,7 @@ def check_free_body(checks, case):
                'a double root zero is one mode, beside the vibration')
 
 
-def check_linear(checks, case):
+def test_linearised_four_bar(checks, case):
     data = four_bar(1) + "&point name='P', link=3, position=0.5,0.2,0 /\n"
     result = case(data, '--linear', 'linear.h5')
     checks.equal((result.returncode, result.stdout), (0, ''), '--linear writes a file and no table')
@@ -393,7 +444,7 @@ def state_space(checks, case, data, why):
     return found
 
 
-def check_linear_units(checks, case):
+def test_linearised_motion_in_degrees(checks, case):
     """In degrees, inputs give degrees, and angles among the outputs count in them."""
     data = four_bar(1) + "&point name='P', link=3, position=0.5,0.2,0 /\n"
     degree = np.pi / 180
@@ -407,7 +458,7 @@ def check_linear_units(checks, case):
         checks.near(other[name], expected, 1e-9, f'{name} in degrees', scale=np.abs(expected).max())
 
 
-def check_linear_rotating(checks, case):
+def test_linearised_motion_on_a_hoop(checks, case):
     """Outputs beside a relative equilibrium: a bead on a turning hoop, whose place is known."""
     fast = 1.6 * np.sqrt(G / 0.5)
     space = state_space(checks, case, hoop(fast, 0.8) + "&point name='P', link=3, position=0,-0.5,0 /\n", 'a hoop')
@@ -437,7 +488,7 @@ def check_linear_rotating(checks, case):
         checks.near(space['D'][rows, 0], by[2][order] * space['B'][1, 0], 1e-5, f'P.{letter} on a turning hoop by the input', scale=10.0)
 
 
-def check_shares(checks, case):
+def test_shares_of_the_energy(checks, case):
     """Two masses that a spring and a damper join: their shares of the energy are those of m |x|^2."""
     masses = (1.0, 3.0)
     data = mechanism(3, 2, [1, 2], pair(1, '1,2', 'prismatic', axis='1,0,0'), pair(2, '1,3', 'prismatic', point='0,1,0', axis='1,0,0'),
@@ -458,7 +509,7 @@ def check_shares(checks, case):
     checks.near(shares, energy / energy.sum(axis=1, keepdims=True), 1e-12, 'shares of the kinetic energy')
 
 
-def check_files(checks, case):
+def test_files(checks, case):
     result = case(pendulum(), '--modes', '--hdf5', 'modes.h5', '--report', 'modes.json', '--table', 'modes.dat')
     checks.equal((result.returncode, result.stdout), (0, ''), 'results go to the files that are named')
     checks.near(read_table(text_of(os.path.join(case.folder, 'modes.dat')))['mode'], [1], 0.0, 'the table')
@@ -493,51 +544,52 @@ def check_files(checks, case):
         checks.near([file['kinetic_share'][0, 0], file['q_re'][0, 0]], [1, 1], EXACT, 'HDF5: shares of the energy, shapes')
 
 
-def check_failures(checks, case):
+def test_torque_without_an_equilibrium(checks, case):
     heavy = pendulum(extra="&load kind='coordinate', coordinate=1, force=15 /")
     result = case(heavy, '--equilibrium', '--report', 'none.json')
     checks.equal(result.returncode, ASSEMBLY, 'a torque beyond m g a has no equilibrium')
     checks.true('on coordinate 1' in result.stderr, 'the forces that are left are told by coordinate', result.stderr)
     checks.true('"exit_code": 5' in text_of(os.path.join(case.folder, 'none.json')), 'and the report has the code')
+
+
+def test_weight_on_a_slide_has_no_equilibrium(checks, case):
     slide = mechanism(2, 1, [1], pair(1, '1,2', 'prismatic', axis='0,1,0'), body(2, 2.0, '0,0,0'), GRAVITY, initial(1, 0.0))
     result = case(slide, '--modes')
     checks.equal(result.returncode, ASSEMBLY, 'a weight on a slide has none')
     checks.true('-19.62' in result.stderr, 'its weight is left', result.stderr)
-    # a parallelogram in one line, pulled along it: it rests there, and two branches meet, with vibrations of their own
+
+
+@pytest.mark.parametrize('options', [('--equilibrium',), ('--equilibrium', '--starts', '5'), ('--modes',), ('--linear', 'l.h5')],
+                         ids=' '.join)
+def test_rest_where_branches_meet(checks, case, options):
+    """A parallelogram in one line, pulled along it: it rests there, and two branches meet, with vibrations of their own."""
     flat = mechanism(4, 4, [1], pair(1, '1,2'), pair(2, '2,3', point='0.4,0,0', more=', moving_point=0,0,0'),
                      pair(3, '3,4', point='1,0,0', more=', moving_point=0.4,0,0'),
                      pair(4, '1,4', point='1,0,0', more=', moving_point=0,0,0'), body(2, 1.0, '0.2,0,0'),
                      f'&gravity acceleration={G},0,0 /', initial(1, 0))
-    for options in (('--equilibrium',), ('--equilibrium', '--starts', '5'), ('--modes',), ('--linear', 'l.h5')):
-        result = case(flat, *options)
-        checks.equal(result.returncode, SINGULAR, f'{options}: where branches meet, there is no one linearised motion')
-        checks.true('is in a singular position' in result.stderr, f'{options}: told', result.stderr)
-    for options, words in ((('--modes', '--equilibrium'), 'different tables'), (('--mode', '1'), 'give all three'),
-                           (('--modes', '--animate', 'a.svg'), '--mode K')):
-        result = case(pendulum(), *options)
-        checks.equal(result.returncode, USAGE, f'{options} is refused')
-        checks.true(words in result.stderr, f'{options}: with its remedy', result.stderr)
+    result = case(flat, *options)
+    checks.equal(result.returncode, SINGULAR, f'{options}: where branches meet, there is no one linearised motion')
+    checks.true('is in a singular position' in result.stderr, f'{options}: told', result.stderr)
+
+
+@pytest.mark.parametrize('options, words', [(('--modes', '--equilibrium'), 'different tables'), (('--mode', '1'), 'give all three'),
+                                            (('--modes', '--animate', 'a.svg'), '--mode K')])
+def test_options_that_are_refused(checks, case, options, words):
+    result = case(pendulum(), *options)
+    checks.equal(result.returncode, USAGE, f'{options} is refused')
+    checks.true(words in result.stderr, f'{options}: with its remedy', result.stderr)
+
+
+@pytest.mark.parametrize('options', [
+    ('--equilibrium', '--table', '/dev/full'), ('--modes', '--table', '/dev/full'), ('--linear', '/dev/full'),
+    ('--equilibrium', '--hdf5', '/dev/full'), ('--modes', '--report', '/dev/full')], ids=' '.join)
+def test_full_disk(checks, case, options):
     if checks.has_full_disk():
-        for options in (('--equilibrium', '--table', '/dev/full'), ('--modes', '--table', '/dev/full'), ('--linear', '/dev/full'),
-                        ('--equilibrium', '--hdf5', '/dev/full'), ('--modes', '--report', '/dev/full')):
-            result = case(pendulum(), *options)
-            checks.equal(result.returncode, FILE, f'{options}: a full disk')
-            checks.true('No space left on device' in result.stderr, f'{options}: a full disk is told', result.stderr)
+        result = case(pendulum(), *options)
+        checks.equal(result.returncode, FILE, f'{options}: a full disk')
+        checks.true('No space left on device' in result.stderr, f'{options}: a full disk is told', result.stderr)
+
+
+def test_mode_that_is_not_there(checks, case):
     result = case(pendulum(), '--modes', '--mode', '7', '--animate', 'a.svg')
     checks.equal(result.returncode, USAGE, 'a mode that is not there is refused')
-
-
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        case = Case(sys.argv[1], folder)
-        for check in (check_pendulum, check_wound_pendulum, check_damped_mass, check_double_pendulum, check_bar_in_slots,
-                      check_four_bar, check_limit, check_hoop, check_forces, check_cancelling, check_words, check_balanced_beam,
-                      check_statics, check_many_starts, check_free_body, check_linear, check_linear_units,
-                      check_linear_rotating, check_shares, check_files, check_failures):
-            check(checks, case)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()

@@ -2,20 +2,16 @@
 independent coordinates, nor on the rotation of the whole; small motions about them follow their modes.
 
 Compares the program with itself in part: all but the motions.
-
-usage: equilibrium_numbers.py MECH9D
 """
 import os
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
 import families
 from data_file import write
 from force_files import family_groups, rotated, rotation, with_coordinates, with_links
-from mech9_cases import Checks, read_table, run
+from mech9_cases import read_table, run
 
 FAMILIES = {'seven pairs of all kinds': families.seven('RRPRHRR'), 'a rod between ball joints': families.rssr,
             'three cylindrical joints': families.rccc, 'two spatial loops': families.two_spatial_loops(1),
@@ -54,14 +50,21 @@ def resting(case, family, rng):
         groups += [('initial', {'coordinate': [k + 1], 'position': [place[k]]}) for k in range(count)]
         modes = case(groups, '--modes')
         roots = None if modes is None else roots_of(modes)
-        # a mechanism that rests at a limit of an independent coordinate has other ones there
-        if roots is not None and len(roots) == len(cq) and min(abs(roots)) > 0.5 and max(abs(roots)) < 50:
+        # a mechanism that rests at a limit of an independent coordinate has other ones there; near a limit, a small motion of that
+        # coordinate is a large one of others
+        if roots is not None and len(roots) == len(cq) and min(abs(roots)) > 0.5 and max(abs(roots)) < 50 and (
+                len(cq) > 1 or weights_of(modes, count)[cq[0] - 1] > 0.2):
             return groups, place, modes
     raise RuntimeError('no member of the family vibrates')
 
 
 def roots_of(modes):
     return modes['eigenvalue.re'] + 1j * modes['eigenvalue.im']
+
+
+def weights_of(modes, count):
+    """How far each coordinate moves in the first mode, of which the largest number is 1."""
+    return abs(np.array([modes[f'q{k}.re'][0] + 1j * modes[f'q{k}.im'][0] for k in range(1, count + 1)]))
 
 
 def compare(checks, case, place, modes, groups, numbers, why):
@@ -98,7 +101,12 @@ def small_motion(checks, case, groups, place, modes, why):
     checks.near((motion[f'q{k}'] - place[k - 1]) / size, expected / size, 1e-2, f'{why}: a small motion follows the mode')
 
 
-def check(checks, case, rng, name, family):
+@pytest.mark.parametrize('name', FAMILIES)
+def test_equilibrium_in_other_numbers(checks, mech9d, tmp_path, name):
+    """In other numbers of links and coordinates, turned as a whole, by other independent coordinates; and a small motion."""
+    case, family = Case(mech9d, tmp_path), FAMILIES[name]
+    # each family has a generator of its own, so that it can be run alone
+    rng = np.random.default_rng((3, list(FAMILIES).index(name)))
     groups, place, modes = resting(case, family, rng)
     count, links = len(place), max(max(items['links']) for group, items in groups if group == 'pair')
     cq = next(items['cq'] for group, items in groups if group == 'structure')
@@ -110,21 +118,7 @@ def check(checks, case, rng, name, family):
     if len(cq) > 1:
         return
     small_motion(checks, case, groups, place, modes, name)
-    weights = abs(np.array([modes[f'q{k}.re'][0] + 1j * modes[f'q{k}.im'][0] for k in same]))
+    weights = weights_of(modes, count)
     for k in [k for k in same if k not in cq and weights[k - 1] > 0.2][:3]:
         others = [(group, {'cq': [k]} if group == 'structure' else items) for group, items in groups]
         compare(checks, case, place, modes, others, same, f'{name} by coordinate {k}')
-
-
-def main():
-    checks = Checks()
-    rng = np.random.default_rng(3)
-    with tempfile.TemporaryDirectory() as folder:
-        case = Case(os.path.abspath(sys.argv[1]), folder)
-        for name, family in FAMILIES.items():
-            check(checks, case, rng, name, family)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()

@@ -1,20 +1,16 @@
 """Work that is left out, by counts of the work done. Leaving it out changes no result.
 
 Compares the program with itself: results with and without the blocks and derivatives that nothing needs.
-
-usage: work_counts.py MECH9K MECH9D
 """
 import json
 import os
 import re
-import sys
-import tempfile
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
+from mech9_cases import REFERENCE, TREE, run, table_and_report, table_of, text_of, without_drives
 from n_four_bar import data_file
-from mech9_cases import REFERENCE, TREE, Checks, run, table_and_report, table_of, text_of, without_drives
 
 FIVE_BAR = os.path.join(REFERENCE, 'dynamics_fivebar.nml')
 LOOSE = ('--set', 'time.end=5', '--set', 'time.intervals=1', '--set', 'solver.relative_tolerance=1e-5')
@@ -112,7 +108,12 @@ class Case:
             self.checks.near(values, more[name], tolerance, f'{why}: {name}')
 
 
-def test_blocks(case):
+@pytest.fixture
+def case(checks, mech9k, mech9d, tmp_path):
+    return Case(checks, tmp_path, mech9k, mech9d)
+
+
+def test_blocks_that_nothing_needs(case):
     """Blocks on which nothing that is recorded depends are not solved."""
     checks = case.checks
     path = case.file(SIX_AND_TWO, more='')
@@ -128,7 +129,11 @@ def test_blocks(case):
         names = ['t'] + [order + 'q' + k for order in ('', 'd', 'dd') for k in sorted(wanted.split(','))] + ['closure']
         checks.equal(list(less), names, f'columns for coordinates {wanted}')
         case.same(less, table, (POSITION, VELOCITY, ACCELERATION), f'coordinates {wanted}')
-    # a point of the last chain is a reason to solve it
+
+
+def test_point_is_a_reason_to_solve(case):
+    """So is a point of the last chain; the plan names the chains that are left out."""
+    checks = case.checks
     path = case.file(SIX_AND_TWO, more="&point name='P', link=8, position=0,0,0 /")
     report = table_and_report(case.kinematics, path, '--set', 'output.coordinates=4')[1]
     checks.equal(len(report['blocks']), 3, 'blocks for a point of link 8')
@@ -141,7 +146,7 @@ def renumbered(text, numbers):
     return re.sub(r'coordinate=(\d+)', lambda found: f'coordinate={numbers.get(int(found[1]), int(found[1]))}', text)
 
 
-def test_earlier_links(case):
+def test_chains_that_end_on_earlier_links(case):
     """Chains that begin at link 1 and end on a link of an earlier chain need that chain, too."""
     checks = case.checks
     table = table_of(case.kinematics, case.file(SIX_AND_TWO, more=''))
@@ -159,22 +164,23 @@ def test_earlier_links(case):
                   (POSITION, VELOCITY, ACCELERATION), f'coordinate {new}, other numbers')
 
 
-def test_pictures(case):
+@pytest.mark.parametrize('name', ['kinematics', 'dynamics'])
+def test_pictures_show_all_links(case, name):
     """Poses and pictures show all links, whatever coordinates are recorded."""
     checks = case.checks
     film = os.path.join(case.folder, 'film.html')
     less = ('--set', 'output.coordinates=4', '--set', 'output.derivatives=0')
-    for program, text in ((case.kinematics, SIX_AND_TWO), (case.dynamics, without_drives(SIX_AND_TWO))):
-        films = []
-        for settings in (), less:
-            done = run(program, case.file(text, more=''), '--quiet', '--table', os.devnull, '--animate', film, *settings)
-            checks.equal(done.returncode, 0, f'a film; stderr: {done.stderr}')
-            # all but the values of the columns, which are those that are recorded
-            films.append(re.sub(r'^names: .*?^values: .*?^\],$', '', text_of(film), flags=re.S | re.M))
-        checks.true(len(films[0]) > 10000 and films[0] == films[1], f'{os.path.basename(program)}: the same film')
+    program, text = (case.kinematics, SIX_AND_TWO) if name == 'kinematics' else (case.dynamics, without_drives(SIX_AND_TWO))
+    films = []
+    for settings in (), less:
+        done = run(program, case.file(text, more=''), '--quiet', '--table', os.devnull, '--animate', film, *settings)
+        checks.equal(done.returncode, 0, f'a film; stderr: {done.stderr}')
+        # all but the values of the columns, which are those that are recorded
+        films.append(re.sub(r'^names: .*?^values: .*?^\],$', '', text_of(film), flags=re.S | re.M))
+    checks.true(len(films[0]) > 10000 and films[0] == films[1], f'{name}: the same film')
 
 
-def test_derivatives(case):
+def test_derivatives_that_are_not_recorded(case):
     """Accelerations that are not recorded are not found, and rates of points neither."""
     checks = case.checks
     path = case.file(SIX_AND_TWO, more=POINT)
@@ -194,7 +200,7 @@ def test_derivatives(case):
         case.same(less, table, (POSITION, VELOCITY, ACCELERATION), f'{derivatives} derivatives')
 
 
-def test_frames(case):
+def test_frames_of_the_last_chain(case):
     """Accelerations of frames that only their own chain needs are not spread a second time."""
     checks = case.checks
     with_point = table_and_report(case.kinematics, case.file(SIX_AND_TWO, more="&point name='P', link=8, position=0,0,0 /"))
@@ -204,8 +210,8 @@ def test_frames(case):
     case.same(without[0], with_point[0], (POSITION, VELOCITY, ACCELERATION), 'with and without a point')
 
 
-def test_constants(case):
-    """A Jacobian that never changes is factorized once; constant poses are part of one step for each pair."""
+def test_constant_jacobian(case):
+    """A Jacobian that never changes is factorized once."""
     checks = case.checks
     table, report = table_and_report(case.kinematics, case.file(WEDGE))
     checks.true(report['factorizations'] <= 2, 'factorized at the start only', report['factorizations'])
@@ -219,7 +225,12 @@ def test_constants(case):
     turning = table_and_report(case.kinematics, case.file(SIX_AND_TWO, more=''))[1]
     checks.true(turning['factorizations'] > turning['positions'], 'one that changes is factorized at each position')
 
-    # every pair of the first chain placed by four constant vectors of its own choosing: as many frames as before
+
+def test_constant_poses(case):
+    """They are part of one step for each pair: with every pair of the first chain placed by four constant vectors of its own choosing
+    there are as many frames as before."""
+    checks = case.checks
+    turning = table_and_report(case.kinematics, case.file(SIX_AND_TWO, more=''))[1]
     shifted = SIX_AND_TWO.replace("links=1,2, kind='revolute', axis=0,0,1 /", "links=1,2, kind='revolute', axis=0,0,1, "
                                   "point=0,0,0.3, moving_point=0,0,0.3, zero=0,1,0, moving_zero=0,1,0 /")
     moved, count = table_and_report(case.kinematics, case.file(shifted, more=''))
@@ -230,18 +241,18 @@ def test_constants(case):
               'constant poses')
 
 
-def test_predictions(case):
+@pytest.mark.parametrize('name', ['slider_crank', 'fig1', 'rsur', 'jansen_leg', 'whitworth'])
+def test_predictions_of_positions_alone(case, name):
     """Positions alone are predicted as well as with accelerations: no more iterations of Newton's method but at the start."""
-    for name in 'slider_crank', 'fig1', 'rsur', 'jansen_leg', 'whitworth':
-        path = os.path.join(TREE, 'examples', name, f'{name}.nml')
-        for intervals in 60, 100, 1000:
-            whole, less = (table_and_report(case.kinematics, path, '--set', f'time.intervals={intervals}', '--set',
-                                            f'output.derivatives={d}')[1]['newton_iterations'] for d in (2, 0))
-            # at the start accelerations are known at one position, from the second one on at two
-            case.checks.true(less <= 1.05*whole + 10, f'{name}, {intervals} positions', [less, whole])
+    path = os.path.join(TREE, 'examples', name, f'{name}.nml')
+    for intervals in 60, 100, 1000:
+        whole, less = (table_and_report(case.kinematics, path, '--set', f'time.intervals={intervals}', '--set',
+                                        f'output.derivatives={d}')[1]['newton_iterations'] for d in (2, 0))
+        # at the start accelerations are known at one position, from the second one on at two
+        case.checks.true(less <= 1.05*whole + 10, f'{name}, {intervals} positions', [less, whole])
 
 
-def test_open_chains(case):
+def test_open_chain_needs_no_equations(case):
     """An open chain needs no equations, and no frames where none of its points is recorded."""
     report = table_and_report(case.kinematics, case.file(ARMS + "&point name='P', link=3, position=1,0,0 /"))[1]
     for count in 'newton_iterations', 'factorizations':
@@ -252,7 +263,7 @@ def test_open_chains(case):
     case.checks.equal(report['frames_placed'], 0, 'no frames for coordinates that the drives give')
 
 
-def test_dynamics(case):
+def test_parts_of_a_free_motion(case):
     """Links without mass have no terms; chains that nothing depends on, and energies, are left out."""
     checks = case.checks
     free = without_drives(SIX_AND_TWO)
@@ -294,21 +305,32 @@ def test_dynamics(case):
     case.same(less, sprung, (1e-9, 1e-9, 1e-9), 'what a spring holds is followed')
 
 
-def test_changed_coordinates(case):
+def test_counts_over_changes_of_coordinates(case):
     """Counts go on where other coordinates become the independent ones."""
     checks = case.checks
     report = table_and_report(case.dynamics, FIVE_BAR, '--set', 'time.end=5')[1]
     checks.true(len(report['events']) > 3, 'it changes coordinates', report['events'])
     checks.true(report['factorizations'] >= report['evaluations'], 'its block is factorized in each evaluation',
                 [report['factorizations'], report['evaluations']])
+    # five coordinates make five frames, those of one loop
+    checks.true(report['frames_placed'] >= 5*report['steps'], 'and closed after each step',
+                [report['frames_placed'], report['steps']])
+
+
+def test_refused_steps_are_counted(case):
+    """Long steps come to singular positions, and are refused there."""
+    checks = case.checks
     text = run(case.dynamics, FIVE_BAR, '--table', os.devnull, '--report', os.path.join(case.folder, 'r.json'), *LOOSE).stderr
     with open(os.path.join(case.folder, 'r.json'), encoding='utf-8') as file:
         loose = json.load(file)
-    # long steps come to singular positions, and are refused there
     checks.true(loose['refusals'] > 0, 'steps that are refused are counted', loose['refusals'])
     again = loose['error_test_failures'] + loose['convergence_failures'] + loose['refusals']
     checks.true(f"{loose['steps']} steps, {again} made again" in text, 'and in words, with the others', text)
-    # the conditioning jumps up where other coordinates are taken, between two rows
+
+
+def test_conditioning_jumps_at_changes(case):
+    """It jumps up where other coordinates are taken, between two rows."""
+    checks = case.checks
     table, report_of_second = table_and_report(case.dynamics, FIVE_BAR, '--set', 'time.end=1', '--set', 'time.intervals=4000',
                                                '--set', 'output.conditioning=.true.')
     jumps = np.flatnonzero(table['conditioning'][1:] > 2*table['conditioning'][:-1])
@@ -316,12 +338,9 @@ def test_changed_coordinates(case):
     if checks.equal(len(jumps), len(times), 'the conditioning jumps at each change'):
         checks.true(np.all(table['t'][jumps] <= times + 1e-12) and np.all(times < table['t'][jumps + 1]),
                     'changes are told when they happen', [list(table['t'][jumps]), list(times)])
-    # five coordinates make five frames, those of one loop
-    checks.true(report['frames_placed'] >= 5*report['steps'], 'and closed after each step',
-                [report['frames_placed'], report['steps']])
 
 
-def test_windows(case):
+def test_work_for_each_window(case):
     """The work for each of N windows side by side does not depend on N, through the flat position, where other independent
     coordinates are looked for."""
     checks = case.checks
@@ -333,7 +352,7 @@ def test_windows(case):
         checks.near(many[count]/40, few[count]/8, 0.05*few[count]/8, f'{count} for each of 8 and 40 windows')
 
 
-def test_chain_beside(case):
+def test_chain_beside_a_five_bar(case):
     """Two links without mass beside the five-bar, with the frame a chain, change nothing, recorded or not: that they were
     not followed for a while must not hinder a change of coordinates."""
     with open(FIVE_BAR, encoding='utf-8') as file:
@@ -351,35 +370,11 @@ def test_chain_beside(case):
     case.same({name: alone[name] for name in alone if not name.startswith('E')}, whole, (1e-4, 1e-3, 1e-1), 'a five-bar alone')
 
 
-def test_refused(case):
+@pytest.mark.parametrize('setting, words', [
+    ('coordinates=11', 'there is no coordinate 11; they are 1 to 10'), ('coordinates=3,3', 'coordinate 3 is there already'),
+    ('derivatives=3', '0 (positions), 1'), ('derivatives=-1', 'derivatives')])
+def test_columns_that_are_refused(case, setting, words):
     """Requests for columns that cannot be recorded are refused."""
     path = case.file(SIX_AND_TWO, more='')
-    for setting, words in (('coordinates=11', 'there is no coordinate 11; they are 1 to 10'),
-                           ('coordinates=3,3', 'coordinate 3 is there already'),
-                           ('derivatives=3', '0 (positions), 1'), ('derivatives=-1', 'derivatives')):
-        done = run(case.kinematics, path, '--set', f'output.{setting}')
-        case.checks.true(done.returncode in (2, 3) and words in done.stderr, f'output.{setting} is refused', done.stderr)
-
-
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        case = Case(checks, folder, os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]))
-        test_blocks(case)
-        test_earlier_links(case)
-        test_pictures(case)
-        test_derivatives(case)
-        test_frames(case)
-        test_constants(case)
-        test_predictions(case)
-        test_open_chains(case)
-        test_dynamics(case)
-        test_changed_coordinates(case)
-        test_windows(case)
-        test_chain_beside(case)
-        test_refused(case)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()
+    done = run(case.kinematics, path, '--set', f'output.{setting}')
+    case.checks.true(done.returncode in (2, 3) and words in done.stderr, f'output.{setting} is refused', done.stderr)

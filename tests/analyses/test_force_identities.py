@@ -3,19 +3,13 @@ that the energy shows: on random mechanisms, determined and overconstrained, wit
 
 Compares the program with itself in part: forces in other numbers, places and independent coordinates; all else is held against
 equations of balance in absolute coordinates, closed forms and the energy.
-
-usage: force_identities.py MECH9K MECH9D
 """
-import os
-import sys
-
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
 import families
 from data_file import parse, write
 from force_files import compare, family_groups, forces_of, revolute, rotated, rotation, with_coordinates, with_links, wrenches
-from mech9_cases import Checks
 
 DETERMINED = {'seven revolutes': families.seven('RRRRRRR'), 'seven pairs of all kinds': families.seven('RRPRHRR'),
               'two spatial loops': families.two_spatial_loops(1), 'a rod between ball joints': families.rssr,
@@ -41,17 +35,19 @@ def member(mech9k, family, rng):
     raise RuntimeError('no member of the family moves')
 
 
-def members(mech9k, rng):
-    """Two mechanisms of each family."""
-    for name, family in {**DETERMINED, **OVERCONSTRAINED}.items():
-        for number in range(2):
-            yield f'{name} {number + 1}', member(mech9k, family, rng)
+FAMILIES = {**DETERMINED, **OVERCONSTRAINED}
 
 
-def against_dense(checks, mech9k, rng):
+def generator(seed, name, number=0):
+    """Each mechanism has a generator of its own, so that its test can be run alone."""
+    return np.random.default_rng((seed, list(FAMILIES).index(name), number))
+
+
+@pytest.mark.parametrize('number', [1, 2])
+@pytest.mark.parametrize('name', FAMILIES)
+def test_forces_against_dense_equations(checks, mech9k, name, number):
     """Sums over each link, dependent coordinates, wrenches of least norm, drives, and which components are unique."""
-    for name, groups in members(mech9k, rng):
-        compare(checks, mech9k, groups, name)
+    compare(checks, mech9k, member(mech9k, FAMILIES[name], generator(11, name, number)), f'{name} {number}')
 
 
 def same_forces(checks, one, other, pairs, why):
@@ -67,64 +63,69 @@ def same_forces(checks, one, other, pairs, why):
                     (one[name], other[drive]))
 
 
-def in_other_numbers(checks, mech9k, rng):
+@pytest.mark.parametrize('number', [1, 2])
+@pytest.mark.parametrize('name', FAMILIES)
+def test_forces_in_other_numbers(checks, mech9k, name, number):
     """Other numbers of links and coordinates change the spanning tree: other pairs close the chains."""
-    for name, groups in members(mech9k, rng):
-        links = next(items['links'][0] for group, items in groups if group == 'mechanism')
-        count = next(items['coordinates'][0] for group, items in groups if group == 'mechanism')
-        table, _, unique = forces_of(mech9k, write(groups))
-        new_links = [1, *(int(k) + 2 for k in rng.permutation(links - 1))]
-        new = [int(k) + 1 for k in rng.permutation(count)]
-        other, _, flags = forces_of(mech9k, write(with_coordinates(with_links(groups, new_links), new)))
-        same_forces(checks, table, other, new, f'{name} in other numbers')
-        if unique is not None:
-            checks.true((flags[np.array(new) - 1] == unique).all(), f'{name}: numbers do not change which components are unique')
-        turn = rotation(rng)
-        other, _, flags = forces_of(mech9k, write(rotated(groups, turn)))
-        for k in range(count):
-            for kind in 'fm':
-                back = turn.T @ [other[f'R{k + 1}.{kind}{axis}'] for axis in 'xyz']
-                for axis, values in zip('xyz', back):
-                    other[f'R{k + 1}.{kind}{axis}'] = values
-        same_forces(checks, table, other, list(range(1, count + 1)), f'{name}, turned')
-        if unique is not None:
-            checks.true((flags == unique).all(), f'{name}: a rotation does not change which components are unique')
+    rng = generator(12, name, number)
+    groups = member(mech9k, FAMILIES[name], rng)
+    links = next(items['links'][0] for group, items in groups if group == 'mechanism')
+    count = next(items['coordinates'][0] for group, items in groups if group == 'mechanism')
+    table, _, unique = forces_of(mech9k, write(groups))
+    new_links = [1, *(int(k) + 2 for k in rng.permutation(links - 1))]
+    new = [int(k) + 1 for k in rng.permutation(count)]
+    other, _, flags = forces_of(mech9k, write(with_coordinates(with_links(groups, new_links), new)))
+    same_forces(checks, table, other, new, f'{name} in other numbers')
+    if unique is not None:
+        checks.true((flags[np.array(new) - 1] == unique).all(), f'{name}: numbers do not change which components are unique')
+    turn = rotation(rng)
+    other, _, flags = forces_of(mech9k, write(rotated(groups, turn)))
+    for k in range(count):
+        for kind in 'fm':
+            back = turn.T @ [other[f'R{k + 1}.{kind}{axis}'] for axis in 'xyz']
+            for axis, values in zip('xyz', back):
+                other[f'R{k + 1}.{kind}{axis}'] = values
+    same_forces(checks, table, other, list(range(1, count + 1)), f'{name}, turned')
+    if unique is not None:
+        checks.true((flags == unique).all(), f'{name}: a rotation does not change which components are unique')
 
 
-def by_other_coordinates(checks, mech9k, mech9d, rng):
+# those with one independent coordinate
+OF_ONE_FREEDOM = [name for name, family in FAMILIES.items() if len(family(np.random.default_rng(0), 1)[2]) == 1]
+
+
+@pytest.mark.parametrize('name', OF_ONE_FREEDOM)
+def test_forces_by_other_coordinates(checks, mech9k, mech9d, name):
     """A mechanism that is released has the same forces whichever coordinate is independent."""
-    for name, family in {**DETERMINED, **OVERCONSTRAINED}.items():
-        groups = [(group, items) for group, items in member(mech9k, family, rng) if group != 'drive']
-        cq = next(items['cq'] for group, items in groups if group == 'structure')
-        if len(cq) > 1:
+    groups = [(group, items) for group, items in member(mech9k, FAMILIES[name], generator(13, name)) if group != 'drive']
+    cq = next(items['cq'] for group, items in groups if group == 'structure')
+    groups = [(group, items) for group, items in groups if group not in ('structure', 'time')]
+    groups.append(('time', {'start': [0], 'intervals': [0]}))
+    count = next(items['coordinates'][0] for group, items in groups if group == 'mechanism')
+    start = [('structure', {'cq': cq}), ('initial', {'coordinate': cq, 'position': [0.0], 'velocity': [0.8]})]
+    table, _, _ = forces_of(mech9d, write(groups + start))
+    for k in range(2, count + 1):
+        if abs(table[f'dq{k}'][0]) < 0.1:
             continue
-        groups = [(group, items) for group, items in groups if group not in ('structure', 'time')]
-        groups.append(('time', {'start': [0], 'intervals': [0]}))
-        count = next(items['coordinates'][0] for group, items in groups if group == 'mechanism')
-        start = [('structure', {'cq': cq}), ('initial', {'coordinate': cq, 'position': [0.0], 'velocity': [0.8]})]
-        table, _, _ = forces_of(mech9d, write(groups + start))
-        for k in range(2, count + 1):
-            if abs(table[f'dq{k}'][0]) < 0.1:
-                continue
-            start = [('structure', {'cq': [k]}), ('initial', {'coordinate': [k], 'position': [0.0], 'velocity': [float(table[f'dq{k}'][0])]})]
-            other, _, _ = forces_of(mech9d, write(groups + start))
-            same_forces(checks, table, other, list(range(1, count + 1)), f'{name}: by coordinate {k}')
+        start = [('structure', {'cq': [k]}), ('initial', {'coordinate': [k], 'position': [0.0], 'velocity': [float(table[f'dq{k}'][0])]})]
+        other, _, _ = forces_of(mech9d, write(groups + start))
+        same_forces(checks, table, other, list(range(1, count + 1)), f'{name}: by coordinate {k}')
 
 
-def reversed_slides(checks, mech9k):
+@pytest.mark.parametrize('centre', ['0,0.2,0.5', '0.1,0.2,0.5'])
+def test_reversed_slides(checks, mech9k, centre):
     """A slide whose moving link is the nearer one to link 1: its wrench is about a point that does not move with the farther link."""
-    for centre in ('0,0.2,0.5', '0.1,0.2,0.5'):
-        text = ("&mechanism links=3, coordinates=2 /\n&structure cq=1,2 /\n&pair coordinate=1, links=1,2, kind='revolute', axis=1,0,0 /\n"
-                "&pair coordinate=2, links=3,2, kind='prismatic', dh=0,0.4,0.3,0 /\n"
-                "&drive coordinate=1, kind='polynomial', coefficients=0.3,2,0.5 /\n&drive coordinate=2, kind='polynomial', coefficients=0.1,1,-3 /\n"
-                f'&body link=2, mass=1, centre=0,0.1,0.2 /\n&body link=3, mass=2, centre={centre}, inertia=0.1,0.2,0.3,0,0,0 /\n'
-                '&gravity acceleration=0,-9.81,2 /\n&time start=0, end=0.5, intervals=2 /\n')
-        compare(checks, mech9k, parse(text), f'a slide run through against its direction, mass at {centre}', intervals=2)
+    text = ("&mechanism links=3, coordinates=2 /\n&structure cq=1,2 /\n&pair coordinate=1, links=1,2, kind='revolute', axis=1,0,0 /\n"
+            "&pair coordinate=2, links=3,2, kind='prismatic', dh=0,0.4,0.3,0 /\n"
+            "&drive coordinate=1, kind='polynomial', coefficients=0.3,2,0.5 /\n&drive coordinate=2, kind='polynomial', coefficients=0.1,1,-3 /\n"
+            f'&body link=2, mass=1, centre=0,0.1,0.2 /\n&body link=3, mass=2, centre={centre}, inertia=0.1,0.2,0.3,0,0,0 /\n'
+            '&gravity acceleration=0,-9.81,2 /\n&time start=0, end=0.5, intervals=2 /\n')
+    compare(checks, mech9k, parse(text), f'a slide run through against its direction, mass at {centre}', intervals=2)
 
 
 # --- sums ------------------------------------------------------------------------------------------------------------
 
-def doubled_bearings(checks, mech9k):
+def test_shaft_in_two_bearings(checks, mech9k):
     """A shaft in two bearings with a pulley between: only sums are determined, and these are the weight and the inertia."""
     mass, spin, off = 3.0, 20.0, 0.01
     text = ('&mechanism links=2, coordinates=2 /\n&structure cq=1 /\n' + revolute(1, '1,2', '0,0,0') + revolute(2, '1,2', '0,0,0.8')
@@ -200,15 +201,16 @@ def check_work(checks, table, drives, why, loads=power_of_loads):
     checks.true(np.abs(work).max() > 0.1, f'{why}: there is work', work)
 
 
-def energies(checks, mech9k, mech9d):
-    for axis in ('0,0,1', '0.3,1,0.2'):
-        text = MIXED.format(axis=axis)
-        check_work(checks, forces_of(mech9d, text + FREE)[0], [1], f'driven and free coordinates ({axis})')
-        inverse, _, _ = forces_of(mech9d, text + DRIVEN)
-        check_work(checks, inverse, [1, 5, 6], f'all driven ({axis})')
-        table, _, _ = forces_of(mech9k, text + DRIVEN)
-        checks.equal([list(table[f'F{k}']) for k in (1, 5, 6)], [list(inverse[f'F{k}']) for k in (1, 5, 6)],
-                     f'both programs have the same forces of drives ({axis})')
+@pytest.mark.parametrize('axis', ['0,0,1', '0.3,1,0.2'])
+def test_work_of_drives(checks, mech9k, mech9d, axis):
+    """Of a mechanism whose coordinates are driven or free, in the plane and across it."""
+    text = MIXED.format(axis=axis)
+    check_work(checks, forces_of(mech9d, text + FREE)[0], [1], f'driven and free coordinates ({axis})')
+    inverse, _, _ = forces_of(mech9d, text + DRIVEN)
+    check_work(checks, inverse, [1, 5, 6], f'all driven ({axis})')
+    table, _, _ = forces_of(mech9k, text + DRIVEN)
+    checks.equal([list(table[f'F{k}']) for k in (1, 5, 6)], [list(inverse[f'F{k}']) for k in (1, 5, 6)],
+                 f'both programs have the same forces of drives ({axis})')
 
 
 # --- ball joints -----------------------------------------------------------------------------------------------------
@@ -235,45 +237,27 @@ def turns(driven):
                    f"&initial coordinate={k}, position={TURNS[k].split(',')[0]}, velocity={TURNS[k].split(',')[1]} /\n" for k in TURNS)
 
 
-def ball_joints(checks, mech9k, mech9d):
+@pytest.mark.parametrize('more, hanging', [('', ''), (',4', HANGING)], ids=['alone', 'with_a_pendulum'])
+@pytest.mark.parametrize('driven', [(1, 2, 3), (1,), (2,), (1, 3), ()], ids=['all', 'first', 'second', 'first_and_third', 'none'])
+def test_ball_joints(checks, mech9d, driven, more, hanging):
     """Three turns whose axes meet, with massless links between: driven, in part driven, and free."""
     time = '&time start=0, end=0.8, intervals=240 /\n'
-    for driven in ((1, 2, 3), (1,), (2,), (1, 3), ()):
-        for more, hanging in (('', ''), (',4', HANGING)):
-            text = BALL.format(more=more) + turns(driven) + hanging + time
-            if not driven and not hanging:
-                # nothing but the weight acts: its energy is constant
-                table, _, _ = forces_of(mech9d, text)
-                checks.near(table['E.total'], table['E.total'][0], 1e-10, 'a free ball joint keeps its energy')
-            else:
-                table, _, _ = forces_of(mech9d, text)
-                if driven:
-                    check_work(checks, table, driven, f'turns {driven} driven{hanging and ", and a pendulum"}', lambda table: 0.0)
-            if not hanging:
-                force = np.array([table[f'R1.f{axis}'] for axis in 'xyz'])
-                expected = 2.0 * np.array([table[f'C.a{axis}'] + (9.81 if axis == 'y' else 0) for axis in 'xyz'])
-                checks.near(force, expected, 1e-12, f'turns {driven} driven: the joint carries weight and inertia', scale=np.abs(expected).max())
-                for k in (2, 3):
-                    checks.near([table[f'R{k}.{c}'] for c in ('fx', 'fy', 'fz', 'mx', 'my', 'mz')],
-                                [table[f'R1.{c}'] for c in ('fx', 'fy', 'fz', 'mx', 'my', 'mz')], 1e-12,
-                                f'turns {driven} driven: links without mass pass the whole wrench on', scale=np.abs(expected).max())
-            compare(checks, mech9d, parse(text.replace('intervals=240', 'intervals=2')), f'turns {driven} of a ball joint{hanging and " and a pendulum"}',
-                    intervals=2)
-
-
-def main():
-    mech9k, mech9d = map(os.path.abspath, sys.argv[1:3])
-    checks = Checks()
-    rng = np.random.default_rng(11)
-    against_dense(checks, mech9k, rng)
-    in_other_numbers(checks, mech9k, rng)
-    by_other_coordinates(checks, mech9k, mech9d, rng)
-    reversed_slides(checks, mech9k)
-    doubled_bearings(checks, mech9k)
-    energies(checks, mech9k, mech9d)
-    ball_joints(checks, mech9k, mech9d)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()
+    text = BALL.format(more=more) + turns(driven) + hanging + time
+    if not driven and not hanging:
+        # nothing but the weight acts: its energy is constant
+        table, _, _ = forces_of(mech9d, text)
+        checks.near(table['E.total'], table['E.total'][0], 1e-10, 'a free ball joint keeps its energy')
+    else:
+        table, _, _ = forces_of(mech9d, text)
+        if driven:
+            check_work(checks, table, driven, f'turns {driven} driven{hanging and ", and a pendulum"}', lambda table: 0.0)
+    if not hanging:
+        force = np.array([table[f'R1.f{axis}'] for axis in 'xyz'])
+        expected = 2.0 * np.array([table[f'C.a{axis}'] + (9.81 if axis == 'y' else 0) for axis in 'xyz'])
+        checks.near(force, expected, 1e-12, f'turns {driven} driven: the joint carries weight and inertia', scale=np.abs(expected).max())
+        for k in (2, 3):
+            checks.near([table[f'R{k}.{c}'] for c in ('fx', 'fy', 'fz', 'mx', 'my', 'mz')],
+                        [table[f'R1.{c}'] for c in ('fx', 'fy', 'fz', 'mx', 'my', 'mz')], 1e-12,
+                        f'turns {driven} driven: links without mass pass the whole wrench on', scale=np.abs(expected).max())
+    compare(checks, mech9d, parse(text.replace('intervals=240', 'intervals=2')), f'turns {driven} of a ball joint{hanging and " and a pendulum"}',
+            intervals=2)
