@@ -3,20 +3,20 @@ the whole data file: the same bits and the same codes, for the gallery with rand
 initial positions, couplings, gravity, times and tolerances; some values are refused.
 
 Compares the program with itself: a run that follows others, and the same run alone.
-
-usage: changed_numbers.py MECH9K MECH9D
 """
+import functools
 import os
 import random
 import re
 import shutil
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import TREE, Checks, run, text_of
+import pytest
+
+from mech9_cases import TREE, run, text_of
 
 RUNS = 5
+# parts by which numbers change
+SMALL, LARGE = 1e-3, 0.05
 # folder, data file, program, and settings that make the runs short
 MECHANISMS = (
     ('slider_crank', 'slider_crank.nml', 'k', ()), ('class_three_group', 'class_three_group.nml', 'k', ()),
@@ -59,7 +59,7 @@ def numbers_of(text):
     return found
 
 
-def parameters(chosen, spread):
+def parameters(random, chosen, spread):
     """Groups &parameter for numbers, and values of a study: first those of the file, then changes of a few, the last of all."""
     groups = ''.join(f"&parameter name='p{i}', sets='{name}' /\n" for i, (name, _) in enumerate(chosen))
     rows = [[value for _, value in chosen]]
@@ -67,6 +67,19 @@ def parameters(chosen, spread):
         share = 1.0 if r == RUNS - 1 else 0.3
         rows.append([value * (1 + spread * random.uniform(-1, 1)) if random.random() < share else value for _, value in chosen])
     return groups, rows
+
+
+@functools.lru_cache()
+def drawn():
+    """For each mechanism and spread, in turn: the text of its data file, the numbers that are parameters, their groups and values."""
+    source, found = random.Random(1718), {}
+    for name, data, _, _ in MECHANISMS:
+        text = without_comments(text_of(os.path.join(TREE, 'examples', name, data)))
+        numbers = numbers_of(text)
+        for spread in (SMALL, LARGE):
+            chosen = source.sample(numbers, min(len(numbers), 8))
+            found[name, spread] = text, chosen, *parameters(source, chosen, spread)
+    return found
 
 
 def study(program, folder, data, settings, *more):
@@ -82,10 +95,7 @@ def study(program, folder, data, settings, *more):
 def follow(checks, folder, program, name, data, settings, spread, broken):
     """One mechanism with one choice of parameters."""
     source = os.path.join(TREE, 'examples', name)
-    text = without_comments(text_of(os.path.join(source, data)))
-    numbers = numbers_of(text)
-    chosen = random.sample(numbers, min(len(numbers), 8))
-    groups, rows = parameters(chosen, spread)
+    text, chosen, groups, rows = drawn()[name, spread]
     if broken:
         # a number that is refused, or an axis without a direction, in the middle: what follows it must be as if it had not been
         rows[RUNS // 2] = [0.0 if 'axis' in target or 'mass' in target else -abs(value) for target, value in chosen]
@@ -112,14 +122,7 @@ def follow(checks, folder, program, name, data, settings, spread, broken):
         checks.true(reason != [] and reason[0] in done.stderr.splitlines(), f'{why}: run {i + 1} has its message', (alone.stderr, done.stderr))
 
 
-def main(mech9k, mech9d):
-    checks = Checks()
-    random.seed(1718)
-    for name, data, which, settings in MECHANISMS:
-        for spread, broken in ((1e-3, False), (0.05, True)):
-            with tempfile.TemporaryDirectory() as folder:
-                follow(checks, folder, mech9k if which == 'k' else mech9d, name, data, ('time.intervals=3',) + settings, spread, broken)
-    checks.finish()
-
-
-main(*sys.argv[1:])
+@pytest.mark.parametrize('spread, broken', ((SMALL, False), (LARGE, True)), ids=('small changes', 'with values that are refused'))
+@pytest.mark.parametrize('name, data, which, settings', MECHANISMS, ids=[mechanism[0] for mechanism in MECHANISMS])
+def test_runs_of_a_study_are_as_alone(checks, tmp_path, build, name, data, which, settings, spread, broken):
+    follow(checks, tmp_path, build.program(f'mech9{which}'), name, data, ('time.intervals=3',) + settings, spread, broken)

@@ -3,22 +3,17 @@ precision; of closed chains in space, joints, couplings, overconstrained chains 
 identities of scaling and turning; gradients of quantities, HDF5, what has no derivative, and what is refused.
 
 Compares the program with itself in part: differences of runs at other values of a parameter.
-
-usage: force_sensitivities.py MECH9K MECH9D
 """
 import json
 import os
-import sys
-import tempfile
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import dynamic_sensitivities as dynamic
-import sensitivities as kinematic
-from mech9_cases import Checks, read_table, run
-from sensitivities import differences, four_bar_motion
+import dynamic_derivatives as dynamic
+import kinematic_derivatives as kinematic
+from kinematic_derivatives import differences, four_bar_motion
+from mech9_cases import read_table, run
 
 EXACT = 1e-9         # the promise: of the largest derivative of each kind; round-off is near 1e-13 here
 WEIGHTS = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
@@ -163,6 +158,11 @@ class Case:
             self.compare(found, name, expected, tolerance, why)
 
 
+@pytest.fixture
+def case(checks, tmp_path, mech9k, mech9d):
+    return Case(checks, tmp_path, mech9k, mech9d)
+
+
 def solved(matrix, right):
     """Solutions of linear systems in extended precision: Gauss with pivots; the last dimension are the systems."""
     a = np.concatenate([matrix, right[:, None]], axis=1)
@@ -222,7 +222,7 @@ def four_bar_forces(values, t, upper):
     return solved(matrix, right)
 
 
-def check_four_bar(case):
+def test_four_bar_linkage_by_its_equations_of_balance(case):
     found = case.sensitivities(FOUR_BAR, PARAMETERS)
     t = found['t'].astype(np.longdouble)
     values = np.array([value for _, _, value in PARAMETERS], dtype=np.longdouble)
@@ -239,58 +239,73 @@ def check_four_bar(case):
         case.checks.near(found[f'd(R1.mz)/d({name})'], found[f'd(F1)/d({name})'], 1e-11, f'the moment of the drive, by {name}', scale=1)
 
 
-def check_chains(case):
-    case.against_runs(REVERSED, REVERSED_PARAMETERS, 'reversed pairs')
-    case.against_runs(UNIVERSAL, (('place', 'pair(2).point(3)', 0.1), ('pin', 'pair(3).moving_point(1)', 0.9), ('tilt', 'pair(1).axis(2)', 0.2),
-                                  ('cross', 'pair(3).moving_axis(3)', 0.1), ('mass', 'body(2).mass', 1.4)), 'ball and universal joint')
-    case.against_runs(CYLINDRICAL, (('pin', 'pair(4).moving_point(1)', 0.4), ('tilt', 'pair(4).axis(1)', 0.3), ('rest', 'load.rest', -0.5)),
-                      'cylindrical joint')
-    case.against_runs(GEARED, (('ratio', 'coupling.ratio', -1.5), ('phase', 'coupling.phase', 1.1), ('mass', 'body(2).mass', 1.4),
-                               ('length', 'pair(5).point(1)', 0.8)), 'gears')
-    case.against_runs(PLANETS, (('mass', 'body(1).mass', 1.1), ('height', 'body(1).centre(3)', 0.1), ('push', 'load.force', 1.5),
-                                ('ratio', 'coupling(2).ratio', 0.30769230769230769)),
-                      'a planetary gear')
+@pytest.mark.parametrize('why, text, parameters', (
+    ('reversed pairs', REVERSED, REVERSED_PARAMETERS),
+    ('ball and universal joint', UNIVERSAL, (
+        ('place', 'pair(2).point(3)', 0.1), ('pin', 'pair(3).moving_point(1)', 0.9), ('tilt', 'pair(1).axis(2)', 0.2),
+        ('cross', 'pair(3).moving_axis(3)', 0.1), ('mass', 'body(2).mass', 1.4))),
+    ('cylindrical joint', CYLINDRICAL, (
+        ('pin', 'pair(4).moving_point(1)', 0.4), ('tilt', 'pair(4).axis(1)', 0.3), ('rest', 'load.rest', -0.5))),
+    ('gears', GEARED, (
+        ('ratio', 'coupling.ratio', -1.5), ('phase', 'coupling.phase', 1.1), ('mass', 'body(2).mass', 1.4), ('length', 'pair(5).point(1)', 0.8))),
+    ('a planetary gear', PLANETS, (
+        ('mass', 'body(1).mass', 1.1), ('height', 'body(1).centre(3)', 0.1), ('push', 'load.force', 1.5),
+        ('ratio', 'coupling(2).ratio', 0.30769230769230769)))),
+    ids=('reversed pairs', 'ball and universal joint', 'cylindrical joint', 'gears', 'planetary gear'))
+def test_chains_by_differences_of_runs(case, why, text, parameters):
+    case.against_runs(text, parameters, why)
 
 
-def check_overconstrained(case):
+@pytest.mark.parametrize('why, text, parameters', (
+    ('a door on two hinges', DOOR, (
+        ('mass', 'body.mass', 1.1), ('aside', 'body.centre(1)', 0.1), ('apart', "'pair(2).point(3)','pair(2).moving_point(3)'", 1.0))),
+    ('three parallel cranks', CRANKS, (
+        ('mass', 'body(1).mass', 1.1), ('aside', 'body(4).centre(3)', 0.25), ('speed', 'drive.coefficients(2)', 2.0))),
+    ('across a four-bar linkage', FOUR_BAR.replace('-9.81,0 /', '-9.81,2 /'), (
+        ('crank', 'pair(2).point(1)', 0.3), ('base', 'pair(4).point(1)', 1.0), ('rocker', 'pair(3).moving_point(1)', 0.7)))),
+    ids=('door on two hinges', 'three parallel cranks', 'across a four-bar linkage'))
+def test_overconstrained_chains(case, why, text, parameters):
     """Components that equilibrium does not determine have the derivatives of the numbers that are recorded."""
-    case.against_runs(DOOR, (('mass', 'body.mass', 1.1), ('aside', 'body.centre(1)', 0.1),
-                             ('apart', "'pair(2).point(3)','pair(2).moving_point(3)'", 1.0)), 'a door on two hinges')
-    case.against_runs(CRANKS, (('mass', 'body(1).mass', 1.1), ('aside', 'body(4).centre(3)', 0.25), ('speed', 'drive.coefficients(2)', 2.0)),
-                      'three parallel cranks')
-    case.against_runs(FOUR_BAR.replace('-9.81,0 /', '-9.81,2 /'), (('crank', 'pair(2).point(1)', 0.3), ('base', 'pair(4).point(1)', 1.0),
-                                                                  ('rocker', 'pair(3).moving_point(1)', 0.7)), 'across a four-bar linkage')
+    case.against_runs(text, parameters, why)
 
 
-def check_equal_lengths(case):
+@pytest.mark.parametrize('across', (False, True))
+def test_equally_long_links(case, across):
     """Two links are equally long, and the longest one decides how moments count beside forces: components that depend on it have no derivative."""
     parameters = (('coupler', 'pair(3).point(1)', 1.0), ('mass', 'body(2).mass', 1.4))
     quantities = "&quantity name='up', of='R1.fz', take='end' /\n&quantity name='side', of='R1.fx', take='end' /\n"
-    for across in (False, True):
-        text = PARALLELOGRAM + bodies(4, across)
-        found = case.sensitivities(text, parameters)
-        unknown = {column for column in found if np.isnan(found[column]).any()}
-        case.checks.true(bool(unknown) == across, 'only what acts across the plane is not unique', f'{unknown}')
-        case.checks.true(all(column.endswith('/d(coupler)') and column[3:column.index(')')] in
-                             [f'{pair}.{c}' for pair in (1, 2, 3, 4) for c in ('fz', 'mx', 'my')] for column in unknown),
-                         'components that equilibrium determines are known', f'{unknown}')
-        if across:
-            case.run(text + dynamic.declared(parameters) + quantities + f'&output gradients=.true., {FORCES} /\n', '--no-write', '--report',
-                     os.path.join(case.directory, 'report.json'))
-            with open(os.path.join(case.directory, 'report.json'), encoding='utf-8') as file:
-                told = [[by['value'] for by in one['gradient']] for one in json.load(file)['quantities']]
-            case.checks.equal([[value is None for value in row] for row in told], [[True, False], [False, False]],
-                              'gradients that are not known')
-            case.checks.near(told[1], [found[f'd(R1.fx)/d({name})'][-1] for name in ('coupler', 'mass')], 1e-12, 'and those that are')
+    text = PARALLELOGRAM + bodies(4, across)
+    found = case.sensitivities(text, parameters)
+    unknown = {column for column in found if np.isnan(found[column]).any()}
+    case.checks.true(bool(unknown) == across, 'only what acts across the plane is not unique', f'{unknown}')
+    case.checks.true(all(column.endswith('/d(coupler)') and column[3:column.index(')')] in
+                         [f'{pair}.{c}' for pair in (1, 2, 3, 4) for c in ('fz', 'mx', 'my')] for column in unknown),
+                     'components that equilibrium determines are known', f'{unknown}')
+    if across:
+        case.run(text + dynamic.declared(parameters) + quantities + f'&output gradients=.true., {FORCES} /\n', '--no-write', '--report',
+                 os.path.join(case.directory, 'report.json'))
+        with open(os.path.join(case.directory, 'report.json'), encoding='utf-8') as file:
+            told = [[by['value'] for by in one['gradient']] for one in json.load(file)['quantities']]
+        case.checks.equal([[value is None for value in row] for row in told], [[True, False], [False, False]],
+                          'gradients that are not known')
+        case.checks.near(told[1], [found[f'd(R1.fx)/d({name})'][-1] for name in ('coupler', 'mass')], 1e-12, 'and those that are')
 
 
-def check_identities(case):
-    forces = [column for column in case.table(FOUR_BAR + f'&output {FORCES} /\n') if column[0] in 'FR']
+@pytest.fixture
+def forces(case):
+    """The columns of forces of the four-bar linkage."""
+    return [column for column in case.table(FOUR_BAR + f'&output {FORCES} /\n') if column[0] in 'FR']
+
+
+def test_forces_are_in_proportion_to_all_masses(case, forces):
     parts = [f"'body({i}).{name}'" for i in (1, 2, 3) for name in ('mass', 'inertia(1)', 'inertia(2)', 'inertia(3)')]
     numbers = '2,0.015,0.015,0.02, 1,0.03,0.03,0.05, 1.5,0.03,0.03,0.04'
     found = case.table(FOUR_BAR + f"&parameter name='all', sets={','.join(parts)}, factors={numbers}, value=1 /\n"
                        + f'&output sensitivities=.true., {FORCES} /\n')
     case.compare(found, 'all', {column: found[column] for column in forces}, EXACT, 'forces are in proportion to all masses')
+
+
+def test_forces_turn_with_the_mechanism(case, forces):
     # turned by a small angle about the origin: points of link 1, the drive and gravity
     turned = "'pair(1).point(1)','pair(1).point(2)','pair(4).point(2)','gravity.acceleration(1)','gravity.acceleration(2)','drive.mean'"
     found = case.table(FOUR_BAR + f"&parameter name='angle', sets={turned}, factors=-0.02,0.01,1,9.81,0.5,1, "
@@ -301,6 +316,9 @@ def check_identities(case):
         other = column[:-1] + {'x': 'y', 'y': 'x'}.get(axis, axis)
         expected[column] = {'x': -1, 'y': 1}.get(axis, 0) * found[other]
     case.compare(found, 'angle', expected, EXACT, 'forces turn with the mechanism')
+
+
+def test_forces_are_in_proportion_to_all_lengths(case, forces):
     # all lengths and gravity by one factor, with moments of inertia by its square
     lengths = (('pair(1).point(1)', 0.01), ('pair(1).point(2)', 0.02), ('pair(2).point(1)', 0.3), ('pair(3).point(1)', 0.9),
                ('pair(3).moving_point(1)', 0.7), ('pair(4).point(1)', 1), ('body(1).centre(1)', 0.15), ('body(1).centre(2)', 0.02),
@@ -316,7 +334,7 @@ def check_identities(case):
                  'forces are in proportion to all lengths, and moments to their square')
 
 
-def check_power(case):
+def test_power_of_the_drive_is_the_change_of_energies(case):
     """The power of the drive is the change of the energies: so are their derivatives, here of F q' = dE/dt after an exact time integral."""
     text = FOUR_BAR + ''.join(f"&quantity name='{name}', of='{of}', take='{take}' /\n" for name, of, take in (
         ('drive', 'F1', 'at=0.7'), ('first', 'E.total', 'start'), ('last', 'E.total', 'end'))).replace("take='at=0.7'", "take='at', at=0.7")
@@ -337,18 +355,18 @@ def check_power(case):
         case.checks.near(mine, expected, 1e-9, f'so are the derivatives by {name}', scale=max(1, abs(expected)))
 
 
-def check_free(case):
-    """In free motions, also through changes of the independent coordinates; differences of runs know seven digits."""
-    solver = dynamic.SOLVER
-    case.against_runs(dynamic.FOUR_BAR + solver, dynamic.FOUR_BAR_PARAMETERS[::3], 'a free four-bar', 1e-7, 2.0**-9, case.mech9d)
-    case.against_runs(dynamic.PENDULUM_FOUR_BAR + solver, (('bar', 'pair(2).point(2)', -1.0), ('start', 'initial(2).position', -0.55)),
-                      'through changes of coordinates', 1e-7, 2.0**-9, case.mech9d)
-    case.against_runs(dynamic.TURNING + solver, (('speed', 'drive.coefficients(2)', 7.1), ('centre', 'body.centre(2)', -0.5)),
-                      'a driven hoop', 1e-7, 2.0**-9, case.mech9d)
-    case.against_runs(dynamic.SPATIAL + solver, dynamic.SPATIAL_PARAMETERS[::2], 'an open chain in space', 1e-7, 2.0**-9, case.mech9d)
+@pytest.mark.parametrize('why, text, parameters', (
+    ('a free four-bar', dynamic.FOUR_BAR, dynamic.FOUR_BAR_PARAMETERS[::3]),
+    ('through changes of coordinates', dynamic.PENDULUM_FOUR_BAR, (('bar', 'pair(2).point(2)', -1.0), ('start', 'initial(2).position', -0.55))),
+    ('a driven hoop', dynamic.TURNING, (('speed', 'drive.coefficients(2)', 7.1), ('centre', 'body.centre(2)', -0.5))),
+    ('an open chain in space', dynamic.SPATIAL, dynamic.SPATIAL_PARAMETERS[::2])),
+    ids=('four-bar', 'changes of coordinates', 'driven hoop', 'open chain in space'))
+def test_free_motions(case, why, text, parameters):
+    """Differences of runs know seven digits."""
+    case.against_runs(text + dynamic.SOLVER, parameters, why, 1e-7, 2.0**-9, case.mech9d)
 
 
-def check_hdf5(case):
+def test_hdf5_file_has_the_derivatives_of_the_table(case):
     try:
         import h5py
     except ImportError:
@@ -371,7 +389,7 @@ def check_hdf5(case):
                 case.checks.true((group[data][(slice(None), *place, p)] == found[f'd({column})/d({name})']).all(), f'{data} of {column} by {name}')
 
 
-def check_shared(case):
+def test_gears_that_share_their_force(case):
     """Two gears between the same shafts share their force as stiffness decides."""
     text = GEARED.replace('ratio=-1.5, phase=1.1 /', "ratio=-1.5, phase=1.1 /\n&coupling kind='gear', coordinates=1,2, ratio=-1.5, phase=1.1 /")
     text += "&parameter name='mass', sets='body(2).mass' /\n"
@@ -381,23 +399,3 @@ def check_shared(case):
     found = case.table(text + '&output sensitivities=.true., drive_forces=.true. /\n')
     alone = case.table(GEARED + "&parameter name='mass', sets='body(2).mass' /\n&output sensitivities=.true., drive_forces=.true. /\n")
     case.checks.near(found['d(F1)/d(mass)'], alone['d(F1)/d(mass)'], 1e-11, 'the force of the drive is determined')
-
-
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as directory:
-        case = Case(checks, directory, *sys.argv[1:3])
-        check_four_bar(case)
-        check_chains(case)
-        check_overconstrained(case)
-        check_equal_lengths(case)
-        check_identities(case)
-        check_power(case)
-        check_free(case)
-        check_hdf5(case)
-        check_shared(case)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()

@@ -1,18 +1,16 @@
 """Quantities: strokes, extremes between outputs, means and integrals against closed forms; values at times; wrong columns.
-
-usage: quantities.py MECH9K MECH9D
 """
 import json
 import math
 import os
-import sys
 import tempfile
 
-import h5py
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks, run, table_of
+from mech9_cases import run, table_of
+
+h5py = pytest.importorskip('h5py', reason='h5py is not installed (Debian: python3-h5py)')
 
 DONE, DATA = 0, 3
 CRANK, ROD = 0.3, 1.1
@@ -73,7 +71,12 @@ def near(checks, found, expected, tolerance, why):
     checks.true(abs(found - expected) <= tolerance, why, f'{found!r} instead of {expected!r}')
 
 
-def slider_cranks(checks, program):
+@pytest.fixture(params=('mech9k', 'mech9d'))
+def program(build, request):
+    return build.program(request.param)
+
+
+def test_strokes_and_dead_centres_of_slider_cranks(checks, program):
     """The stroke is twice the crank; the dead centres lie between outputs. Twenty outputs for 1.1 turns: the polynomials through
     four of them are exact to some 1e-10."""
     wanted = [('B.x', 'range'), ('B.x', 'min'), ('B.x', 'max'), ('q1', 'start'), ('q1', 'end'), ('B.vx', 'integral'),
@@ -96,25 +99,26 @@ def slider_cranks(checks, program):
     checks.true(units == ['m', 'm', 'm', 'rad', 'rad', 'm/s s', 'm/s^2 s', 'm', 'm/s'], f'{program}: units', units)
 
 
-def sines(checks, program):
+@pytest.mark.parametrize('end, why', ((2 * math.pi / 3, 'a period'), (1.7, 'a part of a period')), ids=('a period', 'a part of a period'))
+def test_means_of_sines(checks, program, end, why):
     """Means and root mean squares of harmonics over whole and broken periods; of a force, which has no rate, too."""
-    period = 2 * math.pi / 3
-    for end, why in ((period, 'a period'), (1.7, 'a part of a period')):
-        phase = lambda t: 3 * t + 0.4
-        mean = 0.2 + 0.7 * (math.cos(phase(0)) - math.cos(phase(end))) / 3 / end
-        square = 0.49 * (end / 2 - (math.sin(2 * phase(end)) - math.sin(2 * phase(0))) / 12)      # of the sine, over time
-        rms = math.sqrt(square / end + 2 * 0.2 * (mean - 0.2) + 0.04)
-        values, _ = numbers_of(checks, program, SINE.format(end=end),
-                               [('q1', 'mean'), ('q1', 'rms'), ('q1', 'integral'), ('F1', 'rms'), ('F1', 'max'), ('q1', 'peak')], why)
-        expected = [mean, rms, mean * end, 2.5 * 9 * math.sqrt(square / end), 2.5 * 9 * 0.7, 0.9]
-        for found, right, name in zip(values, expected, ('mean', 'rms', 'integral', 'rms of the force', 'largest force', 'peak')):
-            near(checks, found, right, 1e-10 * max(1, abs(right)), f'{program}: {why}: {name}')
+    def phase(t):
+        return 3 * t + 0.4
+
+    mean = 0.2 + 0.7 * (math.cos(phase(0)) - math.cos(phase(end))) / 3 / end
+    square = 0.49 * (end / 2 - (math.sin(2 * phase(end)) - math.sin(2 * phase(0))) / 12)      # of the sine, over time
+    rms = math.sqrt(square / end + 2 * 0.2 * (mean - 0.2) + 0.04)
+    values, _ = numbers_of(checks, program, SINE.format(end=end),
+                           [('q1', 'mean'), ('q1', 'rms'), ('q1', 'integral'), ('F1', 'rms'), ('F1', 'max'), ('q1', 'peak')], why)
+    expected = [mean, rms, mean * end, 2.5 * 9 * math.sqrt(square / end), 2.5 * 9 * 0.7, 0.9]
+    for found, right, name in zip(values, expected, ('mean', 'rms', 'integral', 'rms of the force', 'largest force', 'peak')):
+        near(checks, found, right, 1e-10 * max(1, abs(right)), f'{program}: {why}: {name}')
 
 
-def oscillations(checks, program):
+def test_amplitude_and_energy_of_an_oscillator(checks, mech9d):
     """A free motion: amplitude and energy of a mass on a spring; the motion's error is some 1e-10."""
     text = OSCILLATOR
-    values, _ = numbers_of(checks, program, text, [('q1', 'min'), ('dq1', 'peak'), ('E.kinetic', 'max'), ('E.total', 'range'),
+    values, _ = numbers_of(checks, mech9d, text, [('q1', 'min'), ('dq1', 'peak'), ('E.kinetic', 'max'), ('E.total', 'range'),
                                                    ('E.kinetic', 'mean'), ('q1', 'at', ', at=1.0')], 'oscillator')
     mean = 2.25 * (0.5 - math.sin(6 * 2.2) / 12 / 2.2)
     for found, right, name in zip(values, (-0.5, 1.5, 2.25, 0, mean, 0.5 * math.cos(3)),
@@ -122,51 +126,50 @@ def oscillations(checks, program):
         near(checks, found, right, 3e-10 * max(1, abs(right)), f'oscillator: {name}')
 
 
-def same_rows(checks, program, folder):
-    """Times between outputs change nothing in the table but the last digits."""
-    path = os.path.join(folder, 'rows.nml')
+def test_times_between_outputs_change_no_rows(checks, tmp_path, mech9k):
+    """They change nothing in the table but the last digits."""
+    path = os.path.join(tmp_path, 'rows.nml')
     with open(path, 'w', encoding='utf-8') as file:
         file.write(SINE.format(end=1.0))
-    plain = table_of(program, path)
+    plain = table_of(mech9k, path)
     with open(path, 'a', encoding='utf-8') as file:
         file.write(quantity(1, 'F1', 'rms'))
-    visited = table_of(program, path)
+    visited = table_of(mech9k, path)
     checks.true(all(np.allclose(plain[name], visited[name], rtol=1e-13, atol=1e-13) for name in plain), 'the rows are the same')
 
 
-def mistakes(checks, program, folder):
-    path = os.path.join(folder, 'wrong.nml')
-    for group, message in ((quantity(1, 'B.z1', 'max'), "11:25: quantity 'n1' is of column 'B.z1', which is not recorded; did you mean 'B.z'?"),
-                           (quantity(1, 'R4.fx', 'max'), "'R4.fx', which is not recorded; set reactions=.true. in &output"),
-                           (quantity(1, 'R4.fx', 'max') + '&output reaction_pairs=1 /\n', '; pair 4 is not among reaction_pairs in &output'),
-                           (quantity(1, 'F1', 'max'), "'F1', which is not recorded; set drive_forces=.true. in &output"),
-                           (quantity(1, 'F2', 'max'), "'F2', which is not recorded; coordinate 2 has no drive"),
-                           (quantity(1, 'dq1', 'max') + '&output derivatives=0 /\n', '; set derivatives=1 in &output'),
-                           (quantity(1, 'B.ax', 'max') + '&output derivatives=1 /\n', '; set derivatives=2 in &output'),
-                           (quantity(1, 'C1', 'max'), '; there are no couplings'),
-                           (quantity(1, 'conditioning', 'max'), '; set conditioning=.true. in &output'),
-                           (quantity(1, 'E.total', 'max'), '; mech9d alone records energies'),
-                           (quantity(1, 'B.x', 'maximum'), "unknown take 'maximum'"),
-                           (quantity(1, 'B.x', 'at'), "take='at' needs 'at': the time of the value"),
-                           (quantity(1, 'B.x', 'max', ', at=0.1'), "'at' gives the time for take='at'"),
-                           (quantity(1, 'B.x', 'at', ', at=0.8'), 'this time is not among those of the results, 0 to 0.7 s'),
-                           (quantity(1, 'B.x', 'max') + quantity(1, 'B.x', 'min'), "a second &quantity for name 'n1'")):
-        with open(path, 'w', encoding='utf-8') as file:
-            file.write(SLIDER_CRANK + group)
-        table = os.path.join(folder, 'kept.dat')
-        with open(table, 'w', encoding='utf-8') as file:
-            file.write('kept')
-        for more in (('--table', table), ('--check',)):
-            done = run(program, path, *more)
-            checks.true(done.returncode == DATA and message in done.stderr, f'{group.strip()} {more[0]}: {message}', done.stderr)
-        with open(table, encoding='utf-8') as file:
-            checks.true(file.read() == 'kept', f'{group.strip()}: nothing is written over')
+@pytest.mark.parametrize('group, message', (
+    (quantity(1, 'B.z1', 'max'), "11:25: quantity 'n1' is of column 'B.z1', which is not recorded; did you mean 'B.z'?"),
+    (quantity(1, 'R4.fx', 'max'), "'R4.fx', which is not recorded; set reactions=.true. in &output"),
+    (quantity(1, 'R4.fx', 'max') + '&output reaction_pairs=1 /\n', '; pair 4 is not among reaction_pairs in &output'),
+    (quantity(1, 'F1', 'max'), "'F1', which is not recorded; set drive_forces=.true. in &output"),
+    (quantity(1, 'F2', 'max'), "'F2', which is not recorded; coordinate 2 has no drive"),
+    (quantity(1, 'dq1', 'max') + '&output derivatives=0 /\n', '; set derivatives=1 in &output'),
+    (quantity(1, 'B.ax', 'max') + '&output derivatives=1 /\n', '; set derivatives=2 in &output'),
+    (quantity(1, 'C1', 'max'), '; there are no couplings'),
+    (quantity(1, 'conditioning', 'max'), '; set conditioning=.true. in &output'),
+    (quantity(1, 'E.total', 'max'), '; mech9d alone records energies'),
+    (quantity(1, 'B.x', 'maximum'), "unknown take 'maximum'"),
+    (quantity(1, 'B.x', 'at'), "take='at' needs 'at': the time of the value"),
+    (quantity(1, 'B.x', 'max', ', at=0.1'), "'at' gives the time for take='at'"),
+    (quantity(1, 'B.x', 'at', ', at=0.8'), 'this time is not among those of the results, 0 to 0.7 s'),
+    (quantity(1, 'B.x', 'max') + quantity(1, 'B.x', 'min'), "a second &quantity for name 'n1'")),
+    ids=('B.z1', 'R4.fx', 'R4.fx, other pairs', 'F1', 'F2', 'dq1', 'B.ax', 'C1', 'conditioning', 'E.total', 'unknown take', 'no time',
+         'a time too many', 'a time outside', 'a second one'))
+def test_mistakes(checks, tmp_path, mech9k, group, message):
+    path, table = (os.path.join(tmp_path, name) for name in ('wrong.nml', 'kept.dat'))
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(SLIDER_CRANK + group)
+    with open(table, 'w', encoding='utf-8') as file:
+        file.write('kept')
+    for more in (('--table', table), ('--check',)):
+        done = run(mech9k, path, *more)
+        checks.true(done.returncode == DATA and message in done.stderr, f'{group.strip()} {more[0]}: {message}', done.stderr)
+    with open(table, encoding='utf-8') as file:
+        checks.true(file.read() == 'kept', f'{group.strip()}: nothing is written over')
 
 
-def couplings(checks, program, folder):
-    """The columns of couplings are told where one is missing."""
-    path = os.path.join(folder, 'coupled.nml')
-    shafts = """&structure cq=1 /
+SHAFTS = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
 &pair coordinate=2, links=1,3, kind='revolute', axis=0,0,1 /
 &pair coordinate=3, links=1,4, kind='revolute', axis=0,0,1 /
@@ -174,26 +177,16 @@ def couplings(checks, program, folder):
 &coupling kind='gear', coordinates=2,3, ratio=2 /
 &drive coordinate=1, kind='polynomial', coefficients=0,1 /
 """
-    for column, more, message in (('C3', '', '; the columns are C1, C2, with reactions=.true. in &output'), ('C2', '', '; set reactions=.true. in &output'),
-                                  ('C3', '&output reactions=.true. /\n', '; the columns are C1, C2')):
-        with open(path, 'w', encoding='utf-8') as file:
-            file.write(shafts + more + quantity(1, column, 'max'))
-        done = run(program, path)
-        checks.true(done.returncode == DATA and message + '\n' in done.stderr, f'{column}: {message}', done.stderr)
 
 
-def main():
-    checks = Checks()
-    mech9k, mech9d = sys.argv[1:3]
-    with tempfile.TemporaryDirectory() as folder:
-        for program in (mech9k, mech9d):
-            slider_cranks(checks, program)
-            sines(checks, program)
-        oscillations(checks, mech9d)
-        same_rows(checks, mech9k, folder)
-        mistakes(checks, mech9k, folder)
-        couplings(checks, mech9k, folder)
-    checks.finish()
-
-
-main()
+@pytest.mark.parametrize('column, more, message', (
+    ('C3', '', '; the columns are C1, C2, with reactions=.true. in &output'),
+    ('C2', '', '; set reactions=.true. in &output'),
+    ('C3', '&output reactions=.true. /\n', '; the columns are C1, C2')), ids=('C3', 'C2', 'C3 with reactions'))
+def test_columns_of_couplings_are_told(checks, tmp_path, mech9k, column, more, message):
+    """The columns of couplings are told where one is missing."""
+    path = os.path.join(tmp_path, 'coupled.nml')
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(SHAFTS + more + quantity(1, column, 'max'))
+    done = run(mech9k, path)
+    checks.true(done.returncode == DATA and message + '\n' in done.stderr, f'{column}: {message}', done.stderr)

@@ -3,45 +3,19 @@ precision; of spatial chains, couplings and joints against differences of whole 
 
 Compares the program with itself in part: differences of runs at other values of a parameter; planar with spatial arithmetic; the cost
 with the cost of a run without derivatives.
-
-usage: sensitivities.py MECH9K MECH9D
 """
 import os
 import resource
-import sys
-import tempfile
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks, read_table, run, text_of
+from kinematic_derivatives import FOUR_BAR, FOUR_BAR_PARAMETERS, GEARED, PARALLELOGRAM, Case, differences, four_bar_motion, of_motion
+from mech9_cases import TREE, run, text_of
 
 # The promise: of the largest derivative of each kind. Round-off is near 1e-13 in these mechanisms; differences of closed forms in
 # extended precision lose 1e-17, where numpy has it.
 EXACT = 1e-9
-# Differences of runs in double precision at steps of 1/128 lose two digits, and the conditioning of the chains.
-BY_RUNS = 1e-9
-WEIGHTS = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
-STEP = 2.0**-7
-
-FOUR_BAR = """&structure cq=1 /
-&pair coordinate=1, links=1,2, kind='revolute', point=0.01,0.02,0, axis=0,0,1, moving_point=0,0,0 /
-&pair coordinate=2, links=2,3, kind='revolute', point=0.3,0,0, axis=0,0,1, moving_point=0,0,0 /
-&pair coordinate=3, links=3,4, kind='revolute', point=0.9,0,0, axis=0,0,1, moving_point=0.7,0,0 /
-&pair coordinate=4, links=1,4, kind='revolute', point=1,0,0, axis=0,0,1, moving_point=0,0,0 /
-&initial coordinate=2, position=0.5 /
-&initial coordinate=4, position=1.0 /
-&drive coordinate=1, kind='harmonic', mean=0.3, amplitude=1.4, angular_frequency=2, phase=0.2 /
-&point name='P', link=3, position=0.4,0.2,0.1 /
-&time end=2, intervals=20 /
-&output sensitivities=.true. /
-"""
-# name, target and value; the closed form takes the values in this order
-FOUR_BAR_PARAMETERS = (
-    ('crank', 'pair(2).point(1)', 0.3), ('coupler', 'pair(3).point(1)', 0.9), ('rocker', 'pair(3).moving_point(1)', 0.7),
-    ('base', 'pair(4).point(2)', 0.0), ('mean', 'drive.mean', 0.3), ('swing', 'drive.amplitude', 1.4),
-    ('speed', 'drive.angular_frequency', 2.0), ('phase', 'drive.phase', 0.2), ('place', 'point.position(2)', 0.2))
-
 HELICAL = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='helical', point=0.2,0.1,0.3, axis=0.1,0.2,1.1, pitch=0.4, moving_point=0.05,0,0.1 /
 &drive coordinate=1, kind='polynomial', coefficients=0.2,1.5,-0.4,0.3 /
@@ -52,37 +26,6 @@ HELICAL = """&structure cq=1 /
 HELICAL_PARAMETERS = (('tilt', 'pair.axis(1)', 0.1), ('pitch', 'pair.pitch', 0.4), ('c2', 'drive.coefficients(3)', -0.4),
                       ('c1', 'drive.coefficients(2)', 1.5))
 
-PARALLELOGRAM_CHAIN = """&structure cq=1 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
-&pair coordinate=2, links=2,3, kind='revolute', point=0.5,0,0, axis=0,0,1, moving_point=0,0,0 /
-&pair coordinate=3, links=3,4, kind='revolute', point=1,0,0, axis=0,0,1, moving_point=0.5,0,0 /
-&pair coordinate=4, links=1,4, kind='revolute', point=1,0,0, axis=0,0,1, moving_point=0,0,0 /
-&initial coordinate=2, position=-1 /
-&initial coordinate=4, position=1 /
-&drive coordinate=1, kind='polynomial', coefficients=1,1 /
-"""
-PARALLELOGRAM = PARALLELOGRAM_CHAIN + """&point name='P', link=3, position=0.5,0.1,0 /
-&parameter name='crank', sets='pair(2).point(1)' /
-&time end={end}, intervals=4 /
-&output sensitivities=.true. /
-"""
-
-GEARED = """&structure cq=1 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
-&pair coordinate=2, links=1,3, kind='revolute', point=1,0,0, axis=0,0,1, moving_point=0,0,0 /
-&pair coordinate=3, links=2,4, kind='revolute', point=0.2,0,0, axis=0,0,1, moving_point=0,0,0 /
-&pair coordinate=4, links=3,5, kind='revolute', point=0.25,0,0, axis=0,0,1, moving_point=0,0,0 /
-&pair coordinate=5, links=4,5, kind='revolute', point=0.8,0,0, axis=0,0,1, moving_point=0.8,0,0 /
-&coupling kind='gear', coordinates=1,2, ratio=-1.5, phase=1.1 /
-&initial coordinate=3, position=0.4 /
-&initial coordinate=4, position=0.9 /
-&initial coordinate=5, position=-1 /
-&drive coordinate=1, kind='polynomial', coefficients=0.3,2 /
-&point name='P', link=4, position=0.4,0.1,0 /
-&time end=1, intervals=8 /
-&output sensitivities=.true. /
-"""
-
 SHAFTS = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
 &pair coordinates=2,3, links=2,3, kind='universal', axis=1,0,0, moving_axis=0,1,0 /
@@ -91,7 +34,6 @@ SHAFTS = """&structure cq=1 /
 &time end=1, intervals=8 /
 &output sensitivities=.true. /
 """
-
 
 SEGMENTS = """&structure cq=1,2 /
 &pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
@@ -107,114 +49,12 @@ SEGMENTS_PARAMETERS = (('first', 'drive(1).values(2)', 0.5), ('last', 'drive(1).
                        ('middle', 'drive(2).times(2)', 0.61))
 
 
-def of_motion(names):
-    """The numbers of the columns that have derivatives, by kinds."""
-    kinds = {}
-    for i, name in enumerate(names):
-        if name in ('t', 'closure', 'conditioning') or name.startswith('d('):
-            continue
-        kind = name.rstrip('0123456789') if '.' not in name else 'P.' + name.split('.')[1][:-1]
-        kinds.setdefault(kind, []).append(i)
-    return kinds
+@pytest.fixture
+def case(checks, tmp_path, mech9k, mech9d):
+    return Case(checks, tmp_path, mech9k, mech9d)
 
 
-class Case:
-    """A directory for files, the programs, and the checks."""
-
-    def __init__(self, checks, directory, mech9k, mech9d):
-        self.checks, self.directory, self.mech9k, self.mech9d = checks, directory, mech9k, mech9d
-
-    def table(self, text, *options):
-        """Names of the columns and rows of a run."""
-        path = os.path.join(self.directory, 'a.nml')
-        with open(path, 'w') as file:
-            file.write(text)
-        done = run(self.mech9k, path, '--quiet', '--table', '-', *options)
-        if done.returncode != 0:
-            raise RuntimeError(f'{text}{options} ended with {done.returncode}:\n{done.stderr}')
-        columns = read_table(done.stdout)
-        return list(columns), np.array(list(columns.values())).T
-
-    def refused(self, text, code, words, program=None):
-        path = os.path.join(self.directory, 'a.nml')
-        with open(path, 'w') as file:
-            file.write(text)
-        done = run(program or self.mech9k, path, '--quiet', '--table', os.path.join(self.directory, 'a.dat'))
-        self.checks.equal(done.returncode, code, f'{words}: code {code}')
-        self.checks.true(words in ' '.join(done.stderr.split()), f'the message says: {words}', done.stderr)
-
-    def compare(self, names, rows, parameter, expected, tolerance, why):
-        """Derivatives by one parameter against a table of expected ones with the columns of the motion."""
-        for kind, columns in of_motion(names).items():
-            mine = rows[:, [names.index(f'd({names[i]})/d({parameter})') for i in columns]]
-            largest = np.abs(expected[:, columns]).max()
-            error = np.abs(mine - expected[:, columns]).max()
-            self.checks.true(error <= tolerance * max(float(largest), 1e-3), f'{why}: {kind} by {parameter}',
-                             f'error {error:.2e}, largest {largest:.2e}')
-
-    def against_runs(self, text, parameters, why, tolerance=BY_RUNS, relative_step=STEP):
-        """Derivatives against differences of runs at other values of the parameters."""
-        declared = ''.join(f"&parameter name='{name}', sets='{target}', value={value!r} /\n" for name, target, value in parameters)
-        names, rows = self.table(text + declared)
-        plain = text.replace('sensitivities=.true.', 'sensitivities=.false.') + declared
-        for number, (name, _, value) in enumerate(parameters, 1):
-            step = relative_step * (abs(value) or 1.0)
-            expected = 0
-            for i, weight in enumerate(WEIGHTS, 1):
-                above, below = (self.table(plain, '--set', f'parameter({number}).value={value + sign * i * step!r}')[1]
-                                for sign in (1, -1))
-                expected = expected + weight * (above - below) / step
-            self.compare(names, rows, name, expected, tolerance, why)
-
-
-def differences(function, values, number):
-    """The derivative of a closed form by one of its values, in extended precision."""
-    step = np.longdouble(2.0**-9)
-    total = 0
-    for i, weight in enumerate(WEIGHTS, 1):
-        weight = (np.longdouble(4) / 5, -np.longdouble(1) / 5, np.longdouble(4) / 105, -np.longdouble(1) / 280)[i - 1]
-        above, below = (np.array([v + (sign * i * step if k == number else 0) for k, v in enumerate(values)]) for sign in (1, -1))
-        total = total + weight * (function(above) - function(below)) / step
-    return total
-
-
-def vector(z):
-    return [z.real, z.imag]
-
-
-def four_bar_motion(values, t, upper):
-    """q, dq, ddq of the four pairs and the motion of P, by columns, from the formulas of the four-bar linkage."""
-    a, b, c, base, mean, swing, speed, phase, place = values
-    j = np.clongdouble(1j)
-    angle = speed * t + phase
-    q1, w1, e1 = mean + swing * np.sin(angle), swing * speed * np.cos(angle), -swing * speed**2 * np.sin(angle)
-    crank = a * np.exp(j * q1)
-    start = np.clongdouble(complex(0.01, 0.02))
-    reach = (1 + j * base) - start - crank
-    length = np.abs(reach)
-    theta = np.angle(reach) + upper * np.arccos((length**2 + b**2 - c**2) / (2 * b * length))
-    coupler = b * np.exp(j * theta)
-    rocker = coupler - reach
-    q4 = np.angle(rocker)
-
-    def solve(right):
-        # i coupler x - i rocker y = right
-        m11, m12, m21, m22 = -coupler.imag, rocker.imag, coupler.real, -rocker.real
-        det = m11 * m22 - m12 * m21
-        return (right.real * m22 - m12 * right.imag) / det, (m11 * right.imag - right.real * m21) / det
-
-    w3, w4 = solve(-j * crank * w1)
-    a3, a4 = solve(-(j * e1 - w1**2) * crank + w3**2 * coupler - w4**2 * rocker)
-    arm = np.exp(j * theta) * (np.longdouble(0.4) + j * place)
-    point = start + crank + arm
-    velocity = j * w1 * crank + j * w3 * arm
-    acceleration = (j * e1 - w1**2) * crank + (j * a3 - w3**2) * arm
-    zero = 0 * t
-    return np.array([t, q1, theta - q1, q4 - theta, q4, w1, w3 - w1, w4 - w3, w4, e1, a3 - e1, a4 - a3, a4,
-                     *vector(point), zero + 0.1, *vector(velocity), zero, *vector(acceleration), zero])
-
-
-def check_four_bar(case):
+def test_four_bar_has_the_derivatives_of_its_closed_form(case):
     declared = ''.join(f"&parameter name='{name}', sets='{target}', value={value!r} /\n"
                        for name, target, value in FOUR_BAR_PARAMETERS)
     names, rows = case.table(FOUR_BAR + declared)
@@ -264,10 +104,10 @@ def jansen_points(values, t):
     return upper, lower, edge, knee, foot
 
 
-def check_jansen(case):
+def test_leg_has_the_derivatives_of_its_circles(case):
     """Three closed chains, one after the other: derivatives of all points by the bars, against circles in extended precision. Rates
     and accelerations are differences in time of these."""
-    lines = text_of(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'examples', 'jansen_leg', 'jansen_leg.nml'))
+    lines = text_of(os.path.join(TREE, 'examples', 'jansen_leg', 'jansen_leg.nml'))
     text = '\n'.join(line for line in lines.splitlines() if not line.startswith('&output')).replace('intervals=120', 'intervals=12')
     text += '\n&output sensitivities=.true. /\n' + ''.join(
         f"&parameter name='{name}', sets={targets}, value={value!r} /\n" for name, targets, value in JANSEN_PARAMETERS)
@@ -322,7 +162,7 @@ def helical_motion(values, t):
     return np.concatenate([np.array([t, q, dq, ddq]), position.T, velocity.T, acceleration.T])
 
 
-def check_helical(case):
+def test_helical_pair_has_the_derivatives_of_its_closed_form(case):
     declared = ''.join(f"&parameter name='{name}', sets='{target}' /\n" for name, target, _ in HELICAL_PARAMETERS)
     names, rows = case.table(HELICAL + declared)
     t = rows[:, 0].astype(np.longdouble)
@@ -333,25 +173,35 @@ def check_helical(case):
         case.compare(names, rows, name, np.asarray(expected.T, float), EXACT, 'helical pair, closed form')
 
 
-def check_against_runs(case):
-    case.against_runs(GEARED, (('ratio', 'coupling.ratio', -1.5), ('turned', 'coupling.phase', 1.1),
-                               ('arm', 'pair(4).point(1)', 0.25)), 'geared five-bar linkage')
-    case.against_runs(SHAFTS, (('bend', 'pair(3).axis(1)', 0.5),), 'shafts with a universal joint')
-    rsur = text_of(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'examples', 'rsur', 'rsur.nml'))
-    rsur = rsur.replace('intervals=120', 'intervals=6').replace("&output table='rsur.dat' /", '&output sensitivities=.true. /')
-    case.against_runs(rsur, (('rod', 'pair(5).point(2)', 0.5), ('direction', 'pair(7).axis(2)', 0.0)), 'spatial crank and rocker')
+def rsur():
+    text = text_of(os.path.join(TREE, 'examples', 'rsur', 'rsur.nml'))
+    return text.replace('intervals=120', 'intervals=6').replace("&output table='rsur.dat' /", '&output sensitivities=.true. /')
 
 
-def check_segments(case):
-    """All motion laws, and a law that repeats and advances. The small steps of the differences, which keep all outputs in their
-    segments, cost three digits."""
-    curves = ('constant-velocity', 'harmonic', 'cycloidal', 'polynomial345', 'polynomial4567', 'modified-sine', 'modified-trapezoidal')
-    for number, curve in enumerate(curves):
-        laws = ','.join(f"'{name}'" for name in (curve, 'constant-velocity', curves[(number + 1) % 7], curve))
-        text = SEGMENTS.format(laws, f"'{curve}'", 0.026, 1.058)
-        if curve in ('harmonic', 'cycloidal'):
-            text += '&mechanism angle_unit=\'deg\' /\n'
-        case.against_runs(text, SEGMENTS_PARAMETERS, f'segments, {curve}', 1e-8, 2.0**-11)
+@pytest.mark.parametrize('why, text, parameters', (
+    ('geared five-bar linkage', GEARED, (('ratio', 'coupling.ratio', -1.5), ('turned', 'coupling.phase', 1.1), ('arm', 'pair(4).point(1)', 0.25))),
+    ('shafts with a universal joint', SHAFTS, (('bend', 'pair(3).axis(1)', 0.5),)),
+    ('spatial crank and rocker', rsur(), (('rod', 'pair(5).point(2)', 0.5), ('direction', 'pair(7).axis(2)', 0.0)))),
+    ids=('geared five-bar', 'universal joint', 'spatial crank and rocker'))
+def test_derivatives_are_differences_of_runs(case, why, text, parameters):
+    case.against_runs(text, parameters, why)
+
+
+CURVES = ('constant-velocity', 'harmonic', 'cycloidal', 'polynomial345', 'polynomial4567', 'modified-sine', 'modified-trapezoidal')
+
+
+@pytest.mark.parametrize('curve', CURVES)
+def test_laws_in_segments_that_repeat_and_advance(case, curve):
+    """The small steps of the differences, which keep all outputs in their segments, cost three digits."""
+    following = CURVES[(CURVES.index(curve) + 1) % 7]
+    laws = ','.join(f"'{name}'" for name in (curve, 'constant-velocity', following, curve))
+    text = SEGMENTS.format(laws, f"'{curve}'", 0.026, 1.058)
+    if curve in ('harmonic', 'cycloidal'):
+        text += '&mechanism angle_unit=\'deg\' /\n'
+    case.against_runs(text, SEGMENTS_PARAMETERS, f'segments, {curve}', 1e-8, 2.0**-11)
+
+
+def test_times_of_a_law_in_proportion(case):
     turn = "&parameter name='size', sets='drive(2).times(1)','drive(2).times(2)','drive(2).times(3)','drive(2).period', " \
         "factors=0.2,0.61,0.92,0.72, value=1 /\n"
     # all times of a law in proportion: q(t/p), so that the derivatives are -t dq, -dq - t ddq
@@ -361,8 +211,8 @@ def check_segments(case):
     case.checks.near(rows[:, names.index('d(dq2)/d(size)')], -dq - t * ddq, 1e-11, 'times in proportion: rates', scale=1.0)
 
 
-def check_identities(case):
-    """All lengths in proportion: angles stay, points move in proportion. A turn of a crank's zero is a change of its drive."""
+def test_lengths_in_proportion(case):
+    """Angles stay, and points move in proportion."""
     lengths = [('pair(1).point(1)', 0.01), ('pair(1).point(2)', 0.02), ('pair(2).point(1)', 0.3), ('pair(3).point(1)', 0.9),
                ('pair(3).moving_point(1)', 0.7), ('pair(4).point(1)', 1.0), ('point.position(1)', 0.4), ('point.position(2)', 0.2),
                ('point.position(3)', 0.1)]
@@ -373,36 +223,52 @@ def check_identities(case):
         derivatives = rows[:, [names.index(f'd({names[i]})/d(size)') for i in columns]]
         expected = rows[:, columns] if kind.startswith('P.') else 0 * derivatives
         case.checks.near(derivatives, expected, 1e-11, f'all lengths in proportion: {kind}', scale=1.0)
+
+
+CRANK = "&parameter name='crank', sets='pair(2).point(1)' /\n"
+
+
+def test_other_numbers_of_pairs(case):
     numbered = FOUR_BAR.replace('&pair coordinate=2,', '&pair coordinate=9,').replace('&pair coordinate=3,', '&pair coordinate=2,') \
         .replace('&pair coordinate=9,', '&pair coordinate=3,').replace('&initial coordinate=2,', '&initial coordinate=3,')
-    crank = "&parameter name='crank', sets='pair(2).point(1)' /\n"
-    names, rows = case.table(FOUR_BAR + crank)
-    names_of_other, rows_of_other = case.table(numbered + crank)
+    names, rows = case.table(FOUR_BAR + CRANK)
+    names_of_other, rows_of_other = case.table(numbered + CRANK)
     for one, other in (('q2', 'q3'), ('ddq3', 'ddq2'), ('P.ax', 'P.ax')):
         case.checks.near(rows_of_other[:, names_of_other.index(f'd({other})/d(crank)')], rows[:, names.index(f'd({one})/d(crank)')],
                          1e-11, f'other numbers of pairs: {one}', scale=1.0)
-    names, rows = case.table(FOUR_BAR.replace('sensitivities', 'derivatives=0, sensitivities') + crank)
+
+
+def test_positions_alone_have_derivatives_alone(case):
+    names, rows = case.table(FOUR_BAR.replace('sensitivities', 'derivatives=0, sensitivities') + CRANK)
     case.checks.equal(names[1:], [*names[1:9], *(f'd({n})/d(crank)' for n in names[1:8])], 'positions alone have derivatives alone')
 
 
-def check_singular(case):
+def test_beside_a_singular_position_derivatives_are_finite(case):
     names, rows = case.table(PARALLELOGRAM.format(end=2.0))
     case.checks.true(np.isfinite(rows).all(), 'beside a singular position derivatives are finite')
+
+
+def test_in_a_singular_position_there_are_no_derivatives(case):
     flat = PARALLELOGRAM.replace('coefficients=1,1', 'coefficients=-2,1').replace('position=-1', 'position=2') \
         .replace('coordinate=4, position=1', 'coordinate=4, position=-2').format(end=4.0)
     case.refused(flat, 6, 'derivatives by the parameters do not exist at t = 2 s, in a singular position of closed chain 1')
+
+
+def test_a_parameter_that_opens_a_chain_has_no_derivatives(case):
     tilted = PARALLELOGRAM.format(end=2.0).replace("sets='pair(2).point(1)'", "sets='pair(2).axis(1)'")
     case.refused(tilted, 3, "derivatives by the parameter 'crank' do not exist: closed chain 1 would not stay closed")
 
 
-def check_refusals(case):
-    crank = "&parameter name='crank', sets='{}' /\n"
-    case.refused(FOUR_BAR, 3, 'sensitivities are derivatives by the parameters, and there are none')
-    case.refused(FOUR_BAR + crank.format('time.end'), 3, "derivatives by the parameter 'crank' are not computed")
-    case.refused('&mechanism title=\'a\' /\n' + FOUR_BAR + crank.format('mechanism.data_tolerance'), 3, 'its value cannot be changed a little in both directions')
+@pytest.mark.parametrize('text, words', (
+    (FOUR_BAR, 'sensitivities are derivatives by the parameters, and there are none'),
+    (FOUR_BAR + "&parameter name='crank', sets='time.end' /\n", "derivatives by the parameter 'crank' are not computed"),
+    ("&mechanism title='a' /\n" + FOUR_BAR + "&parameter name='crank', sets='mechanism.data_tolerance' /\n",
+     'its value cannot be changed a little in both directions')), ids=('no parameter', 'a time', 'a tolerance'))
+def test_refused(case, text, words):
+    case.refused(text, 3, words)
 
 
-def check_hdf5(case):
+def test_hdf5_file_has_the_derivatives_of_the_table(case):
     try:
         import h5py
     except ImportError:
@@ -487,21 +353,25 @@ def planar_mechanism(random, slides):
     return text, parameters, tilted
 
 
-def check_arithmetics(case):
-    """Planar and spatial arithmetic agree: a parameter that tilts an arm takes the whole mechanism out of planar arithmetic."""
+def planar_mechanisms():
     random = np.random.default_rng(9)
-    for number in range(6):
-        text, parameters, tilted = planar_mechanism(random, number % 2 == 1)
-        declared = ''.join(f"&parameter name='p{i}', {body} /\n" for i, body in enumerate(parameters))
-        names, rows = case.table(text + declared)
-        names_in_space, rows_in_space = case.table(text + declared + f"&parameter name='tilt', {tilted} /\n")
-        case.checks.equal(names_in_space[:len(names)], names, 'columns of the first parameters stand before those of the last one')
-        case.checks.true(np.abs(rows_in_space[:, len(names):]).max() > 0.01, 'the tilt moves the arm')
-        for kind, columns in of_motion(names).items():
-            for i in range(len(parameters)):
-                of_kind = [names.index(f'd({names[k]})/d(p{i})') for k in columns]
-                # the constants of a tilted plane differ by round-off, which dead points and accelerations magnify
-                case.checks.near(rows[:, of_kind], rows_in_space[:, of_kind], 1e-10, f'planar mechanism {number}: {kind} by {parameters[i]}')
+    return [planar_mechanism(random, number % 2 == 1) for number in range(6)]
+
+
+@pytest.mark.parametrize('number', range(6))
+def test_planar_and_spatial_arithmetic_agree(case, number):
+    """A parameter that tilts an arm takes the whole mechanism out of planar arithmetic."""
+    text, parameters, tilted = planar_mechanisms()[number]
+    declared = ''.join(f"&parameter name='p{i}', {body} /\n" for i, body in enumerate(parameters))
+    names, rows = case.table(text + declared)
+    names_in_space, rows_in_space = case.table(text + declared + f"&parameter name='tilt', {tilted} /\n")
+    case.checks.equal(names_in_space[:len(names)], names, 'columns of the first parameters stand before those of the last one')
+    case.checks.true(np.abs(rows_in_space[:, len(names):]).max() > 0.01, 'the tilt moves the arm')
+    for kind, columns in of_motion(names).items():
+        for i in range(len(parameters)):
+            of_kind = [names.index(f'd({names[k]})/d(p{i})') for k in columns]
+            # the constants of a tilted plane differ by round-off, which dead points and accelerations magnify
+            case.checks.near(rows[:, of_kind], rows_in_space[:, of_kind], 1e-10, f'planar mechanism {number}: {kind} by {parameters[i]}')
 
 
 UPRIGHT = """&structure cq=1 /
@@ -519,7 +389,7 @@ UPRIGHT = """&structure cq=1 /
 """
 
 
-def check_turned_plane(case):
+def test_axes_that_tilt_alike_turn_the_plane(case):
     """A parameter that tilts all axes alike turns the plane about the second axis: coordinates stay, and points turn with the plane."""
     names, planar = case.table(UPRIGHT)
     axes = ','.join(f"'pair({i}).axis(1)'" for i in range(1, 5))
@@ -538,7 +408,7 @@ def check_turned_plane(case):
 MOST_COST = 5.0
 
 
-def check_cost(case):
+def test_ten_parameters_cost_little(case):
     """Derivatives by ten parameters take a few times the time of a run without them. Both times are differences between runs of two
     lengths, so that reading and planning do not count."""
     targets = [f'pair({k}).{name}({i})' for k, name in ((2, 'point'), (3, 'point'), (3, 'moving_point'), (4, 'point'), (1, 'point'))
@@ -558,26 +428,3 @@ def check_cost(case):
              for wanted in ('.false.', '.true.')]
     case.checks.true(least[1] <= MOST_COST * max(least[0], 0.015), 'ten parameters cost little',
                      f'{least[1]:.3f} s, against {least[0]:.3f} s without derivatives')
-
-
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as directory:
-        case = Case(checks, directory, *sys.argv[1:3])
-        check_four_bar(case)
-        check_helical(case)
-        check_jansen(case)
-        check_against_runs(case)
-        check_segments(case)
-        check_identities(case)
-        check_singular(case)
-        check_refusals(case)
-        check_hdf5(case)
-        check_arithmetics(case)
-        check_turned_plane(case)
-        check_cost(case)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()

@@ -3,20 +3,15 @@ complex steps in exponentials of matrices; of a four-bar linkage, with limits, l
 independent coordinates, against differences of whole runs; at outputs within steps and with all methods alike; HDF5 and gradients.
 
 Compares the program with itself in part: differences of runs at other values of a parameter; other methods of integration.
-
-usage: motor_sensitivities.py MECH9K MECH9D
 """
 import json
 import os
-import sys
-import tempfile
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from dynamic_sensitivities import PENDULUM_FOUR_BAR, SOLVER, TOLERANCE, TOLERANCES, Case, declared
-from mech9_cases import Checks, run
+from dynamic_derivatives import PENDULUM_FOUR_BAR, SOLVER, TOLERANCE, TOLERANCES, Case, declared
+from mech9_cases import run
 
 FLYWHEEL = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
@@ -56,6 +51,11 @@ FOUR_BAR = """&structure cq=1 /
 &time end=0.3, intervals=3 /
 """
 MECHANISM_PARAMETERS = (('mass', 'body(2).mass', 0.5), ('crank', 'pair(2).point(1)', 0.2), ('start', 'initial(1).position', 0.3))
+
+
+@pytest.fixture
+def case(checks, tmp_path, mech9k, mech9d):
+    return Case(checks, tmp_path, mech9k, mech9d)
 
 
 def exponential(matrix):
@@ -98,44 +98,48 @@ def slide(values, times):
             'E.kinetic': mass * states[:, 1]**2 / 2, 'E.potential': stiffness * states[:, 0]**2 / 2}
 
 
-def check_closed_forms(case):
-    for name, text, parameters, motion in (('flywheel', FLYWHEEL, FLYWHEEL_PARAMETERS, flywheel), ('slide', SLIDE, SLIDE_PARAMETERS, slide)):
-        found = case.table(text + SOLVER + declared(parameters) + '&output sensitivities=.true., reactions=.true. /\n')
-        values = np.array([value for _, _, value in parameters], dtype=complex)
-        plain = motion(values, found['t'])
-        for column in plain:
-            case.close(found[column], plain[column].real, TOLERANCES * TOLERANCE, f'{name}: {column} is that of the run')
-        for number, (parameter, _, _) in enumerate(parameters):
-            shifted = values.copy()
-            shifted[number] += 1e-30j
-            for column, numbers in motion(shifted, found['t']).items():
-                case.close(found[f'd({column})/d({parameter})'], numbers.imag / 1e-30, TOLERANCES * TOLERANCE, f'{name}: {column} by {parameter}')
+@pytest.mark.parametrize('name, text, parameters, motion', (
+    ('flywheel', FLYWHEEL, FLYWHEEL_PARAMETERS, flywheel), ('slide', SLIDE, SLIDE_PARAMETERS, slide)), ids=('flywheel', 'slide'))
+def test_linear_motions_by_complex_steps_of_their_closed_forms(case, name, text, parameters, motion):
+    found = case.table(text + SOLVER + declared(parameters) + '&output sensitivities=.true., reactions=.true. /\n')
+    values = np.array([value for _, _, value in parameters], dtype=complex)
+    plain = motion(values, found['t'])
+    for column in plain:
+        case.close(found[column], plain[column].real, TOLERANCES * TOLERANCE, f'{name}: {column} is that of the run')
+    for number, (parameter, _, _) in enumerate(parameters):
+        shifted = values.copy()
+        shifted[number] += 1e-30j
+        for column, numbers in motion(shifted, found['t']).items():
+            case.close(found[f'd({column})/d({parameter})'], numbers.imag / 1e-30, TOLERANCES * TOLERANCE, f'{name}: {column} by {parameter}')
 
 
-def check_four_bar(case):
-    dc = "kind='dc', voltage=12, resistance=0.8, inductance=0.02, constant=0.05, gear_ratio=20"
-    pid = "kind='pid', proportional=30, integral=40{}, setpoint=1.2"
-    for why, motor, parameters in (
-            ('a motor', dc, (('inductance', 'motor.inductance', 0.02),)),
-            ('no inductance', dc.replace('inductance=0.02, ', ''), (('ratio', 'motor.gear_ratio', 20.0), ('resistance', 'motor.resistance', 0.8))),
-            ('voltage by a law', dc + ", law='harmonic', mean=0.2, amplitude=1, angular_frequency=9",
-             (('often', 'motor.angular_frequency', 9.0), ('voltage', 'motor.voltage', 12.0))),
-            ('a controller', pid.format(', derivative=3'), (('setpoint', 'motor.setpoint', 1.2), ('derivative', 'motor.derivative', 3.0))),
-            ('a controller with a limit', pid.format(', derivative=3, limit=9'),
-             (('limit', 'motor.limit', 9.0), ('integral', 'motor.integral', 40.0), ('derivative', 'motor.derivative', 3.0))),
-            ('without a derivative part', pid.format(', limit=9'), (('limit', 'motor.limit', 9.0), ('proportional', 'motor.proportional', 30.0)))):
-        case.against_runs(FOUR_BAR.format(motor), parameters + MECHANISM_PARAMETERS[:1 + 2 * (why == 'a motor')], f'four-bar linkage with {why}',
-                          2.0**-9)
+DC = "kind='dc', voltage=12, resistance=0.8, inductance=0.02, constant=0.05, gear_ratio=20"
+PID = "kind='pid', proportional=30, integral=40{}, setpoint=1.2"
 
 
-def check_changes(case):
+@pytest.mark.parametrize('why, motor, parameters', (
+    ('a motor', DC, (('inductance', 'motor.inductance', 0.02),)),
+    ('no inductance', DC.replace('inductance=0.02, ', ''), (('ratio', 'motor.gear_ratio', 20.0), ('resistance', 'motor.resistance', 0.8))),
+    ('voltage by a law', DC + ", law='harmonic', mean=0.2, amplitude=1, angular_frequency=9",
+     (('often', 'motor.angular_frequency', 9.0), ('voltage', 'motor.voltage', 12.0))),
+    ('a controller', PID.format(', derivative=3'), (('setpoint', 'motor.setpoint', 1.2), ('derivative', 'motor.derivative', 3.0))),
+    ('a controller with a limit', PID.format(', derivative=3, limit=9'),
+     (('limit', 'motor.limit', 9.0), ('integral', 'motor.integral', 40.0), ('derivative', 'motor.derivative', 3.0))),
+    ('without a derivative part', PID.format(', limit=9'), (('limit', 'motor.limit', 9.0), ('proportional', 'motor.proportional', 30.0)))),
+    ids=('motor', 'no inductance', 'voltage by a law', 'controller', 'controller with a limit', 'no derivative part'))
+def test_four_bar_linkage_by_differences_of_runs(case, why, motor, parameters):
+    case.against_runs(FOUR_BAR.format(motor), parameters + MECHANISM_PARAMETERS[:1 + 2 * (why == 'a motor')], f'four-bar linkage with {why}',
+                      2.0**-9)
+
+
+def test_changes_of_the_independent_coordinates(case):
     """The derivatives of a motor's state go on where other coordinates become independent."""
     motor = "&motor coordinate=4, kind='dc', voltage=5, resistance=0.8, inductance=0.5, constant=0.05, gear_ratio=20 /\n"
     case.against_runs(PENDULUM_FOUR_BAR + motor, (('mass', 'body(1).mass', 20.0), ('inductance', 'motor.inductance', 0.5)),
                       'through changes of coordinates', 2.0**-9)
 
 
-def check_methods(case):
+def test_other_methods_of_integration(case):
     """Outputs within steps, and all methods: they differ by a thousand tolerances at most."""
     text = FOUR_BAR.format("kind='pid', proportional=30, integral=40, derivative=3, limit=9, setpoint=1.2").replace('intervals=3', 'intervals=30')
     text += declared((('limit', 'motor.limit', 9.0),)) + '&output sensitivities=.true. /\n'
@@ -147,8 +151,7 @@ def check_methods(case):
                 case.close(other[column], runs[0][column], 1e-8, f'with other methods: {column}')
 
 
-def check_results(case):
-    """Gradients of quantities are those of the columns at the end; the HDF5 file has them, too."""
+def test_gradient_of_a_quantity_is_that_of_the_column_at_the_end(case):
     text = FLYWHEEL + SOLVER + declared(FLYWHEEL_PARAMETERS[:2])
     found = case.table(text + '&output sensitivities=.true. /\n')
     path = os.path.join(case.directory, 'b.nml')
@@ -160,29 +163,17 @@ def check_results(case):
     with open(report, encoding='utf-8') as file:
         told = [by['value'] for by in json.load(file)['quantities'][0]['gradient']]
     case.checks.near(told, [found[f'd(M1.torque)/d({name})'][-1] for name in ('voltage', 'resistance')], 1e-12, 'the gradient of a torque', scale=1)
+
+
+def test_hdf5_file_has_the_derivatives_of_motors(case):
     try:
         import h5py
     except ImportError:
         case.checks.left_out('h5py is not installed (Debian: python3-h5py)')
         return
     hdf5 = os.path.join(case.directory, 'b.h5')
-    case.table(text + '&output sensitivities=.true. /\n', '--hdf5', hdf5)
+    text = FLYWHEEL + SOLVER + declared(FLYWHEEL_PARAMETERS[:2])
+    found = case.table(text + '&output sensitivities=.true. /\n', '--hdf5', hdf5)
     with h5py.File(hdf5) as file:
         for column in ('current', 'torque'):
             case.checks.true((file[f'sensitivity/M1_{column}'][:, 1] == found[f'd(M1.{column})/d(resistance)']).all(), f'M1_{column} in the file')
-
-
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as directory:
-        case = Case(checks, directory, *sys.argv[1:3])
-        check_closed_forms(case)
-        check_four_bar(case)
-        check_changes(case)
-        check_methods(case)
-        check_results(case)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()

@@ -2,20 +2,17 @@
 differences of whole runs; where there are none; report, HDF5 file, terminal, with recorded sensitivities and without.
 
 Compares the program with itself in part: differences of runs at other values of a parameter.
-
-usage: quantity_gradients.py MECH9K MECH9D
 """
 import json
 import math
 import os
-import sys
-import tempfile
 
-import h5py
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks, run
+from mech9_cases import run
+
+h5py = pytest.importorskip('h5py', reason='h5py is not installed (Debian: python3-h5py)')
 
 DONE, DATA = 0, 3
 CRANK, ROD = 0.3, 1.1
@@ -77,12 +74,17 @@ class Case:
         self.checks.true(abs(found - expected) <= tolerance, why, f'{float(found)!r} instead of {float(expected)!r}')
 
 
+@pytest.fixture
+def case(checks, tmp_path, mech9k):
+    return Case(checks, tmp_path, mech9k)
+
+
 def quantities(wanted):
     return ''.join(f"&quantity name='n{i}', of='{one[0]}', take='{one[1]}'{one[2] if len(one) > 2 else ''} /\n"
                    for i, one in enumerate(wanted))
 
 
-def check_slider_crank(case):
+def test_strokes_and_dead_centres_of_a_slider_crank(case):
     """Dead centres between outputs: the stroke is twice the crank, whatever the rod, and it does not depend on where the motion
     begins. With 40 outputs for 1.1 turns the polynomials are exact to some 1e-12."""
     wanted = [('B.x', 'range'), ('B.x', 'max'), ('B.x', 'min'), ('B.x', 'at', ', at=0.123'), ('B.x', 'start'), ('B.x', 'end'),
@@ -102,8 +104,9 @@ def check_slider_crank(case):
             case.near(found[i][p], expected[i][p], 1e-9, f'slider-crank: {one} by {name}')
 
 
-def check_sine(case):
-    """Harmonics over a part of a period, with rates and accelerations recorded, and with values alone."""
+@pytest.mark.parametrize('more, why', (('', 'with rates'), ('derivatives=0, ', 'of values alone')), ids=('with rates', 'values alone'))
+def test_means_and_extremes_of_a_sine(case, more, why):
+    """Harmonics over a part of a period."""
     mean, swing, speed, phase, end = 0.2, 0.7, 3.0, 0.4, 1.7
 
     def numbers(values):
@@ -118,17 +121,16 @@ def check_sine(case):
     extremes = [[1, 1, 0, 0], [1, -1, 0, 0], [0, 2, 0, 0], [1, 1, 0, 0]]
     wanted = [('q1', 'mean'), ('q1', 'rms'), ('q1', 'integral'), ('q1', 'at', ', at=1'), ('q1', 'max'), ('q1', 'min'), ('q1', 'range'),
               ('q1', 'peak')]
-    for more, why in (('', 'with rates'), ('derivatives=0, ', 'of values alone')):
-        text = SINE + quantities(wanted) + f'&output {more}gradients=.true. /\n'
-        _, found = case.gradients(text, request='')
-        for i, one in enumerate(wanted):
-            for p, name in enumerate(('middle', 'swing', 'speed', 'phase')):
-                right = expected[i][p] if i < 4 else extremes[i - 4][p]
-                case.near(found[i][p], right, 1e-9, f'sine {why}: {one} by {name}')
+    text = SINE + quantities(wanted) + f'&output {more}gradients=.true. /\n'
+    _, found = case.gradients(text, request='')
+    for i, one in enumerate(wanted):
+        for p, name in enumerate(('middle', 'swing', 'speed', 'phase')):
+            right = expected[i][p] if i < 4 else extremes[i - 4][p]
+            case.near(found[i][p], right, 1e-9, f'sine {why}: {one} by {name}')
 
 
-def check_ends(case):
-    """An extreme at the end of the time stays there: the derivative of the column, not zero."""
+def test_an_extreme_at_the_end_of_the_time(case):
+    """It stays there: the derivative of the column, not zero."""
     _, found = case.gradients(SINE.replace('end=1.7', 'end=0.2').replace('intervals=20', 'intervals=4')
                               + quantities([('q1', 'max'), ('q1', 'min'), ('dq1', 'min')]))
     last, first = 0.6 + 0.4, 0.4
@@ -139,8 +141,7 @@ def check_ends(case):
             case.near(one, number, 1e-12, 'extreme at an end of the time')
 
 
-def check_against_runs(case):
-    """Every kind of quantity of positions, rates and accelerations against differences of whole runs."""
+def test_every_kind_of_quantity_by_differences_of_runs(case):
     wanted = [(of, take) for of in ('B.x', 'B.vx', 'B.ax', 'q3', 'dq4') for take in TAKES] + [('B.ax', 'at', ', at=0.3')]
     # Small steps, and many outputs: else some of the runs follow an acceleration by polynomials of lower degree than others.
     text = SLIDER_CRANK.format(intervals=80) + quantities(wanted)
@@ -158,7 +159,7 @@ def check_against_runs(case):
             case.near(found[i][p], expected[i], tolerance * max(1, abs(expected[i])), f'{one} by parameter {p + 1}')
 
 
-def check_kept(case):
+def test_report_file_and_terminal_tell_the_same(case):
     """The HDF5 file, the report and the terminal tell the same, whether sensitivities are recorded or not."""
     text = SLIDER_CRANK.format(intervals=20) + quantities([('B.x', 'range'), ('closure', 'max'), ('q2', 'rms')])
     hdf5 = case.path('case.h5')
@@ -185,8 +186,8 @@ def check_kept(case):
     case.checks.true(np.allclose(again[1], found, rtol=1e-12, atol=1e-12, equal_nan=True), 'poses in the rows change nothing')
 
 
-def check_stopped(case):
-    """A run that does not come to its end has no derivatives."""
+def test_a_run_that_stops_has_no_derivatives(case):
+    """A run that does not come to its end."""
     text = SLIDER_CRANK.format(intervals=20).replace("sets='pair(3).point(1)'", "sets='pair(3).point(1)', value=0.25") \
         + quantities([('B.x', 'range')]) + '&output gradients=.true. /\n'
     done = case.run(text, '--quiet', '--report', case.path('report.json'), '--hdf5', case.path('case.h5'))
@@ -196,41 +197,31 @@ def check_stopped(case):
             case.checks.true(bool(np.isnan(file['quantities/gradient'][()]).all()), 'the HDF5 file has none')
 
 
-def check_refusals(case, mech9d):
-    text = SLIDER_CRANK.format(intervals=20)
-    one = quantities([('B.x', 'range')])
-    without = '\n'.join(line for line in text.splitlines() if not line.startswith('&parameter')) + '\n'
-    for data, message in ((without + one, 'gradients are derivatives by the parameters, and there are none; give a group &parameter'),
-                          (text, 'gradients are derivatives of the quantities, and there are none; give a group &quantity'),
-                          (text + one.replace('n0', 'gradient'), "have the name 'gradient' in the HDF5 file; choose another name"),
-                          (text + one + "&study kind='grid' /\n", None)):
-        options = ('--study',) if message is None else ()
-        if message is None:
-            data = data.replace("sets='pair(2).point(1)'", "sets='pair(2).point(1)', low=0.2, high=0.3, count=2")
-            data = data.replace("sets='pair(3).point(1)'", "sets='pair(3).point(1)', low=1, high=1.1, count=2")
-            data = data.replace("sets='drive.coefficients(1)'", "sets='drive.coefficients(1)', low=0, high=0.1, count=2")
-            message = 'a study records no gradients: leave out gradients in &output'
-        done = case.run(data + '&output gradients=.true. /\n', *options)
-        case.checks.true(done.returncode == DATA and message in ' '.join(done.stderr.split()), message, done.stderr)
-    with open(case.path('case.nml'), 'w', encoding='utf-8') as file:
-        file.write(text + one + '&output gradients=.true. /\n')
-    done = run(mech9d, case.path('case.nml'))
-    case.checks.equal(done.returncode, 0, 'mech9d finds gradients of driven motions')
+ONE = "&quantity name='n0', of='B.x', take='range' /\n"
+GRADIENTS = '&output gradients=.true. /\n'
 
 
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as directory:
-        case = Case(checks, directory, sys.argv[1])
-        check_slider_crank(case)
-        check_sine(case)
-        check_ends(case)
-        check_against_runs(case)
-        check_kept(case)
-        check_stopped(case)
-        check_refusals(case, sys.argv[2])
-    checks.finish()
+@pytest.mark.parametrize('data, message', (
+    ('\n'.join(line for line in SLIDER_CRANK.splitlines() if not line.startswith('&parameter')) + '\n' + ONE,
+     'gradients are derivatives by the parameters, and there are none; give a group &parameter'),
+    (SLIDER_CRANK, 'gradients are derivatives of the quantities, and there are none; give a group &quantity'),
+    (SLIDER_CRANK + ONE.replace('n0', 'gradient'), "have the name 'gradient' in the HDF5 file; choose another name")),
+    ids=('no parameters', 'no quantities', 'a wrong name'))
+def test_refused(case, data, message):
+    done = case.run(data.format(intervals=20) + GRADIENTS)
+    case.checks.true(done.returncode == DATA and message in ' '.join(done.stderr.split()), message, done.stderr)
 
 
-if __name__ == '__main__':
-    main()
+def test_a_study_records_no_gradients(case):
+    data = SLIDER_CRANK.format(intervals=20) + ONE + "&study kind='grid' /\n"
+    data = data.replace("sets='pair(2).point(1)'", "sets='pair(2).point(1)', low=0.2, high=0.3, count=2")
+    data = data.replace("sets='pair(3).point(1)'", "sets='pair(3).point(1)', low=1, high=1.1, count=2")
+    data = data.replace("sets='drive.coefficients(1)'", "sets='drive.coefficients(1)', low=0, high=0.1, count=2")
+    message = 'a study records no gradients: leave out gradients in &output'
+    done = case.run(data + GRADIENTS, '--study')
+    case.checks.true(done.returncode == DATA and message in ' '.join(done.stderr.split()), message, done.stderr)
+
+
+def test_mech9d_finds_gradients_of_driven_motions(checks, tmp_path, mech9d):
+    done = Case(checks, tmp_path, mech9d).run(SLIDER_CRANK.format(intervals=20) + ONE + GRADIENTS)
+    checks.equal(done.returncode, 0, 'mech9d finds gradients of driven motions')

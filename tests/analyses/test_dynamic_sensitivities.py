@@ -3,25 +3,15 @@ of closed chains, through changes of the independent coordinates, with springs, 
 whole runs, energies and poses of links among them; identities of scaling, of the start and of driven motions; what is refused, and why.
 
 Compares the program with itself in part: differences of runs at other values of a parameter, and mech9d with mech9k.
-
-usage: dynamic_sensitivities.py MECH9K MECH9D
 """
 import os
-import sys
-import tempfile
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks, read_table, run, text_of
-
-# The promise: derivatives within this many times the tolerance, of the largest of their kind.
-TOLERANCES = 100
-TOLERANCE = 1e-12
-SOLVER = f'&solver relative_tolerance={TOLERANCE!r}, absolute_tolerance={TOLERANCE!r} /\n'
-# Differences of runs that err by some 1e-12 of themselves, over steps of some thousandths, know eight digits.
-BY_RUNS = 1e-7
-WEIGHTS = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
+from dynamic_derivatives import (BEAD, BY_RUNS, FOUR_BAR, FOUR_BAR_PARAMETERS, PENDULUM_FOUR_BAR, SOLVER, SPATIAL, SPATIAL_PARAMETERS, TOLERANCE,
+                                 TOLERANCES, TURNING, WEIGHTS, Case, declared)
+from mech9_cases import TREE, text_of
 
 DOUBLE_PENDULUM = """&structure cq=1,2 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=0,0,0 /
@@ -38,133 +28,9 @@ PENDULUM_PARAMETERS = (
     ('bar', "'pair(2).point(1)','body(1).centre(1)'", 1.0), ('swing', "'body(2).centre(1)'", 0.8),
     ('upper', "'body(1).mass'", 2.0), ('lower', "'body(2).mass'", 1.0), ('fall', "'gravity.acceleration(2)'", -9.81),
     ('first', "'initial(1).position'", 0.3), ('second', "'initial(2).position'", 0.4), ('rate', "'initial(1).velocity'", 0.7))
-
-FOUR_BAR = """&structure cq=1 /
-&pair coordinate=1, links=1,2, kind='revolute', point=0.01,0.02,0, axis=0,0,1, moving_point=0,0,0 /
-&pair coordinate=2, links=2,3, kind='revolute', point=0.3,0,0, axis=0,0,1, moving_point=0,0,0 /
-&pair coordinate=3, links=3,4, kind='revolute', point=0.9,0,0, axis=0,0,1, moving_point=0.7,0,0 /
-&pair coordinate=4, links=1,4, kind='revolute', point=1,0,0, axis=0,0,1, moving_point=0,0,0 /
-&initial coordinate=1, position=0.2, velocity=1.0 /
-&initial coordinate=2, position=0.5 /
-&initial coordinate=4, position=1.0 /
-&body link=2, mass=2, centre=0.15,0,0, inertia=0.015,0.015,0.02,0,0,0 /
-&body link=3, mass=1, centre=0.4,0.1,0, inertia=0.03,0.03,0.05,0,0,0 /
-&body link=4, mass=1.5, centre=0.4,0,0, inertia=0.03,0.03,0.04,0,0,0 /
-&gravity acceleration=0,-9.81,0 /
-&load kind='coordinate', coordinate=4, stiffness=3, rest=0.5, damping=0.2 /
-&load kind='force', link=3, position=0.4,0.2,0, force=1,2,0, law='harmonic', mean=1, amplitude=0.5, angular_frequency=3 /
-&load kind='spring', links=1,3, position=0.2,0.9,0, second_position=0.4,0.1,0, stiffness=12, free_length=0.2, damping=0.3 /
-&point name='P', link=3, position=0.4,0.2,0.1 /
-&time end=0.6, intervals=4 /
-"""
-FOUR_BAR_PARAMETERS = (
-    ('crank', 'pair(2).point(1)', 0.3), ('rocker', 'pair(3).moving_point(1)', 0.7), ('base', 'pair(4).point(2)', 0.0),
-    ('mass', 'body(2).mass', 1.0), ('centre', 'body(2).centre(1)', 0.4), ('inertia', 'body(3).inertia(3)', 0.04),
-    ('sideways', 'gravity.acceleration(1)', 0.0), ('first', 'initial(1).position', 0.2), ('rate', 'initial(1).velocity', 1.0),
-    ('rest', 'load(1).rest', 0.5), ('damper', 'load(1).damping', 0.2), ('often', 'load(2).angular_frequency', 3.0),
-    ('push', 'load(2).force(2)', 2.0), ('at', 'load(2).position(1)', 0.4), ('end', 'load(3).second_position(2)', 0.1),
-    ('stiff', 'load(3).stiffness', 12.0), ('free', 'load(3).free_length', 0.2), ('slow', 'load(3).damping', 0.3))
-
-# A pendulum of 20 kg swings a rocker through its dead points, so that the independent coordinates change.
-PENDULUM_FOUR_BAR = """&structure cq=4 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=0.0, 0.0,0 /
-&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.0,-1.0,0 /
-&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1.5,-3.0,0 /
-&pair coordinate=4, links=1,4, kind='revolute', axis=0,0,1, point=2.7,-1.4,0 /
-&initial coordinate=1, position=-1.3 /
-&initial coordinate=4, position=-0.55, velocity=0 /
-&body link=2, mass=20, centre=0.0,-1.0,0, inertia=0.5,0.5,0.5,0,0,0 /
-&body link=3, mass=1, centre=0.75,-2.0,0, inertia=0.3,0.3,0.6,0,0,0 /
-&body link=4, mass=1, centre=2.1,-2.2,0, inertia=0.2,0.2,0.4,0,0,0 /
-&gravity acceleration=0,-9.81,0 /
-&time end=3, intervals=6 /
-"""
-
-# A bead on a hoop that a drive turns: one coordinate is driven, one is free.
-BEAD = """&structure cq=1,2 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,1,0 /
-&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /
-&drive coordinate=1, kind='{law}' /
-&initial coordinate=2, position=0.8 /
-&body link=3, mass=0.7, centre=0.0,-0.5,0.0 /
-&gravity acceleration=0.0,-9.81,0.0 /
-&point name='P', link=3, position=0.0,-0.5,0.0 /
-&time end=2, intervals=5 /
-"""
-TURNING = BEAD.format(law="polynomial', coefficients=0.0,7.1,-0.3 / !")
-
-# Two crossed axes, a mass beside both: the mechanism is spatial, open, and has a prismatic and a helical pair.
-SPATIAL = """&structure cq=1,2,3 /
-&pair coordinate=1, links=1,2, kind='helical', pitch=0.3, axis=0.1,0.2,1, point=0.1,0,0 /
-&pair coordinate=2, links=2,3, kind='revolute', axis=1,0.3,0, point=0.4,0.1,0.2 /
-&pair coordinate=3, links=3,4, kind='prismatic', axis=0,1,0.5, point=0.1,0.2,0.3 /
-&initial coordinate=1, position=0.2, velocity=1.5 /
-&initial coordinate=2, position=0.4, velocity=-0.6 /
-&initial coordinate=3, position=0.1, velocity=0.2 /
-&body link=2, mass=2, centre=0.2,0.1,0, inertia=0.05,0.06,0.07,0.01,0,0 /
-&body link=3, mass=1, centre=0.1,0.2,0.1, inertia=0.03,0.04,0.05,0,0.01,0 /
-&body link=4, mass=1.5, centre=0.3,0,0.1, inertia=0.03,0.03,0.04,0,0,0.01 /
-&gravity acceleration=0,0,-9.81 /
-&load kind='coordinate', coordinate=3, stiffness=60, damping=0.5 /
-&load kind='force', link=4, position=0.1,0.2,0, force=1,2,3, frame='link' /
-&point name='P', link=4, position=0.4,0.2,0.1 /
-&time end=1, intervals=4 /
-"""
-SPATIAL_PARAMETERS = (
-    ('pitch', 'pair(1).pitch', 0.3), ('tilt', 'pair(2).axis(2)', 0.3), ('lift', 'pair(2).point(3)', 0.2),
-    ('slant', 'pair(3).axis(3)', 0.5), ('centre', 'body(3).centre(3)', 0.1), ('product', 'body(1).inertia(4)', 0.01),
-    ('force', 'load(2).force(3)', 3.0), ('mass', 'body(3).mass', 1.5), ('fast', 'initial(2).velocity', -0.6))
-
-
-def declared(parameters):
-    return ''.join(f"&parameter name='{name}', sets={target if target.startswith(chr(39)) else repr(target)}, value={value!r} /\n"
-                   for name, target, value in parameters)
-
-
-class Case:
-    """A directory for files, the programs, and the checks."""
-
-    def __init__(self, checks, directory, mech9k, mech9d):
-        self.checks, self.directory, self.mech9k, self.mech9d = checks, directory, mech9k, mech9d
-
-    def table(self, text, *options, program=None):
-        """The columns of a run by name."""
-        path = os.path.join(self.directory, 'a.nml')
-        with open(path, 'w') as file:
-            file.write(text)
-        done = run(program or self.mech9d, path, '--quiet', '--table', '-', *options)
-        if done.returncode != 0:
-            raise RuntimeError(f'{text}{options} ended with {done.returncode}:\n{done.stderr}')
-        return {name: np.array(column) for name, column in read_table(done.stdout).items()}
-
-    def sensitivities(self, text, parameters, *options, program=None):
-        return self.table(text + declared(parameters) + '&output sensitivities=.true. /\n', *options, program=program)
-
-    def refused(self, text, code, words):
-        path = os.path.join(self.directory, 'a.nml')
-        with open(path, 'w') as file:
-            file.write(text)
-        done = run(self.mech9d, path, '--quiet', '--table', os.path.join(self.directory, 'a.dat'))
-        self.checks.equal(done.returncode, code, f'{words}: code {code}')
-        self.checks.true(words in ' '.join(done.stderr.split()), f'the message says: {words}', done.stderr)
-
-    def close(self, mine, expected, tolerance, why):
-        largest = max(float(np.abs(expected).max()), 1e-3)
-        error = np.abs(mine - expected).max()
-        self.checks.true(error <= tolerance * largest, why, f'error {error:.2e}, largest {largest:.2e}')
-
-    def against_runs(self, text, parameters, why, part=2.0**-9):
-        """Derivatives against differences of runs at other values of the parameters, in steps of a part of them."""
-        found = self.sensitivities(text + SOLVER, parameters)
-        for number, (name, _, value) in enumerate(parameters, 1):
-            step = part * (1.0 if value == 0 else max(abs(value), 0.1))
-            runs = [[self.table(text + SOLVER + declared(parameters), '--set', f'parameter({number}).value={value + sign * i * step!r}')
-                     for sign in (1, -1)] for i in (1, 2, 3, 4)]
-            for column in runs[0][0]:
-                if f'd({column})/d({name})' not in found:
-                    continue
-                expected = sum(weight * (above[column] - below[column]) / step for weight, (above, below) in zip(WEIGHTS, runs))
-                self.close(found[f'd({column})/d({name})'], expected, BY_RUNS, f'{why}: {column} by {name}')
+@pytest.fixture
+def case(checks, tmp_path, mech9k, mech9d):
+    return Case(checks, tmp_path, mech9k, mech9d)
 
 
 def pendulum_accelerations(q, w, values):
@@ -221,7 +87,7 @@ def pendulum_motion(values, times):
     return np.array(rows)
 
 
-def check_pendulum(case):
+def test_double_pendulum_in_extended_precision(case):
     values = {name: value for name, _, value in PENDULUM_PARAMETERS}
     found = case.sensitivities(DOUBLE_PENDULUM.format(**values) + SOLVER, PENDULUM_PARAMETERS)
     exact = [np.longdouble(value) for value in values.values()]
@@ -236,33 +102,41 @@ def check_pendulum(case):
             case.close(found[f'd({column})/d({name})'], expected[:, k], TOLERANCES * TOLERANCE, f'double pendulum: {column} by {name}')
 
 
-def check_identities(case):
+# with equal masses
+EQUAL_PENDULUM = DOUBLE_PENDULUM.format(bar=1.0, swing=0.8, upper=1.0, lower=1.0, fall=-9.81, first=0.3, second=0.4, rate=0.7) + SOLVER
+
+
+def test_factor_of_all_masses(case):
     masses = "'body(1).mass','body(2).mass'"
-    parameters = (('all', masses, 1.0),)
-    text = DOUBLE_PENDULUM.format(bar=1.0, swing=0.8, upper=1.0, lower=1.0, fall=-9.81, first=0.3, second=0.4, rate=0.7) + SOLVER
-    found = case.sensitivities(text, parameters)
+    found = case.sensitivities(EQUAL_PENDULUM, (('all', masses, 1.0),))
     for column, numbers in found.items():
         if column.startswith('d(E'):
             # this factor is 1, and energies are in proportion to it
             case.close(numbers, found[column[2:column.index(')')]], 1e-9, f'a factor of all masses changes energies alike: {column}')
         elif column.startswith('d('):
             case.checks.true(np.abs(numbers).max() <= 1e-9, f'a factor of all masses changes no motion: {column}', f'{numbers}')
+
+
+def test_factor_of_lengths_and_gravity(case):
     lengths = (('size', "'pair(2).point(1)','body(1).centre(1)','body(2).centre(1)','gravity.acceleration(2)'", 1.0),)
-    scaled = text + declared(lengths).replace(' /', ', factors=1,1,0.8,-9.81 /') + '&output sensitivities=.true. /\n'
+    scaled = EQUAL_PENDULUM + declared(lengths).replace(' /', ', factors=1,1,0.8,-9.81 /') + '&output sensitivities=.true. /\n'
     found = case.table(scaled)
     for column, numbers in found.items():
         if column.startswith('d(E'):
             case.close(numbers, 2 * found[column[2:column.index(')')]], 1e-9, f'energies are in proportion to its square: {column}')
         elif column.startswith('d('):
             case.checks.true(np.abs(numbers).max() <= 1e-9, f'a factor of lengths and gravity changes no angle: {column}', f'{numbers}')
+
+
+def test_derivatives_at_the_start(case):
     start = (('first', 'initial(1).position', 0.3), ('rate', 'initial(1).velocity', 0.7))
-    found = case.sensitivities(text, start)
+    found = case.sensitivities(EQUAL_PENDULUM, start)
     for name, expected in (('first', [1, 0, 0, 0]), ('rate', [0, 0, 1, 0])):
         case.checks.near([found[f'd({q})/d({name})'][0] for q in ('q1', 'q2', 'dq1', 'dq2')], expected, 1e-14, f'at the start, by {name}',
                          scale=1)
 
 
-def check_driven(case):
+def test_driven_motions_have_the_same_derivatives_in_both_programs(case):
     """Driven motions in mech9d have the derivatives that they have in mech9k."""
     driven = FOUR_BAR.replace(', velocity=1.0', '') + "&drive coordinate=1, kind='polynomial', coefficients=0.2,3 /\n"
     parameters = tuple(p for p in FOUR_BAR_PARAMETERS if p[0] not in ('first', 'rate')) + (('speed', 'drive.coefficients(2)', 3.0),)
@@ -273,7 +147,7 @@ def check_driven(case):
     case.against_runs(driven, parameters, 'a driven motion in mech9d')
 
 
-def check_hdf5(case):
+def test_hdf5_file_has_the_derivatives_of_energies(case):
     """Derivatives of energies in the HDF5 file are those of the table."""
     try:
         import h5py
@@ -290,7 +164,8 @@ def check_hdf5(case):
                 case.checks.true((data[:, p] == found[f'd(E.{part})/d({name})']).all(), f'E_{part} by {name}')
 
 
-def check_poses(case):
+@pytest.mark.parametrize('mechanism', ('free four-bar linkage', 'open chain in space', 'driven four-bar linkage'))
+def test_derivatives_of_poses(case, mechanism):
     """Derivatives of the poses of links in the HDF5 file, against differences of runs."""
     try:
         import h5py
@@ -298,41 +173,43 @@ def check_poses(case):
         case.checks.left_out('h5py is not installed (Debian: python3-h5py)')
         return
     path = os.path.join(case.directory, 'a.h5')
-    for text, parameters, program in ((FOUR_BAR + SOLVER, (FOUR_BAR_PARAMETERS[0], FOUR_BAR_PARAMETERS[7]), case.mech9d),
-                                      (SPATIAL + SOLVER, SPATIAL_PARAMETERS[:2], case.mech9d),
-                                      (FOUR_BAR.replace(', velocity=1.0', '') + "&drive coordinate=1, kind='polynomial', coefficients=0.2,3 /\n",
-                                       FOUR_BAR_PARAMETERS[:1], case.mech9k)):
-        def poses(*options):
-            case.table(text + declared(parameters) + '&output poses=.true. /\n', '--hdf5', path, *options, program=program)
-            with h5py.File(path) as file:
-                found = {name: file[name][()] for name in ('origin', 'rotation')}
-                found.update({f'd {name}': file[f'sensitivity/{name}'][()] for name in found if 'sensitivity' in file})
-                return found
+    text, parameters, program = {
+        'free four-bar linkage': (FOUR_BAR + SOLVER, (FOUR_BAR_PARAMETERS[0], FOUR_BAR_PARAMETERS[7]), case.mech9d),
+        'open chain in space': (SPATIAL + SOLVER, SPATIAL_PARAMETERS[:2], case.mech9d),
+        'driven four-bar linkage': (FOUR_BAR.replace(', velocity=1.0', '') + "&drive coordinate=1, kind='polynomial', coefficients=0.2,3 /\n",
+                                    FOUR_BAR_PARAMETERS[:1], case.mech9k)}[mechanism]
 
-        found = poses('--set', 'output.sensitivities=.true.')
-        case.checks.equal(found['d rotation'].shape, (*found['rotation'].shape, len(parameters)), 'the parameter is the last dimension')
-        for p, (name, _, value) in enumerate(parameters):
-            step = 2.0**-9 * max(abs(value), 0.1)
-            runs = [[poses('--set', f'parameter({p + 1}).value={value + sign * i * step!r}') for sign in (1, -1)] for i in (1, 2, 3, 4)]
-            for data in ('origin', 'rotation'):
-                expected = sum(weight * (above[data] - below[data]) / step for weight, (above, below) in zip(WEIGHTS, runs))
-                case.close(found[f'd {data}'][..., p], expected, BY_RUNS, f'{data} of all links by {name}')
+    def poses(*options):
+        case.table(text + declared(parameters) + '&output poses=.true. /\n', '--hdf5', path, *options, program=program)
+        with h5py.File(path) as file:
+            found = {name: file[name][()] for name in ('origin', 'rotation')}
+            found.update({f'd {name}': file[f'sensitivity/{name}'][()] for name in found if 'sensitivity' in file})
+            return found
+
+    found = poses('--set', 'output.sensitivities=.true.')
+    case.checks.equal(found['d rotation'].shape, (*found['rotation'].shape, len(parameters)), 'the parameter is the last dimension')
+    for p, (name, _, value) in enumerate(parameters):
+        step = 2.0**-9 * max(abs(value), 0.1)
+        runs = [[poses('--set', f'parameter({p + 1}).value={value + sign * i * step!r}') for sign in (1, -1)] for i in (1, 2, 3, 4)]
+        for data in ('origin', 'rotation'):
+            expected = sum(weight * (above[data] - below[data]) / step for weight, (above, below) in zip(WEIGHTS, runs))
+            case.close(found[f'd {data}'][..., p], expected, BY_RUNS, f'{data} of all links by {name}')
 
 
-def check_governor(case):
-    """Stiff springs: the stiff governor of the gallery, by the place of one of its rods and others, over two steps of differences."""
-    text = text_of(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'examples', 'flyball_governor', 'flyball_governor.nml'))
+@pytest.mark.parametrize('part', (2.0**-9, 2.0**-6))
+def test_stiff_governor(case, part):
+    """Stiff springs: the stiff governor of the gallery, by the place of one of its rods and others, with two steps of differences."""
+    text = text_of(os.path.join(TREE, 'examples', 'flyball_governor', 'flyball_governor.nml'))
     text = '\n'.join(line for line in text.splitlines() if not line.startswith(('&solver', '&output'))) + '\n'
     text = text.replace('end=10.0, intervals=200', 'end=0.6, intervals=4')
-    for part in (2.0**-9, 2.0**-6):
-        case.against_runs(text, (('place', 'pair(3).point(1)', 0.05), ('ball', 'body(2).mass', 5.3), ('stiff', 'load(1).stiffness', 8e5)),
-                          'governor', part)
+    case.against_runs(text, (('place', 'pair(3).point(1)', 0.05), ('ball', 'body(2).mass', 5.3), ('stiff', 'load(1).stiffness', 8e5)),
+                      'governor', part)
 
 
-def check_smooth_joints(case):
+@pytest.mark.parametrize('law', ('cycloidal', 'polynomial345'))
+def test_smooth_joints_of_laws(case, law):
     """Drives that move between rests by smooth laws have no jumps of their rates but round-off: derivatives go on behind the joints."""
-    for law in ('cycloidal', 'polynomial345'):
-        text = f"""&structure cq=1,2 /
+    text = f"""&structure cq=1,2 /
 &pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
 &pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /
 &drive coordinate=1, kind='segments', times=0,0.2,0.3,0.7, values=0,0,0.05,0, laws='{law}' /
@@ -341,7 +218,7 @@ def check_smooth_joints(case):
 &gravity acceleration=0,-9.81,0 /
 &time end=0.7, intervals=7 /
 """
-        case.against_runs(text, (('depth', 'body(1).centre(2)', -3.0),), f'joints of {law}')
+    case.against_runs(text, (('depth', 'body(1).centre(2)', -3.0),), f'joints of {law}')
 
 
 # A pendulum on a slide that a drive moves in segments.
@@ -392,16 +269,23 @@ FIVE_BAR = """&structure cq=1,5 /
 """
 
 
-def check_moving_joints(case):
-    """Times and values of laws in segments as parameters: beyond a joint whose time varies the derivatives of the free rates have
-    jumped by the jump of the accelerations. Outputs lie between the joints."""
-    for law in ('cycloidal', 'harmonic', 'polynomial345'):
-        text = CARRIED.format(law=f"times=0,0.2,0.3,0.7, values=0,0,0.05,0, laws='{law}'", times='end=0.62')
-        case.against_runs(text, (('from', 'drive.times(2)', 0.2), ('to', 'drive.times(3)', 0.3), ('over', 'drive.values(3)', 0.05)),
-                          f'times of {law}')
-    case.against_runs(FIVE_BAR, (('from', 'drive.times(2)', 0.1), ('to', 'drive.times(3)', 0.37), 
+# Times and values of laws in segments as parameters: beyond a joint whose time varies the derivatives of the free rates have jumped by
+# the jump of the accelerations. Outputs lie between the joints.
+
+@pytest.mark.parametrize('law', ('cycloidal', 'harmonic', 'polynomial345'))
+def test_times_of_a_law(case, law):
+    text = CARRIED.format(law=f"times=0,0.2,0.3,0.7, values=0,0,0.05,0, laws='{law}'", times='end=0.62')
+    case.against_runs(text, (('from', 'drive.times(2)', 0.2), ('to', 'drive.times(3)', 0.3), ('over', 'drive.values(3)', 0.05)),
+                      f'times of {law}')
+
+
+def test_times_of_the_drive_of_a_five_bar(case):
+    case.against_runs(FIVE_BAR, (('from', 'drive.times(2)', 0.1), ('to', 'drive.times(3)', 0.37),
                                  ('angle', "'drive.values(3)','drive.values(4)'", 1.6)),
                       'times of the drive of a five-bar')
+
+
+def test_a_shift_of_both_times_is_the_sum_of_both(case):
     delayed = (('shift', "'drive.times(2)','drive.times(3)'", 0.1),)
     text = declared(delayed).replace(' /', ', terms=0,0.27 /')
     found = case.table(FIVE_BAR + SOLVER + text + '&output sensitivities=.true. /\n')
@@ -409,10 +293,16 @@ def check_moving_joints(case):
     for column in ('q5', 'dq5', 'ddq5', 'P.vx', 'E.total'):
         case.close(found[f'd({column})/d(shift)'], apart[f'd({column})/d(from)'] + apart[f'd({column})/d(to)'], 1e-9,
                    f'a shift of both times is the sum of both: {column}')
+
+
+def test_times_of_the_law_of_a_load(case):
     bent = FOUR_BAR.replace("law='harmonic', mean=1, amplitude=0.5, angular_frequency=3",
                             "law='segments', times=0,0.2,0.33,1, values=0,0,1,1, laws='dwell','harmonic','dwell'")
-    case.against_runs(bent, (('from', 'load(2).times(2)', 0.2), ('to', 'load(2).times(3)', 0.33),  ('mass', 'body(2).mass', 1.0)),
+    case.against_runs(bent, (('from', 'load(2).times(2)', 0.2), ('to', 'load(2).times(3)', 0.33), ('mass', 'body(2).mass', 1.0)),
                       'times of the law of a load')
+
+
+def test_times_of_the_setpoint_of_a_controller(case):
     led = BEAD.replace("&drive coordinate=1, kind='{law}' /", """&initial coordinate=1, position=0 /
 &body link=2, mass=1, inertia=0.1,0.1,0.1,0,0,0 /
 &motor coordinate=1, kind='pid', proportional=30, derivative=4, integral=5, law='segments', times=0,0.3,1.1,3,
@@ -420,48 +310,74 @@ def check_moving_joints(case):
     case.against_runs(led, (('from', 'motor.times(2)', 0.3), ('to', 'motor.times(3)', 1.1)), 'times of the setpoint of a controller')
 
 
-def check_repeated_joints(case):
-    """Laws that repeat and go on from period to period, motions back in time, and two laws with a joint at the same time."""
+def test_a_law_that_repeats_and_goes_on(case):
     text = CARRIED.format(law="times=0,0.1,0.25,0.3, values=0,0.02,0.05,0.05, laws='harmonic','harmonic','dwell', period=0.3", times='end=1.13')
     # the longer steps of others would move a joint over a time of the results
     case.against_runs(text, (('period', "'drive.period','drive.times(4)'", 0.3), ('mid', 'drive.times(3)', 0.25)), 'a law that repeats', 2.0**-11)
-    text = CARRIED.format(law="times=-2,-0.5,-0.3,2, values=0,0,0.05,0.05, laws='dwell','harmonic','dwell'", times='start=0, end=-0.9')
-    case.against_runs(text, (('from', 'drive.times(2)', -0.5), ('to', 'drive.times(3)', -0.3)), 'back in time')
-    text = text.replace('harmonic', 'constant-velocity')
+
+
+# back in time
+BACK = CARRIED.format(law="times=-2,-0.5,-0.3,2, values=0,0,0.05,0.05, laws='dwell','harmonic','dwell'", times='start=0, end=-0.9')
+
+
+def test_times_of_a_law_back_in_time(case):
+    case.against_runs(BACK, (('from', 'drive.times(2)', -0.5), ('to', 'drive.times(3)', -0.3)), 'back in time')
+
+
+def test_jumps_back_in_time(case):
+    text = BACK.replace('harmonic', 'constant-velocity')
     case.against_runs(text, (('centre', 'body.centre(2)', -3.0), ('far', "'drive.values(3)','drive.values(4)'", 0.05)), 'jumps back in time')
+
+
+def test_two_joints_at_the_same_time(case):
     second = "values=0,0,0.07,0.07, laws='dwell','harmonic','dwell' /\n"
     text = SPATIAL.replace('&initial coordinate=1, position=0.2, velocity=1.5 /\n', "&drive coordinate=1, kind='segments', times=0,0.3,0.4,2, " + second)
     text = text.replace('&initial coordinate=3, position=0.1, velocity=0.2 /\n', "&drive coordinate=3, kind='segments', times=0,0.3,0.6,2, " + second)
     case.against_runs(text, (('one', 'drive(1).times(2)', 0.3), ('other', 'drive(2).times(3)', 0.6)), 'two joints at the same time')
 
 
-def check_jumps(case):
-    """Rates of drives that jump at known times: derivatives of the free rates change by that of the impulse. The impulse on the bead
-    of the hoop is zero; the five-bar and the open chain in space have one that depends on all dimensions."""
-    jumps = BEAD.format(law="segments', times=0,0.5,3, values=0,1,2, laws='constant-velocity','constant-velocity' / !")
-    case.against_runs(jumps, (('centre', 'body.centre(2)', -0.5), ('fast', 'drive.values(2)', 1.0), ('first', 'initial(1).position', 0.8)),
+# Rates of drives that jump at known times: derivatives of the free rates change by that of the impulse. The impulse on the bead of the hoop is
+# zero; the five-bar and the open chain in space have one that depends on all dimensions.
+JUMPING_HOOP = BEAD.format(law="segments', times=0,0.5,3, values=0,1,2, laws='constant-velocity','constant-velocity' / !")
+
+
+def test_a_hoop_that_jumps(case):
+    case.against_runs(JUMPING_HOOP, (('centre', 'body.centre(2)', -0.5), ('fast', 'drive.values(2)', 1.0), ('first', 'initial(1).position', 0.8)),
                       'a hoop that jumps')
+
+
+def test_a_five_bar_whose_drive_jumps(case):
     bar = FIVE_BAR.replace("laws='dwell','harmonic','dwell'", "laws='dwell','constant-velocity','dwell'")
     case.against_runs(bar, (('angle', "'drive.values(3)','drive.values(4)'", 1.6), ('rod', 'pair(3).point(1)', 0.7),
                             ('mass', 'body(1).mass', 1.0), ('centre', 'body(2).centre(1)', 0.3), ('rate', 'initial(4).velocity', 0.3)),
                       'a five-bar whose drive jumps')
+
+
+def test_a_chain_in_space_that_jumps(case):
     drive = "&drive coordinate=1, kind='segments', times=0,0.3,0.6,2, values=0.2,0.2,0.5,0.5, laws='dwell','constant-velocity','dwell' /\n"
     space = SPATIAL.replace('&initial coordinate=1, position=0.2, velocity=1.5 /\n', drive)
     case.against_runs(space, (('pitch', 'pair(1).pitch', 0.3), ('tilt', 'pair(2).axis(2)', 0.3), ('far', "'drive.values(3)','drive.values(4)'", 0.5),
                               ('product', 'body(1).inertia(4)', 0.01), ('stiff', 'load(1).stiffness', 60.0)), 'a chain in space that jumps')
+
+
+def test_a_jump_beside_a_controller(case):
     case.against_runs(CONTROLLED, (('mass', 'body(2).mass', 1.0), ('when', 'motor.times(2)', 0.3), ('far', "'drive.values(3)','drive.values(4)'", 0.05),
                                    ('bar', 'pair(3).point(2)', -1.0), ('limit', 'motor.limit', 20.0)), 'a jump beside a controller')
 
 
-def check_refusals(case):
-    jumps = BEAD.format(law="segments', times=0,0.5,3, values=0,1,2, laws='constant-velocity','constant-velocity' / !")
-    case.refused(jumps + declared((('when', 'drive.times(2)', 0.5),)) + '&output sensitivities=.true. /\n', 6,
+def test_no_derivatives_beyond_a_jump_whose_time_is_a_parameter(case):
+    case.refused(JUMPING_HOOP + declared((('when', 'drive.times(2)', 0.5),)) + '&output sensitivities=.true. /\n', 6,
                  "derivatives by the parameter 'when' are not computed beyond t = 0.5 s: it sets this time, at which the rates of drives jump")
+
+
+def test_no_derivatives_by_the_time_of_a_force_that_jumps(case):
     bent = FOUR_BAR.replace("law='harmonic', mean=1, amplitude=0.5, angular_frequency=3",
                             "law='segments', times=0,0.2,0.3, values=0,0,1, laws='dwell','harmonic', period=0.3")
     case.refused(bent + declared((('push', 'load(2).times(2)', 0.2),)) + '&output sensitivities=.true. /\n', 3,
                  "derivatives by the parameter 'push' are not computed")
-    top = """&structure cq=1,2,3 /
+
+
+TOP = """&structure cq=1,2,3 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=1,0,0 /
 &pair coordinate=2, links=2,3, kind='revolute', axis=0,1,0 /
 &pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1 /
@@ -474,31 +390,18 @@ def check_refusals(case):
 &parameter name='mass', sets='body.mass' /
 &output sensitivities=.true. /
 """
-    case.refused(top, 6, 'the motion goes on in other angles of a ball joint or of a rod than those of the data file')
 
 
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as directory:
-        case = Case(checks, directory, *sys.argv[1:3])
-        check_pendulum(case)
-        check_identities(case)
-        check_driven(case)
-        check_hdf5(case)
-        check_poses(case)
-        check_governor(case)
-        check_smooth_joints(case)
-        check_moving_joints(case)
-        check_repeated_joints(case)
-        check_jumps(case)
-        check_refusals(case)
-        case.against_runs(FOUR_BAR, FOUR_BAR_PARAMETERS, 'four-bar with loads', 2.0**-10)
-        case.against_runs(PENDULUM_FOUR_BAR, (('bar', 'pair(2).point(2)', -1.0), ('mass', 'body(1).mass', 20.0),
-                                              ('start', 'initial(2).position', -0.55)), 'through changes of coordinates')
-        case.against_runs(TURNING, (('speed', 'drive.coefficients(2)', 7.1), ('centre', 'body.centre(2)', -0.5)), 'a driven hoop')
-        case.against_runs(SPATIAL, SPATIAL_PARAMETERS, 'in space')
-    checks.finish()
+def test_no_derivatives_where_other_angles_are_taken(case):
+    case.refused(TOP, 6, 'the motion goes on in other angles of a ball joint or of a rod than those of the data file')
 
 
-if __name__ == '__main__':
-    main()
+@pytest.mark.parametrize('why, text, parameters, part', (
+    ('four-bar with loads', FOUR_BAR, FOUR_BAR_PARAMETERS, 2.0**-10),
+    ('through changes of coordinates', PENDULUM_FOUR_BAR,
+     (('bar', 'pair(2).point(2)', -1.0), ('mass', 'body(1).mass', 20.0), ('start', 'initial(2).position', -0.55)), 2.0**-9),
+    ('a driven hoop', TURNING, (('speed', 'drive.coefficients(2)', 7.1), ('centre', 'body.centre(2)', -0.5)), 2.0**-9),
+    ('in space', SPATIAL, SPATIAL_PARAMETERS, 2.0**-9)),
+    ids=('four-bar with loads', 'changes of coordinates', 'driven hoop', 'in space'))
+def test_derivatives_are_differences_of_runs(case, why, text, parameters, part):
+    case.against_runs(text, parameters, why, part)
