@@ -1,26 +1,19 @@
 """The HDF5 file of a search by --optimize: its data sets and dimensions; a search that is killed, interrupted or gets more starts is
 continued with the same bits; files of other searches, and files that are no files of searches, are refused and stay as they are.
-
-usage: synthesis_files.py MECH9K
 """
 import os
 import random
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import TREE, Checks, read_table, run, skip, text_of
+from mech9_cases import PATIENCE, TREE, read_table, run, text_of
 
-try:
-    import h5py
-except ImportError:
-    skip('h5py is not installed (Debian: python3-h5py): nothing is tested')
+h5py = pytest.importorskip('h5py', reason='h5py is not installed (Debian: python3-h5py)')
 
 DONE, USAGE, FILE, INTERRUPTED = 0, 2, 8, 130
 FOLDER = os.path.join(TREE, 'examples', 'timed_path')
@@ -42,9 +35,14 @@ class Cases:
         return self.path(name)
 
     def search(self, starts, *more, why, code=DONE, text=None):
-        done = run(self.program, self.write(starts, text), '--optimize', *more)
+        done = run(self.program, self.write(starts, text), '--optimize', *more, folder=self.folder)
         self.checks.true(done.returncode == code, f'{why}: ends with {code}', f'{done.returncode}: {done.stderr}')
         return done.stderr
+
+
+@pytest.fixture
+def cases(checks, tmp_path, mech9k):
+    return Cases(checks, tmp_path, mech9k)
 
 
 def contents_of(path):
@@ -59,7 +57,7 @@ def contents_of(path):
     return contents
 
 
-def contents(cases):
+def test_data_sets_are_the_columns_of_the_table(cases):
     """The data sets are the columns of the table and the file of targets, with named dimensions."""
     check = cases.checks
     cases.search(FEW, '--hdf5', cases.path('all.h5'), '--table', cases.path('all.dat'), '--out', cases.path('best.nml'), why='file')
@@ -100,7 +98,7 @@ def contents(cases):
         check.equal((opened['value'].dims, opened['times'].dims), (('design',), ('design', 'target')), 'xarray knows the dimensions')
 
 
-def more_starts(cases):
+def test_added_starts_lead_to_the_bits_of_one_search(cases):
     """Starts that are added, in any number of threads, lead to the bits of one search; the data file need not be the same text."""
     check = cases.checks
     whole, path = cases.path('whole.h5'), cases.path('more.h5')
@@ -113,9 +111,14 @@ def more_starts(cases):
     check.true(contents_of(path) == contents_of(whole), 'more starts: the same bits')
     check.equal(text_of(cases.path('more.dat')), text_of(cases.path('whole.dat')), 'more starts: the same table')
     check.true(f'{3*FEW} starts: ' in printed and 'HDF5 file: ' in printed, 'more starts: all are told', printed)
-    # the starts that the file has are not made again: a value that was changed in it stays
     cases.search(FEW, '--hdf5', path, why='few again')
     check.true(contents_of(path) == few, 'again: the same bits')
+
+
+def test_starts_that_the_file_has_are_not_made_again(cases):
+    """A value that was changed in the file stays."""
+    check, path = cases.checks, cases.path('more.h5')
+    cases.search(FEW, '--hdf5', path, why='few')
     with h5py.File(path, 'r+') as file:
         row = int(np.argmax(file['starts/found'][...] > 0))
         file['starts/value'][row, 0] = 1e-6
@@ -125,7 +128,7 @@ def more_starts(cases):
     check.true(1e-6 not in read_table(text_of(cases.path('changed.dat')))['value'], 'a design whose motion has another value is left out')
 
 
-def killed(cases):
+def test_killed_searches_are_continued_with_the_same_bits(cases):
     """Killed at random moments, several times one after the other, then continued: the bits of an undisturbed search. At each moment
     a start is whole in the file, or not made."""
     check = cases.checks
@@ -147,7 +150,7 @@ def killed(cases):
         path = cases.path(f'killed{i}.h5')
         words = [cases.program, cases.path('case.nml'), '--optimize', '--quiet', '--threads', str(1 + i % 2)]
         for target in (['--hdf5', path], ['--continue', path]):
-            process = subprocess.Popen(words + target)
+            process = subprocess.Popen(words + target, cwd=cases.folder)
             time.sleep(random.uniform(0.1, 0.8)*length)
             process.send_signal(signal.SIGKILL)
             process.wait()
@@ -163,18 +166,18 @@ def killed(cases):
     check.true(partly > 0, 'searches were killed in the middle', partly)
 
 
-def interrupted(cases):
+def test_ctrl_c_ends_a_search(cases):
     """Ctrl-C ends a search; the file then has the starts and the designs so far, and is continued."""
     check = cases.checks
     path = cases.path('interrupted.h5')
     process = subprocess.Popen([cases.program, cases.write(100000), '--optimize', '--hdf5', path, '--table', cases.path('some.dat')],
-                               stderr=subprocess.PIPE, text=True)
-    patience = time.monotonic() + 30.0
+                               stderr=subprocess.PIPE, text=True, cwd=cases.folder)
+    patience = time.monotonic() + 30.0*PATIENCE
     while not os.path.exists(path) and time.monotonic() < patience:
         time.sleep(0.05)
     time.sleep(1.0)
     process.send_signal(signal.SIGINT)
-    _, printed = process.communicate(timeout=60)
+    _, printed = process.communicate(timeout=60*PATIENCE)
     check.true(process.returncode == INTERRUPTED and 'of 100000 starts are made' in printed, 'Ctrl-C ends a search', printed)
     with h5py.File(path) as file:
         made = int(np.sum(file['starts/found'][...] >= 0))
@@ -183,8 +186,7 @@ def interrupted(cases):
                    'Ctrl-C: and their designs')
 
 
-def refused(cases):
-    """Files that cannot be continued stay as they are."""
+def test_refused_files_stay_as_they_are(cases):
     check = cases.checks
     path = cases.path('other.h5')
     cases.search(FEW, '--hdf5', path, why='other')
@@ -203,28 +205,16 @@ def refused(cases):
     shutil.copy(os.path.join(FOLDER, 'eighteen_points.dat'), cases.folder)
     check.true(open(path, 'rb').read() == before, 'a refused file stays as it is')
     cases.search(FEW, '--continue', path, why='the same again')
-    run(cases.program, cases.write(FEW), '--hdf5', cases.path('run.h5'))
+
+
+def test_files_of_no_search_are_refused(cases):
+    check, path = cases.checks, cases.path('other.h5')
+    run(cases.program, cases.write(FEW), '--hdf5', cases.path('run.h5'), folder=cases.folder)
     printed = cases.search(FEW, '--continue', cases.path('run.h5'), why='a run', code=FILE)
     check.true("run.h5': it is not the file of a search by --optimize" in printed, 'the file of a run is refused', printed)
     printed = cases.search(FEW, '--continue', cases.path('nowhere.h5'), why='no file', code=FILE)
     check.true('there is no such file' in printed, 'a file that is not there', printed)
     for words, options in (('give one of them, too', ('--continue', path)),
                            ('leave --hdf5 and --no-write out', ('--optimize', '--continue', path, '--hdf5', 'x.h5'))):
-        done = run(cases.program, cases.write(FEW), *options)
+        done = run(cases.program, cases.write(FEW), *options, folder=cases.folder)
         check.true(done.returncode == USAGE and words in done.stderr, f'options: {words}', done.stderr)
-
-
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        cases = Cases(checks, folder, sys.argv[1])
-        contents(cases)
-        more_starts(cases)
-        killed(cases)
-        interrupted(cases)
-        refused(cases)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()

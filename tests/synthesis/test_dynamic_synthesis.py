@@ -1,18 +1,14 @@
 """Synthesis of motions under forces by mech9d --optimize: springs, masses, velocities at the start, dimensions and drives with closed
 forms; a slider-crank whose numbers are found again; limits; one result from any number of threads, and after --continue; mistakes.
-
-usage: dynamic_synthesis.py MECH9D
 """
 import os
 import shutil
-import sys
-import tempfile
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import TREE, Checks, run, text_of
-from synthesis import DONE, FILE, USAGE, Cases, is_recovered
+from mech9_cases import TREE, run, text_of
+from synthesis_cases import DATA, DONE, FILE, USAGE, Cases, is_recovered
 
 # Free motions are integrated with tolerances of 1e-10; the numbers that are found have errors of some hundreds of it.
 EXACT = 1e-7
@@ -69,47 +65,66 @@ ATWOOD = SOLVER + """&structure cq=1 /
 """
 
 
-def springs(cases):
-    """A mass on a spring is at the middle after a quarter of a second where its period is one second. With the least peak of the
-    acceleration among all springs that bring it there or beyond, it is the same spring."""
-    stiffness = 2*(2*np.pi)**2
+# The stiffness with which the mass has a period of one second.
+STIFFNESS = 2*(2*np.pi)**2
+
+
+@pytest.fixture
+def cases(checks, tmp_path, mech9d):
+    return Cases(checks, tmp_path, mech9d)
+
+
+def test_a_spring_by_a_goal(cases):
+    """A mass on a spring is at the middle after a quarter of a second where its period is one second."""
     goal = "&objective kind='quantity', of='x', goal=0 /\n&optimum starts=4 /\n"
     best = os.path.join(cases.folder, 'best.nml')
     designs, report, _ = cases.search(OSCILLATOR + goal, 'spring by a goal', '--out', best)
-    cases.checks.near(designs['k'][0], stiffness, EXACT, 'spring by a goal', scale=stiffness)
+    cases.checks.near(designs['k'][0], STIFFNESS, EXACT, 'spring by a goal', scale=STIFFNESS)
     cases.checks.equal((report['optimum']['starts'], report['optimum']['reached'], report['program']), (4, 4, 'mech9d'), 'its report')
     motion = cases.motion(text_of(best))
     cases.checks.near(motion['q1'][::5], [0.1, 0, -0.1, 0, 0.1], EXACT, 'spring by a goal: the best file has the period', scale=0.1)
+
+
+def test_a_spring_by_a_limit(cases):
+    """With the least peak of the acceleration among all springs that bring it there or beyond, it is the same spring."""
     limit = "&objective kind='quantity', of='a', make='least' /\n&limit kind='quantity', of='x', high=0 /\n&optimum starts=4 /\n"
     designs, _, _ = cases.search(OSCILLATOR + limit, 'spring by a limit')
     # limits are kept with a margin of 1e-9 m, which is 6e-9 of the spring's range here
-    cases.checks.near(designs['k'][0], stiffness, 1e-6, 'spring by a limit', scale=stiffness)
-    cases.checks.near(designs['value'][0], 0.1*stiffness/2, 1e-6, 'its acceleration')
+    cases.checks.near(designs['k'][0], STIFFNESS, 1e-6, 'spring by a limit', scale=STIFFNESS)
+    cases.checks.near(designs['value'][0], 0.1*STIFFNESS/2, 1e-6, 'its acceleration')
 
 
-def starts(cases):
+GOALS = "&objective kind='quantity', of='x', goal=6 /\n&objective kind='quantity', of='y', goal=1 /\n&optimum starts=3 /\n"
+
+
+def test_velocity_at_the_start(cases):
     """The velocity with which a body must be thrown to be at a place after some time."""
-    goals = "&objective kind='quantity', of='x', goal=6 /\n&objective kind='quantity', of='y', goal=1 /\n&optimum starts=3 /\n"
-    designs, _, _ = cases.search(THROWN + goals, 'thrown')
+    designs, _, _ = cases.search(THROWN + GOALS, 'thrown')
     is_recovered(cases, designs, dict(u=6/1.5, v=(1 - 0.4 + 9.81*1.5**2/2)/1.5), 'thrown', value=1e-18, tolerance=EXACT)
+
+
+def test_position_at_the_start(cases):
     # a position at the start, which is that of a closed chain: its coordinates follow it
     text = THROWN.replace("name='v', sets='initial(2).velocity', low=-5, high=20",
                           "name='h', sets='initial(2).position', low=-2, high=20")
-    designs, _, _ = cases.search(text + goals, 'dropped')
+    designs, _, _ = cases.search(text + GOALS, 'dropped')
     is_recovered(cases, designs, dict(u=4, h=1 - 1.5 + 9.81*1.5**2/2), 'dropped', value=1e-18, tolerance=EXACT)
 
 
-def balance(cases):
-    """A lever stays where it is with a counterweight of equal moment; the second mass of Atwood's machine gives the first one its
-    acceleration."""
+def test_counterweight_of_a_lever(cases):
+    """A lever stays where it is with a counterweight of equal moment."""
     designs, _, _ = cases.search(BALANCED, 'counterweight')
     is_recovered(cases, designs, dict(counterweight=WEIGHT), 'counterweight', value=1e-18, tolerance=EXACT)
+
+
+def test_second_mass_of_atwoods_machine(cases):
+    """It gives the first one its acceleration."""
     designs, _, _ = cases.search(ATWOOD, "Atwood's machine")
     upwards = 2*(0.1 - 0.3)/0.5**2
     is_recovered(cases, designs, dict(mass=3*(9.81 + upwards)/(9.81 - upwards)), "Atwood's machine", value=1e-18, tolerance=EXACT)
 
 
-def slider_crank(cases):
+def test_spring_rod_and_start_of_a_slider_crank(cases):
     """Spring, rod and the angle at the start of a slider-crank are found again from four numbers of its motion; the rod changes its
     closed chain, and the angle its position at the start."""
     text = text_of(os.path.join(TREE, 'examples', 'slider_crank_sundials', 'slider_crank.nml'))
@@ -128,9 +143,8 @@ def slider_crank(cases):
     is_recovered(cases, designs, dict(stiffness=1, rod=1, angle=np.pi/2), 'slider-crank', value=1e-18, tolerance=1e-7)
 
 
-def motor(cases):
-    """Voltage and resistance of a motor are found again from the angle of its crank at two times; designs with runs of too many steps
-    have no value, and the search goes on."""
+def test_voltage_and_resistance_of_a_motor(cases):
+    """They are found again from the angle of its crank at two times."""
     text = text_of(os.path.join(TREE, 'examples', 'motor_crank', 'motor_crank.nml'))
     text = text.replace('end=2, intervals=400', 'end=0.6, intervals=12')
     text = text.replace("&output table='motor_crank.dat', reactions=.true., reaction_pairs=1 /", '')
@@ -143,12 +157,16 @@ def motor(cases):
     text += "&parameter name='resistance', sets='motor(1).resistance', value=1, low=0.4, high=2 /\n&optimum starts=3 /\n"
     designs, _, _ = cases.search(text, 'motor')
     is_recovered(cases, designs, dict(voltage=12, resistance=0.8), 'motor', value=1e-18, tolerance=1e-6)
+
+
+def test_runs_of_too_many_steps(cases):
+    """Their designs have no value, and the search goes on."""
     stiff = OSCILLATOR.replace('high=300', 'high=1e12').replace('1e-12 /', '1e-12, maximum_steps=200 /')
     designs, _, _ = cases.search(stiff + "&objective kind='quantity', of='x', goal=0 /\n&optimum starts=3 /\n", 'stiff springs')
     cases.checks.near(designs['k'][0], 2*(2*np.pi)**2, 1e-6, 'stiff springs: the first start has a value', scale=80)
 
 
-def driven(cases):
+def test_counterweight_of_a_driven_lever(cases):
     """The counterweight of a lever that is driven at a constant rate: its drive needs no torque."""
     text = BALANCED.replace("&initial coordinate=1, position=0.2 /", "&drive coordinate=1, kind='polynomial', coefficients=0.2,12.566370614359172 /")
     text = text.replace("&quantity name='angle', of='q1', take='end' /\n&objective kind='quantity', of='angle', goal=0.2 /",
@@ -158,7 +176,7 @@ def driven(cases):
     is_recovered(cases, designs, dict(counterweight=WEIGHT), 'driven lever', value=1e-18, tolerance=1e-9)
 
 
-def bits(cases):
+def test_the_same_bits_from_threads_and_from_a_continued_search(cases):
     """The same bits from one, two and four threads, and from a search that is continued."""
     text = OSCILLATOR + "&objective kind='quantity', of='x', goal=0.02 /\n&objective kind='quantity', of='a', weight=1e-4 /\n&optimum starts=6 /\n"
     tables = []
@@ -180,31 +198,19 @@ def bits(cases):
         cases.checks.true(done.returncode == FILE and now.read() == before.read(), 'another search is refused', done.stderr)
 
 
-def refusals(cases):
-    good = OSCILLATOR + "&objective kind='quantity', of='x', goal=0 /\n"
-    targets = os.path.join(cases.folder, 'path.dat')
-    with open(targets, 'w', encoding='utf-8') as file:
-        file.write('0 0\n1 0\n2 1\n')
-    refuse = cases.refused
-    refuse(good + "&point name='P', link=2 /\n&objective kind='path', point='P', file='path.dat' /\n",
-           'mech9d searches by quantities of its runs')
-    refuse(good + "&limit kind='assembles' /\n", 'mech9d keeps limits of quantities of its runs')
-    refuse(OSCILLATOR, 'this file has none', USAGE)
-    refuse(good.replace("take='at', at=0.25", "take='at', at=3"), 'at')
-    refuse(good.replace("of='q1'", "of='F1'"), "quantity 'x' is of column 'F1', which is not recorded")
-    refuse(good, 'mech9d --optimize draws no pictures', USAGE, '--sketch', os.path.join(cases.folder, 'best.svg'))
-    refuse(good.replace('low=20, high=300', ''), 'no parameter is varied')
-    refuse(good.replace('position=0.1', 'velocity=0.1'), 'has no initial position')
+GOOD = OSCILLATOR + "&objective kind='quantity', of='x', goal=0 /\n"
 
 
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        cases = Cases(checks, folder, sys.argv[1])
-        for case in (springs, starts, balance, slider_crank, motor, driven, bits, refusals):
-            case(cases)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()
+@pytest.mark.parametrize('text, words, code, options', (
+    (GOOD + "&point name='P', link=2 /\n&objective kind='path', point='P', file='path.dat' /\n", 'mech9d searches by quantities of its runs', DATA, ()),
+    (GOOD + "&limit kind='assembles' /\n", 'mech9d keeps limits of quantities of its runs', DATA, ()),
+    (OSCILLATOR, 'this file has none', USAGE, ()),
+    (GOOD.replace("take='at', at=0.25", "take='at', at=3"), 'at', DATA, ()),
+    (GOOD.replace("of='q1'", "of='F1'"), "quantity 'x' is of column 'F1', which is not recorded", DATA, ()),
+    (GOOD, 'mech9d --optimize draws no pictures', USAGE, ('--sketch', 'best.svg')),
+    (GOOD.replace('low=20, high=300', ''), 'no parameter is varied', DATA, ()),
+    (GOOD.replace('position=0.1', 'velocity=0.1'), 'has no initial position', DATA, ())),
+    ids=('a path', 'a limit of assembly', 'no objective', 'a late time', 'unknown column', 'a picture', 'no range', 'no position'))
+def test_refused(cases, text, words, code, options):
+    cases.write('0 0\n1 0\n2 1\n', 'path.dat')
+    cases.refused(text, words, code, *options)

@@ -1,18 +1,13 @@
 """Designs at the edge of those whose crank turns fully: the least value lies where Grashof's condition, or that of a slider-crank, holds
 with equality, and has a closed form. Parameters of couplings, whose values are found again.
-
-usage: synthesis_edges.py MECH9K
 """
 import os
-import sys
-import tempfile
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks
-from synthesis import FOUR_BAR, LENGTHS, Cases, is_recovered, targets, with_numbers
-from synthesis_kinds import gradient, is_optimal
+from mech9_cases import text_of
+from synthesis_cases import FOUR_BAR, LENGTHS, Cases, gradient, is_optimal, is_recovered, targets, with_numbers
 
 # A design at the edge keeps a least singular value of 1e-4 in the turn, of chains with lengths of about one. It is some 1e-8 from
 # the edge, and some 1e-8 better or worse for it.
@@ -68,26 +63,32 @@ def goals(**lengths):
     return ''.join(f"&objective kind='quantity', of='{name}', goal={value!r} /\n" for name, value in lengths.items())
 
 
-def nearest(cases):
+TURNING = with_numbers(FOUR_BAR.replace('2,0.1,0', '2,0,0').replace('end=12, intervals=24', 'end=1, intervals=6') + NEAREST,
+                       CRANK=0.5, COUPLER=1.9, ROCKER=1.6)
+
+
+@pytest.fixture
+def cases(checks, tmp_path, mech9k):
+    return Cases(checks, tmp_path, mech9k)
+
+
+@pytest.mark.parametrize('why, base, wanted, sides, free', (
+    ('crank and frame', TURNING, dict(crank=1.0, coupler=1.3, rocker=1.4), (1, -1, -1), 2.0),
+    ('crank and coupler', TURNING, dict(crank=0.8, coupler=3.0, rocker=1.0), (1, 1, -1), -2.0),
+    ('slider-crank', SLIDER_CRANK, dict(crank=1.0, coupler=0.9), (1, -1), 0.2)), ids=('crank and frame', 'crank and coupler', 'slider-crank'))
+def test_nearest_design_whose_crank_turns(cases, why, base, wanted, sides, free):
     """The nearest design to lengths with which the crank does not turn. Grashof's condition and that of a slider-crank are linear, so
     that the nearest design is a projection; all starts lead to it."""
-    frame = 2.0
-    text = with_numbers(FOUR_BAR.replace('2,0.1,0', '2,0,0').replace('end=12, intervals=24', 'end=1, intervals=6') + NEAREST,
-                        CRANK=0.5, COUPLER=1.9, ROCKER=1.6)
-    for why, base, wanted, sides, free in (
-            ('crank and frame', text, dict(crank=1.0, coupler=1.3, rocker=1.4), (1, -1, -1), frame),
-            ('crank and coupler', text, dict(crank=0.8, coupler=3.0, rocker=1.0), (1, 1, -1), -frame),
-            ('slider-crank', SLIDER_CRANK, dict(crank=1.0, coupler=0.9), (1, -1), 0.2)):
-        lengths = np.array(list(wanted.values()))
-        beyond = np.dot(sides, lengths) + free          # a condition: this sum is not positive
-        expected = lengths - beyond*np.array(sides)/len(sides)
-        designs, _, _ = cases.search(base + goals(**wanted), f'nearest: {why}')
-        cases.checks.equal(len(designs['value']), 1, f'nearest: {why}: there is one design')
-        cases.checks.equal(int(designs['starts'][0]), 8, f'nearest: {why}: all starts lead to it')
-        cases.checks.near(designs['value'][0], beyond**2/len(sides), EDGE, f'nearest: {why}: the value of the closed form', scale=1)
-        found = np.array([designs[name][0] for name in wanted])
-        cases.checks.near(found, expected, EDGE, f'nearest: {why}: the lengths of the closed form', scale=1)
-        cases.checks.true(np.dot(sides, found) + free < 0, f'nearest: {why}: the crank turns', str(found))
+    lengths = np.array(list(wanted.values()))
+    beyond = np.dot(sides, lengths) + free          # a condition: this sum is not positive
+    expected = lengths - beyond*np.array(sides)/len(sides)
+    designs, _, _ = cases.search(base + goals(**wanted), f'nearest: {why}')
+    cases.checks.equal(len(designs['value']), 1, f'nearest: {why}: there is one design')
+    cases.checks.equal(int(designs['starts'][0]), 8, f'nearest: {why}: all starts lead to it')
+    cases.checks.near(designs['value'][0], beyond**2/len(sides), EDGE, f'nearest: {why}: the value of the closed form', scale=1)
+    found = np.array([designs[name][0] for name in wanted])
+    cases.checks.near(found, expected, EDGE, f'nearest: {why}: the lengths of the closed form', scale=1)
+    cases.checks.true(np.dot(sides, found) + free < 0, f'nearest: {why}: the crank turns', str(found))
 
 
 def rocker_angle(x, theta):
@@ -98,7 +99,7 @@ def rocker_angle(x, theta):
     return np.arctan2(line[1], line[0]) - np.arccos((rocker**2 + length**2 - coupler**2)/(2*rocker*length))
 
 
-def function_at_edge(cases):
+def test_function_at_the_edge(cases):
     """A function whose best four-bar linkage has a crank that does not turn: with the limit, the slope of the sum of squares is a
     multiple of that of Grashof's condition."""
     made = cases.motion(with_numbers(FOUR_BAR, CRANK=0.5, COUPLER=1.8, ROCKER=1.5))
@@ -127,9 +128,8 @@ def function_at_edge(cases):
     is_optimal(cases.checks, gradient(value, x), walls, 'function at the edge', 1e-4)
 
 
-def ratios(cases):
-    """The ratio of a geared five-bar linkage and a length are found again from the path of its middle joint; so are the numbers of other
-    couplings."""
+def test_ratio_of_a_geared_five_bar_linkage(cases):
+    """The ratio of a gear and a length are found again from the path of the middle joint."""
     coupling = "&coupling kind='gear', coordinates=1,5, ratio=RATIO /\n"
     made = cases.motion(with_numbers(GEARED + coupling, RATIO=-1.8))
     targets(cases, [made['t'][::3], made['P.x'][::3], made['P.y'][::3]])
@@ -140,10 +140,12 @@ def ratios(cases):
     best = os.path.join(cases.folder, 'best.nml')
     designs, _, _ = cases.search(text, 'geared five-bar linkage', '--out', best)
     is_recovered(cases, designs, dict(ratio=-1.8, rod=2), 'geared five-bar linkage')
-    with open(best, encoding='utf-8') as file:
-        repeated = cases.motion(file.read())
+    repeated = cases.motion(text_of(best))
     cases.checks.near(repeated['P.x'][::3], made['P.x'][::3], 1e-9, 'geared five-bar linkage: the best file repeats the path')
-    # the same, with coefficients of a linear equation: q5 + 1.8 q1 = constant
+
+
+def test_coefficients_of_a_linear_coupling(cases):
+    """The same with a linear equation: q5 + 1.8 q1 = constant."""
     linear = "&coupling kind='linear', coordinates=1,5, coefficients=RATIO,1, constant=CONSTANT /\n"
     made = cases.motion(with_numbers(GEARED + linear, RATIO=1.8, CONSTANT=20))
     targets(cases, [made['t'][::3], made['P.x'][::3], made['P.y'][::3]])
@@ -153,16 +155,3 @@ def ratios(cases):
     text += "&objective kind='path', point='P', file='targets.dat', timing='given' /\n&optimum starts=4 /\n"
     designs, _, _ = cases.search(text, 'linear coupling')
     is_recovered(cases, designs, dict(ratio=1.8, constant=20), 'linear coupling')
-
-
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        cases = Cases(checks, folder, sys.argv[1])
-        for case in (nearest, function_at_edge, ratios):
-            case(cases)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()

@@ -1,20 +1,16 @@
 """Pictures of the best design of a search: plots of targets and result, whose numbers are those of a run of the design; drawings and films
 with the places of the targets; requests that cannot be met.
-
-usage: synthesis_pictures.py MECH9K
 """
 import os
 import re
 import shutil
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import TREE, Checks, read_table, run, text_of
+from mech9_cases import TREE, read_table, run, text_of
 
-DONE, USAGE, DATA = 0, 2, 3
+DONE, USAGE = 0, 2
 FOLDER = os.path.join(TREE, 'examples', 'timed_path')
 SPATIAL = """&objective kind='path', point='B', file='targets.dat', timing='given' /
 &parameter name='height', sets='pair(7).point(3)', low=-0.3, high=0.1 /
@@ -37,14 +33,19 @@ class Cases:
         return self.path(name)
 
     def search(self, text, *more, why, code=DONE):
-        done = run(self.program, self.write(text), '--optimize', *more)
+        done = run(self.program, self.write(text), '--optimize', *more, folder=self.folder)
         self.checks.true(done.returncode == code, f'{why}: ends with {code}', f'{done.returncode}: {done.stderr}')
         return done
 
     def table(self, name, *options):
-        done = run(self.program, self.path(name), '--table', self.path('run.dat'), '--quiet', *options)
+        done = run(self.program, self.path(name), '--table', self.path('run.dat'), '--quiet', *options, folder=self.folder)
         self.checks.true(done.returncode == DONE, f'{name} runs', done.stderr)
         return read_table(text_of(self.path('run.dat')))
+
+
+@pytest.fixture
+def cases(checks, tmp_path, mech9k):
+    return Cases(checks, tmp_path, mech9k)
 
 
 def blocks_of(script):
@@ -55,7 +56,7 @@ def blocks_of(script):
     return blocks
 
 
-def path(cases):
+def test_plot_of_a_path(cases):
     """The plot of a path: its curve, the targets, and the places at their times are those of a run of the best design."""
     check = cases.checks
     done = cases.search(cases.text, '--plot', cases.path('fit.svg') + ':', '--plot', cases.path('again.svg') + ':P', '--out', cases.path('best.nml'), why='path')
@@ -81,7 +82,7 @@ def path(cases):
         check.true('P and its 18 targets' in letters and '*' in letters, 'path: in the terminal', letters)
 
 
-def function(cases):
+def test_plot_of_a_function(cases):
     """The plot of a function: its curve, and the differences at the targets, in the unit of the results."""
     check = cases.checks
     angles = np.linspace(10.0, 170.0, 9)
@@ -99,7 +100,7 @@ def function(cases):
     check.near(value/read_table(text_of(cases.path('designs.dat')))['value'][0], 1, 1e-7, 'function: their squares are the value')
 
 
-def spatial(cases):
+def test_plots_of_a_path_in_space(cases):
     """A path in space has three planes."""
     text = text_of(os.path.join(TREE, 'examples', 'rsur', 'rsur.nml')).replace('axis=1,0,0, point=0.3', 'axis=1,0,0.01, point=0.3')
     cases.write(text, 'rsur.nml')
@@ -113,7 +114,7 @@ def spatial(cases):
         cases.checks.near(blocks[f'reached{number}'][:, :2], rows[:, axes], 1e-8, f'spatial: met in plane {number}')
 
 
-def drawings(cases):
+def test_sketch_and_film_show_the_best_design(cases):
     """Sketch and film show the best design, with the targets where they are."""
     check = cases.checks
     files = [cases.path(name) for name in ('best.svg', 'best.html', 'film.svg')]
@@ -138,29 +139,12 @@ def drawings(cases):
         check.true(os.path.getsize(film) > 10000 and '18' in text_of(film), f'film: {os.path.basename(film)}')
 
 
-def mistakes(cases):
-    check = cases.checks
-    for words, options, code in (
-            ("none is about 'Q'; there are P", ('--plot', 'fit.svg:Q'), USAGE),
-            ("none is about 'P.x:P.y'; there are P", ('--plot', 'P.x:P.y'), USAGE),
-            ("'film.mpg' is no name of a moving picture", ('--animate', 'film.mpg'), USAGE),
-            ("'x' is no view", ('--sketch', 'a.svg', '--view', 'x'), USAGE),
-            ('leave --verbose out', ('--verbose',), USAGE)):
-        done = cases.search(cases.text, *options, why=words, code=code)
-        check.true(words in done.stderr and 'starts: ' not in done.stderr, f'mistakes: {words}', done.stderr)
-
-
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        cases = Cases(checks, folder, sys.argv[1])
-        path(cases)
-        function(cases)
-        spatial(cases)
-        drawings(cases)
-        mistakes(cases)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()
+@pytest.mark.parametrize('words, options', (
+    ("none is about 'Q'; there are P", ('--plot', 'fit.svg:Q')),
+    ("none is about 'P.x:P.y'; there are P", ('--plot', 'P.x:P.y')),
+    ("'film.mpg' is no name of a moving picture", ('--animate', 'film.mpg')),
+    ("'x' is no view", ('--sketch', 'a.svg', '--view', 'x')),
+    ('leave --verbose out', ('--verbose',))), ids=('unknown point', 'columns', 'name of a film', 'view', 'verbose'))
+def test_refused(cases, words, options):
+    done = cases.search(cases.text, *options, why=words, code=USAGE)
+    cases.checks.true(words in done.stderr and 'starts: ' not in done.stderr, f'mistakes: {words}', done.stderr)
