@@ -1,30 +1,24 @@
 """All columns of the runs of a study in its HDF5 file (&output hdf5_runs): each run has the bits, names, dimensions and units of the file
 of a single run, up to the place where it failed; the same bits from threads, parts, merged files, processes, and after a kill; memory
 does not grow with the number of runs.
-
-usage: study_columns.py MECH9K MECH9D [MECH9K_MPI MECH9D_MPI MPIRUN]
 """
 import os
 import random
 import resource
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import Checks, run, skip
+from mech9_cases import PATIENCE, run
+from mpi_processes import ENVIRONMENT, mpi_of
 from study_cases import StudyCases
 
-try:
-    import h5py
-except ImportError:
-    skip('h5py is not installed (Debian: python3-h5py): nothing is tested')
+h5py = pytest.importorskip('h5py', reason='h5py is not installed (Debian: python3-h5py)')
 
-DONE, USAGE, DATA, FILE, INTERRUPTED = 0, 2, 3, 8, 130
+DONE, DATA, FILE = 0, 3, 8
 # some cranks are longer than their rods: these runs end at a dead point
 SLIDER_CRANK = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
@@ -58,9 +52,13 @@ PENDULUM = """&structure cq=1,2 /
 &output hdf5_runs=.true., coordinates=2 /
 &study kind='sobol', runs=32 /
 """
-# Debian's OpenMPI asks root for these; several processes share a core, and a container may forbid them to read each other's memory.
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1', OMPI_MCA_mpi_yield_when_idle='1',
-                   OMPI_MCA_btl_vader_single_copy_mechanism='none', OMPI_MCA_btl_sm_single_copy_mechanism='none')
+MECHANISMS = pytest.mark.parametrize('name, text, why', (('mech9k', SLIDER_CRANK, 'kinematics'), ('mech9d', PENDULUM, 'dynamics')),
+                                     ids=('kinematics', 'dynamics'))
+
+
+@pytest.fixture
+def cases(checks, tmp_path):
+    return StudyCases(checks, tmp_path, '--quiet')
 
 
 def scales_of(item):
@@ -88,9 +86,10 @@ def compare(cases, one, other, why):
     cases.checks.true(not different, f'{why}: the same data sets', different)
 
 
-def runs_alone(cases, program, text, why):
-    """Every run has the columns of a single run with its values, NaN where that ends."""
-    check = cases.checks
+@MECHANISMS
+def test_every_run_has_the_columns_of_a_single_run(cases, build, name, text, why):
+    """The columns are those of a single run with its values, NaN where that ends."""
+    check, program = cases.checks, build.program(name)
     cases.study(program, text, '--hdf5', 'all.h5', why=why)
     alone = cases.path('alone.h5')
     kept = failed = 0
@@ -126,7 +125,7 @@ def runs_alone(cases, program, text, why):
     check.true(kept > 0 and failed > 0, f'{why}: some runs fail', (kept, failed))
 
 
-def opened_by_xarray(cases, mech9k):
+def test_xarray_opens_the_file(cases, mech9k):
     try:
         import xarray
         import h5netcdf  # noqa: F401
@@ -145,8 +144,9 @@ def opened_by_xarray(cases, mech9k):
             check.true(np.array_equal(run_17.values, file['position'][16, :, 0, 0], equal_nan=True), 'xarray: its numbers')
 
 
-def same_bits(cases, program, text, why):
-    """Threads, parts and merged files."""
+@MECHANISMS
+def test_the_same_bits_from_threads_parts_and_merged_files(cases, build, name, text, why):
+    program = build.program(name)
     cases.study(program, text, '--hdf5', 'whole.h5', '--threads', '1', why=why)
     whole = cases.path('whole.h5')
     for threads in ('2', '5'):
@@ -170,7 +170,7 @@ def same_bits(cases, program, text, why):
                       f'{why}: parts that differ in a column', done.stderr)
 
 
-def killed(cases, command, text, whole, why, victim=None):
+def killed(cases, command, whole, why, victim=None):
     """Killed in the middle and continued: the bits of an undisturbed study, whatever was finished at the kill."""
     check = cases.checks
     random.seed(5)
@@ -183,12 +183,12 @@ def killed(cases, command, text, whole, why, victim=None):
             os.remove(cases.path(path))
         process = subprocess.Popen([*command, cases.path('case.nml'), '--study', '--quiet', '--hdf5', path], cwd=cases.folder, env=ENVIRONMENT,
                                    stderr=subprocess.DEVNULL, start_new_session=True)
-        patience = time.monotonic() + 60
+        patience = time.monotonic() + 60 * PATIENCE
         while not os.path.exists(cases.path(path)) and process.poll() is None and time.monotonic() < patience:
             time.sleep(0.02)
         time.sleep(delay * random.uniform(0.7, 1.3))
         (victim or (lambda one: one.kill()))(process)
-        process.wait(60)
+        process.wait(60 * PATIENCE)
         if not os.path.exists(cases.path(path)):
             continue
         with h5py.File(cases.path(path)) as file, h5py.File(whole) as good:
@@ -200,10 +200,15 @@ def killed(cases, command, text, whole, why, victim=None):
             # on a machine with other work a study may not have begun yet, or have ended
             delay *= 2 if np.all(codes < 0) else 0.5 if np.all(codes >= 0) else 1
         done = subprocess.run([*command, cases.path('case.nml'), '--study', '--quiet', '--continue', path], cwd=cases.folder, env=ENVIRONMENT,
-                              capture_output=True, text=True, timeout=120)
+                              capture_output=True, text=True, timeout=120 * PATIENCE)
         check.true(done.returncode == DONE, f'{why}: continued', done.stderr)
         compare(cases, cases.path(path), whole, f'{why}: continued')
     check.true(partly > 0, f'{why}: one was killed in the middle')
+
+
+def test_killed_studies_are_continued_with_the_same_bits(cases, mech9k):
+    long_study(cases, mech9k, SLIDER_CRANK, 'long')
+    killed(cases, [mech9k], cases.path('whole_long.h5'), 'killed')
 
 
 def long_study(cases, program, text, why):
@@ -237,43 +242,46 @@ def processes_of(session, program):
 def wait_for(process):
     """Whether a process whose ranks have ended ends by itself."""
     try:
-        process.wait(30)
+        process.wait(30 * PATIENCE)
     except subprocess.TimeoutExpired:
         return False
     return True
 
 
-def several_processes(cases, programs, mpirun):
-    for (program, program_mpi), text in zip(programs, (SLIDER_CRANK, PENDULUM)):
-        name = os.path.basename(program_mpi)
-        cases.study(program, text, '--hdf5', 'whole.h5', why='whole')
-        for n in ('2', '4'):
-            for part in ((), ('--part', '2/3')):
-                done = subprocess.run([mpirun, '-n', n, '--oversubscribe', program_mpi, cases.path('case.nml'), '--study', '--quiet', '--hdf5', 'team.h5', *part],
-                                      cwd=cases.folder, env=ENVIRONMENT, capture_output=True, text=True, timeout=120)
-                cases.checks.true(done.returncode == DONE, f'{name}, {n} processes', done.stderr)
-                if part:
-                    cases.study(program, text, '--hdf5', 'whole.h5', *part, why='part')
-                compare(cases, cases.path('team.h5'), cases.path('whole.h5'), f'{name}, {n} processes {part}')
-                if part:
-                    cases.study(program, text, '--hdf5', 'whole.h5', why='whole')
-    program, program_mpi = programs[0]
-    text = long_study(cases, program, SLIDER_CRANK, 'processes')
-
-    def kill_rank(rank):
-        def kill(process):
-            ranks = processes_of(process.pid, program_mpi)
-            # none are left where the study has ended
-            cases.checks.true(len(ranks) == 2 or process.poll() is not None or wait_for(process), 'two processes make the runs', ranks)
-            if len(ranks) == 2:
-                os.kill(ranks[rank], signal.SIGKILL)
-        return kill
-
-    for rank in (0, 1):
-        killed(cases, [mpirun, '-n', '2', '--oversubscribe', program_mpi], text, cases.path('whole_long.h5'), f'rank {rank} killed', kill_rank(rank))
+@MECHANISMS
+def test_several_processes_write_the_bits_of_one(cases, build, name, text, why):
+    mpirun, program = mpi_of(build), build.program(name)
+    program_mpi = build.program(f'{name}-mpi')
+    cases.study(program, text, '--hdf5', 'whole.h5', why='whole')
+    for n in ('2', '4'):
+        for part in ((), ('--part', '2/3')):
+            done = subprocess.run([mpirun, '-n', n, '--oversubscribe', program_mpi, cases.path('case.nml'), '--study', '--quiet', '--hdf5', 'team.h5', *part],
+                                  cwd=cases.folder, env=ENVIRONMENT, capture_output=True, text=True, timeout=120 * PATIENCE)
+            cases.checks.true(done.returncode == DONE, f'{name}-mpi, {n} processes', done.stderr)
+            if part:
+                cases.study(program, text, '--hdf5', 'whole.h5', *part, why='part')
+            compare(cases, cases.path('team.h5'), cases.path('whole.h5'), f'{name}-mpi, {n} processes {part}')
+            if part:
+                cases.study(program, text, '--hdf5', 'whole.h5', why='whole')
 
 
-def bounded_memory(cases, mech9k):
+@pytest.mark.parametrize('rank', (0, 1))
+def test_a_process_is_killed_and_the_study_continued(cases, build, mech9k, rank):
+    mpirun = mpi_of(build)
+    program_mpi = build.program('mech9k-mpi')
+    long_study(cases, mech9k, SLIDER_CRANK, 'processes')
+
+    def kill_rank(process):
+        ranks = processes_of(process.pid, program_mpi)
+        # none are left where the study has ended
+        cases.checks.true(len(ranks) == 2 or process.poll() is not None or wait_for(process), 'two processes make the runs', ranks)
+        if len(ranks) == 2:
+            os.kill(ranks[rank], signal.SIGKILL)
+
+    killed(cases, [mpirun, '-n', '2', '--oversubscribe', program_mpi], cases.path('whole_long.h5'), f'rank {rank} killed', kill_rank)
+
+
+def test_memory_does_not_grow_with_the_number_of_runs(cases, mech9k):
     """The peak of memory of a study whose columns have a hundred times its size is that of a tenth of its runs."""
     peaks = []
     for runs in (20, 200):
@@ -290,19 +298,28 @@ def bounded_memory(cases, mech9k):
     os.remove(cases.path('large.h5'))
 
 
-def mistakes(cases, mech9k):
-    check = cases.checks
-    late = "&parameter name='late', sets='time.end', low=0.5, high=0.7 /\n"
-    for text, more, code, message in (
-            (SLIDER_CRANK + late, (), DATA, "parameter 'late' sets time.end, and hdf5_runs=.true. in &output records all runs at the same times"),
-            (SLIDER_CRANK, ('--set', 'output.hdf5_runs=1'), DATA, 'hdf5_runs'),
-            (SLIDER_CRANK, ('--hdf5', '/dev/full'), FILE, 'No space left on device')):
-        words = more if '--hdf5' in more else ('--hdf5', 'no.h5', *more)
-        printed = cases.study(mech9k, text, *words, why=message, code=code)
-        check.true(message in printed and not os.path.exists(cases.path('no.h5')), message, printed)
+LATE = "&parameter name='late', sets='time.end', low=0.5, high=0.7 /\n"
+
+
+@pytest.mark.parametrize('text, words, code, message', (
+    (SLIDER_CRANK + LATE, ('--hdf5', 'no.h5'), DATA,
+     "parameter 'late' sets time.end, and hdf5_runs=.true. in &output records all runs at the same times"),
+    (SLIDER_CRANK, ('--hdf5', 'no.h5', '--set', 'output.hdf5_runs=1'), DATA, 'hdf5_runs'),
+    (SLIDER_CRANK, ('--hdf5', '/dev/full'), FILE, 'No space left on device')), ids=('other times', 'a number', 'a full disk'))
+def test_refused(cases, mech9k, text, words, code, message):
+    printed = cases.study(mech9k, text, *words, why=message, code=code)
+    cases.checks.true(message in printed and not os.path.exists(cases.path('no.h5')), message, printed)
+
+
+def test_a_file_with_columns_is_not_continued_without(cases, mech9k):
     cases.study(mech9k, SLIDER_CRANK, '--hdf5', 'all.h5', why='with columns')
     printed = cases.study(mech9k, SLIDER_CRANK, '--set', 'output.hdf5_runs=.false.', '--continue', 'all.h5', why='without columns', code=FILE)
-    check.true('it is of another study' in printed and 'hdf5_runs' in printed, 'a file with columns is not continued without', printed)
+    cases.checks.true('it is of another study' in printed and 'hdf5_runs' in printed, 'a file with columns is not continued without', printed)
+
+
+def test_a_file_that_lacks_columns(cases, mech9k):
+    check = cases.checks
+    cases.study(mech9k, SLIDER_CRANK, '--hdf5', 'all.h5', why='with columns')
     with h5py.File(cases.path('all.h5'), 'r+') as file:
         del file['q']
     before = open(cases.path('all.h5'), 'rb').read()
@@ -310,31 +327,13 @@ def mistakes(cases, mech9k):
         done = run(mech9k, *words, '--quiet', folder=cases.folder)
         check.true(done.returncode == FILE and message in done.stderr, f'a file without its columns: {words}', done.stderr)
     check.true(before == open(cases.path('all.h5'), 'rb').read() and not os.path.exists(cases.path('no.h5')), 'nothing is written over')
-    done = subprocess.run([mech9k, cases.path('case.nml'), '--study', '--quiet', '--hdf5', cases.path('large.h5')], capture_output=True, text=True,
+
+
+def test_a_file_that_may_not_grow(cases, mech9k):
+    done = subprocess.run([mech9k, cases.write(SLIDER_CRANK), '--study', '--quiet', '--hdf5', cases.path('large.h5')], capture_output=True, text=True,
                           preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (200000, 200000)))
-    check.true(done.returncode == FILE and 'File too large' in done.stderr and not os.path.exists(cases.path('large.h5')), 'a file that may not grow', done.stderr)
-    # a table alone needs no columns
-    check.equal(cases.study(mech9k, SLIDER_CRANK + late, '--table', 'table.dat', why='a table'), '', 'nothing to be said')
+    cases.checks.true(done.returncode == FILE and 'File too large' in done.stderr and not os.path.exists(cases.path('large.h5')), 'a file that may not grow', done.stderr)
 
 
-def main():
-    checks = Checks()
-    mech9k, mech9d = map(os.path.abspath, sys.argv[1:3])
-    with tempfile.TemporaryDirectory() as folder:
-        cases = StudyCases(checks, folder, '--quiet')
-        runs_alone(cases, mech9k, SLIDER_CRANK, 'kinematics')
-        runs_alone(cases, mech9d, PENDULUM, 'dynamics')
-        opened_by_xarray(cases, mech9k)
-        same_bits(cases, mech9k, SLIDER_CRANK, 'kinematics')
-        same_bits(cases, mech9d, PENDULUM, 'dynamics')
-        long_study(cases, mech9k, SLIDER_CRANK, 'long')
-        killed(cases, [mech9k], None, cases.path('whole_long.h5'), 'killed')
-        bounded_memory(cases, mech9k)
-        mistakes(cases, mech9k)
-        if len(sys.argv) > 3:
-            mech9k_mpi, mech9d_mpi = map(os.path.abspath, sys.argv[3:5])
-            several_processes(cases, ((mech9k, mech9k_mpi), (mech9d, mech9d_mpi)), sys.argv[5])
-    checks.finish()
-
-
-main()
+def test_a_table_alone_needs_no_columns(cases, mech9k):
+    cases.checks.equal(cases.study(mech9k, SLIDER_CRANK + LATE, '--table', 'table.dat', why='a table'), '', 'nothing to be said')

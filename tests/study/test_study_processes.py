@@ -1,26 +1,19 @@
 """Studies in several processes: the same bits as in one, whatever their number; parts in HDF5 files, and the continuation
 of a study one of whose processes was killed; failed runs, mistakes and interruptions as in one.
-
-usage: study_processes.py MECH9K MECH9D MECH9K_MPI MECH9D_MPI MPIRUN
 """
 import json
 import os
 import re
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks, run, text_of
+import pytest
 
-try:
-    import h5py
-except ImportError:
-    h5py = None
+from mech9_cases import PATIENCE, run, text_of
+from mpi_processes import ENVIRONMENT, mpi_of
 
-DONE, USAGE, DATA, FILE, INTERRUPTED = 0, 2, 3, 8, 130
+DONE, USAGE, DATA, FILE = 0, 2, 3, 8
 SLIDER_CRANK = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
 &pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /
@@ -44,10 +37,6 @@ PENDULUM = """&structure cq=1 /
 &parameter name='mass', sets='body.mass' , spread=0.1 /
 &quantity name='swing', of='q1', take='range' /
 """
-# Debian's OpenMPI asks root for these; several processes share a core, and a container may forbid them to read each other's memory.
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1', OMPI_MCA_mpi_yield_when_idle='1',
-                   OMPI_MCA_btl_vader_single_copy_mechanism='none', OMPI_MCA_btl_sm_single_copy_mechanism='none')
-
 
 class Cases:
     def __init__(self, checks, folder, mpirun):
@@ -63,15 +52,30 @@ class Cases:
         return [self.mpirun, '-n', str(processes), '--oversubscribe', program, *words]
 
     def processes(self, processes, program, *words):
-        return subprocess.run(self.command(processes, program, *words), cwd=self.folder, env=ENVIRONMENT, text=True, capture_output=True, timeout=110)
+        return subprocess.run(self.command(processes, program, *words), cwd=self.folder, env=ENVIRONMENT, text=True, capture_output=True, timeout=110 * PATIENCE)
 
     def file(self, name):
         return text_of(os.path.join(self.folder, name))
 
 
-def same_bits(cases, text, program, program_mpi, why):
+@pytest.fixture
+def cases(checks, tmp_path, build):
+    return Cases(checks, tmp_path, mpi_of(build))
+
+
+@pytest.fixture
+def mech9k_mpi(build, cases):
+    return build.program('mech9k-mpi')
+
+
+GRID = SLIDER_CRANK + "&study kind='grid' /\n"
+
+
+@pytest.mark.parametrize('name, text, why', (
+    ('mech9k', GRID, 'grid'), ('mech9d', PENDULUM + "&study kind='sobol', runs=150, seed=4 /\n", 'dynamics')), ids=('grid', 'dynamics'))
+def test_several_processes_write_the_bits_of_one(cases, build, name, text, why):
     """Table and report of one process and of several; times and names of tables apart, they are the same."""
-    check = cases.checks
+    check, program, program_mpi = cases.checks, build.program(name), build.program(f'{name}-mpi')
     path = cases.write(text)
     alone = run(program, path, '--study', '--table', 'alone.dat', '--report', 'alone.json', folder=cases.folder)
     check.true(alone.returncode == DONE, f'{why}: one process', alone.stderr)
@@ -91,12 +95,14 @@ def same_bits(cases, text, program, program_mpi, why):
 
 def numbers_of(path):
     """All numbers of the runs in the HDF5 file of a study, as bytes."""
+    h5py = pytest.importorskip('h5py', reason='h5py is not installed (Debian: python3-h5py)')
     with h5py.File(path, 'r') as file:
         names = ['run', 'exit_code'] + [f'{group}/{name}' for group in ('parameters', 'quantities') for name in file[group]]
         return {name: file[name][()].tobytes() for name in names}
 
 
-def files(cases, mech9k, mech9k_mpi):
+@pytest.mark.parametrize('n', (2, 4))
+def test_parts_in_files_and_their_continuation(cases, mech9k, mech9k_mpi, n):
     """Parts in HDF5 files have the bits of one process; what a killed process leaves is continued by others to the same bits."""
     check = cases.checks
     path = cases.write(SLIDER_CRANK.replace('count=9', 'count=300') + "&study kind='grid' /\n")
@@ -104,34 +110,32 @@ def files(cases, mech9k, mech9k_mpi):
     done = run(mech9k, path, '--study', '--part', '1/2', '--hdf5', whole, folder=cases.folder)
     check.true(done.returncode == DONE, 'the part in one process', done.stderr)
     expected = numbers_of(whole)
-    for n in (2, 4):
-        done = cases.processes(n, mech9k_mpi, path, '--study', '--part', '1/2', '--hdf5', part)
-        check.true(done.returncode == DONE, f'the part in {n} processes', f'{done.returncode}: {done.stderr}')
-        check.true(numbers_of(part) == expected, f'the part in {n} processes has the same bits')
-        os.remove(part)
-        made = kill_one(cases, n, mech9k_mpi, path, cut)
-        check.true(0 < made < 1650, f'{n} processes: the kill comes in the middle', made)
-        done = cases.processes(n, mech9k_mpi, path, '--study', '--part', '1/2', '--continue', cut)
-        check.true(done.returncode == DONE, f'{n} processes continue the study', f'{done.returncode}: {done.stderr}')
-        check.true(numbers_of(cut) == expected, f'{n} processes continue to the same bits')
-        os.remove(cut)
+    done = cases.processes(n, mech9k_mpi, path, '--study', '--part', '1/2', '--hdf5', part)
+    check.true(done.returncode == DONE, f'the part in {n} processes', f'{done.returncode}: {done.stderr}')
+    check.true(numbers_of(part) == expected, f'the part in {n} processes has the same bits')
+    made = kill_one(cases, n, mech9k_mpi, path, cut)
+    check.true(0 < made < 1650, f'{n} processes: the kill comes in the middle', made)
+    done = cases.processes(n, mech9k_mpi, path, '--study', '--part', '1/2', '--continue', cut)
+    check.true(done.returncode == DONE, f'{n} processes continue the study', f'{done.returncode}: {done.stderr}')
+    check.true(numbers_of(cut) == expected, f'{n} processes continue to the same bits')
 
 
 def kill_one(cases, processes, program, path, file):
     """Kill the last process of a study in the middle; returns how many runs are in the file."""
     with subprocess.Popen(cases.command(processes, program, path, '--study', '--part', '1/2', '--hdf5', file), cwd=cases.folder, env=ENVIRONMENT,
                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True) as process:
-        end = time.time() + 30
+        end = time.time() + 30 * PATIENCE
         while time.time() < end and not (os.path.exists(file) and made_runs(file) > 0):
             time.sleep(0.02)
-        children = subprocess.run(['ps', '-o', 'pid=', '--ppid', str(process.pid)], text=True, capture_output=True, timeout=10).stdout.split()
+        children = run('ps', '-o', 'pid=', '--ppid', str(process.pid)).stdout.split()
         os.kill(int(children[-1]), signal.SIGKILL)
-        cases.checks.true(process.wait(60) != DONE, f'{processes} processes: one that is killed ends all')
+        cases.checks.true(process.wait(60 * PATIENCE) != DONE, f'{processes} processes: one that is killed ends all')
     return made_runs(file)
 
 
 def made_runs(file):
     """How many runs the file of a study has; 0 where it is about to be written."""
+    h5py = pytest.importorskip('h5py', reason='h5py is not installed (Debian: python3-h5py)')
     try:
         with h5py.File(file, 'r', locking=False) as study:
             return int((study['exit_code'][()] >= 0).sum())
@@ -139,43 +143,51 @@ def made_runs(file):
         return 0
 
 
-def mistakes(cases, mech9k_mpi):
-    """All processes end with the code of the mistake, which is told once; a table that cannot be written ends them, too."""
-    check = cases.checks
-    good = SLIDER_CRANK + "&study kind='grid' /\n"
-    path = cases.write(good)
-    for words, code, message in ((('--study', '--table', 'none/table.dat'), FILE, 'none/table.dat'),
-                                 ((), USAGE, 'several processes make the runs of a study; add --study, or use mech9k'),
-                                 (('--study', '--threads', '2'), USAGE, '--threads is for one process'),
-                                 (('--study', '--part', '4/3'), USAGE, '--part needs the number K'),
-                                 (('--study', '--plot', 'stroek'), USAGE, "did you mean 'stroke'?")):
-        done = cases.processes(4, mech9k_mpi, path, *words)
-        check.true(done.returncode == code and done.stderr.count(message) == 1, f'{words}: {message}', f'{done.returncode}: {done.stderr}')
-    for text, message in ((good.replace("'crank'", "'rod'"), "a second &parameter for name 'rod'"),
-                          (SLIDER_CRANK, '--study carries out the study of a group &study')):
-        done = cases.processes(2, mech9k_mpi, cases.write(text), '--study')
-        check.true(done.returncode in (USAGE, DATA) and done.stderr.count(message) == 1, message, f'{done.returncode}: {done.stderr}')
-    if check.has_full_disk():
-        done = cases.processes(2, mech9k_mpi, cases.write(good), '--study', '--table', '/dev/full')
-        check.true(done.returncode == FILE, 'a full disk ends all', f'{done.returncode}: {done.stderr}')
+@pytest.mark.parametrize('words, code, message', (
+    (('--study', '--table', 'none/table.dat'), FILE, 'none/table.dat'),
+    ((), USAGE, 'several processes make the runs of a study; add --study, or use mech9k'),
+    (('--study', '--threads', '2'), USAGE, '--threads is for one process'),
+    (('--study', '--part', '4/3'), USAGE, '--part needs the number K'),
+    (('--study', '--plot', 'stroek'), USAGE, "did you mean 'stroke'?")), ids=('no folder', 'no study', 'threads', 'part', 'plot'))
+def test_a_wrong_option_is_told_once(cases, mech9k_mpi, words, code, message):
+    """All processes end with the code of the mistake."""
+    done = cases.processes(4, mech9k_mpi, cases.write(GRID), *words)
+    cases.checks.true(done.returncode == code and done.stderr.count(message) == 1, f'{words}: {message}', f'{done.returncode}: {done.stderr}')
+
+
+@pytest.mark.parametrize('text, message', (
+    (GRID.replace("'crank'", "'rod'"), "a second &parameter for name 'rod'"),
+    (SLIDER_CRANK, '--study carries out the study of a group &study')), ids=('two parameters of a name', 'no study'))
+def test_a_mistake_in_the_data_file_is_told_once(cases, mech9k_mpi, text, message):
+    done = cases.processes(2, mech9k_mpi, cases.write(text), '--study')
+    cases.checks.true(done.returncode in (USAGE, DATA) and done.stderr.count(message) == 1, message, f'{done.returncode}: {done.stderr}')
+
+
+def test_a_full_disk_ends_all_processes(cases, mech9k_mpi):
+    if cases.checks.has_full_disk():
+        done = cases.processes(2, mech9k_mpi, cases.write(GRID), '--study', '--table', '/dev/full')
+        cases.checks.true(done.returncode == FILE, 'a full disk ends all', f'{done.returncode}: {done.stderr}')
+
+
+def test_the_version_is_told_once(cases, mech9k_mpi):
     done = cases.processes(2, mech9k_mpi, '--version')
-    check.true(done.returncode == DONE and len(done.stdout.splitlines()) == len(run(mech9k_mpi, '--version').stdout.splitlines()), 'the version, once',
-               done.stdout)
+    cases.checks.true(done.returncode == DONE and len(done.stdout.splitlines()) == len(run(mech9k_mpi, '--version').stdout.splitlines()),
+                      'the version, once', done.stdout)
 
 
-def interruption(cases, mech9k_mpi):
+def test_ctrl_c_ends_all_processes(cases, mech9k_mpi):
     """Ctrl-C ends all processes soon; the table has whole rows, those of the first runs."""
     check = cases.checks
     text = SLIDER_CRANK.replace('count=9', 'count=900').replace('count=11', 'count=1100') + "&study kind='grid' /\n"
     with subprocess.Popen(cases.command(2, mech9k_mpi, cases.write(text), '--study', '--table', 'cut.dat'), cwd=cases.folder, env=ENVIRONMENT,
                           text=True, stderr=subprocess.PIPE, start_new_session=True) as process:
         table = os.path.join(cases.folder, 'cut.dat')
-        end = time.time() + 30
+        end = time.time() + 30 * PATIENCE
         while time.time() < end and not (os.path.exists(table) and os.path.getsize(table) > 20000):
             time.sleep(0.05)
         os.killpg(process.pid, signal.SIGINT)
         try:
-            _, errors = process.communicate(timeout=30)
+            _, errors = process.communicate(timeout=30 * PATIENCE)
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             process.communicate()
@@ -189,22 +201,7 @@ def interruption(cases, mech9k_mpi):
                (numbers[:3], numbers[-3:], rows[-1:]))
 
 
-def main():
-    checks = Checks()
-    mech9k, mech9d, mech9k_mpi, mech9d_mpi, mpirun = sys.argv[1:6]
-    with tempfile.TemporaryDirectory() as folder:
-        cases = Cases(checks, folder, mpirun)
-        same_bits(cases, SLIDER_CRANK + "&study kind='grid' /\n", mech9k, mech9k_mpi, 'grid')
-        same_bits(cases, PENDULUM + "&study kind='sobol', runs=150, seed=4 /\n", mech9d, mech9d_mpi, 'dynamics')
-        if h5py:
-            files(cases, mech9k, mech9k_mpi)
-        else:
-            print('h5py is not installed (Debian: python3-h5py): HDF5 files are not tested')
-        mistakes(cases, mech9k_mpi)
-        interruption(cases, mech9k_mpi)
-        libraries = subprocess.run(['ldd', mech9k], text=True, capture_output=True, timeout=60).stdout
-        checks.true('libmpi' not in libraries, 'the program for one process is free of MPI', libraries)
-    checks.finish()
-
-
-main()
+def test_the_program_for_one_process_is_free_of_mpi(checks, build, mech9k):
+    mpi_of(build)
+    libraries = run('ldd', mech9k).stdout
+    checks.true('libmpi' not in libraries, 'the program for one process is free of MPI', libraries)

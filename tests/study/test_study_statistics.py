@@ -1,21 +1,16 @@
 """Summaries and plots of studies: quantiles and moments are those of the table, shares of variance those of linear propagation where
 the quantity is linear, all of them the same for parts of one; the numbers in the scripts of plots are those of the table, and gnuplot
 draws them; requests that cannot be drawn. Shares by derivatives are those of the linear propagation of errors.
-
-usage: study_statistics.py MECH9K MECH9D
 """
 import json
 import os
 import re
-import subprocess
-import sys
-import tempfile
 import xml.etree.ElementTree as xml
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks, read_table, run, text_of
+from mech9_cases import read_table, run, text_of
 
 DONE, USAGE = 0, 2
 # Two slides in a row: the place of the last link is the sum of the two, and its height is a parameter.
@@ -67,8 +62,8 @@ RUNS = 400
 
 
 class Cases:
-    def __init__(self, checks, folder, mech9k):
-        self.checks, self.folder, self.mech9k = checks, folder, mech9k
+    def __init__(self, checks, folder, program):
+        self.checks, self.folder, self.program = checks, folder, program
 
     def write(self, text, name='case.nml'):
         path = os.path.join(self.folder, name)
@@ -78,7 +73,7 @@ class Cases:
 
     def study(self, text, *more):
         """Table, report and words of a study."""
-        done = run(self.mech9k, self.write(text), '--study', '--table', 'study.dat', '--report', 'study.json', *more, folder=self.folder)
+        done = run(self.program, self.write(text), '--study', '--table', 'study.dat', '--report', 'study.json', *more, folder=self.folder)
         self.checks.true(done.returncode == DONE, f'{more}: the study goes through', done.stderr)
         return (read_table(text_of(os.path.join(self.folder, 'study.dat'))),
                 json.loads(text_of(os.path.join(self.folder, 'study.json'))), done.stderr)
@@ -91,88 +86,115 @@ class Cases:
         return found
 
 
+@pytest.fixture
+def cases(checks, tmp_path, mech9k):
+    return Cases(checks, tmp_path, mech9k)
+
+
+@pytest.fixture
+def cases_of_pictures(cases):
+    """Cases where gnuplot draws the pictures; without it, they are left out."""
+    if not cases.checks.has('gnuplot', 'gnuplot-nox'):
+        pytest.skip(cases.checks.missing[0])
+    return cases
+
+
 def told_quantiles(one):
     return np.array([level['value'] for level in one['quantiles']])
 
 
-def summaries(cases):
-    """place = far + start + 0.3 + speed + 0.2: its shares are the variances of the parameters over their sum."""
-    variances = np.array([0.02**2, 0.06**2 / 3, 0.3**2 / 12, 0])
-    for kind in ('random', 'latin', 'sobol'):
-        text = SLIDES + f"&study kind='{kind}', runs={RUNS}, seed=3 /\n"
-        rows, told, printed = cases.study(text)
-        check = cases.checks
-        place, height, level = told['quantities']
-        check.near(told_quantiles(place), np.quantile(rows['place'], [0.05, 0.5, 0.95]), 1e-14, f'{kind}: quantiles')
-        check.near([place['deviation'], place['mean_error']], np.std(rows['place'], ddof=1) * np.array([1, RUNS**-0.5]), 1e-12, f'{kind}: deviation')
-        check.equal([one['parameter'] for one in place['first_order_shares']], ['far', 'start', 'speed', 'high'], f'{kind}: parameters')
-        check.near([one['share'] for one in place['first_order_shares']], variances / sum(variances), 1e-10, f'{kind}: shares')
-        check.near(place['share_of_rest'], 0, 1e-10, f'{kind}: the rest of the variance')
-        check.equal([one['parameter'] for one in place['linear_shares']], ['far', 'start', 'speed', 'high'], f'{kind}: parameters of linear shares')
-        check.near([one['share'] for one in place['linear_shares']], variances / sum(variances), 1e-12, f'{kind}: linear shares')
-        check.near([one['derivative'] for one in place['linear_shares']], [1, 1, 1, 0], 1e-12, f'{kind}: derivatives')
-        check.near(place['linear_deviation'], np.sqrt(sum(variances)), 1e-12, f'{kind}: linear deviation')
-        check.true('place: shares by its derivatives: far 0.0' in printed, f'{kind}: linear shares in words', printed)
-        check.near([one['share'] for one in height['first_order_shares']], [0, 0, 0, 1], 1e-10, f'{kind}: shares of one cause')
-        check.true('first_order_shares' not in level, f'{kind}: what does not vary has no shares', level)
-        for name, one in (('place', place), ('level', level)):
-            lines = re.findall(rf'^{name}: (.*)$', printed, re.M)
-            check.true(lines[2].startswith(f'quantiles 5 % {one["quantiles"][0]["value"]:.6g} m') if name == 'place' else 'shares' not in ''.join(lines),
-                       f'{kind}: {name} in words', lines)
-    ten, told, printed = cases.study(SLIDES + "&study kind='random', runs=10 /\n")
+# place = far + start + 0.3 + speed + 0.2: its shares are the variances of the parameters over their sum.
+VARIANCES = np.array([0.02**2, 0.06**2 / 3, 0.3**2 / 12, 0])
+
+
+@pytest.mark.parametrize('kind', ('random', 'latin', 'sobol'))
+def test_summary_of_drawn_values(cases, kind):
+    text = SLIDES + f"&study kind='{kind}', runs={RUNS}, seed=3 /\n"
+    rows, told, printed = cases.study(text)
+    check = cases.checks
+    place, height, level = told['quantities']
+    check.near(told_quantiles(place), np.quantile(rows['place'], [0.05, 0.5, 0.95]), 1e-14, f'{kind}: quantiles')
+    check.near([place['deviation'], place['mean_error']], np.std(rows['place'], ddof=1) * np.array([1, RUNS**-0.5]), 1e-12, f'{kind}: deviation')
+    check.equal([one['parameter'] for one in place['first_order_shares']], ['far', 'start', 'speed', 'high'], f'{kind}: parameters')
+    check.near([one['share'] for one in place['first_order_shares']], VARIANCES / sum(VARIANCES), 1e-10, f'{kind}: shares')
+    check.near(place['share_of_rest'], 0, 1e-10, f'{kind}: the rest of the variance')
+    check.equal([one['parameter'] for one in place['linear_shares']], ['far', 'start', 'speed', 'high'], f'{kind}: parameters of linear shares')
+    check.near([one['share'] for one in place['linear_shares']], VARIANCES / sum(VARIANCES), 1e-12, f'{kind}: linear shares')
+    check.near([one['derivative'] for one in place['linear_shares']], [1, 1, 1, 0], 1e-12, f'{kind}: derivatives')
+    check.near(place['linear_deviation'], np.sqrt(sum(VARIANCES)), 1e-12, f'{kind}: linear deviation')
+    check.true('place: shares by its derivatives: far 0.0' in printed, f'{kind}: linear shares in words', printed)
+    check.near([one['share'] for one in height['first_order_shares']], [0, 0, 0, 1], 1e-10, f'{kind}: shares of one cause')
+    check.true('first_order_shares' not in level, f'{kind}: what does not vary has no shares', level)
+    for name, one in (('place', place), ('level', level)):
+        lines = re.findall(rf'^{name}: (.*)$', printed, re.M)
+        check.true(lines[2].startswith(f'quantiles 5 % {one["quantiles"][0]["value"]:.6g} m') if name == 'place' else 'shares' not in ''.join(lines),
+                   f'{kind}: {name} in words', lines)
+
+
+def test_summary_of_ten_runs(cases):
+    check = cases.checks
+    ten, told, _ = cases.study(SLIDES + "&study kind='random', runs=10 /\n")
     check.near(told_quantiles(told['quantities'][0]), np.quantile(ten['place'], [0.05, 0.5, 0.95]), 1e-14, 'ten runs: quantiles')
     check.true('error' not in told['quantities'][0]['quantiles'][0] and 'first_order_shares' not in told['quantities'][0],
                'ten runs: what they do not tell', told)
+
+
+def test_one_run_tells_nothing_of_the_scatter(cases):
     _, told, printed = cases.study(SLIDES + "&study kind='random', runs=1 /\n")
-    check.true('deviation' not in told['quantities'][0] and 'standard error' not in printed, 'one run tells nothing of the scatter', printed)
+    cases.checks.true('deviation' not in told['quantities'][0] and 'standard error' not in printed, 'one run tells nothing of the scatter', printed)
+
+
+def test_a_list_does_not_scatter(cases):
     cases.write('0.5 0.3 0.3 0.7\n0.6 0.3 0.3 0.7\n', 'designs.dat')
     _, told, printed = cases.study(SLIDES + "&study kind='list', file='designs.dat' /\n")
-    check.true('deviation' not in told['quantities'][0] and 'quantiles' not in printed, 'a list does not scatter', told)
+    cases.checks.true('deviation' not in told['quantities'][0] and 'quantiles' not in printed, 'a list does not scatter', told)
 
 
-def propagation(cases, mech9d):
-    """Shares by derivatives of a free motion, a quantity without derivatives, a mechanism that cannot be put together at the means."""
-    check = cases.checks
-    mech9k, cases.mech9k = cases.mech9k, mech9d
-    _, told, printed = cases.study(STONE)
+def test_shares_by_derivatives_of_a_free_motion(checks, tmp_path, mech9d):
+    """One of the quantities has no derivatives."""
+    _, told, printed = Cases(checks, tmp_path, mech9d).study(STONE)
     height, speed, gap = told['quantities']
     for one, by in ((height, [1, 1, 0.5, 0]), (speed, [0, 1, 1, 0])):
         parts = (np.array(by) * [0.3, 4 / 12**0.5, 0.5 / 3**0.5, 0.1])**2
-        check.near([share['derivative'] for share in one['linear_shares']], by, 1e-6, f"derivatives of {one['name']}")
-        check.near([share['share'] for share in one['linear_shares']], parts / sum(parts), 1e-6, f"linear shares of {one['name']}")
-        check.near(one['linear_deviation'], np.sqrt(sum(parts)), 1e-6, f"linear deviation of {one['name']}")
-    check.true('linear_shares' not in gap and 'gap: no shares by derivatives, because it has none by the parameters' in printed,
+        checks.near([share['derivative'] for share in one['linear_shares']], by, 1e-6, f"derivatives of {one['name']}")
+        checks.near([share['share'] for share in one['linear_shares']], parts / sum(parts), 1e-6, f"linear shares of {one['name']}")
+        checks.near(one['linear_deviation'], np.sqrt(sum(parts)), 1e-6, f"linear deviation of {one['name']}")
+    checks.true('linear_shares' not in gap and 'gap: no shares by derivatives, because it has none by the parameters' in printed,
                'a quantity without derivatives', printed)
-    # at the means, crank and rod are equally long: this linkage passes a change point, and has no derivatives
-    cases.mech9k = mech9k
+
+
+def test_a_mechanism_without_derivatives_at_the_means(cases):
+    """There, crank and rod are equally long: this linkage passes a change point."""
     _, told, printed = cases.study(FOLDING)
-    check.true('note: no shares by derivatives: ' in printed and 'linear_shares' not in told['quantities'][0] and 'mean' in told['quantities'][0],
+    cases.checks.true('note: no shares by derivatives: ' in printed and 'linear_shares' not in told['quantities'][0] and 'mean' in told['quantities'][0],
                'a run that fails at the means', printed)
-    cases.mech9k = mech9k
+
+
+def test_a_grid_has_no_shares_by_derivatives(cases):
     _, told, printed = cases.study(SLIDES.replace(', low=0.2, high=0.5', ', low=0.2, high=0.5, count=2').replace(', low=0.6, high=0.8', ', low=0.6, high=0.8, count=2')
                                    .replace('spread=0.02', 'low=0.4, high=0.6, count=2').replace("spread=0.06, distribution='uniform'", 'low=0.2, high=0.3, count=2')
                                    + "&study kind='grid' /\n")
-    check.true('linear_shares' not in told['quantities'][0] and 'derivatives' not in printed, 'a grid has no shares by derivatives', printed)
+    cases.checks.true('linear_shares' not in told['quantities'][0] and 'derivatives' not in printed, 'a grid has no shares by derivatives', printed)
 
 
-def extreme_numbers(cases):
+@pytest.mark.parametrize('size', (1e-90, 1.0, 1e98))
+def test_extreme_numbers(cases, size):
     """Numbers whose fourth powers are no numbers of the machine scatter as those of common size do."""
     check = cases.checks
     slide = SLIDES.split('&drive coordinate=2')[0].replace('cq=1,2', 'cq=1').split('&pair coordinate=2')[0]
-    for size in (1e-90, 1.0, 1e98):
-        text = (slide + f"&drive coordinate=1, kind='polynomial', coefficients={3 * size}, {size} /\n&time end=1, intervals=4 /\n"
-                f"&parameter name='start', sets='drive.coefficients(1)', spread={0.5 * size} /\n"
-                f"&parameter name='speed', sets='drive.coefficients(2)', spread={0.2 * size}, distribution='uniform' /\n"
-                "&quantity name='place', of='q1', take='end' /\n&study kind='random', runs=200 /\n")
-        rows, told, _ = cases.study(text)
-        place = told['quantities'][0]
-        values = rows['place'] / size
-        check.near([place['mean'] / size, place['deviation'] / size], [values.mean(), values.std(ddof=1)], 1e-12, f'{size}: mean and deviation')
-        check.true(0 < place['deviation_error'] < 0.1 * place['deviation'], f'{size}: error of the deviation', place['deviation_error'])
-        variances = np.array([0.25, 0.04 / 3])
-        for name in ('first_order_shares', 'linear_shares'):
-            check.near([one['share'] for one in place[name]], variances / sum(variances), 1e-9, f'{size}: {name}')
-        check.near(place['linear_deviation'] / size, np.sqrt(sum(variances)), 1e-9, f'{size}: linear deviation')
+    text = (slide + f"&drive coordinate=1, kind='polynomial', coefficients={3 * size}, {size} /\n&time end=1, intervals=4 /\n"
+            f"&parameter name='start', sets='drive.coefficients(1)', spread={0.5 * size} /\n"
+            f"&parameter name='speed', sets='drive.coefficients(2)', spread={0.2 * size}, distribution='uniform' /\n"
+            "&quantity name='place', of='q1', take='end' /\n&study kind='random', runs=200 /\n")
+    rows, told, _ = cases.study(text)
+    place = told['quantities'][0]
+    values = rows['place'] / size
+    check.near([place['mean'] / size, place['deviation'] / size], [values.mean(), values.std(ddof=1)], 1e-12, f'{size}: mean and deviation')
+    check.true(0 < place['deviation_error'] < 0.1 * place['deviation'], f'{size}: error of the deviation', place['deviation_error'])
+    variances = np.array([0.25, 0.04 / 3])
+    for name in ('first_order_shares', 'linear_shares'):
+        check.near([one['share'] for one in place[name]], variances / sum(variances), 1e-9, f'{size}: {name}')
+    check.near(place['linear_deviation'] / size, np.sqrt(sum(variances)), 1e-9, f'{size}: linear deviation')
 
 
 def numbers_apart(picture):
@@ -186,19 +208,27 @@ def numbers_apart(picture):
     return gap, sum(map(len, rows.values()))
 
 
-def narrow_axes(cases):
+@pytest.mark.parametrize('value, spread', ((0.018, 5e-5), (12345.678, 0.01), (-0.5, 0.1), (1e-9, 1e-10), (3e7, 1e6), (0.5, 1e-9)))
+def test_numbers_below_narrow_axes(cases_of_pictures, value, spread):
     """Numbers of many digits do not run into each other below narrow plots: here 0.0179 to 0.0181, and 12345.65 to 12345.71."""
-    for value, spread in ((0.018, 5e-5), (12345.678, 0.01), (-0.5, 0.1), (1e-9, 1e-10), (3e7, 1e6), (0.5, 1e-9)):
-        text = SLIDES.replace("point(1)', spread=0.02", f"point(1)', value={value!r}, spread={spread!r}") + "&study kind='random', runs=200 /\n"
-        for request in ('far,place,speed:place,far:speed:place', 'far:speed:place,far:place', 'far', 'far:speed:place', ','.join(['far'] * 7)):
-            cases.study(text, '--plot', f'narrow.svg:{request}')
-            gap, count = numbers_apart(text_of(os.path.join(cases.folder, 'narrow.svg')))
-            cases.checks.true(gap > 0.5 and count >= 2, f'{request}, {value}: numbers below axes stand apart', f'gap {gap:.2f}, {count} numbers')
+    cases = cases_of_pictures
+    text = SLIDES.replace("point(1)', spread=0.02", f"point(1)', value={value!r}, spread={spread!r}") + "&study kind='random', runs=200 /\n"
+    for request in ('far,place,speed:place,far:speed:place', 'far:speed:place,far:place', 'far', 'far:speed:place', ','.join(['far'] * 7)):
+        cases.study(text, '--plot', f'narrow.svg:{request}')
+        gap, count = numbers_apart(text_of(os.path.join(cases.folder, 'narrow.svg')))
+        cases.checks.true(gap > 0.5 and count >= 2, f'{request}, {value}: numbers below axes stand apart', f'gap {gap:.2f}, {count} numbers')
 
 
-def plots(cases):
-    """Histograms, effects and maps of drawn values and of a grid against those of numpy."""
-    check = cases.checks
+def is_drawn(cases, *scripts):
+    """gnuplot draws the scripts and has nothing to say."""
+    for script in scripts:
+        done = run('gnuplot', script, folder=cases.folder)
+        cases.checks.true(done.returncode == 0 and done.stderr == '', f'{script}: gnuplot has nothing to say', done.stderr)
+
+
+def test_plots_of_drawn_values(cases_of_pictures):
+    """Histograms, effects and maps against those of numpy."""
+    cases, check = cases_of_pictures, cases_of_pictures.checks
     rows, _, printed = cases.study(SLIDES + f"&study kind='random', runs={RUNS} /\n", '--plot', 'place,speed:place,far:speed:place',
                                    '--plot', 'one.svg:height')
     check.true(all(os.path.exists(os.path.join(cases.folder, name)) for name in ('study.svg', 'study.gp', 'one.svg', 'one.gp'))
@@ -219,6 +249,11 @@ def plots(cases):
     for x0, x1, y0, y1, mean in blocks['$figure3']:
         inside = (rows['far'] > x0 - 1e-12) & (rows['far'] <= x1) & (rows['speed'] > y0 - 1e-12) & (rows['speed'] <= y1)
         check.near(mean, rows['place'][inside].mean(), 1e-12, 'the mean in a cell of a map')
+    is_drawn(cases, 'study.gp', 'one.gp')
+
+
+def test_plots_of_a_grid(cases_of_pictures):
+    cases, check = cases_of_pictures, cases_of_pictures.checks
     grid = re.sub(r"spread=0.02", "low=0.4, high=0.6, count=3", re.sub(r"spread=0.06, distribution='uniform'", "low=0.1, high=0.3, count=2", SLIDES))
     grid = grid.replace('high=0.5 /', 'high=0.5, count=4 /').replace('high=0.8 /', 'high=0.8, count=2 /')
     rows, _, _ = cases.study(grid + "&study kind='grid' /\n", '--plot', 'grid.svg:far:speed:place,far:place,start')
@@ -230,55 +265,44 @@ def plots(cases):
         check.near(mean, rows['place'][inside].mean(), 1e-12, 'the mean of a cell of a grid')
     check.near(blocks['$figure2'][:, 0], [0.4, 0.5, 0.6], 1e-12, 'the values of a grid stand one by one')
     check.equal(list(blocks['$figure3'][:, 1]), [24, 24], 'a bar for each value of a grid')
-    for script in ('study.gp', 'one.gp', 'grid.gp'):
-        done = subprocess.run(['gnuplot', script], cwd=cases.folder, text=True, capture_output=True, timeout=60)
-        check.true(done.returncode == 0 and done.stderr == '', f'{script}: gnuplot has nothing to say', done.stderr)
+    is_drawn(cases, 'grid.gp')
 
 
-def letters(cases):
-    """In the terminal, where no table is written; nothing is drawn where all runs fail."""
-    check = cases.checks
+def test_plots_in_the_terminal(cases_of_pictures):
+    """No table is written there."""
+    cases, check = cases_of_pictures, cases_of_pictures.checks
     path = cases.write(SLIDES + "&study kind='random', runs=40 /\n")
-    done = run(cases.mech9k, path, '--study', '--plot', 'term:place,far:place', '--quiet', folder=cases.folder)
+    done = run(cases.program, path, '--study', '--plot', 'term:place,far:place', '--quiet', folder=cases.folder)
     check.true(done.returncode == DONE and 'place [m]' in done.stdout and '# ' not in done.stdout and 'runs' in done.stdout, 'plots in letters', done.stdout)
-    done = run(cases.mech9k, path, '--study', '--plot', 'term', folder=cases.folder)
+    done = run(cases.program, path, '--study', '--plot', 'term', folder=cases.folder)
     check.true(done.returncode == DONE and 'height [m]' in done.stdout, 'without names all quantities are drawn', done.stdout)
 
 
-def refusals(cases):
-    check = cases.checks
-    path = cases.write(SLIDES + "&study kind='random', runs=4 /\n")
+FOUR_RUNS = "&study kind='random', runs=4 /\n"
+
+
+@pytest.mark.parametrize('request_of_plots, message', (
+    ('plase', "no column of the results is named 'plase'; did you mean 'place'?"),
+    ('run', "no column of the results is named 'run'"),
+    ('far:speed:start:place', "here are more: ':place'"),
+    ('far,', 'a name of a column is missing'),
+    ('far speed', "a comma is missing before 'speed'"),
+    ('term:far:speed:place', 'a terminal cannot show a map'),
+    (','.join(['far'] * 13), 'at most 12 plots')), ids=('plase', 'run', 'too many', 'missing', 'comma', 'terminal', 'thirteen'))
+def test_plots_that_are_refused(cases, request_of_plots, message):
     kept = cases.write('kept', 'kept.dat')
-    for request, message in (('plase', "no column of the results is named 'plase'; did you mean 'place'?"),
-                             ('run', "no column of the results is named 'run'"),
-                             ('far:speed:start:place', "here are more: ':place'"),
-                             ('far,', 'a name of a column is missing'),
-                             ('far speed', "a comma is missing before 'speed'"),
-                             ('term:far:speed:place', 'a terminal cannot show a map'),
-                             (','.join(['far'] * 13), 'at most 12 plots')):
-        done = run(cases.mech9k, path, '--study', '--table', kept, '--plot', request, folder=cases.folder)
-        check.true(done.returncode == USAGE and message in done.stderr, f'{request}: {message}', f'{done.returncode}: {done.stderr}')
-        check.true(text_of(kept) == 'kept', f'{request}: nothing is written over')
-    without = re.sub(r'&quantity.*\n', '', SLIDES) + "&study kind='random', runs=4 /\n"
-    done = run(cases.mech9k, cases.write(without), '--study', '--plot', 'term', folder=cases.folder)
-    check.true(done.returncode == USAGE and 'this study has no quantities' in done.stderr, 'nothing to draw', done.stderr)
-    done = run(cases.mech9k, path, '--study', '--plot', 'case.svg:far', '--table', 'case.svg', folder=cases.folder)
-    check.true(done.returncode == USAGE and "cannot both be 'case.svg'" in done.stderr, 'a picture over the table', done.stderr)
+    done = run(cases.program, cases.write(SLIDES + FOUR_RUNS), '--study', '--table', kept, '--plot', request_of_plots, folder=cases.folder)
+    cases.checks.true(done.returncode == USAGE and message in done.stderr, f'{request_of_plots}: {message}', f'{done.returncode}: {done.stderr}')
+    cases.checks.true(text_of(kept) == 'kept', f'{request_of_plots}: nothing is written over')
 
 
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        cases = Cases(checks, folder, os.path.abspath(sys.argv[1]))
-        summaries(cases)
-        propagation(cases, os.path.abspath(sys.argv[2]))
-        extreme_numbers(cases)
-        if checks.has('gnuplot', 'gnuplot-nox'):
-            plots(cases)
-            narrow_axes(cases)
-            letters(cases)
-        refusals(cases)
-    checks.finish()
+def test_nothing_to_draw(cases):
+    without = re.sub(r'&quantity.*\n', '', SLIDES) + FOUR_RUNS
+    done = run(cases.program, cases.write(without), '--study', '--plot', 'term', folder=cases.folder)
+    cases.checks.true(done.returncode == USAGE and 'this study has no quantities' in done.stderr, 'nothing to draw', done.stderr)
 
 
-main()
+def test_a_picture_over_the_table(cases):
+    path = cases.write(SLIDES + FOUR_RUNS)
+    done = run(cases.program, path, '--study', '--plot', 'case.svg:far', '--table', 'case.svg', folder=cases.folder)
+    cases.checks.true(done.returncode == USAGE and "cannot both be 'case.svg'" in done.stderr, 'a picture over the table', done.stderr)
