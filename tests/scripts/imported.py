@@ -3,12 +3,10 @@ import math
 import os
 import random
 import re
-import sys
-import tempfile
 
 import numpy as np
 
-from mech9_cases import Checks, read_table, run, text_of
+from mech9_cases import read_table, run, text_of
 
 DONE, USAGE, DATA, STRUCTURE, ASSEMBLY, FILE = 0, 2, 3, 4, 5, 8
 # Some ten matrices are multiplied, and numbers of files are rounded to the last digit.
@@ -64,7 +62,7 @@ class Session:
         self.checks.left_out('the programs are built without expat (Debian: libexpat1-dev)')
         return True
 
-    def survives(self, robots, trials):
+    def survives(self, robots, trials=120):
         """Files that are cut or changed at random end with a known code and a message, or are imported to a file that is read."""
         source = random.Random(5)
         for trial in range(trials):
@@ -97,15 +95,3 @@ def about(axis, angle):
 
 def rpy(angles):
     return about([0, 0, 1], angles[2]) @ about([0, 1, 0], angles[1]) @ about([1, 0, 0], angles[0])
-
-
-def test_imports(parts, robots, trials=120):
-    """The main program of a test of imports: each part with one session, and then robots that are damaged."""
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        session = Session(checks, folder, *sys.argv[1:3])
-        if not session.without_expat():
-            for part in parts:
-                part(session)
-            session.survives(robots, trials)
-    checks.finish()
