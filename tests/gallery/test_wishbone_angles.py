@@ -1,18 +1,13 @@
 """The double wishbone suspension of the gallery against toe, camber and track computed from its points alone.
 
-usage: wishbone_angles.py MECH9K
-
 Here is no joint and no angle: a ball joint is a point at known distances from others. Three such distances are an
 intersection of spheres, which Newton's method finds from the place in the row before.
 """
-import os
-import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
 
 from gallery_list import examples
-from mech9_cases import Checks, table_and_report
+from mech9_cases import table_and_report
 
 # the points at home, as in the data file
 HOME = {'LF': (0.13, 0.38, 0.2), 'LR': (-0.22, 0.39, 0.205), 'L': (0.01, 0.7, 0.19),
@@ -72,10 +67,9 @@ def angles_of(points):
     return np.arctan2(axle[0], axle[1]), -np.arcsin(axle[2] / np.linalg.norm(axle))
 
 
-def main():
-    checks = Checks()
+def test_toe_camber_and_track_are_those_of_the_points(checks, mech9k):
     example = next(example for example in examples() if example.name == 'double_wishbone')
-    table, _ = table_and_report(sys.argv[1], example.data)
+    table, _ = table_and_report(mech9k, example.data)
     found = {name: np.column_stack([table[f'{name}.{axis}'] for axis in 'xyz']) for name in ('U', 'T', 'W', 'S', 'C')}
     points = HOME
     expected = []
@@ -96,8 +90,3 @@ def main():
     checks.true(np.ptp(found['W'][:, 2][straight]) > 0.15, 'the wheel travels by 15 cm')
     checks.true(np.max(np.abs(np.degrees(toe[straight]))) < 0.5, 'it hardly steers as it travels')
     checks.true(10 < np.degrees(np.max(toe)) < 20, 'and the rack steers it')
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()

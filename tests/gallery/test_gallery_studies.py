@@ -1,19 +1,14 @@
 """Studies and gradients of the gallery: the draw latch against its closed form and the propagation of errors, Jansen's leg over its grid, and
 hard points that move together; the energy of SUNDIALS' slider-crank.
-
-usage: gallery_studies.py MECH9K MECH9D
 """
 import json
 import os
-import sys
-import tempfile
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks, read_table, run
-
-EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'examples')
+from gallery_list import EXAMPLES
+from mech9_cases import read_table, run
 
 
 def gradients(program, folder, name, *options):
@@ -36,7 +31,8 @@ def study(program, name):
     return read_table(done.stdout)
 
 
-def check_latch(checks, program, folder):
+def test_draw_latch(checks, tmp_path, mech9k):
+    """Its derivatives by closed form, and the scatter that they propagate."""
     values = np.array([0.018, 0.052, 0.003, 193.0], dtype=complex)
     deviations = np.array([5e-5, 1e-4, 5e-5, 0.5])
 
@@ -45,23 +41,23 @@ def check_latch(checks, program, folder):
         return lever * np.cos(angle) + np.sqrt(bail**2 - (lever * np.sin(angle) - height)**2)
 
     expected = np.array([held(*(values + 1e-30j * np.eye(4)[i])).imag / 1e-30 for i in range(4)])
-    _, found = gradients(program, folder, 'draw_latch')
+    _, found = gradients(mech9k, tmp_path, 'draw_latch')
     mine = np.array([found['held'][name] for name in ('lever', 'bail', 'height', 'stop')])
     checks.near(mine, expected, 1e-12, 'the derivatives of the place of the hook')
     # lever and bail in line with the guide's end of the bail: (bail - lever)^2 = x^2 + height^2
     long = np.sqrt(0.034**2 - 0.003**2)
     least = np.array([found['least'][name] for name in ('lever', 'bail', 'height', 'stop')])
     checks.near(least, np.array([-0.034 / long, 0.034 / long, -0.003 / long, 0]), 1e-8, 'those at the dead centre')
-    rows = study(program, 'draw_latch')
+    rows = study(mech9k, 'draw_latch')
     first_order = np.sqrt(((expected * deviations)**2).sum())
     # 2000 runs: standard error 1.6 per cent, less in a Latin hypercube
     checks.near(rows['held'].std() / first_order, 1.0, 0.03, 'the scatter is that of first order')
     checks.near(rows['held'].mean(), held(*values).real, 1e-4, 'the mean is the value of the mean dimensions')
 
 
-def check_jansen(checks, program, folder):
-    values, _ = gradients(program, folder, 'jansen_stride')
-    rows = study(program, 'jansen_stride')
+def test_stride_of_jansens_leg_over_its_grid(checks, tmp_path, mech9k):
+    values, _ = gradients(mech9k, tmp_path, 'jansen_stride')
+    rows = study(mech9k, 'jansen_stride')
     checks.equal(len(rows['run']), 63, 'the grid')
     own = np.flatnonzero((np.abs(rows['crank'] - 15) < 1e-9) & (np.abs(rows['rod'] - 61.9) < 1e-9))
     for name in ('stride', 'height'):
@@ -76,36 +72,27 @@ def check_jansen(checks, program, folder):
         checks.true(bool((np.diff(rows['height'][of_crank & ~failed]) > 0).all()), f'crank {crank}: longer rods lift the foot higher')
 
 
-def check_hard_points(checks, program, folder):
-    _, found = gradients(program, folder, 'wishbone_points')
-    for name in ('toe', 'camber'):
-        by = found[name]
-        heights = [by[point] for point in ('lower_bushings', 'upper_bushings', 'lower_ball', 'upper_ball', 'rack', 'tie_rod')]
-        checks.near(sum(heights) / max(map(abs, heights)), 0.0, 1e-9, f'{name}: a suspension that is higher as a whole is the same')
+@pytest.mark.parametrize('name', ('toe', 'camber'))
+def test_a_suspension_that_is_higher_as_a_whole(checks, tmp_path, mech9k, name):
+    """It is the same."""
+    _, found = gradients(mech9k, tmp_path, 'wishbone_points')
+    by = found[name]
+    heights = [by[point] for point in ('lower_bushings', 'upper_bushings', 'lower_ball', 'upper_ball', 'rack', 'tie_rod')]
+    checks.near(sum(heights) / max(map(abs, heights)), 0.0, 1e-9, f'{name}: a suspension that is higher as a whole is the same')
+
+
+def test_the_rack_matters_most_to_toe(checks, tmp_path, mech9k):
+    _, found = gradients(mech9k, tmp_path, 'wishbone_points')
     checks.true(abs(found['toe']['rack']) > 4 * abs(found['toe']['upper_bushings']), 'toe: the rack matters most')
 
 
-def check_sundials(checks, program, folder):
+def test_energy_of_the_slider_crank_of_sundials(checks, tmp_path, mech9d):
     """Published: G = 3.33662 at a tolerance of 1e-6, and derivatives by k and c with five digits."""
-    values, found = gradients(program, folder, 'sundials_sensitivity')
+    values, found = gradients(mech9d, tmp_path, 'sundials_sensitivity')
     checks.true(abs(values['G'] - 3.3366157997761721) <= 2e-5, 'the integral of the energy', values['G'])
     for number, (name, published) in enumerate((('k', 0.33345), ('c', -0.36375)), 1):
         checks.true(abs(found['G'][name] - published) <= 1e-5, f'its derivative by {name} is the published one', found['G'][name])
-        above, below = (gradients(program, folder, 'sundials_sensitivity', '--set', f'parameter({number}).value={value}')[0]['G']
+        above, below = (gradients(mech9d, tmp_path, 'sundials_sensitivity', '--set', f'parameter({number}).value={value}')[0]['G']
                         for value in (1.001, 0.999))
         # central differences err by some 1e-7 of second order, and by tolerances of 1e-10 over steps of 1e-3
         checks.true(abs((above - below) / 0.002 - found['G'][name]) <= 1e-6, f'and that of runs beside by {name}', (above - below) / 0.002)
-
-
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        check_latch(checks, sys.argv[1], folder)
-        check_jansen(checks, sys.argv[1], folder)
-        check_hard_points(checks, sys.argv[1], folder)
-        check_sundials(checks, sys.argv[2], folder)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()

@@ -1,20 +1,20 @@
 """Syntheses of the gallery: the value of each best design by the closed form of its mechanism, beside designs of the literature; the data
 file of the best design repeats it in a run; the numbers that the READMEs tell.
-
-usage: gallery_synthesis.py MECH9K
 """
 import os
 import re
 import shutil
-import sys
-import tempfile
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import TREE, Checks, read_table, run, text_of
+from gallery_list import EXAMPLES
+from mech9_cases import read_table, run, text_of
 
-EXAMPLES = os.path.join(TREE, 'examples')
+
+# Numbers that READMEs tell [deg].
+SPATIAL_ERROR = 0.0209
+DWELL_ERROR, SWING = 0.028, 45
 
 
 class Search:
@@ -77,9 +77,9 @@ def coupler_point(theta, sign, frame, crank, coupler, rocker, px, py):
     return a + (px + 1j*py)*np.exp(1j*turn)
 
 
-def five_points(checks, program, folder):
+def test_five_timed_points(checks, tmp_path, mech9k):
     """Designs of the literature have the larger values that their printed dimensions give by the closed form."""
-    search = Search(checks, program, folder, 'five_timed_points')
+    search = Search(checks, mech9k, tmp_path, 'five_timed_points')
     t, x, y = search.targets('five_points.dat')
     points, theta = x + 1j*y, np.radians(30 + 15*t)
 
@@ -102,9 +102,9 @@ def five_points(checks, program, folder):
     search.tells('7.416e-7', '9.526e-4', '1.827e-6', '1.284e-6', '4.270e-6')
 
 
-def eighteen_points(checks, program, folder):
-    """The same with ten dimensions; the best design is examined in synthesis.py."""
-    search = Search(checks, program, folder, 'timed_path')
+def test_eighteen_timed_points(checks, tmp_path, mech9k):
+    """The same with ten dimensions; the best design is examined in tests/synthesis/test_synthesis.py."""
+    search = Search(checks, mech9k, tmp_path, 'timed_path')
     t, x, y = search.targets('eighteen_points.dat')
     checks.near(search.best['value']/0.00902888, 1, 1e-6, 'eighteen points: the least value')
 
@@ -124,9 +124,9 @@ def eighteen_points(checks, program, folder):
     search.tells('0.00902888', '0.0661', '0.0337', '0.0194', '0.0350')
 
 
-def straight_line(checks, program, folder):
+def test_straight_line(checks, tmp_path, mech9k):
     """The largest distance from the line between its ends, beside that of Hoeken's linkage over its half turn."""
-    search = Search(checks, program, folder, 'straight_line')
+    search = Search(checks, mech9k, tmp_path, 'straight_line')
     best = search.best
     line = coupler_point(np.radians(np.linspace(90, 270, 20001)), 1, 2, 1, 2.5, 2.5, 5, 0)
     hoeken = np.max(np.abs(line.imag - 4))
@@ -147,39 +147,39 @@ def straight_line(checks, program, folder):
     search.tells('9.75 mm', '1.98 mm')
 
 
-def functions(checks, program, folder):
+@pytest.mark.parametrize('name, rule, span, by_precision_points, least', (
+    ('log_function', lambda u: 90*np.log2(1 + u), 60, 0.0330, 0.0273),
+    ('square_function', lambda u: 90*u**2, 90, 0.1699, 0.1105)), ids=('logarithm', 'square'))
+def test_function_generators(checks, tmp_path, mech9k, name, rule, span, by_precision_points, least):
     """Structural errors by the closed form: of three precision points by Freudenstein's equation, and of the best design."""
-    for name, rule, span, by_precision_points, least in (
-            ('log_function', lambda u: 90*np.log2(1 + u), 60, 0.0330, 0.0273),
-            ('square_function', lambda u: 90*u**2, 90, 0.1699, 0.1105)):
-        search = Search(checks, program, folder, name)
-        text = text_of(os.path.join(search.folder, f'{name}.nml'))
-        start = [float(x) for x in re.search(r'moving_point=0,0,0,\n +point=(\S+), (\S+), 0 /.*?point=(\S+), 0, 0,\n +moving_point=(\S+), (\S+), 0 /',
-                                             text, re.S).groups()]
-        u = np.linspace(0, 1, 2001)
+    search = Search(checks, mech9k, tmp_path, name)
+    text = text_of(os.path.join(search.folder, f'{name}.nml'))
+    start = [float(x) for x in re.search(r'moving_point=0,0,0,\n +point=(\S+), (\S+), 0 /.*?point=(\S+), 0, 0,\n +moving_point=(\S+), (\S+), 0 /',
+                                         text, re.S).groups()]
+    u = np.linspace(0, 1, 2001)
 
-        def error(ax, ay, coupler, bx, by, u):
-            errors = []
-            for sign in (1, -1):
-                _, _, psi = four_bar(np.radians(span*u), ax + 1j*ay, 1, coupler, np.hypot(bx, by), sign)
-                errors.append((np.degrees(psi - np.angle(bx + 1j*by)) - rule(u) + 180) % 360 - 180)
-            return min(errors, key=lambda e: np.max(np.abs(e)))
+    def error(ax, ay, coupler, bx, by, u):
+        errors = []
+        for sign in (1, -1):
+            _, _, psi = four_bar(np.radians(span*u), ax + 1j*ay, 1, coupler, np.hypot(bx, by), sign)
+            errors.append((np.degrees(psi - np.angle(bx + 1j*by)) - rule(u) + 180) % 360 - 180)
+        return min(errors, key=lambda e: np.max(np.abs(e)))
 
-        precision = 0.5 - 0.5*np.cos(np.pi*np.array([1, 3, 5])/6)
-        checks.near(error(*start, precision), 0, 1e-10, f'{name}: the start has three precision points, of Chebyshev\'s spacing')
-        checks.near(np.max(np.abs(error(*start, u)))/by_precision_points, 1, 3e-3, f'{name}: structural error of three precision points')
-        best = [search.best[key] for key in ('ax', 'ay', 'coupler', 'bx', 'by')]
-        checks.near(np.max(np.abs(error(*best, u)))/least, 1, 3e-3, f'{name}: structural error of the best design')
-        angles, values = search.targets('function.dat')
-        search.has_value(np.sum(np.radians(error(*best, angles/span))**2), 'closed form')
-        made = search.motion('--set', 'time.intervals=30')
-        search.has_value(np.sum(np.radians(made['q4'] - values)**2), 'a run of the best design')
-        search.tells(f'{by_precision_points:.4f}', f'{least:.4f}')
+    precision = 0.5 - 0.5*np.cos(np.pi*np.array([1, 3, 5])/6)
+    checks.near(error(*start, precision), 0, 1e-10, f'{name}: the start has three precision points, of Chebyshev\'s spacing')
+    checks.near(np.max(np.abs(error(*start, u)))/by_precision_points, 1, 3e-3, f'{name}: structural error of three precision points')
+    best = [search.best[key] for key in ('ax', 'ay', 'coupler', 'bx', 'by')]
+    checks.near(np.max(np.abs(error(*best, u)))/least, 1, 3e-3, f'{name}: structural error of the best design')
+    angles, values = search.targets('function.dat')
+    search.has_value(np.sum(np.radians(error(*best, angles/span))**2), 'closed form')
+    made = search.motion('--set', 'time.intervals=30')
+    search.has_value(np.sum(np.radians(made['q4'] - values)**2), 'a run of the best design')
+    search.tells(f'{by_precision_points:.4f}', f'{least:.4f}')
 
 
-def spatial(checks, program, folder):
+def test_spatial_function_generator(checks, tmp_path, mech9k):
     """The rod keeps its length: |A(q1) - B(q8)| = rod, a quadratic equation in tan(q8/2)."""
-    search = Search(checks, program, folder, 'rssr_function')
+    search = Search(checks, mech9k, tmp_path, 'rssr_function')
     best = search.best
 
     def output(q1, near):
@@ -201,9 +201,9 @@ def spatial(checks, program, folder):
     search.tells(f'{SPATIAL_ERROR:.4f}')
 
 
-def dwell(checks, program, folder):
+def test_dwell(checks, tmp_path, mech9k):
     """The output by two closed triangles."""
-    search = Search(checks, program, folder, 'dwell_six_bar')
+    search = Search(checks, mech9k, tmp_path, 'dwell_six_bar')
     best = search.best
     made = search.motion()
     q1 = np.radians(made['q1'])
@@ -227,9 +227,9 @@ def dwell(checks, program, folder):
     search.tells(f'{DWELL_ERROR}', f'{SWING}')
 
 
-def poses(checks, program, folder):
+def test_three_poses(checks, tmp_path, mech9k):
     """Each pivot has equal distances from the three places of its moving joint."""
-    search = Search(checks, program, folder, 'three_poses')
+    search = Search(checks, mech9k, tmp_path, 'three_poses')
     x, y, angle = search.targets('poses.dat')
     joint = x + 1j*y
     checks.true(search.best['value'] < 1e-24, 'poses: nothing is left', search.best['value'])
@@ -256,9 +256,9 @@ def poses(checks, program, folder):
     checks.near(search.block('reached1'), block[:, :4], 1e-9, 'poses: and the design meets them')
 
 
-def balance(checks, program, folder):
+def test_balanced_crank(checks, tmp_path, mech9k):
     """Half of the reciprocating mass, and 1/(1 + w) of it where the force across counts by the weight w."""
-    search = Search(checks, program, folder, 'balanced_crank', plot=False)
+    search = Search(checks, mech9k, tmp_path, 'balanced_crank', plot=False)
     text = text_of(os.path.join(search.folder, 'balanced_crank.nml'))
     # the value is flat at its least: half of the digits of the derivatives, which are exact, decide
     checks.near(search.best['distance'], -0.05/2/2, 1e-7, 'balance: one half')
@@ -268,15 +268,15 @@ def balance(checks, program, folder):
     search.has_value(value, 'a run of the best design')
     search.search(data=text.replace("of='across', goal=0 /", "of='across', goal=0, weight=0.5 /"))
     checks.near(read_table(text_of(os.path.join(search.folder, 'designs.dat')))['distance'][0], -0.05*2/3/2, 1e-7, 'balance: two thirds')
-    done = run(program, 'balanced_crank.nml', '--optimize', '--plot', 'fit.svg:', folder=search.folder)
+    done = run(mech9k, 'balanced_crank.nml', '--optimize', '--plot', 'fit.svg:', folder=search.folder)
     checks.true(done.returncode == 2 and 'it shows targets, and no &objective of this file has any' in done.stderr,
                 'balance: there are no targets to plot', done.stderr)
     search.tells('0.500000', '0.666667')
 
 
-def door_closer(checks, program, folder):
+def test_door_closer(checks, tmp_path, mech9d):
     """The door's motion by its own equation: the arm turns as the triangle of arm and forearm tells, and its torque does the door's work."""
-    search = Search(checks, program, folder, 'door_closer', plot=False)
+    search = Search(checks, mech9d, tmp_path, 'door_closer', plot=False)
     best = search.best
 
     def arm_angle(door):
@@ -307,20 +307,3 @@ def door_closer(checks, program, folder):
     checks.near(motion['q1'][20::20], at, 1e-6, 'door closer: its motion, by tolerances of 1e-8', scale=1.0)
     search.has_value(np.sum((np.array(at) - [65, 40, 20, 8, 2])**2), 'its value')
     search.tells(', '.join(f'{angle:.2f}' for angle in at), f"{best['stiffness']:.3f}", f"{best['bracket']:.5f}")
-
-
-SPATIAL_ERROR = 0.0209
-DWELL_ERROR, SWING = 0.028, 45
-
-
-def main():
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        for check in (five_points, eighteen_points, straight_line, functions, spatial, dwell, poses, balance):
-            check(checks, sys.argv[1], folder)
-        door_closer(checks, sys.argv[2], folder)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()

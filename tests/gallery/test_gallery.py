@@ -1,7 +1,4 @@
-"""An example of the gallery against its expected.txt.
-
-usage: gallery.py NAME BIN SAMPLES      BIN holds mech9k and mech9d, SAMPLES the programs with user procedures, each
-                                        named after its first source (trammel.f90: trammel_k)
+"""Each example of the gallery against its expected.txt, the options that its README tells to try, and its picture.
 
 A line of expected.txt is one of
     # a comment
@@ -24,15 +21,13 @@ A factor, or a number in place of a name, has its reason in its line or at the h
 import os
 import re
 import shlex
-import sys
-import tempfile
 import xml.etree.ElementTree
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
 from gallery_list import examples
-from mech9_cases import Checks, run, table_and_report, text_of
+from mech9_cases import run, table_and_report, text_of
 
 FUNCTIONS = {name: getattr(np, name) for name in 'sin cos tan arcsin arccos arctan arctan2 sqrt exp log pi'.split()}
 FUNCTIONS.update(rad=np.radians, deg=np.degrees, first=lambda x: x[0],
@@ -81,14 +76,28 @@ def check_values(checks, table, known, where, left, right, tolerance, why):
                 scale=min(1.0, largest) if largest > tolerance else 1.0)
 
 
-def program_of(example, folder, samples):
+def program_of(example, build):
+    """The program of an example. With user procedures it is named after their first source (trammel.f90: trammel_k)."""
     if not example.procedures:
-        return os.path.join(folder, example.program)
+        return build.program(example.program)
     first = os.path.splitext(os.path.basename(example.procedures[0]))[0]
-    return os.path.join(samples, f'{first}_{example.program[-1]}')
+    return build.program(f'{first}_{example.program[-1]}')
 
 
-def check_example(checks, example, program):
+def options_of(example):
+    """The commands that the README says to try: the options between backticks."""
+    page = text_of(os.path.join(os.path.dirname(example.data), 'README.md'))
+    return [text for text in re.findall(r'`(--[^`]+)`', page) if '...' not in text]
+
+
+EXAMPLES = examples()
+TRIED = [(example, text) for example in EXAMPLES for text in options_of(example)]
+EACH_EXAMPLE = pytest.mark.parametrize('example', EXAMPLES, ids=[example.name for example in EXAMPLES])
+
+
+@EACH_EXAMPLE
+def test_expected_numbers(checks, build, example):
+    program = program_of(example, build)
     table, report = table_and_report(program, example.data)
     checks.true(all(np.all(np.isfinite(values)) for values in table.values()), 'all numbers are finite')
     # closed to round-off: 1e-16 of the size of the mechanism, times the conditioning of its chains
@@ -109,17 +118,15 @@ def check_example(checks, example, program):
         else:
             where, left, right, tolerance, why = parts
             check_values(checks, table, known, where, left, right, eval(tolerance, tolerances_of(report)), why)
+    checks.true(checks.passed > 3, 'there is more to compare than that it runs')
 
 
-def check_options(checks, example, program):
-    """The commands that the README says to try: the options between backticks are understood, whatever comes of them."""
-    page = text_of(os.path.join(os.path.dirname(example.data), 'README.md'))
-    tried = [text for text in re.findall(r'`(--[^`]+)`', page) if '...' not in text]
-    with tempfile.TemporaryDirectory() as folder:
-        for text in tried:
-            done = run(program, example.data, *shlex.split(text), folder=folder)
-            # 2 and 3: wrong options, wrong values
-            checks.true(done.returncode in (0, 4, 5, 6, 7), f'{text}: ends with {done.returncode}', done.stderr)
+@pytest.mark.parametrize('example, text', TRIED, ids=[f'{example.name} {text}' for example, text in TRIED])
+def test_options_to_try(checks, tmp_path, build, example, text):
+    """They are understood, whatever comes of them."""
+    done = run(program_of(example, build), example.data, *shlex.split(text), folder=tmp_path)
+    # 2 and 3: wrong options, wrong values
+    checks.true(done.returncode in (0, 4, 5, 6, 7), f'{text}: ends with {done.returncode}', done.stderr)
 
 
 def check_page(checks, root, path):
@@ -132,31 +139,16 @@ def check_page(checks, root, path):
                 f'{path}: nothing lies outside of the page', f'{places.min(0)} {places.max(0)} of {width} {height}')
 
 
-def check_picture(checks, example, program):
+@EACH_EXAMPLE
+def test_picture(checks, tmp_path, build, example):
     """The picture beside the README, and one drawn now: drawings that a browser can read, of this mechanism."""
-    with tempfile.TemporaryDirectory() as folder:
-        drawn = os.path.join(folder, 'drawn.svg')
-        done = run(program, example.data, '--sketch', drawn, '--no-write', folder=folder)
-        checks.equal(done.returncode, 0, f'it can be drawn\n{done.stderr}')
-        titles = []
-        for path in (drawn, os.path.join(os.path.dirname(example.data), example.name + '.svg')):
-            root = xml.etree.ElementTree.parse(path).getroot()
-            checks.true(root.tag.endswith('}svg') and len(list(root.iter())) > 20, f'{path} is a drawing')
-            check_page(checks, root, path)
-            titles.append([text.text for text in root.iter() if text.tag.endswith('}title')][:1])
-        checks.equal(titles[1], titles[0], 'the picture beside the README has the title of the data file')
-
-
-def main():
-    name, folder, samples = sys.argv[1], *map(os.path.abspath, sys.argv[2:4])
-    example = next(example for example in examples() if example.name == name)
-    checks = Checks()
-    program = program_of(example, folder, samples)
-    check_example(checks, example, program)
-    check_options(checks, example, program)
-    check_picture(checks, example, program)
-    checks.true(checks.passed > 3, 'there is more to compare than that it runs')
-    checks.finish()
-
-
-main()
+    drawn = os.path.join(tmp_path, 'drawn.svg')
+    done = run(program_of(example, build), example.data, '--sketch', drawn, '--no-write', folder=tmp_path)
+    checks.equal(done.returncode, 0, f'it can be drawn\n{done.stderr}')
+    titles = []
+    for path in (drawn, os.path.join(os.path.dirname(example.data), example.name + '.svg')):
+        root = xml.etree.ElementTree.parse(path).getroot()
+        checks.true(root.tag.endswith('}svg') and len(list(root.iter())) > 20, f'{path} is a drawing')
+        check_page(checks, root, path)
+        titles.append([text.text for text in root.iter() if text.tag.endswith('}title')][:1])
+    checks.equal(titles[1], titles[0], 'the picture beside the README has the title of the data file')
