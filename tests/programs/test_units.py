@@ -5,24 +5,21 @@ Data files of tests/reference and of the examples, and members of the families o
 end at dead points, cannot be put together or have wrong inputs.
 
 Compares the program with itself: one mechanism in several units of length and angle.
-
-usage: units.py MECH9K MECH9D
 """
 import json
 import math
 import os
 import re
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
 import data_file
 import families
-from mech9_cases import REFERENCE, TREE, Checks, read_table, run, text_of, tolerance_of
-from stress import Mechanism
+from gallery_list import examples
 from loops import Loops
+from mech9_cases import REFERENCE, read_table, run, text_of, tolerance_of
+from stress import Mechanism
 
 UNITS = (1e3, 1e-3)     # numbers of lengths in millimetres, in kilometres, against those in metres
 LIMIT = 1e-9            # of a dead point, as promised
@@ -139,8 +136,8 @@ def largest_like(column, table):
 
 
 class Units:
-    def __init__(self, folder):
-        self.folder, self.checks = folder, Checks()
+    def __init__(self, checks, folder):
+        self.checks, self.folder = checks, folder
 
     def look(self, program, text, *options):
         """Exit code, what is said but for the path, table and report of a run, and its plan."""
@@ -227,57 +224,54 @@ class Units:
             items['file'] = [os.path.join(self.folder, f'curve{items["coordinate"][0]}.dat')]
             np.savetxt(items['file'][0], s * points, fmt='%.17g')
 
-    def families(self, mech9k, members):
-        """Members of families, right ones and wrong ones."""
-        for family, variants in {**families.MOVING, **families.WRONG}.items():
-            for number, variant in enumerate(variants):
-                rng = np.random.default_rng([2000, *family.encode(), number])
-                links, pairs, inputs = variant(rng, members)
-                loops = Loops(links, pairs.point, pairs.axis, pairs.turns, pairs.slides, [k - 1 for k in inputs],
-                              rng.uniform(0.5, 2.0, (members, len(inputs))))
-                slides = {k + 1 for k, turns in enumerate(pairs.turns[0]) if turns == 0}
-                for member in range(members):
-                    plain, *others = (self.look(mech9k, Mechanism(family, loops, member, s, 7, np.zeros(len(links))).text())
-                                      for s in (1.0, *UNITS))
-                    for s, other in zip(UNITS, others):
-                        self.compare(f'{family} {number}, member {member}, lengths times {s:g}', plain, other,
-                                     lambda column, s=s: s ** power_of(column, slides))
+
+@pytest.fixture
+def units(checks, tmp_path):
+    return Units(checks, tmp_path)
 
 
-def examples():
-    """Programs and data files of the gallery that need no user procedures."""
-    with open(os.path.join(TREE, 'examples', 'list.txt'), encoding='utf-8') as file:
-        rows = [[word.strip() for word in line.split('|')] for line in file if line.strip() and line[0] != '#']
-    return [(program, os.path.join(TREE, 'examples', name, data)) for name, program, data, procedures, _ in rows
-            if not procedures]
+# runs of dynamics end soon after their start
+SHORT = ('--set', 'time.intervals=1', '--set', 'time.end=1e-6')
+NAMES = sorted(name for name in os.listdir(REFERENCE) if name.endswith('.nml'))
 
 
-def main():
-    mech9k, mech9d = map(os.path.abspath, sys.argv[1:3])
-    with tempfile.TemporaryDirectory() as folder:
-        units = Units(folder)
-        names = sorted(name for name in os.listdir(REFERENCE) if name.endswith('.nml'))
-        for name in names:
-            path = os.path.join(REFERENCE, name)
-            if name.startswith('kinematics_'):
-                units.file(mech9k, path)
-            else:
-                units.file(mech9d, path, '--set', 'time.intervals=1', '--set', 'time.end=1e-6')
-        for program, path in examples():
-            if program == 'mech9k':
-                units.file(mech9k, path)
-            elif re.search(r"take='at'", text_of(path)):
-                # the times of its quantities belong to the whole run
-                units.file(mech9d, path)
-            else:
-                units.file(mech9d, path, '--set', 'time.intervals=1', '--set', 'time.end=1e-6')
-        spring = os.path.join(folder, 'spring.nml')
-        with open(spring, 'w', encoding='utf-8') as file:
-            file.write(SPRING_AT_PIN)
-        units.file(mech9d, spring, '--set', 'time.intervals=1', '--set', 'time.end=1e-6')
-        units.families(mech9k, 1)
-        units.checks.finish()
+@pytest.mark.parametrize('name', NAMES)
+def test_data_files_of_the_references(units, mech9k, mech9d, name):
+    path = os.path.join(REFERENCE, name)
+    if name.startswith('kinematics_'):
+        units.file(mech9k, path)
+    else:
+        units.file(mech9d, path, *SHORT)
 
 
-if __name__ == '__main__':
-    main()
+# of the gallery, those that need no user procedures
+EXAMPLES = [example for example in examples() if not example.procedures]
+
+
+@pytest.mark.parametrize('example', EXAMPLES, ids=[example.name for example in EXAMPLES])
+def test_data_files_of_the_gallery(units, build, example):
+    # the times of quantities belong to the whole run
+    whole = example.program == 'mech9k' or re.search(r"take='at'", text_of(example.data))
+    units.file(build.program(example.program), example.data, *(() if whole else SHORT))
+
+
+def test_a_spring_at_a_pin(units, mech9d):
+    spring = os.path.join(units.folder, 'spring.nml')
+    with open(spring, 'w', encoding='utf-8') as file:
+        file.write(SPRING_AT_PIN)
+    units.file(mech9d, spring, *SHORT)
+
+
+FAMILIES = {**families.MOVING, **families.WRONG}
+
+
+@pytest.mark.parametrize('family, number', [(family, number) for family, variants in FAMILIES.items() for number in range(len(variants))])
+def test_members_of_families(units, mech9k, family, number):
+    """Right ones and wrong ones."""
+    rng = np.random.default_rng([2000, *family.encode(), number])
+    links, pairs, inputs = FAMILIES[family][number](rng, 1)
+    loops = Loops(links, pairs.point, pairs.axis, pairs.turns, pairs.slides, [k - 1 for k in inputs], rng.uniform(0.5, 2.0, (1, len(inputs))))
+    slides = {k + 1 for k, turns in enumerate(pairs.turns[0]) if turns == 0}
+    plain, *others = (units.look(mech9k, Mechanism(family, loops, 0, s, 7, np.zeros(len(links))).text()) for s in (1.0, *UNITS))
+    for s, other in zip(UNITS, others):
+        units.compare(f'{family} {number}, member 0, lengths times {s:g}', plain, other, lambda column, s=s: s ** power_of(column, slides))

@@ -3,6 +3,8 @@
 Each ends either in the motion that continuation by arc length finds, its chains closed to round-off, or with the right
 exit code. Seeds are fixed. Prints a summary; docs/robustness.md keeps one.
 
+tests/programs/test_stress.py tests each variant of a family by itself. This script runs all of them and prints the summary:
+
 usage: stress.py MECH9K [MEMBERS [SEED [FAMILY]]]      MEMBERS of each variant of a family, 25 if left out
 
 Data files of failures are kept in the folder that MECH9_STRESS_KEEP names.
@@ -17,7 +19,6 @@ import sys
 import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
 
 import families
@@ -31,7 +32,10 @@ REDUNDANT = 1e-14          # ... but a redundant chain sees what the block befor
 ACCELERATIONS = 1e-5       # second differences at 1e-4: round-off 1e-8, truncation 1e-8 that grows beside dead points
 LIMIT = 1e-9               # of the driven coordinate at a dead point, as promised [rad, sizes]
 ALLOWED_FOR = 1000.0       # data_tolerance against an error of one dimension: conditioning enlarges what stays open
-SECONDS = 60.0             # for a run of milliseconds; checked builds on a busy machine take a hundred times as long
+SECONDS = 60               # of processor time, for a run of milliseconds; checked builds take a hundred times as long
+
+
+SEED = 1995
 
 
 class Mechanism:
@@ -77,8 +81,8 @@ def three(vector):
 class Stress:
     """Runs mechanisms and keeps the counts."""
 
-    def __init__(self, mech9k, folder, seed):
-        self.mech9k, self.folder, self.seed, self.checks = mech9k, folder, seed, Checks()
+    def __init__(self, mech9k, folder, seed, checks=None):
+        self.mech9k, self.folder, self.seed, self.checks = mech9k, folder, seed, checks or Checks()
         self.counts = collections.defaultdict(collections.Counter)
         self.worst = collections.defaultdict(float)
         self.unsettled = 0
@@ -353,19 +357,31 @@ INFEASIBLE = {
 }
 
 
-def part(mech9k, seed, family, number, members):
+def variants():
+    """All variants, as names of families and numbers."""
+    found = {**families.MOVING, **families.DISTURBED, **families.WRONG, **{name: [1] for name in INFEASIBLE}}
+    return [(family, number) for family, made in found.items() for number in range(len(made))]
+
+
+def run_variant(stress, family, number, members):
     """One variant of a family, run and judged."""
+    stress.begin(family, number)
+    if family in families.MOVING:
+        stress.moving_family(family, families.MOVING[family][number], members)
+    elif family in families.DISTURBED:
+        stress.disturbed_family(family, families.DISTURBED[family][number], max(2, members // 2))
+    elif family in families.WRONG:
+        stress.wrong_family(family, families.WRONG[family][number], max(1, members // 3))
+    else:
+        # not every member can be changed so that it cannot be put together
+        stress.infeasible(family, *INFEASIBLE[family], max(8, members // 2))
+
+
+def part(mech9k, seed, family, number, members):
+    """The counts of one variant."""
     with tempfile.TemporaryDirectory() as folder:
         stress = Stress(mech9k, folder, seed)
-        stress.begin(family, number)
-        if family in families.MOVING:
-            stress.moving_family(family, families.MOVING[family][number], members)
-        elif family in families.DISTURBED:
-            stress.disturbed_family(family, families.DISTURBED[family][number], max(2, members // 2))
-        elif family in families.WRONG:
-            stress.wrong_family(family, families.WRONG[family][number], max(1, members // 3))
-        else:
-            stress.infeasible(family, *INFEASIBLE[family], max(2, members // 2))
+        run_variant(stress, family, number, members)
         sys.stdout.flush()
         return stress.parts()
 
@@ -373,11 +389,9 @@ def part(mech9k, seed, family, number, members):
 def main():
     mech9k = os.path.abspath(sys.argv[1])
     members = int(sys.argv[2]) if len(sys.argv) > 2 else 25
-    seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1995
+    seed = int(sys.argv[3]) if len(sys.argv) > 3 else SEED
     only = sys.argv[4] if len(sys.argv) > 4 else ''
-    tasks = [(mech9k, seed, family, number, members)
-             for family, variants in {**families.MOVING, **families.DISTURBED, **families.WRONG, **{name: [1] for name in INFEASIBLE}}.items()
-             for number in range(len(variants) if only in family else 0)]
+    tasks = [(mech9k, seed, family, number, members) for family, number in variants() if only in family]
     stress = Stress(mech9k, '', seed)
     with multiprocessing.Pool(2) as pool:
         for counted in pool.starmap(part, tasks, chunksize=1):

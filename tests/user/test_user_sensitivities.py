@@ -2,19 +2,15 @@
 and against differences of runs; energies, forces and free motions by those of a pair; forces and free motions by those of a load.
 
 Compares the program with itself in part: differences of runs at other values of a parameter.
-
-usage: user_sensitivities.py FOLDER      FOLDER holds the programs of user_procs, such as trammel_k
 """
 import os
-import sys
-import tempfile
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks, read_table, run, text_of
+from mech9_cases import TREE, read_table, run, text_of
 
-ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'user_procs')
+ROOT = os.path.join(TREE, 'user_procs')
 WEIGHTS = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
 # Procedures in Taylor form lose two digits in differences by the parameter; those in plain values, which are differentiated in time by
 # differences too, some three more in accelerations.
@@ -97,65 +93,69 @@ def closed_coupling(t, angle):
     return {'q2': slope(t).astype(float), 'dq2': rate(slope)(t).astype(float), 'ddq2': rate(rate(slope))(t).astype(float)}
 
 
-def check_load(checks, folder, directory):
-    """A load of the user. The force of a drive against the drag k v^2 has a closed form; free motions are compared with runs."""
+# name, values of its numbers, their closed forms
+SAMPLES = (('trammel', (0.5,), lambda t, v: (closed_trammel(t, *v),)),
+           ('cycloidal_drive', (0.4, 2.0), lambda t, v: closed_drive(t, *v)),
+           ('cardan_coupling', (0.3,), lambda t, v: (closed_coupling(t, *v),)))
+
+
+@pytest.mark.parametrize('form, tolerance', (('', TAYLOR), ('_values', PLAIN)), ids=('in Taylor form', 'in plain reals'))
+@pytest.mark.parametrize('name, values, closed', SAMPLES, ids=[sample[0] for sample in SAMPLES])
+def test_samples_by_closed_forms_and_differences_of_runs(checks, tmp_path, build, name, values, closed, form, tolerance):
+    text = sample(name, 10) + ''.join(f"&parameter name='p{i}', sets='user.parameters({i})', value={value} /\n"
+                                      for i, value in enumerate(values, 1))
+    program = build.program(f'{name}{form}_k')
+    found = rows_of(program, tmp_path, text)
+    for i, expected in enumerate(closed(found['t'], values)):
+        compare(checks, found, f'p{i + 1}', expected, tolerance, f'{name}{form}, closed form')
+        compare(checks, found, f'p{i + 1}', differences(program, tmp_path, text, values, i), tolerance, f'{name}{form}, runs')
+
+
+# the pair the other way round: the moving link is now the one that its procedure describes the other in
+REVERSED = sample('trammel', 10).replace('links=1,2, kind', 'links=2,1, kind') + "&parameter name='p1', sets='user.parameters(1)', value=0.5 /\n"
+HEAVY = (REVERSED + '&body link=2, mass=2, centre=0.1,0.2,0, inertia=0.1,0.1,0.2,0,0,0 /\n&body link=4, mass=3 /\n&gravity acceleration=1,-9.81,0 /\n') \
+    .replace('sensitivities=.true.', 'sensitivities=.true., reactions=.true., drive_forces=.true.')
+FREE = ' '.join(line for line in HEAVY.splitlines(keepends=True) if not line.startswith(('&drive', '&time'))) \
+    + ('&initial coordinate=1, position=0.3, velocity=2 /\n&time end=0.5, intervals=4 /\n'
+       '&solver relative_tolerance=1e-12, absolute_tolerance=1e-12 /\n')
+
+
+@pytest.mark.parametrize('program, text, tolerance, why', (
+    ('trammel_k', REVERSED, TAYLOR, 'reversed pair'),
+    # energies of a driven motion
+    ('trammel_d', HEAVY, TAYLOR, 'energies and forces'),
+    # differences of runs at tolerances of 1e-12 know seven digits
+    ('trammel_d', FREE, PLAIN, 'a free motion')), ids=('reversed pair', 'energies and forces', 'free motion'))
+def test_a_pair_by_differences_of_runs(checks, tmp_path, build, program, text, tolerance, why):
+    program = build.program(program)
+    compare(checks, rows_of(program, tmp_path, text), 'p1', differences(program, tmp_path, text, (0.5,), 0), tolerance, why)
+
+
+@pytest.mark.parametrize('program', ('air_drag_k', 'air_drag_d'))
+def test_force_of_a_drive_against_a_load(checks, tmp_path, build, program):
+    """The force of a drive against the drag k v^2 has a closed form."""
     drag = ("&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /\n&load kind='user' /\n"
             "&drive coordinate=1, kind='polynomial', coefficients=0,1,3 /\n&user parameters=2,0,0,0,0.1 /\n&body link=2, mass=2 /\n"
             "&parameter name='k', sets='user.parameters(5)' /\n&time end=1, intervals=8 /\n"
             "&output sensitivities=.true., drive_forces=.true., reactions=.true. /\n")
-    for program in ('air_drag_k', 'air_drag_d'):
-        found = rows_of(os.path.join(folder, program), directory, drag)
-        for column in ('F1', 'R1.fz'):
-            checks.near(found[f'd({column})/d(k)'], found['dq1']**2, 1e-12, f'{program}: {column} by the drag')
+    found = rows_of(build.program(program), tmp_path, drag)
+    for column in ('F1', 'R1.fz'):
+        checks.near(found[f'd({column})/d(k)'], found['dq1']**2, 1e-12, f'{program}: {column} by the drag')
+
+
+def test_a_free_motion_in_air(checks, tmp_path, build):
+    """A load of the user, by differences of runs."""
     text = text_of(os.path.join(ROOT, 'air_drag', 'air_drag.nml')).replace('intervals=50', 'intervals=5').replace('1e-10', '1e-12')
     text = text.replace("&output table='air_drag.dat' /", '&output sensitivities=.true. /')
     values = (0.1, 0.04, 0.3)
     targets = ('user.parameters(5)', 'user.parameters(10)', 'user.parameters(7)')
     text += ''.join(f"&parameter name='p{i}', sets='{target}', value={value} /\n" for i, (target, value) in enumerate(zip(targets, values), 1))
-    program = os.path.join(folder, 'air_drag_d')
-    found = rows_of(program, directory, text)
+    program = build.program('air_drag_d')
+    found = rows_of(program, tmp_path, text)
     for i in range(len(values)):
-        expected = {name: column for name, column in differences(program, directory, text, values, i).items() if f'd({name})/d(p{i + 1})' in found}
+        expected = {name: column for name, column in differences(program, tmp_path, text, values, i).items() if f'd({name})/d(p{i + 1})' in found}
         if i > 0:
             # the wheel turns about a vertical
             del expected['E.potential']
             checks.true((found[f'd(E.potential)/d(p{i + 1})'] == 0).all(), f'p{i + 1} changes no height')
         compare(checks, found, f'p{i + 1}', expected, PLAIN, 'a free motion in air')
-
-
-def main():
-    folder = sys.argv[1]
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as directory:
-        for name, values, closed in (('trammel', (0.5,), lambda t, v: (closed_trammel(t, *v),)),
-                                     ('cycloidal_drive', (0.4, 2.0), lambda t, v: closed_drive(t, *v)),
-                                     ('cardan_coupling', (0.3,), lambda t, v: (closed_coupling(t, *v),))):
-            text = sample(name, 10) + ''.join(f"&parameter name='p{i}', sets='user.parameters({i})', value={value} /\n"
-                                              for i, value in enumerate(values, 1))
-            for form, tolerance in (('', TAYLOR), ('_values', PLAIN)):
-                program = os.path.join(folder, f'{name}{form}_k')
-                found = rows_of(program, directory, text)
-                for i, expected in enumerate(closed(found['t'], values)):
-                    compare(checks, found, f'p{i + 1}', expected, tolerance, f'{name}{form}, closed form')
-                    compare(checks, found, f'p{i + 1}', differences(program, directory, text, values, i), tolerance,
-                            f'{name}{form}, runs')
-        # the pair the other way round: the moving link is now the one that its procedure describes the other in
-        text = sample('trammel', 10).replace('links=1,2, kind', 'links=2,1, kind') + "&parameter name='p1', sets='user.parameters(1)', value=0.5 /\n"
-        program = os.path.join(folder, 'trammel_k')
-        compare(checks, rows_of(program, directory, text), 'p1', differences(program, directory, text, (0.5,), 0), TAYLOR, 'reversed pair')
-        # energies of a driven motion
-        text += '&body link=2, mass=2, centre=0.1,0.2,0, inertia=0.1,0.1,0.2,0,0,0 /\n&body link=4, mass=3 /\n&gravity acceleration=1,-9.81,0 /\n'
-        program = os.path.join(folder, 'trammel_d')
-        text = text.replace('sensitivities=.true.', 'sensitivities=.true., reactions=.true., drive_forces=.true.')
-        compare(checks, rows_of(program, directory, text), 'p1', differences(program, directory, text, (0.5,), 0), TAYLOR, 'energies and forces')
-        free = ' '.join(line for line in text.splitlines(keepends=True) if not line.startswith(('&drive', '&time')))
-        free += ('&initial coordinate=1, position=0.3, velocity=2 /\n&time end=0.5, intervals=4 /\n'
-                 '&solver relative_tolerance=1e-12, absolute_tolerance=1e-12 /\n')
-        # differences of runs at tolerances of 1e-12 know seven digits
-        compare(checks, rows_of(program, directory, free), 'p1', differences(program, directory, free, (0.5,), 0), PLAIN, 'a free motion')
-        check_load(checks, folder, directory)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()

@@ -1,7 +1,5 @@
 """Failures of numerics reach the user as sentences, with their exit codes; none leaves the programs as a bare kind.
 
-usage: failure_messages.py MECH9K MECH9D OPTIMISED      OPTIMISED: 0 where the program traps overflow
-
 Each kind of failure of src/base/failure.f90 is provoked here by a data file, or it is named in UNREACHABLE with the reason why
 no data file leads to it; tests/wording/test_explanation.f90 then has its sentence.
 
@@ -10,15 +8,14 @@ The closed forms behind the numbers are those of four-bars: a chain of three bar
 import math
 import os
 import re
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import TREE, Checks, run, text_of
+import pytest
+
+from mech9_cases import TREE, run, text_of
 
 DONE, DATA, STRUCTURE, ASSEMBLY, SINGULAR, INTEGRATOR = 0, 3, 4, 5, 6, 7
 
-# kinds that need trial steps with numbers beyond all bounds
+# kinds that need trial steps with numbers beyond all bounds, at which the builds that are not optimised trap overflow
 OVERFLOWING = ('unclosed_step', 'infinite_rate')
 # kind: the reason why no data file leads to it
 UNREACHABLE = {
@@ -38,8 +35,8 @@ UNREACHABLE = {
     'lost_angles': 'positions within a step that was made are always found',
     'not_started': 'the programs start each motion',
     'backwards': 'the times of a data file are in order',
-    'interrupted': 'a signal leads to it: interrupted_run.py',
-    'interrupted_starts': 'a signal leads to it: interrupted_run.py',
+    'interrupted': 'a signal leads to it: test_interrupted_run.py',
+    'interrupted_starts': 'a signal leads to it: test_interrupted_run.py',
 }
 
 
@@ -436,67 +433,68 @@ def digits(value):
     return f'{math.floor(value * 1e8) / 1e8:.8f}'
 
 
-def check_cases(checks, program, cases):
-    """Run each case, with further files or options, and compare its exit code and what was printed."""
-    for kind, text, options, code, words in cases:
-        files = {'case.nml': text, **(options if isinstance(options, dict) else {})}
-        options = [name for name in options if name.startswith('--')] if isinstance(options, dict) else options
-        files = {name: content for name, content in files.items() if not name.startswith('--')}
-        with tempfile.TemporaryDirectory() as folder:
-            for name, content in files.items():
-                with open(os.path.join(folder, name), 'w', encoding='utf-8') as file:
-                    file.write(content)
-            done = run(program, 'case.nml', '--quiet', '--no-write', *options, folder=folder)
-        said = done.stderr if code else done.stdout
-        checks.equal(done.returncode, code, f'{kind}: exit code; {done.stderr}')
-        for part in words:
-            checks.true(part in said, f'{kind}: said: {part}', said)
-        checks.true('failure of kind' not in said, f'{kind}: in words', said)
+def is_told(checks, folder, program, kind, text, options, code, words):
+    """Run a case, with further files or options, and compare its exit code and what was printed."""
+    files = {'case.nml': text, **(options if isinstance(options, dict) else {})}
+    options = [name for name in options if name.startswith('--')] if isinstance(options, dict) else options
+    files = {name: content for name, content in files.items() if not name.startswith('--')}
+    for name, content in files.items():
+        with open(os.path.join(folder, name), 'w', encoding='utf-8') as file:
+            file.write(content)
+    done = run(program, 'case.nml', '--quiet', '--no-write', *options, folder=folder)
+    said = done.stderr if code else done.stdout
+    checks.equal(done.returncode, code, f'{kind}: exit code; {done.stderr}')
+    for part in words:
+        checks.true(part in said, f'{kind}: said: {part}', said)
+    checks.true('failure of kind' not in said, f'{kind}: in words', said)
 
 
-def check_wild_steps(checks, mech9d):
+DRIVEN, FREE = driven_cases(), free_cases()
+
+
+@pytest.mark.parametrize('kind, text, options, code, words', DRIVEN, ids=[case[0] for case in DRIVEN])
+def test_failures_of_mech9k(checks, tmp_path, mech9k, kind, text, options, code, words):
+    is_told(checks, tmp_path, mech9k, kind, text, options, code, words)
+
+
+@pytest.mark.parametrize('kind, text, options, code, words', FREE, ids=[case[0] for case in FREE])
+def test_failures_of_mech9d(checks, tmp_path, build, mech9d, kind, text, options, code, words):
+    if kind in OVERFLOWING and not build.optimised:
+        pytest.skip('this build traps overflow')
+    is_told(checks, tmp_path, mech9d, kind, text, options, code, words)
+
+
+def test_wild_steps(checks, tmp_path, build, mech9d):
     """Tolerances with which any step is good lead to absurd positions. Round-off decides how such a motion ends, but it ends with a
     code and a sentence that are known; among many motions, one comes too near to a singular position."""
+    if not build.optimised:
+        pytest.skip('this build traps overflow')
     ends = {SINGULAR: ('a singular position for these independent coordinates is too near; others may pass it (cq), or smaller '
                        'tolerances', 'closed chain 1 cannot be closed near the position at t = ',
                        'is in a singular position for these independent coordinates; others may pass it (cq)'),
             INTEGRATOR: ('is not finite: this motion, or a force, grows beyond all bounds', 'has no inertia in the position there, ',
                          'the steps have become too short for time to advance', 'however short the step, its error stays too large')}
     too_near = 0
-    with tempfile.TemporaryDirectory() as folder:
-        with open(os.path.join(folder, 'case.nml'), 'w', encoding='utf-8') as file:
-            file.write(four_bar(ROCKER, START, BODY))
-        for i in range(30):
-            done = run(mech9d, 'case.nml', '--quiet', '--no-write', '--set', 'time.end=1e40', '--set',
-                       f'initial.velocity={0.1 + 0.3 * i!r}', *settings(relative_tolerance=0.9, absolute_tolerance='1e60'), folder=folder)
-            known = [part for part in ends.get(done.returncode, ()) if part in done.stderr]
-            checks.true(known and 'the integration cannot go on from t = ' in done.stderr, f'wild steps {i}: the end is a known one',
-                        f'{done.returncode}: {done.stderr}')
-            too_near += known[:1] == list(ends[SINGULAR][:1])
+    with open(tmp_path / 'case.nml', 'w', encoding='utf-8') as file:
+        file.write(four_bar(ROCKER, START, BODY))
+    for i in range(30):
+        done = run(mech9d, 'case.nml', '--quiet', '--no-write', '--set', 'time.end=1e40', '--set',
+                   f'initial.velocity={0.1 + 0.3 * i!r}', *settings(relative_tolerance=0.9, absolute_tolerance='1e60'), folder=tmp_path)
+        known = [part for part in ends.get(done.returncode, ()) if part in done.stderr]
+        checks.true(known and 'the integration cannot go on from t = ' in done.stderr, f'wild steps {i}: the end is a known one',
+                    f'{done.returncode}: {done.stderr}')
+        too_near += known[:1] == list(ends[SINGULAR][:1])
     checks.true(too_near > 0, 'wild steps: one motion comes too near to a singular position')
 
 
-def check_kinds(checks, provoked):
-    """Each kind is provoked once, or has its sentence in the test of the wording."""
+def test_each_kind_is_provoked_once_or_cannot_be():
+    """A kind that no data file leads to has a reason."""
     kinds = re.findall(r'^  integer, parameter :: failure_(\w+) = \d+', text_of(os.path.join(TREE, 'src', 'base', 'failure.f90')), re.M)
-    checks.equal(sorted([*provoked, *UNREACHABLE]), sorted(kinds), 'the kinds of failure in src/base/failure.f90')
+    assert sorted(['singular_step', *(case[0] for case in DRIVEN + FREE), *UNREACHABLE]) == sorted(kinds)
+
+
+@pytest.mark.parametrize('kind', UNREACHABLE)
+def test_sentence_is_tested(kind):
+    """A kind that is not provoked here has its sentence in the test of the wording."""
     sentences = text_of(os.path.join(TREE, 'tests', 'wording', 'test_explanation.f90'))
-    for kind in UNREACHABLE:
-        checks.true(re.search(rf'(call raise\(err, \w+,|kind =) failure_{kind}\b', sentences), f'the sentence of {kind} is tested')
-
-
-def main():
-    mech9k, mech9d = (os.path.abspath(path) for path in sys.argv[1:3])
-    checks = Checks()
-    traps_overflow = sys.argv[3] == '0'
-    driven, free = driven_cases(), free_cases()
-    check_cases(checks, mech9k, driven)
-    check_cases(checks, mech9d, [case for case in free if not (traps_overflow and case[0] in OVERFLOWING)])
-    if not traps_overflow:
-        check_wild_steps(checks, mech9d)
-    check_kinds(checks, ['singular_step', *(case[0] for case in driven + free)])
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()
+    assert re.search(rf'(call raise\(err, \w+,|kind =) failure_{kind}\b', sentences)
