@@ -1,22 +1,19 @@
 """The controls of a page that plays a film, in a real browser: by mouse, keys and fingers, on a screen and on a telephone.
 
-usage: film_controls.py MECH9K MECH9D
-
 Where things stand is asked of the browser; what they must show stands in the table of the same run.
 """
 import glob
 import os
 import re
 import struct
-import sys
-import tempfile
 import time
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'scripts'))
-from browser import Browser, PageError, browser_path
-from mech9_cases import TREE, Checks, read_table, run, skip, text_of
+from mech9_cases import PATIENCE, TREE, read_table, run, text_of
+
+FILMS = {'fig1': 'mech9k', 'bricard': 'mech9d', 'andrews': 'mech9d'}
 
 FRAME = 'Number(document.getElementById("frame").value)'
 SHIFT = 8
@@ -32,7 +29,7 @@ PX = 0.5
 class Page:
     """A page that stands still, and what is asked of it often."""
 
-    def __init__(self, browser, checks, path, **device):
+    def __init__(self, checks, browser, path, **device):
         self.browser, self.checks = browser, checks
         browser.resize(**{'width': 1280, 'height': 860, 'still': True, **device})
         browser.open(path)
@@ -66,10 +63,32 @@ class Page:
     def close(self, a, b, why, within=PX):
         self.checks.true(np.abs(np.asarray(a) - b).max() < within, why, f'{a} and {b}')
 
+    def is_quiet(self):
+        """The page has said no error, and asked for nothing."""
+        self.checks.equal(self.browser.errors, [], 'nothing on the console')
+        self.checks.true(all(one.startswith(('file:', 'data:', 'blob:')) for one in self.browser.requests), 'nothing from elsewhere',
+                         self.browser.requests)
 
-def check_steps(page):
-    """Steps forth and back, by keys and buttons, from either end to the other."""
-    checks = page.checks
+
+@pytest.fixture(scope='module')
+def films(build, tmp_path_factory):
+    """The page and the table of each mechanism, by its name."""
+    folder, made = tmp_path_factory.mktemp('films'), {}
+    for name, program in FILMS.items():
+        made[name] = page, table = folder / f'{name}.html', folder / f'{name}.dat'
+        done = run(build.program(program), os.path.join(TREE, 'examples', name, name + '.nml'), '--quiet', '--table', table, '--animate', page)
+        assert done.returncode == 0, f'{name}: the page is made; {done.stderr}'
+    return made
+
+
+@pytest.fixture
+def page(checks, browser, films):
+    """The page of Fig. 1."""
+    return Page(checks, browser, films['fig1'][0])
+
+
+def test_steps_by_keys_and_buttons(checks, page):
+    """Steps forth and back, from either end to the other."""
     checks.equal(page.frame(), 0, 'without wish for motion it stands at its first frame')
     for keys, expected in ((['ArrowRight'] * 3, 3), (['ArrowLeft'], 2), (['End'], 100), (['ArrowRight'], 0), (['ArrowLeft'], 100),
                            (['Home'], 0)):
@@ -85,11 +104,12 @@ def check_steps(page):
     checks.equal(page.browser.value('document.getElementById("play").getAttribute("aria-label")'), 'Pause', 'the space bar plays')
     page.press(' ')
     checks.equal(page.browser.value('document.getElementById("play").getAttribute("aria-label")'), 'Play', 'and stops')
+    page.is_quiet()
 
 
-def check_values(page, rows):
+def test_values_are_those_of_the_table(checks, films, page):
     """The columns at the shown time, as the table has them, six digits of the largest; and the clock."""
-    checks = page.checks
+    rows = read_table(text_of(films['fig1'][1]))
     for frame in (0, 41, 100):
         page.browser.value(f'show({frame})')
         listed = page.browser.value(LISTED)
@@ -107,11 +127,11 @@ def check_values(page, rows):
         page.browser.value(f'(() => {{ {wanted.format(words)} }})()')
         checks.equal([row[0] for row in page.browser.value(LISTED)], expected, f'the columns for "{words}"')
     page.browser.value(f'(() => {{ {wanted.format("")} }})()')
+    page.is_quiet()
 
 
-def check_zoom(page):
-    """The point under the mouse stays there; the bar of the scale tells the same length."""
-    browser, checks = page.browser, page.checks
+def test_zoom_keeps_the_point_under_the_mouse(checks, browser, page):
+    """The bar of the scale tells the same length at each zoom."""
     page.press('Home', '0')
     at, other = page.joint('q4'), page.joint('q6')
     bar = 'document.querySelector("#scale path").getBoundingClientRect().width'
@@ -119,8 +139,8 @@ def check_zoom(page):
     scale = browser.value(f'{bar}/{metres}')
     for delta in (-100, -250, 400, 150):
         before = np.hypot(*(page.joint('q6') - page.joint('q4')))
-        page.browser.mouse('mouseWheel', at[0], at[1], deltaX=0, deltaY=delta)
-        for _ in range(50):                  # the browser sends wheels on with its next frame
+        browser.mouse('mouseWheel', at[0], at[1], deltaX=0, deltaY=delta)
+        for _ in range(50 * PATIENCE):       # the browser sends wheels on with its next frame
             after = np.hypot(*(page.joint('q6') - page.joint('q4')))
             if after != before:
                 break
@@ -140,11 +160,13 @@ def check_zoom(page):
     checks.true(abs(browser.value(size) - large) < 1.5, 'labels keep their size')
     browser.value('for (let i = 0; i < 60; i++) zoomAt(1.25)')
     checks.equal(browser.value('zoom'), 20, 'not nearer than this')
-    page.press('0')
+    page.is_quiet()
 
 
-def check_drag(page, planar):
-    """A planar mechanism is moved, a spatial one turned; with shift or the middle button the other way."""
+@pytest.mark.parametrize('mechanism', FILMS)
+def test_drag_moves_a_planar_mechanism_and_turns_a_spatial_one(checks, browser, films, mechanism):
+    """With shift or the middle button it is the other way."""
+    planar, page = mechanism != 'bricard', Page(checks, browser, films[mechanism][0])
     name = page.browser.value('document.querySelector("[data-joint]").dataset.joint')
     page.press('0')
     start, view = page.joint(name), page.browser.value('film.view')
@@ -164,7 +186,7 @@ def check_drag(page, planar):
     page.press('ArrowRight', modifiers=SHIFT)
     changed = page.browser.value('view') != view if not planar else np.abs(page.joint(name) - start).max() > 5
     page.checks.true(changed, 'shift and an arrow do what the mouse does')
-    page.press('0')
+    page.is_quiet()
 
 
 def png_size(path):
@@ -176,9 +198,8 @@ def png_size(path):
     return struct.unpack('>II', data[16:24]), data
 
 
-def check_image(page):
-    """The present frame as a file with its time in its name, three times as large; of another frame another picture."""
-    browser, checks = page.browser, page.checks
+def test_image_of_the_present_frame(checks, browser, page):
+    """A file with the time in its name, three times as large; of another frame another picture."""
     os.makedirs(browser.downloads, exist_ok=True)
     browser.call('Browser.setDownloadBehavior', behavior='allow', downloadPath=browser.downloads)
     size = browser.value('[svg.viewBox.baseVal.width, svg.viewBox.baseVal.height]')
@@ -186,7 +207,7 @@ def check_image(page):
     for frame, zoom in ((0, 1), (50, 1), (50, 2)):
         browser.value(f'void (resetView(), show({frame}), zoomAt({zoom}), document.getElementById("image").click())')
         found = []
-        until = time.monotonic() + 30
+        until = time.monotonic() + 30 * PATIENCE
         while not found and time.monotonic() < until:
             time.sleep(0.05)
             browser.value('0')
@@ -201,11 +222,11 @@ def check_image(page):
         images.append(data)
         os.remove(found[0])
     checks.equal(len(set(images)), 3, 'each shows what was seen')
-    browser.value('void resetView()')
+    page.is_quiet()
 
 
-def check_names(page):
-    """Every control has a name for who hears it, and names can be switched off."""
+def test_controls_have_names(page):
+    """Every control has a name for who hears it, and names of links can be switched off."""
     for domain in ('DOM', 'Accessibility'):
         page.browser.call(domain + '.enable')
     roles = ('button', 'slider', 'combobox', 'checkbox', 'searchbox', 'image')
@@ -223,11 +244,12 @@ def check_names(page):
     page.checks.equal(page.browser.value(shown), 'none', 'no names of links')
     page.click('names')
     page.checks.true(page.browser.value(shown) != 'none', 'and again')
+    page.is_quiet()
 
 
-def check_telephone(page):
+def test_telephone(checks, browser, films):
     """Nothing is wider than the window; texts can be read; two fingers zoom and move, one turns."""
-    browser, checks = page.browser, page.checks
+    page = Page(checks, browser, films['fig1'][0], width=390, height=844, mobile=True)
     browser.call('Emulation.setTouchEmulationEnabled', enabled=True, maxTouchPoints=2)
     checks.true(browser.value('document.documentElement.scrollWidth <= innerWidth'), 'nothing to scroll to the side')
     least = browser.value('Math.min(...[...svg.querySelectorAll("text:not(.title)")].filter(text => text.textContent)'
@@ -249,15 +271,23 @@ def check_telephone(page):
     browser.touch('touchEnd')
     page.close(page.joint('q6'), at + [40, 0], 'one finger moves what is planar', 2)
     browser.call('Emulation.setTouchEmulationEnabled', enabled=False)
+    page.is_quiet()
 
 
-def check_title(checks, browser, folder, program):
-    """A title full of signs is one in the page and in the name of an image, and nothing in it is run."""
-    title, path = '</title></script><script>alert(1)</script> & "x" `y` $z', os.path.join(folder, 'title.html')
-    done = run(program, os.path.join(TREE, 'examples/fig1/fig1.nml'), '--quiet', '--no-write', '--animate', path,
+def test_dark_where_the_dark_is_wanted(checks, browser, films):
+    page = Page(checks, browser, films['fig1'][0], dark=True)
+    dark = browser.value('getComputedStyle(document.body).backgroundColor')
+    checks.true(max(int(part) for part in dark[4:-1].split(',')) < 64, 'dark where the dark is wanted', dark)
+    page.is_quiet()
+
+
+def test_title_full_of_signs(checks, browser, mech9k, tmp_path):
+    """It is a title in the page and in the name of an image, and nothing in it is run."""
+    title, path = '</title></script><script>alert(1)</script> & "x" `y` $z', tmp_path / 'title.html'
+    done = run(mech9k, os.path.join(TREE, 'examples/fig1/fig1.nml'), '--quiet', '--no-write', '--animate', path,
                '--set', f"mechanism.title='{title}'")
     checks.equal(done.returncode, 0, f'any title: the page is made; {done.stderr}')
-    page = Page(browser, checks, path)
+    page = Page(checks, browser, path)
     checks.equal(browser.value('[document.title, document.querySelector("h1").textContent]'), [title] * 2, 'it stands as it is')
     page.press('ArrowRight')
     checks.equal((page.frame(), browser.errors), (1, []), 'and the page works')
@@ -274,10 +304,10 @@ WRITTEN = """
 """
 
 
-def check_same_picture(checks, browser, path, name):
-    """The script draws the first frame as the program has drawn it."""
+@pytest.mark.parametrize('name', FILMS)
+def test_script_draws_the_first_frame_as_the_program_does(checks, browser, films, name):
     browser.resize(1280, 860, still=True)
-    browser.open(path, before=WRITTEN)
+    browser.open(films[name][0], before=WRITTEN)
     written, drawn = browser.value('window.written'), browser.value('window.items_now()')
     if not checks.true(bool(written) and set(written) == set(drawn), f'{name}: an element for each item'):
         return
@@ -290,51 +320,3 @@ def check_same_picture(checks, browser, path, name):
             worst = max([worst] + [abs(float(a) - float(b)) for a, b in zip(*both)])
     # steps of 1e-5 of the width, quaternions of 1e-5, and two decimals; across a short spring its direction counts more
     checks.true(worst < 0.1, f'{name}: the page is drawn as the program draws', f'{worst} px apart')
-
-
-def check_film(checks, browser, folder, program, name):
-    """All of it for a mechanism; the page says no error, and asks for nothing."""
-    path, table = os.path.join(folder, name + '.html'), os.path.join(folder, name + '.dat')
-    done = run(program, os.path.join(TREE, 'examples', name, name + '.nml'), '--quiet', '--table', table, '--animate', path)
-    checks.equal(done.returncode, 0, f'{name}: the page is made')
-    check_same_picture(checks, browser, path, name)
-    page = Page(browser, checks, path)
-    if name == 'fig1':
-        check_steps(page)
-        check_values(page, read_table(text_of(table)))
-        check_zoom(page)
-        check_image(page)
-        check_names(page)
-    check_drag(page, name != 'bricard')
-    checks.equal(browser.errors, [], f'{name}: nothing on the console')
-    checks.true(all(one.startswith(('file:', 'data:', 'blob:')) for one in browser.requests), f'{name}: nothing from elsewhere',
-                browser.requests)
-    if name == 'fig1':
-        check_telephone(Page(browser, checks, path, width=390, height=844, mobile=True))
-        checks.equal(browser.errors, [], 'on a telephone: nothing on the console')
-        dark = Page(browser, checks, path, dark=True).browser.value('getComputedStyle(document.body).backgroundColor')
-        checks.true(max(int(part) for part in dark[4:-1].split(',')) < 64, 'dark where the dark is wanted', dark)
-
-
-def main():
-    if not browser_path():
-        skip('chromium is not installed: pages are not tested')
-    mech9k, mech9d = map(os.path.abspath, sys.argv[1:3])
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        try:
-            browser = Browser()
-        except PageError as error:
-            skip(f'chromium does not start ({error}): pages are not tested')
-        try:
-            check_film(checks, browser, folder, mech9k, 'fig1')
-            check_film(checks, browser, folder, mech9d, 'bricard')
-            check_film(checks, browser, folder, mech9d, 'andrews')
-            check_title(checks, browser, folder, mech9k)
-        finally:
-            browser.close()
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()

@@ -1,18 +1,13 @@
 """Symbols of joints with several freedoms, of pairs along curves, and of couplings: each joint is drawn once, with the names of
 all its coordinates, and the links that the program makes itself are not named; wheels that mesh touch each other.
-
-usage: joint_symbols.py PROGRAMS_FOLDER
 """
-import os
 import re
-import sys
-import tempfile
 import xml.etree.ElementTree as ElementTree
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import Checks, run
+from mech9_cases import run
 from svg_pictures import SVG, corners_of, example, texts_of
 
 # a table of the frame on which link 2 lies, and on the arm of link 3 another one for link 4; the numbers of the first one do not increase
@@ -88,14 +83,19 @@ BELTS = """&mechanism title='belts' /
 """
 
 
+def picture(checks, program, data, folder, *options):
+    """The picture of the mechanism of a data file."""
+    path = folder / 'symbols.svg'
+    done = run(program, data, '--no-write', '--quiet', '--sketch', path, *options)
+    checks.equal(done.returncode, 0, f'{data}: it is drawn\n{done.stderr}')
+    return ElementTree.parse(path).getroot()
+
+
 def drawn(checks, program, text, folder):
-    """The picture of a data file, its joints by the names of their coordinates, and the number of its items of each class."""
-    data, path = os.path.join(folder, 'symbols.nml'), os.path.join(folder, 'symbols.svg')
-    with open(data, 'w', encoding='utf-8') as file:
-        file.write(text)
-    done = run(program, data, '--no-write', '--quiet', '--sketch', path)
-    checks.equal(done.returncode, 0, f'it is drawn\n{done.stderr}')
-    svg = ElementTree.parse(path).getroot()
+    """The picture of a text of data, its joints by the names of their coordinates, and the number of its items of each class."""
+    data = folder / 'symbols.nml'
+    data.write_text(text, encoding='utf-8')
+    svg = picture(checks, program, data, folder)
     joints, classes = {}, {}
     for group in svg.iter(SVG + 'g'):
         words = (group.get('class') or '').split()[:2]
@@ -106,8 +106,8 @@ def drawn(checks, program, text, folder):
     return svg, joints, classes
 
 
-def check_planes(checks, program, folder):
-    svg, joints, classes = drawn(checks, program, PLANES, folder)
+def test_planar_joint_is_drawn_once(checks, mech9k, tmp_path):
+    svg, joints, classes = drawn(checks, mech9k, PLANES, tmp_path)
     checks.equal(sorted(joints), ['q1 q2 q3', 'q4', 'q5 q6 q7'], 'a planar joint is drawn once')
     for names in ('q1 q2 q3', 'q5 q6 q7'):
         checks.equal([style for style, _ in joints[names]], ['plate sheet'], f'{names}: the face with which the link lies on the plane')
@@ -117,8 +117,8 @@ def check_planes(checks, program, folder):
     checks.true({'2', '3', '4'} <= set(texts) and not {'5', '6', '7', '8'} & set(texts), 'links have the numbers of the file', texts)
 
 
-def check_free(checks, program, folder):
-    svg, joints, classes = drawn(checks, program, FREE, folder)
+def test_free_joint_is_three_lines(checks, mech9k, tmp_path):
+    svg, joints, classes = drawn(checks, mech9k, FREE, tmp_path)
     checks.equal(list(joints), ['q1 q2 q3 q4 q5 q6'], 'a free joint is drawn once')
     group = joints['q1 q2 q3 q4 q5 q6'][0][1]
     corners = corners_of(group.find(SVG + 'path').get('d'))
@@ -129,24 +129,29 @@ def check_free(checks, program, folder):
     checks.true('3' not in texts_of(svg), 'no link of its own is named')
 
 
-def check_paths(checks, program, folder):
+def test_pairs_along_curves(checks, mech9k, tmp_path):
     angle = np.linspace(0, 2 * np.pi, 41)
-    np.savetxt(os.path.join(folder, 'curve.dat'), np.column_stack([0.5 * np.cos(angle), 0.3 * np.sin(angle)]))
-    _, joints, classes = drawn(checks, program, PATHS, folder)
+    np.savetxt(tmp_path / 'curve.dat', np.column_stack([0.5 * np.cos(angle), 0.3 * np.sin(angle)]))
+    _, joints, classes = drawn(checks, mech9k, PATHS, tmp_path)
     checks.equal({names: [style for style, _ in found] for names, found in joints.items()}, {'q1': ['plate sheet'], 'q2': ['block']},
                  'a square that does not turn, and a block that does')
     checks.equal(classes.get('free', 0), 0, "and not the symbol of a user's procedure")
 
 
-def check_balls_and_slides(checks, program, folder):
-    _, joints, classes = drawn(checks, program, BALL_ON_RACK, folder)
+def test_ball_on_a_slide(checks, mech9k, tmp_path):
+    _, joints, classes = drawn(checks, mech9k, BALL_ON_RACK, tmp_path)
     checks.equal((classes.get('ball', 0), classes.get('cross', 0)), (1, 0), 'a ball on a slide is a ball')
-    for place, tubes in (('0.5', 1), ('1.5', 0)):
-        _, _, classes = drawn(checks, program, SLIDE.replace('PLACE', place), folder)
-        checks.equal(classes.get('tube', 0), tubes, f'a point at {place} m along a slide whose rod ends at 1 m')
-    svg = os.path.join(folder, 'stewart.svg')
-    run(program, example('stewart_gough'), '--no-write', '--quiet', '--sketch', svg)
-    stands = [group for group in ElementTree.parse(svg).getroot().iter(SVG + 'g') if (group.get('class') or '') == 'stand']
+
+
+@pytest.mark.parametrize('place, tubes', (('0.5', 1), ('1.5', 0)))
+def test_tube_or_lever(checks, mech9k, tmp_path, place, tubes):
+    _, _, classes = drawn(checks, mech9k, SLIDE.replace('PLACE', place), tmp_path)
+    checks.equal(classes.get('tube', 0), tubes, f'a point at {place} m along a slide whose rod ends at 1 m')
+
+
+def test_legs_of_a_platform_stand(checks, mech9k, tmp_path):
+    svg = picture(checks, mech9k, example('stewart_gough'), tmp_path)
+    stands = [group for group in svg.iter(SVG + 'g') if (group.get('class') or '') == 'stand']
     checks.equal(sum(group.find(SVG + 'g') is not None for group in stands), 0, 'none of six legs hangs')
     checks.equal(len(stands), 6, 'each of six legs has a stand')
 
@@ -163,36 +168,34 @@ def circles_of(svg):
     return [(rim.mean(axis=0), np.hypot(*(rim - rim.mean(axis=0)).T).mean()) for rim in rims]
 
 
-def check_couplings(checks, programs, folder):
-    path = os.path.join(folder, 'wheels.svg')
-
-    def picture(program, data, *options):
-        done = run(os.path.join(programs, program), data, '--no-write', '--quiet', '--sketch', path, *options)
-        checks.equal(done.returncode, 0, f'{data}: drawn')
-        return ElementTree.parse(path).getroot()
-
+def test_wheels_of_a_planetary_gear_touch(checks, mech9k, tmp_path):
     # pictures give hundredths of a px
-    planet, sun, ring = sorted(circles_of(picture('mech9k', example('planetary_gear'))), key=lambda circle: circle[1])
+    planet, sun, ring = sorted(circles_of(picture(checks, mech9k, example('planetary_gear'), tmp_path)), key=lambda circle: circle[1])
     checks.near([sun[1] / planet[1], ring[1] / planet[1]], [20 / 16, 52 / 16], 1e-3, 'pitch circles have the ratio of the teeth')
     checks.near(np.hypot(*(sun[0] - planet[0])), sun[1] + planet[1], 0.05, 'sun and planet touch from outside')
     checks.near(np.hypot(*(ring[0] - planet[0])), ring[1] - planet[1], 0.05, 'ring and planet from inside')
     checks.near(ring[0], sun[0], 0.05, 'sun and ring have one axis')
-    svg = picture('mech9d', example('rack_and_pinion'))
+
+
+def test_rack_touches_its_pinion(checks, mech9d, tmp_path):
+    svg = picture(checks, mech9d, example('rack_and_pinion'), tmp_path)
     (pinion,) = circles_of(svg)
     upright = [bar for bar in lines_of(svg) if len(bar) == 2 and np.ptp(bar[:, 0]) < 0.05]
     checks.true(any(abs(abs(bar[0, 0] - pinion[0][0]) - pinion[1]) < 0.05 and bar[:, 1].min() < pinion[0][1] < bar[:, 1].max()
                     for bar in upright), 'the rack touches its pinion', (pinion, upright))
-    # seen from above at the start, the side gears are upright lines of 0.12 m and the pinion a level one of 0.06 m
-    sizes = sorted(tuple(np.ptp(line[1:], axis=0)) for line in lines_of(picture('mech9d', example('differential'), '--view', 'xy'))
-                   if len(line) == 74)
+
+
+def test_bevel_gears(checks, mech9d, tmp_path):
+    """Seen from above at the start, the side gears are upright lines of 0.12 m and the pinion a level one of 0.06 m."""
+    svg = picture(checks, mech9d, example('differential'), tmp_path, '--view', 'xy')
+    sizes = sorted(tuple(np.ptp(line[1:], axis=0)) for line in lines_of(svg) if len(line) == 74)
     checks.equal(len(sizes), 3, 'three bevel gears')
     checks.near(np.array(sizes)[:, 1] / sizes[2][0], [2.0, 2.0, 0.0], 0.01, 'side gears of twice the diameter of the pinion')
-    check_belts(checks, os.path.join(programs, 'mech9k'), folder)
-    check_cam(checks, picture('mech9k', example('dwell_cam')))
 
 
-def check_cam(checks, svg):
+def test_roller_touches_its_cam(checks, mech9k, tmp_path):
     """The roller of 10 mm is a circle that touches the cam, whose least radius is 40.8 - 10 mm, at (8, 40) mm from its axis."""
+    svg = picture(checks, mech9k, example('dwell_cam'), tmp_path)
     roller, profile = sorted((corners_of(group.find(SVG + 'path').get('d')) for group in svg.iter(SVG + 'g')
                               if (group.get('class') or '').split()[:1] == ['cam']), key=len)
     axis, = [np.array([float(number) for number in re.findall(r'[-.0-9]+', group.get('transform'))[:2]])
@@ -205,8 +208,8 @@ def check_cam(checks, svg):
     checks.near(np.hypot(*(profile - axis).T).min() / scale, np.hypot(0.008, 0.04) - 0.01, 2e-5, 'the least radius of the cam', scale=1.0)
 
 
-def check_belts(checks, program, folder):
-    svg, _, _ = drawn(checks, program, BELTS, folder)
+def test_belts_are_tangent_to_their_pulleys(checks, mech9k, tmp_path):
+    svg, _, _ = drawn(checks, mech9k, BELTS, tmp_path)
     circles = circles_of(svg)
     checks.equal(len(circles), 6, 'two pulleys for each belt and two gears')
     strands = [corners_of(group.find(SVG + 'path').get('d')) for group in svg.iter(SVG + 'g')
@@ -221,18 +224,3 @@ def check_belts(checks, program, folder):
     upper = min(circles, key=lambda circle: circle[0][1])
     checks.true(any(abs(np.hypot(*(upper[0] - middle)) - upper[1] - radius) < 0.05 and abs(upper[1] / radius - 2) < 1e-2
                     for middle, radius in circles), 'gears touch')
-
-
-def main():
-    checks = Checks()
-    program = os.path.join(os.path.abspath(sys.argv[1]), 'mech9k')
-    with tempfile.TemporaryDirectory() as folder:
-        check_planes(checks, program, folder)
-        check_free(checks, program, folder)
-        check_paths(checks, program, folder)
-        check_balls_and_slides(checks, program, folder)
-        check_couplings(checks, os.path.abspath(sys.argv[1]), folder)
-    checks.finish()
-
-
-main()

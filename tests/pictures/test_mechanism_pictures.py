@@ -1,7 +1,5 @@
 """Sketches and films of mechanisms: they are well formed, show what they should where it is, and hold nothing else.
 
-usage: mechanism_pictures.py PROGRAMS_FOLDER
-
 Where joints are is computed here: on Fig. 1 by intersecting circles, on Bricard's loop from the start that its data
 file gives, in all frames of a film from the table of the same run.
 """
@@ -12,14 +10,12 @@ import re
 import shutil
 import stat
 import subprocess
-import sys
-import tempfile
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'scripts'))
-from mech9_cases import Checks, read_table, run
+from mech9_cases import PATIENCE, read_table, run, text_of
 from svg_pictures import SVG, corners_of, example, place_in, texts_of
 
 # pictures give hundredths of a px; a place and the two that fix the scale are rounded
@@ -69,19 +65,24 @@ def check_similar(checks, drawn, true, first, second, why):
                     f'{drawn[name]} instead of {expected}')
 
 
-def check_fig1(checks, programs, folder):
-    path = os.path.join(folder, 'fig1.svg')
-    for why, options in (('Fig. 1 with a run', []), ('Fig. 1 without', ['--check'])):
-        done = run(f'{programs}/mech9k', example('fig1'), '--no-write', '--sketch', path, *options)
-        checks.equal(done.returncode, 0, f'{why}: done')
-        svg = ElementTree.parse(path).getroot()
-        check_similar(checks, joints_of(svg), fig1_joints(), 'q5', 'q6', why)
-        paths = [group for group in svg.iter(SVG + 'g') if (group.get('class') or '').startswith('trace')]
-        checks.equal(len(paths), 0 if options else 2, f'{why}: the paths of its two points, if it moves')
-        texts = texts_of(svg)
-        checks.true({'P', 'Q', '2', '6', 'q5', 'q1'} <= set(texts), f'{why}: points, links and coordinates have names')
-        checks.true(texts.count('Fig. 1: two closed chains, one degree of freedom') == 1, f'{why}: it has its title')
-    classes = [(group.get('class') or '').split()[:2] for group in svg.iter(SVG + 'g')]
+@pytest.mark.parametrize('why, options', (('with a run', []), ('without a run', ['--check'])), ids=('run', 'check'))
+def test_fig1_is_drawn_where_it_is(checks, mech9k, tmp_path, why, options):
+    path = tmp_path / 'fig1.svg'
+    done = run(mech9k, example('fig1'), '--no-write', '--sketch', path, *options)
+    checks.equal(done.returncode, 0, f'{why}: done')
+    svg = ElementTree.parse(path).getroot()
+    check_similar(checks, joints_of(svg), fig1_joints(), 'q5', 'q6', why)
+    paths = [group for group in svg.iter(SVG + 'g') if (group.get('class') or '').startswith('trace')]
+    checks.equal(len(paths), 0 if options else 2, f'{why}: the paths of its two points, if it moves')
+    texts = texts_of(svg)
+    checks.true({'P', 'Q', '2', '6', 'q5', 'q1'} <= set(texts), f'{why}: points, links and coordinates have names')
+    checks.true(texts.count('Fig. 1: two closed chains, one degree of freedom') == 1, f'{why}: it has its title')
+
+
+def test_every_link_of_fig1_is_drawn(checks, mech9k, tmp_path):
+    path = tmp_path / 'fig1.svg'
+    run(mech9k, example('fig1'), '--no-write', '--sketch', path, '--check')
+    classes = [(group.get('class') or '').split()[:2] for group in ElementTree.parse(path).getroot().iter(SVG + 'g')]
     checks.equal(sum(words == ['plate', 'sheet'] for words in classes), 2, 'links 3 and 5 are plates')
     checks.equal(sum(words[:1] == ['plate'] for words in classes), 5, 'every link is drawn')
     checks.equal(sum(words[:1] == ['stand'] for words in classes), 3, 'three joints stand on the frame')
@@ -95,20 +96,25 @@ def seen(direction, place):
     return np.array([right @ place, np.cross(toward, right) @ place])
 
 
-def check_bricard(checks, programs, folder):
+@pytest.mark.parametrize('view', ('1,-2,0.7', '-3,0.5,-1', 'iso', 'xy', 'zy', 'xz'))
+def test_bricard_from_any_side(checks, mech9d, tmp_path, view):
     """Its pairs at the start are those that the data file gives: every coordinate is zero there."""
     places = {'q1': (0, 0, 0), 'q2': (1, 0, 0), 'q3': (1, -1, 0), 'q4': (1, -1, 1), 'q5': (0, -1, 1), 'q6': (0, 0, 1)}
-    path = os.path.join(folder, 'bricard.svg')
+    path = tmp_path / 'bricard.svg'
     axes = {'xy': [[1, 0, 0], [0, 1, 0]], 'zy': [[0, 0, 1], [0, 1, 0]], 'xz': [[1, 0, 0], [0, 0, 1]]}
-    for view in ('1,-2,0.7', '-3,0.5,-1', 'iso', 'xy', 'zy', 'xz'):
-        done = run(f'{programs}/mech9d', example('bricard'), '--check', '--sketch', path, f'--view={view}')
-        checks.equal(done.returncode, 0, f'Bricard from {view}: done')
-        if view in axes:
-            true = {name: np.array(axes[view]) @ place for name, place in places.items()}
-        else:
-            direction = (1, -1, 0.8) if view == 'iso' else [float(word) for word in view.split(',')]
-            true = {name: seen(direction, place) for name, place in places.items()}
-        check_similar(checks, joints_of(ElementTree.parse(path).getroot()), true, 'q1', 'q4', f'Bricard from {view}')
+    done = run(mech9d, example('bricard'), '--check', '--sketch', path, f'--view={view}')
+    checks.equal(done.returncode, 0, f'Bricard from {view}: done')
+    if view in axes:
+        true = {name: np.array(axes[view]) @ place for name, place in places.items()}
+    else:
+        direction = (1, -1, 0.8) if view == 'iso' else [float(word) for word in view.split(',')]
+        true = {name: seen(direction, place) for name, place in places.items()}
+    check_similar(checks, joints_of(ElementTree.parse(path).getroot()), true, 'q1', 'q4', f'Bricard from {view}')
+
+
+def test_mass_centres_are_marked(checks, mech9d, tmp_path):
+    path = tmp_path / 'bricard.svg'
+    run(mech9d, example('bricard'), '--check', '--sketch', path)
     svg = ElementTree.parse(path).getroot()
     centres = sum((group.get('class') or '') == 'centre' for group in svg.iter(SVG + 'g'))
     checks.equal(centres, 5, 'mech9d marks the centres of its five bodies')
@@ -151,10 +157,11 @@ LOADS = """&mechanism title='springs and dampers', links=5, coordinates=5 /
 """
 
 
-def check_fixed_end(checks, programs, folder):
+def test_wall_at_the_fixed_end_of_a_spring(checks, mech9d, tmp_path):
     """The hatched line at the fixed end of a spring goes through that end, and across the spring."""
-    nml, path = os.path.join(folder, 'loads.nml'), os.path.join(folder, 'loads.svg')
-    done = run(f'{programs}/mech9d', nml, '--no-write', '--quiet', '--sketch', path)
+    nml, path = tmp_path / 'loads.nml', tmp_path / 'loads.svg'
+    nml.write_text(LOADS, encoding='utf-8')
+    done = run(mech9d, nml, '--no-write', '--quiet', '--sketch', path)
     checks.equal(done.returncode, 0, 'springs and dampers are drawn')
     svg = ElementTree.parse(path).getroot()
     lines = {name: [corners_of(group.find(SVG + 'path').get('d')) for group in svg.iter(SVG + 'g')
@@ -165,35 +172,37 @@ def check_fixed_end(checks, programs, folder):
     checks.near((near[1] - near[0]) @ (ends[1] - ends[0]) / np.hypot(*(near[1] - near[0])), 0, 4 * PX, 'and across the spring')
 
 
-def check_symbols(checks, programs, folder):
+TEXTS = {'loads': LOADS, 'screw': SCREW}
+# program, mechanism, and how many symbols of some kinds there are
+SYMBOLS = (
+    # six legs: universal joint (two bars of a cross), tube and rod, ball
+    ('mech9k', 'stewart_gough', {'cross': 12, 'tube': 6, 'ball': 6, 'pin': 0, 'ring': 0, 'block': 0}),
+    # two universal joints between two shafts
+    ('mech9k', 'double_hooke', {'cross': 4, 'pin': 2, 'ball': 0}),
+    # three pairs at E, two at A, one each at O, F, B, G, H; the spring
+    ('mech9d', 'andrews', {'ring': 7, 'stand': 3, 'spring': 1, 'ground': 1, 'centre': 7}),
+    # crank, pin, and the block with the other pin on a guide of the frame
+    ('mech9k', 'slider_crank', {'ring': 3, 'block': 1, 'guide': 1, 'ground': 1, 'hatch': 1, 'stand': 1}),
+    # four single hinges, none parallel to another
+    ('mech9k', 'bennett', {'pin': 4, 'ring': 0, 'stand': 2}),
+    # a wall for each of three fixed ends and that of the spring on the slide, whose guide has its ground besides
+    ('mech9d', 'loads', {'spring': 3, 'damper': 3, 'coil': 1, 'cup': 1, 'ground': 5, 'block': 1}),
+    ('mech9k', 'screw', {'thread': 1, 'block': 2, 'pin': 1, 'guide': 1}))
+
+
+@pytest.mark.parametrize('program, name, expected', SYMBOLS, ids=[name for _, name, _ in SYMBOLS])
+def test_symbols_of_pairs_and_loads(checks, build, tmp_path, program, name, expected):
     """The numbers of symbols in each picture are those of the pairs of its mechanism."""
-    screw = os.path.join(folder, 'screw.nml')
-    with open(screw, 'w', encoding='utf-8') as file:
-        file.write(SCREW)
-    loads = os.path.join(folder, 'loads.nml')
-    with open(loads, 'w', encoding='utf-8') as file:
-        file.write(LOADS)
-    path = os.path.join(folder, 'symbols.svg')
-    for program, data, expected in (
-            # six legs: universal joint (two bars of a cross), tube and rod, ball
-            ('mech9k', example('stewart_gough'), {'cross': 12, 'tube': 6, 'ball': 6, 'pin': 0, 'ring': 0, 'block': 0}),
-            # two universal joints between two shafts
-            ('mech9k', example('double_hooke'), {'cross': 4, 'pin': 2, 'ball': 0}),
-            # three pairs at E, two at A, one each at O, F, B, G, H; the spring
-            ('mech9d', example('andrews'), {'ring': 7, 'stand': 3, 'spring': 1, 'ground': 1, 'centre': 7}),
-            # crank, pin, and the block with the other pin on a guide of the frame
-            ('mech9k', example('slider_crank'), {'ring': 3, 'block': 1, 'guide': 1, 'ground': 1, 'hatch': 1, 'stand': 1}),
-            # four single hinges, none parallel to another
-            ('mech9k', example('bennett'), {'pin': 4, 'ring': 0, 'stand': 2}),
-            # a wall for each of three fixed ends and that of the spring on the slide, whose guide has its ground besides
-            ('mech9d', loads, {'spring': 3, 'damper': 3, 'coil': 1, 'cup': 1, 'ground': 5, 'block': 1}),
-            ('mech9k', screw, {'thread': 1, 'block': 2, 'pin': 1, 'guide': 1})):
-        done = run(f'{programs}/{program}', data, '--no-write', '--quiet', '--sketch', path)
-        checks.equal(done.returncode, 0, f'{data}: drawn')
-        svg = ElementTree.parse(path).getroot()
-        classes = [(group.get('class') or ' ').split()[0:1] for group in svg.iter(SVG + 'g')]
-        for name, count in expected.items():
-            checks.equal(classes.count([name]), count, f'{data}: number of symbols of the kind {name}')
+    data, path = example(name), tmp_path / 'symbols.svg'
+    if name in TEXTS:
+        data = tmp_path / 'data.nml'
+        data.write_text(TEXTS[name], encoding='utf-8')
+    done = run(build.program(program), data, '--no-write', '--quiet', '--sketch', path)
+    checks.equal(done.returncode, 0, f'{name}: drawn')
+    svg = ElementTree.parse(path).getroot()
+    classes = [(group.get('class') or ' ').split()[0:1] for group in svg.iter(SVG + 'g')]
+    for kind, count in expected.items():
+        checks.equal(classes.count([kind]), count, f'{name}: number of symbols of the kind {kind}')
 
 
 FOUR_BAR = """&mechanism title='four-bar', links=4, coordinates=4 /
@@ -206,23 +215,19 @@ FOUR_BAR = """&mechanism title='four-bar', links=4, coordinates=4 /
 """
 
 
-def check_far_point(checks, programs, folder):
+def test_far_point_of_an_axis(checks, mech9k, tmp_path):
     """A pair whose point lies far along its axis is the same pair, and is drawn where its links are."""
-    pictures = []
-    for height in ('0', '900'):
-        nml, path = os.path.join(folder, 'far.nml'), os.path.join(folder, 'far.svg')
-        with open(nml, 'w', encoding='utf-8') as file:
-            file.write(FOUR_BAR.replace('HEIGHT', height))
-        run(f'{programs}/mech9k', nml, '--quiet', '--sketch', path, '--view', 'iso')
-        with open(path, encoding='utf-8') as file:
-            pictures.append(file.read())
-    checks.equal(pictures[1], pictures[0], 'a point far off is drawn near')
-    with open(nml, 'w', encoding='utf-8') as file:
-        file.write(FOUR_BAR.replace('HEIGHT', '0.5'))
-    run(f'{programs}/mech9k', nml, '--quiet', '--sketch', path, '--view', 'xz')
-    joints = joints_of(ElementTree.parse(path).getroot())
-    drawn = (joints['q2'] - joints['q3'])[1] / (joints['q4'] - joints['q2'])[0]
-    checks.near(drawn, 0.5 / 2.0, 1e-3, 'one that is near enough stays where it is')
+    nml, path = tmp_path / 'far.nml', tmp_path / 'far.svg'
+
+    def drawn(height, view):
+        nml.write_text(FOUR_BAR.replace('HEIGHT', height), encoding='utf-8')
+        run(mech9k, nml, '--quiet', '--sketch', path, '--view', view)
+        return text_of(path)
+
+    checks.equal(drawn('900', 'iso'), drawn('0', 'iso'), 'a point far off is drawn near')
+    joints = joints_of(ElementTree.fromstring(drawn('0.5', 'xz')))
+    slope = (joints['q2'] - joints['q3'])[1] / (joints['q4'] - joints['q2'])[0]
+    checks.near(slope, 0.5 / 2.0, 1e-3, 'one that is near enough stays where it is')
 
 
 def film_of(html):
@@ -256,16 +261,15 @@ def nodes_of(film, frame):
     return places * film['unit']
 
 
-def check_page(checks, programs, folder, program, name, points):
+@pytest.mark.parametrize('program, name, points', (('mech9d', 'double_pendulum', {'A', 'B'}), ('mech9k', 'rsur', {'O', 'A', 'B', 'C'})),
+                         ids=('double_pendulum', 'rsur'))
+def test_page_has_the_points_of_the_table(checks, build, tmp_path, program, name, points):
     """A page: every frame has the points of the mechanism where the table of the run has them."""
-    path, table = os.path.join(folder, 'film.html'), os.path.join(folder, 'film.dat')
-    done = run(f'{programs}/{program}', example(name), '--table', table, '--animate', path, '--quiet')
+    path, table = tmp_path / 'film.html', tmp_path / 'film.dat'
+    done = run(build.program(program), example(name), '--table', table, '--animate', path, '--quiet')
     if not checks.equal(done.returncode, 0, f'{name}: the page is made'):
         return
-    with open(path, encoding='utf-8') as file:
-        html = file.read()
-    with open(table, encoding='utf-8') as file:
-        rows = read_table(file.read())
+    html, rows = text_of(path), read_table(text_of(table))
     checks.equal(set(re.findall(r'\w+://[^"\s]*', html)), {'http://www.w3.org/2000/svg'}, f'{name}: nothing from elsewhere')
     markup = re.sub(r'<script>.*</script>', '', html, flags=re.S)
     checks.true(not re.search(r'\b(src|href|@import|url)\s*[=(]', markup), f'{name}: no other file')
@@ -316,9 +320,9 @@ def check_clock_strip(checks, svg, times):
     checks.true(len(shown) == len(times) and np.abs(np.array(shown) - times).max() < 0.34 * np.diff(times).min(), 'its clock shows each time', shown)
 
 
-def check_moving_svg(checks, programs, folder):
-    path, table = os.path.join(folder, 'film.svg'), os.path.join(folder, 'moving.dat')
-    run(f'{programs}/mech9k', example('slider_crank'), '--table', table, '--quiet', '--animate', path,
+def test_moving_svg(checks, mech9k, tmp_path):
+    path, table = tmp_path / 'film.svg', tmp_path / 'moving.dat'
+    run(mech9k, example('slider_crank'), '--table', table, '--quiet', '--animate', path,
         '--set', 'time.intervals=30')
     svg = ElementTree.parse(path).getroot()
     moving = list(svg.iter(SVG + 'animate')) + list(svg.iter(SVG + 'animateTransform'))
@@ -335,8 +339,7 @@ def check_moving_svg(checks, programs, folder):
     for path in svg.iter(SVG + 'path'):
         for one in path.findall(SVG + 'animate'):
             checks.equal(path.get('d'), one.get('values').split(';')[0], 'a form of its own: the first')
-    with open(table, encoding='utf-8') as file:
-        rows = read_table(file.read())
+    rows = read_table(text_of(table))
     check_clock_strip(checks, svg, rows['t'])
     for point in 'BM':
         label, = [group for group in svg.iter(SVG + 'g') if group.findtext(SVG + 'text') == point]
@@ -348,11 +351,10 @@ def check_moving_svg(checks, programs, folder):
         checks.true(np.abs(drawn - scale * true).max() < PX, f'{point} moves as in the table, frame after frame')
 
 
-def check_thinning(checks, programs, folder):
-    path = os.path.join(folder, 'long.html')
-    run(f'{programs}/mech9k', example('fig1'), '--no-write', '--quiet', '--animate', path, '--set', 'time.intervals=5000')
-    with open(path, encoding='utf-8') as file:
-        film = film_of(file.read())
+def test_many_outputs_make_some_hundred_frames(checks, mech9k, tmp_path):
+    path = tmp_path / 'long.html'
+    run(mech9k, example('fig1'), '--no-write', '--quiet', '--animate', path, '--set', 'time.intervals=5000')
+    film = film_of(text_of(path))
     checks.true(200 < len(film['times']) <= 301, 'of many outputs some hundred frames', len(film['times']))
     checks.equal((film['times'][0], film['times'][-1]), (0, 1), 'the first and the last among them')
     checks.true(np.ptp(np.diff(film['times'])[:-1]) < 1e-9, 'evenly in time')
@@ -383,18 +385,20 @@ def polygons_of(script):
             for line in re.findall(r'polygon from (\S+(?: to \S+)*)', script)]
 
 
-def check_gif_script(checks, words, folder):
+def words_of_gif(program, path):
+    """The call that makes a film of Fig. 1 in 21 frames."""
+    return [program, example('fig1'), '--no-write', '--animate', str(path), '--set', 'time.intervals=20']
+
+
+def test_script_of_a_gif(checks, mech9k, tmp_path):
     """The script for gnuplot: the frames of the whole run, one after the other, each with its own picture."""
-    place = os.path.join(folder, 'told')
-    os.mkdir(place)
-    script, fake = os.path.join(place, 'script'), os.path.join(place, 'gnuplot')
-    with open(fake, 'w', encoding='utf-8') as file:
-        file.write(f'#!/bin/sh\n"{shutil.which("cat")}" > "{script}"\n')
-    os.chmod(fake, stat.S_IRWXU)
-    done = subprocess.run(words, env=dict(os.environ, PATH=place), stderr=subprocess.DEVNULL, timeout=60)
+    script, fake = tmp_path / 'script', tmp_path / 'gnuplot'
+    fake.write_text(f'#!/bin/sh\n"{shutil.which("cat")}" > "{script}"\n', encoding='utf-8')
+    fake.chmod(stat.S_IRWXU)
+    done = subprocess.run(words_of_gif(mech9k, tmp_path / 'film.gif'), env=dict(os.environ, PATH=str(tmp_path)), stderr=subprocess.DEVNULL,
+                          timeout=60 * PATIENCE)
     checks.equal(done.returncode, 8, 'a gnuplot that draws nothing')
-    with open(script, encoding='utf-8') as file:
-        frames = file.read().split('unset object; unset label\n')[1:]
+    frames = text_of(script).split('unset object; unset label\n')[1:]
     times = [float(re.search(r"set label 't = (\S+) s'", frame).group(1)) for frame in frames]
     # a clock of four digits
     checks.near(times, np.arange(21) / 20, 1e-4, 'its frames follow one another')
@@ -409,87 +413,90 @@ def check_gif_script(checks, words, folder):
     checks.equal(len({re.sub(r"'t = .*? s'", '', frame) for frame in frames}), 21, 'and no two are alike')
 
 
-def check_gif(checks, programs, folder):
-    path = os.path.join(folder, 'film.gif')
-    words = [f'{programs}/mech9k', example('fig1'), '--no-write', '--animate', path, '--set', 'time.intervals=20']
-    environment = dict(os.environ, PATH=folder)
-    done = subprocess.run(words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
+def test_no_gif_without_gnuplot(checks, mech9k, tmp_path):
+    path = tmp_path / 'film.gif'
+    done = subprocess.run(words_of_gif(mech9k, path), env=dict(os.environ, PATH=str(tmp_path)), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True, timeout=60 * PATIENCE)
     checks.equal(done.returncode, 8, 'without gnuplot there is no GIF')
     checks.true('gnuplot' in done.stderr and '.html' in done.stderr, 'which is said, with what to do', done.stderr)
-    checks.true(not os.path.exists(path), 'and no file is left')
-    check_gif_script(checks, words, folder)
+    checks.true(not path.exists(), 'and no file is left')
+
+
+def test_gif(checks, mech9k, tmp_path):
     if not checks.has('gnuplot', 'gnuplot-nox'):
         return
-    done = run(*words)
+    path = tmp_path / 'film.gif'
+    done = run(*words_of_gif(mech9k, path))
     checks.equal(done.returncode, 0, 'a GIF is made')
-    with open(path, 'rb') as file:
-        data = file.read()
+    data = path.read_bytes()
     checks.equal(data[:6], b'GIF89a', 'it begins as one')
     checks.equal(gif_frames(data), 21, 'it has a frame for each output')
     checks.true(b'NETSCAPE2.0' in data, 'and repeats')
 
 
-def check_hostile_title(checks, programs, folder):
+@pytest.mark.parametrize('ending', ('svg', 'html', 'gif'))
+def test_hostile_title(checks, mech9k, tmp_path, ending):
     title = """</title></svg><script>alert(1)</script> & "x" ' `rm -r *` $(rm) \\ %s ]]> <!-- \u00e9"""
-    with open(example('fig1'), encoding='utf-8') as file:
-        data = re.sub(r"title = '[^']*'", lambda found: "title = '" + title.replace("'", "''") + "'", file.read())
-    nml = os.path.join(folder, 'hostile.nml')
-    with open(nml, 'w', encoding='utf-8') as file:
-        file.write(data)
-    for ending in ('svg', 'html', 'gif'):
-        path = os.path.join(folder, f"it's $(a) `b`.{ending}")
-        done = run(f'{programs}/mech9k', nml, '--no-write', '--quiet', '--animate', path, '--set', 'time.intervals=3')
-        if ending == 'gif':
-            checks.true(done.returncode == 0 or 'not here' in done.stderr, 'a GIF takes any title and name', done.stderr)
-            continue
-        checks.equal(done.returncode, 0, f'{ending}: any title will do')
-        with open(path, encoding='utf-8') as file:
-            text = file.read()
-        checks.true('<script>alert' not in text, f'{ending}: no part of a title is a script')
-        svg = picture_of(text)
-        # in as many lines as it takes
-        checks.true(title in ' '.join(texts_of(svg)), f'{ending}: the title stands as it is')
-        checks.equal(svg.findtext(SVG + 'title'), title, f'{ending}: and whole as the name of the picture')
+    data = re.sub(r"title = '[^']*'", lambda found: "title = '" + title.replace("'", "''") + "'", text_of(example('fig1')))
+    nml, path = tmp_path / 'hostile.nml', tmp_path / f"it's $(a) `b`.{ending}"
+    nml.write_text(data, encoding='utf-8')
+    done = run(mech9k, nml, '--no-write', '--quiet', '--animate', path, '--set', 'time.intervals=3')
+    if ending == 'gif':
+        checks.true(done.returncode == 0 or 'not here' in done.stderr, 'a GIF takes any title and name', done.stderr)
+        return
+    checks.equal(done.returncode, 0, f'{ending}: any title will do')
+    text = text_of(path)
+    checks.true('<script>alert' not in text, f'{ending}: no part of a title is a script')
+    svg = picture_of(text)
+    # in as many lines as it takes
+    checks.true(title in ' '.join(texts_of(svg)), f'{ending}: the title stands as it is')
+    checks.equal(svg.findtext(SVG + 'title'), title, f'{ending}: and whole as the name of the picture')
 
 
-def check_refusals(checks, programs, folder):
-    for options, code, words in (
-            (['--sketch', 'a.svg', '--view', 'side'], 2, 'is no view'),
-            (['--sketch', 'a.svg', '--view', '0,0,0'], 2, 'is no view'),
-            (['--sketch', 'a.svg', '--view', 'xx'], 2, 'is no view'),
-            (['--sketch', 'a.svg', '--set', "output.view='1,2'"], 3, 'is no view'),
-            (['--animate', 'a.html', '--check'], 2, '--check makes none'),
-            (['--animate', 'a.html', '--range'], 2, '--range makes none'),
-            (['--sketch', 'a.png'], 2, 'must end in .svg'),
-            (['--set', "output.sketch='a'"], 3, 'must end in .svg'),
-            (['--animate', 'a.mp4'], 2, '.html, .svg or .gif'),
-            (['--set', "output.animation='a'"], 3, '.html, .svg or .gif'),
-            (['--sketch', 'nowhere/a.svg'], 8, 'nowhere/a.svg'),
-            (['--animate', 'nowhere/a.html'], 8, 'nowhere/a.html'),
-            (['--animate', 'nowhere/a.svg'], 8, 'nowhere/a.svg')):
-        done = run(f'{programs}/mech9k', example('fig1'), '--no-write', '--quiet', *options, folder=folder)
-        why = ' '.join(options)
-        checks.equal(done.returncode, code, f'{why}: its exit code')
-        checks.true(words in done.stderr, f'{why}: says why', done.stderr)
-        checks.true('Backtrace' not in done.stderr, f'{why}: no backtrace')
+# options, the exit code, and words of the message
+REFUSED = (
+    (['--sketch', 'a.svg', '--view', 'side'], 2, 'is no view'),
+    (['--sketch', 'a.svg', '--view', '0,0,0'], 2, 'is no view'),
+    (['--sketch', 'a.svg', '--view', 'xx'], 2, 'is no view'),
+    (['--sketch', 'a.svg', '--set', "output.view='1,2'"], 3, 'is no view'),
+    (['--animate', 'a.html', '--check'], 2, '--check makes none'),
+    (['--animate', 'a.html', '--range'], 2, '--range makes none'),
+    (['--sketch', 'a.png'], 2, 'must end in .svg'),
+    (['--set', "output.sketch='a'"], 3, 'must end in .svg'),
+    (['--animate', 'a.mp4'], 2, '.html, .svg or .gif'),
+    (['--set', "output.animation='a'"], 3, '.html, .svg or .gif'),
+    (['--sketch', 'nowhere/a.svg'], 8, 'nowhere/a.svg'),
+    (['--animate', 'nowhere/a.html'], 8, 'nowhere/a.html'),
+    (['--animate', 'nowhere/a.svg'], 8, 'nowhere/a.svg'))
 
 
-def check_no_place(checks, programs, folder):
+@pytest.mark.parametrize('options, code, words', REFUSED, ids=[' '.join(options) for options, _, _ in REFUSED])
+def test_refusals(checks, mech9k, tmp_path, options, code, words):
+    done = run(mech9k, example('fig1'), '--no-write', '--quiet', *options, folder=tmp_path)
+    why = ' '.join(options)
+    checks.equal(done.returncode, code, f'{why}: its exit code')
+    checks.true(words in done.stderr, f'{why}: says why', done.stderr)
+    checks.true('Backtrace' not in done.stderr, f'{why}: no backtrace')
+
+
+def test_no_place_for_a_gif(checks, mech9k, tmp_path):
     """A film of gnuplot that cannot be opened, and one on a full disk, which gnuplot takes for done."""
-    os.mkdir(os.path.join(folder, 'folder.gif'))
+    if not checks.has('gnuplot', 'gnuplot-nox'):
+        return
+    (tmp_path / 'folder.gif').mkdir()
     targets = {'folder.gif': 'Is a directory', 'nowhere/a.gif': 'No such file'}
     if checks.has_full_disk():
-        os.symlink('/dev/full', os.path.join(folder, 'full.gif'))
+        (tmp_path / 'full.gif').symlink_to('/dev/full')
         targets['full.gif'] = 'disk full'
     for target, words in targets.items():
-        done = run(f'{programs}/mech9k', example('fig1'), '--no-write', '--quiet', '--animate', target, folder=folder)
+        done = run(mech9k, example('fig1'), '--no-write', '--quiet', '--animate', target, folder=tmp_path)
         checks.equal((done.returncode, done.stdout), (8, ''), f'{target}: its exit code, nothing on standard output')
         checks.true(target in done.stderr and words in done.stderr, f'{target}: says why', done.stderr)
 
 
-def check_large(checks, programs, folder):
+def test_thousand_links(checks, mech9k, tmp_path):
     """A mechanism of a thousand links: a file of some megabytes, in seconds."""
-    nml, path = os.path.join(folder, 'large.nml'), os.path.join(folder, 'large.html')
+    nml, path = tmp_path / 'large.nml', tmp_path / 'large.html'
     links = 1000
     lines = [f"&mechanism title='chain', links={links}, coordinates={links - 1} /", '&structure cq=1 /'.replace(
         '1', ','.join(str(k) for k in range(1, links)))]
@@ -498,37 +505,9 @@ def check_large(checks, programs, folder):
                      ' moving_point=0,0,0 /')
         lines.append(f"&drive coordinate={k}, kind='polynomial', coefficients=0,{0.001 * (-1) ** k} /")
     lines.append('&time intervals=400 /')
-    with open(nml, 'w', encoding='utf-8') as file:
-        file.write('\n'.join(lines) + '\n')
-    done = run(f'{programs}/mech9k', nml, '--no-write', '--quiet', '--sketch', os.path.join(folder, 'large.svg'),
-               '--animate', path)
+    nml.write_text('\n'.join(lines) + '\n', encoding='utf-8')
+    done = run(mech9k, nml, '--no-write', '--quiet', '--sketch', tmp_path / 'large.svg', '--animate', path)
     checks.equal(done.returncode, 0, 'a chain of a thousand links is drawn')
     checks.true(os.path.getsize(path) < 8e6, 'its page has less than 8 MB', os.path.getsize(path))
-    svg = ElementTree.parse(os.path.join(folder, 'large.svg')).getroot()
+    svg = ElementTree.parse(tmp_path / 'large.svg').getroot()
     checks.equal(len(joints_of(svg)), links - 1, 'with every joint')
-
-
-def main():
-    programs = os.path.abspath(sys.argv[1])
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        check_fig1(checks, programs, folder)
-        check_symbols(checks, programs, folder)
-        check_far_point(checks, programs, folder)
-        check_fixed_end(checks, programs, folder)
-        check_bricard(checks, programs, folder)
-        check_page(checks, programs, folder, 'mech9d', 'double_pendulum', {'A', 'B'})
-        check_page(checks, programs, folder, 'mech9k', 'rsur', {'O', 'A', 'B', 'C'})
-        check_moving_svg(checks, programs, folder)
-        check_thinning(checks, programs, folder)
-        check_gif(checks, programs, folder)
-        check_hostile_title(checks, programs, folder)
-        check_refusals(checks, programs, folder)
-        if shutil.which('gnuplot'):
-            check_no_place(checks, programs, folder)
-        check_large(checks, programs, folder)
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()
