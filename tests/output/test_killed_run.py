@@ -2,8 +2,6 @@
 
 Compares the program with itself in part: the last row of a run that was killed and that row of a whole run.
 
-usage: killed_run.py MECH9K [RUNS]
-
 The run is of Fig. 1, driven through millions of positions. Each file is held against the rows of a run that
 was not killed, at the times that both have: positions of two runs differ by the round-off of one closed chain.
 """
@@ -11,14 +9,12 @@ import os
 import random
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import POSITION, REFERENCE, Checks, run, skip
+from mech9_cases import POSITION, REFERENCE, run
 
 FIG1 = os.path.join(REFERENCE, 'kinematics_fig1.nml')
 # a run that nobody waits for; rows are made known to the file every second, the first ones at once
@@ -28,7 +24,7 @@ SIZE = 5.6    # of the mechanism [m]
 try:
     import h5py
 except ImportError:
-    skip('h5py is not installed (Debian: python3-h5py): nothing is tested')
+    pytest.skip('h5py is not installed (Debian: python3-h5py): nothing is tested', allow_module_level=True)
 
 
 def killed_after(program, folder, seconds):
@@ -36,7 +32,7 @@ def killed_after(program, folder, seconds):
     path = os.path.join(folder, 'killed.h5')
     if os.path.exists(path):
         os.remove(path)
-    process = subprocess.Popen([os.path.abspath(program), FIG1, '--hdf5', path, '--quiet', '--set', "output.table=''",
+    process = subprocess.Popen([program, FIG1, '--hdf5', path, '--quiet', '--set', "output.table=''",
                                 '--set', f'time.intervals={INTERVALS}'], cwd=folder)
     time.sleep(seconds)
     process.send_signal(signal.SIGKILL)
@@ -68,28 +64,21 @@ def check_file(checks, path, seconds):
         return 0, None
 
 
-def main():
-    program, runs = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 4
-    checks = Checks()
+def test_killed_at_any_moment(checks, mech9k, tmp_path):
     random.seed(20)
     most = 0
-    with tempfile.TemporaryDirectory() as folder:
-        for i in range(runs):
-            seconds = LONGEST if i == 0 else random.uniform(0.3, LONGEST)
-            path = killed_after(program, folder, seconds)
-            if not path:
-                continue
-            n, q = check_file(checks, path, seconds)
-            most = max(most, n)
-            if n:
-                t = (n - 1) / INTERVALS
-                done = run(program, FIG1, '--hdf5', 'whole.h5', '--quiet', '--set', "output.table=''",
-                           '--set', f'time.end={t!r}', '--set', 'time.intervals=100', folder=folder)
-                checks.equal(done.returncode, 0, f'the run up to there; stderr: {done.stderr}')
-                with h5py.File(os.path.join(folder, 'whole.h5'), 'r') as whole:
-                    checks.near(q, whole['q'][-1], POSITION, f'killed after {seconds:.3f} s: the last row')
+    for i in range(4):
+        seconds = LONGEST if i == 0 else random.uniform(0.3, LONGEST)
+        path = killed_after(mech9k, tmp_path, seconds)
+        if not path:
+            continue
+        n, q = check_file(checks, path, seconds)
+        most = max(most, n)
+        if n:
+            t = (n - 1) / INTERVALS
+            done = run(mech9k, FIG1, '--hdf5', 'whole.h5', '--quiet', '--set', "output.table=''",
+                       '--set', f'time.end={t!r}', '--set', 'time.intervals=100', folder=tmp_path)
+            checks.equal(done.returncode, 0, f'the run up to there; stderr: {done.stderr}')
+            with h5py.File(tmp_path / 'whole.h5', 'r') as whole:
+                checks.near(q, whole['q'][-1], POSITION, f'killed after {seconds:.3f} s: the last row')
     checks.true(most > 1000, 'many rows were there when a run was killed', most)
-    checks.finish()
-
-
-main()

@@ -1,25 +1,35 @@
-"""Poses of links in the HDF5 file, and the XDMF file that shows them, against what pairs and points must satisfy.
-
-usage: xdmf_links.py MECH9K MECH9D
-"""
+"""Poses of links in the HDF5 file, and the XDMF file that shows them, against what pairs and points must satisfy."""
 import os
-import sys
-import tempfile
 import xml.etree.ElementTree as ElementTree
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import POSITION, REFERENCE, Checks, run, skip
+from mech9_cases import POSITION, REFERENCE, run
 
 try:
     import h5py
 except ImportError:
-    skip('h5py is not installed (Debian: python3-h5py): nothing is tested')
+    pytest.skip('h5py is not installed (Debian: python3-h5py): nothing is tested', allow_module_level=True)
+
+CASES = (('mech9k', 'kinematics_fig1'), ('mech9k', 'kinematics_spatial_slider_crank'), ('mech9k', 'kinematics_bennett'),
+         ('mech9d', 'dynamics_fivebar'))
+TITLE = '<A & "B">'
 
 
-def check_poses(checks, path, why):
+def hdf5_of(program, name, folder):
+    """Run a case with poses; the path of its HDF5 file, beside which its XDMF file stands."""
+    path = folder / f'{name}.h5'
+    done = run(program, os.path.join(REFERENCE, f'{name}.nml'), '--hdf5', path, '--table', 'run.dat',
+               '--set', 'output.poses=.true.', '--set', f"mechanism.title='{TITLE}'", folder=folder)
+    assert done.returncode == 0, f'{name} runs; stderr: {done.stderr}'
+    return path
+
+
+@pytest.mark.parametrize('program, why', CASES)
+def test_poses(checks, build, tmp_path, program, why):
     """Rotations are rotations; both links of a pair that turns hold its point; points ride on their links."""
+    path = hdf5_of(build.program(program), why, tmp_path)
     with h5py.File(path, 'r') as file:
         a, u, vertex = file['rotation'][:], file['origin'][:], file['vertex'][:]
         rows, links = a.shape[:2]
@@ -56,50 +66,34 @@ def read_item(folder, item):
     return values, tuple(int(word) for word in item.get('Dimensions').split()) == values.shape
 
 
-def check_xdmf(checks, folder, name, rows, title, why):
-    root = ElementTree.parse(os.path.join(folder, name)).getroot()
+@pytest.mark.parametrize('program, why', CASES)
+def test_xdmf(checks, build, tmp_path, program, why):
+    path = hdf5_of(build.program(program), why, tmp_path)
+    with h5py.File(path, 'r') as file:
+        rows = len(file['time'])
+    root = ElementTree.parse(path.with_suffix('.xdmf')).getroot()
     checks.equal(root.tag, 'Xdmf', f'{why}: an XDMF document')
     collection = root.find('Domain/Grid')
     checks.equal(collection.get('GridType'), 'Collection', f'{why}: a grid for each')
     checks.equal(collection.get('CollectionType'), 'Temporal', f'{why}: time')
-    checks.equal(collection.get('Name'), title, f'{why}: the title')
+    checks.equal(collection.get('Name'), TITLE, f'{why}: the title')
     grids = collection.findall('Grid')
     checks.equal(len(grids), rows, f'{why}: a grid for each output')
     for row in sorted({0, rows // 2, rows - 1}):
         grid = grids[row]
         slab = grid.find('Geometry/DataItem')
         where, numbers = slab.findall('DataItem')
-        values, fits = read_item(folder, numbers)
+        values, fits = read_item(tmp_path, numbers)
         checks.true(fits, f'{why}: the sizes of the vertices')
         start, stride, count = np.array(where.text.split(), int).reshape(3, 3)
         checks.equal((list(start), list(stride)), ([row, 0, 0], [1, 1, 1]), f'{why}: the slab of output {row}')
         checks.equal(tuple(count), (1,) + values.shape[1:], f'{why}: its size')
         topology = grid.find('Topology')
-        lines, fits = read_item(folder, topology.find('DataItem'))
+        lines, fits = read_item(tmp_path, topology.find('DataItem'))
         checks.true(fits and int(topology.get('NumberOfElements')) == len(lines), f'{why}: the number of lines')
         checks.true(lines.min() >= 0 and lines.max() < values.shape[1], f'{why}: lines join vertices that there are')
-        links, fits = read_item(folder, grid.find('Attribute/DataItem'))
+        links, fits = read_item(tmp_path, grid.find('Attribute/DataItem'))
         checks.true(fits and len(links) == len(lines), f'{why}: each line has its link')
-        with h5py.File(os.path.join(folder, numbers.text.split(':')[0]), 'r') as file:
+        with h5py.File(tmp_path / numbers.text.split(':')[0], 'r') as file:
             time = float(grid.find('Time').get('Value'))
             checks.near(time, file['time'][row], 1e-15, f'{why}: the time of output {row}')
-
-
-def main():
-    programs, checks = [os.path.abspath(path) for path in sys.argv[1:3]], Checks()
-    cases = [(programs[0], 'kinematics_fig1'), (programs[0], 'kinematics_spatial_slider_crank'),
-             (programs[0], 'kinematics_bennett'), (programs[1], 'dynamics_fivebar')]
-    title = '<A & "B">'
-    with tempfile.TemporaryDirectory() as folder:
-        for program, name in cases:
-            done = run(program, os.path.join(REFERENCE, f'{name}.nml'), '--hdf5', f'{name}.h5', '--table', 'run.dat',
-                       '--set', 'output.poses=.true.', '--set', f"mechanism.title='{title}'", folder=folder)
-            if checks.equal(done.returncode, 0, f'{name} runs; stderr: {done.stderr}'):
-                check_poses(checks, os.path.join(folder, f'{name}.h5'), name)
-                with h5py.File(os.path.join(folder, f'{name}.h5'), 'r') as file:
-                    rows = len(file['time'])
-                check_xdmf(checks, folder, f'{name}.xdmf', rows, title, name)
-    checks.finish()
-
-
-main()
