@@ -1,16 +1,12 @@
 """A program to which the system gives no more memory says so in one line and ends with code 8, wherever that happens; a small
-stack is enough for a large mechanism.
-
-usage: out_of_memory.py MECH9K MECH9D PROGRAM_D    PROGRAM_D: mech9d with a user's force
-"""
+stack is enough for a large mechanism."""
 import os
 import resource
 import subprocess
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import TREE, Checks
+import pytest
+
+from mech9_cases import PATIENCE, TREE
 from n_four_bar import data_file
 
 DONE, FILE = 0, 8
@@ -18,6 +14,12 @@ PENDULUM = os.path.join(TREE, 'examples', 'double_pendulum', 'double_pendulum.nm
 MEBIBYTE = 1 << 20
 # windows of the ladder, and steps between the least memory and enough
 WINDOWS, LIMITS = 400, 14
+
+
+@pytest.fixture(autouse=True)
+def memory_of_the_system(build):
+    if build.kind in ('Sanitize', 'Threads'):
+        pytest.skip('the sanitizers have a memory of their own')
 
 
 def run(words, limit=None, stack=None):
@@ -28,20 +30,23 @@ def run(words, limit=None, stack=None):
         if stack:
             resource.setrlimit(resource.RLIMIT_STACK, (stack, stack))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    return subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors='replace', timeout=120,
-                          preexec_fn=limits)
+    return subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors='replace',
+                          timeout=120 * PATIENCE, preexec_fn=limits)
 
 
 def ladder(folder, program):
     """A row of four-bar linkages, driven for mech9k."""
-    path = os.path.join(folder, program + '.nml')
+    path = folder / (program + '.nml')
     text = data_file(WINDOWS, 0.1)
     if program == 'mech9k':
         text = text.replace('&initial coordinate=1, position=0, velocity=-1 /',
                             "&drive coordinate=1, kind='polynomial', coefficients=0, -1 /")
-    with open(path, 'w', encoding='utf-8') as file:
-        file.write(text)
+    path.write_text(text, encoding='utf-8')
     return path
+
+
+def options(folder):
+    return ['--quiet', '--table', folder / 't.dat', '--set', 'time.intervals=2']
 
 
 def least_that_does(words):
@@ -73,20 +78,22 @@ def check_between(checks, why, program, words):
     checks.true(refused > LIMITS // 2, f'{why}: most limits are too low', refused)
 
 
-def main():
-    mech9k, mech9d, users = map(os.path.abspath, sys.argv[1:4])
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        options = ['--quiet', '--table', os.path.join(folder, 't.dat'), '--set', 'time.intervals=2']
-        paths = {name: ladder(folder, name) for name in ('mech9k', 'mech9d')}
-        check_between(checks, 'mech9k', mech9k, [paths['mech9k'], *options])
-        check_between(checks, 'mech9k --check', mech9k, [paths['mech9k'], '--check'])
-        check_between(checks, 'mech9d --check', mech9d, [paths['mech9d'], '--check'])
-        check_between(checks, "a user's program", users, [paths['mech9d'], '--structure'])
-        for program, path in ((mech9k, paths['mech9k']), (mech9d, PENDULUM)):
-            done = run([program, path, *options], stack=128 * 1024)
-            checks.equal(done.returncode, DONE, f'{os.path.basename(program)} with a small stack; {done.stderr[:400]}')
-    checks.finish()
+def test_run(checks, mech9k, tmp_path):
+    check_between(checks, 'mech9k', mech9k, [ladder(tmp_path, 'mech9k'), *options(tmp_path)])
 
 
-main()
+@pytest.mark.parametrize('name', ('mech9k', 'mech9d'))
+def test_check(checks, build, tmp_path, name):
+    check_between(checks, f'{name} --check', build.program(name), [ladder(tmp_path, name), '--check'])
+
+
+def test_program_of_a_user(checks, build, tmp_path):
+    """mech9d with a user's force."""
+    check_between(checks, "a user's program", build.program('failing_force_d'), [ladder(tmp_path, 'mech9d'), '--structure'])
+
+
+@pytest.mark.parametrize('name', ('mech9k', 'mech9d'))
+def test_small_stack(checks, build, tmp_path, name):
+    data = PENDULUM if name == 'mech9d' else ladder(tmp_path, name)
+    done = run([build.program(name), data, *options(tmp_path)], stack=128 * 1024)
+    checks.equal(done.returncode, DONE, f'{name} with a small stack; {done.stderr[:400]}')
