@@ -1,7 +1,4 @@
-"""A page in a real browser: Chromium without a window, told what to do over two pipes (DevTools protocol).
-
-Needs the standard library only.
-"""
+"""A page in a real browser: Chromium without a window, told what to do over two pipes (DevTools protocol)."""
 import base64
 import json
 import os
@@ -11,6 +8,8 @@ import signal
 import subprocess
 import tempfile
 import time
+
+from mech9_cases import PATIENCE
 
 FLAGS = ['--headless', '--remote-debugging-pipe', '--no-first-run', '--disable-gpu', '--disable-dev-shm-usage',
          '--disable-extensions', '--disable-background-networking', '--disable-component-update', '--disable-sync',
@@ -29,7 +28,7 @@ class PageError(Exception):
 class Browser:
     """One page in one browser. `errors` collects what its console says, `requests` the addresses that it opens."""
 
-    def __init__(self, width=1000, height=800, patience=60):
+    def __init__(self, width=1000, height=800, patience=10 * PATIENCE):
         self.patience = patience
         self.profile = tempfile.mkdtemp(prefix='browser')
         self.downloads = os.path.join(self.profile, 'downloads')

@@ -4,11 +4,9 @@ A script of a conversation is a list of steps (prompt, answer): the prompt is a 
 answer the line that is typed then.
 """
 import re
-import subprocess
 
+from mech9_cases import run
 from terminal import Terminal
-
-PATIENCE = 60.0    # seconds for a whole conversation through a pipe, which takes a fraction of one
 
 
 def answers_of(steps):
@@ -57,6 +55,5 @@ class Talk(Terminal):
 
 
 def piped(program, *arguments, folder, answers):
-    """A conversation through a pipe: the completed process."""
-    return subprocess.run([program, *arguments], cwd=folder, input=answers, capture_output=True, text=True,
-                          errors='replace', timeout=PATIENCE)
+    """A conversation through a pipe: the completed process. It takes a fraction of a second."""
+    return run(program, *arguments, folder=folder, stdin=answers, timeout=60)

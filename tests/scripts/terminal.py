@@ -1,17 +1,20 @@
 """A program on a pseudo-terminal: what it shows, and what is typed.
 
-Where the system has no pseudo-terminals, `available` is false, and tests say so and leave the rest out.
+Where the system has no pseudo-terminals, `available` is false, and tests that are marked by `needs_terminal` are skipped.
 """
 import fcntl
 import os
 import pty
 import re
 import select
-import signal
 import struct
 import subprocess
 import termios
 import time
+
+import pytest
+
+from mech9_cases import PATIENCE
 
 
 def available():
@@ -22,6 +25,9 @@ def available():
     os.close(master)
     os.close(slave)
     return True
+
+
+needs_terminal = pytest.mark.skipif(not available(), reason='there are no pseudo-terminals here')
 
 
 def random_keys(chance, count):
@@ -36,7 +42,7 @@ def random_keys(chance, count):
 class Terminal:
     """A program that has a terminal of 80 x 24 as its controlling one. `seen` is all that was shown."""
 
-    def __init__(self, words, folder=None, term='xterm', patience=30, stdout=None, **environment):
+    def __init__(self, words, folder=None, term='xterm', patience=5 * PATIENCE, stdout=None, **environment):
         self.patience = patience
         self.seen = ''
         self.place = 0        # up to where `expect` has looked
@@ -112,6 +118,3 @@ class Terminal:
     def plain(self):
         """All that was shown, without the sequences that move the cursor or colour."""
         return re.sub(r'\x1b(\[[0-9;?]*[A-Za-z]|[()].|[=>])', '', self.seen).replace('\r', '')
-
-
-__all__ = ['Terminal', 'available', 'random_keys', 'signal']

@@ -1,7 +1,5 @@
 """Ten thousand random and hostile lines at the prompts of the conversation: no crash, no hang, a known exit code.
 
-usage: hostile_lines.py MECH9K MECH9D
-
 The lines come from a generator with a fixed seed: answers that could be right, answers that are nearly right,
 and bytes that are no answers at all. Some sessions begin with nothing, so that they hang about the first
 questions; some open an example and so reach the end of the conversation, runs, and what comes after them.
@@ -10,12 +8,12 @@ import os
 import random
 import shutil
 import subprocess
-import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import TREE, Checks
-from terminal import Terminal, available, random_keys
+import pytest
+
+from mech9_cases import PATIENCE, TREE
+from terminal import Terminal, needs_terminal, random_keys
 
 LINES, PER_SESSION, MOST_SESSIONS = 10000, 500, 300
 BLOCK = 4096     # bytes that the program may have taken from its input without having asked for them
@@ -54,9 +52,9 @@ def session(checks, program, words, folder, lines):
         answers.write(data)
         answers.seek(0)
         try:
-            done = subprocess.run([program, *words], stdin=answers, capture_output=True, cwd=folder, timeout=60)
+            done = subprocess.run([program, *words], stdin=answers, capture_output=True, cwd=folder, timeout=60 * PATIENCE)
         except subprocess.TimeoutExpired:
-            checks.true(False, f'{words}: ends in a minute')
+            checks.true(False, f'{words}: ends')
             return len(lines)
         at = os.lseek(answers.fileno(), 0, os.SEEK_CUR)
     said = (done.stdout + done.stderr).decode('utf-8', 'replace')
@@ -67,35 +65,29 @@ def session(checks, program, words, folder, lines):
     return len(lines) if at >= len(data) else data[:max(at - BLOCK, 0)].count(b'\n')
 
 
-def keys(checks, chance, program, folder):
+def test_hostile_lines(checks, mech9k, mech9d, tmp_path):
+    programs, chance = [mech9k, mech9d], random.Random(20240229)
+    starts = [[], ['--edit', 'fig1.nml'], ['--dialogue'], ['--edit', 'pendulum.nml']]
+    read = sessions = 0
+    for name in ('fig1', 'pendulum'):
+        shutil.copy(os.path.join(TREE, 'examples', name, f'{name}.nml'), tmp_path)
+    while read < LINES and sessions < MOST_SESSIONS:
+        work = tmp_path / str(sessions)
+        work.mkdir()
+        words = [os.path.join('..', word) if word.endswith('.nml') else word for word in starts[sessions % len(starts)]]
+        read += session(checks, programs[sessions // 2 % 2], words, work, [line_of(chance) for _ in range(PER_SESSION)])
+        sessions += 1
+    checks.true(read >= LINES, f'{LINES} lines were read', f'{read} in {sessions} sessions')
+
+
+@needs_terminal
+@pytest.mark.parametrize('name', ('mech9k', 'mech9d'))
+def test_hostile_keys(checks, build, tmp_path, name):
     """The same at a terminal, key by key; Ctrl-C ends it, or the conversation has come to an end by itself."""
-    with Terminal([program], folder=folder, patience=60) as terminal:
+    chance = random.Random(20240229)
+    with Terminal([build.program(name)], folder=tmp_path, patience=10 * PATIENCE) as terminal:
         terminal.expect('title')
         terminal.type(random_keys(chance, 2000))
         terminal.type('\r\x03')
         checks.true(terminal.ends() in ALLOWED, 'random keys: a known exit code', f'{terminal.process.returncode}\n{terminal.seen[-2000:]}')
         checks.true(not any(word in terminal.seen for word in TROUBLE), 'random keys: no crash', terminal.seen[-2000:])
-
-
-def main():
-    programs = [os.path.abspath(path) for path in sys.argv[1:3]]
-    checks, chance = Checks(), random.Random(20240229)
-    starts = [[], ['--edit', 'fig1.nml'], ['--dialogue'], ['--edit', 'pendulum.nml']]
-    read = sessions = 0
-    with tempfile.TemporaryDirectory() as folder:
-        for name in ('fig1', 'pendulum'):
-            shutil.copy(os.path.join(TREE, 'examples', name, f'{name}.nml'), folder)
-        while read < LINES and sessions < MOST_SESSIONS:
-            work = os.path.join(folder, str(sessions))
-            os.mkdir(work)
-            words = [os.path.join('..', word) if word.endswith('.nml') else word for word in starts[sessions % len(starts)]]
-            read += session(checks, programs[sessions // 2 % 2], words, work, [line_of(chance) for _ in range(PER_SESSION)])
-            sessions += 1
-        for program in programs if available() else []:
-            keys(checks, chance, program, folder)
-    checks.true(read >= LINES, f'{LINES} lines were read', f'{read} in {sessions} sessions')
-    print(f'{read} lines in {sessions} sessions')
-    checks.finish()
-
-
-main()

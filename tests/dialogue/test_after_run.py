@@ -1,21 +1,17 @@
 """The end of a conversation, after a run: the table's end, a plot, a comparison, a change and another run.
 
-usage: after_run.py MECH9K MECH9D
-
 What is shown is held against the tables that the same program writes for the same data; differences are worked
 out here.
 """
 import os
 import re
 import shutil
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
-from mech9_cases import TREE, Checks, read_table, run, table_of, text_of
-from terminal import Terminal, available
+from mech9_cases import TREE, read_table, run, table_of, text_of
+from terminal import Terminal, needs_terminal
 
 PROMPT = 'show, plot, compare, change, run or done'
 PROMPT_OF_DYNAMICS = 'show, plot, compare, equilibrium, modes, change, run or done'
@@ -24,18 +20,10 @@ PROMPT_OF_DYNAMICS = 'show, plot, compare, equilibrium, modes, change, run or do
 class Session:
     """A conversation about an example, whose copy stands in a folder of its own."""
 
-    def __init__(self, checks, program, example):
-        self.checks, self.program, self.example = checks, os.path.abspath(program), example
-        self.holder = tempfile.TemporaryDirectory()
-        self.folder = self.holder.name
+    def __init__(self, checks, program, example, folder):
+        self.checks, self.program, self.example, self.folder = checks, program, example, folder
         self.data = os.path.join(self.folder, f'{example}.nml')
         shutil.copy(os.path.join(TREE, 'examples', example, f'{example}.nml'), self.data)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.holder.cleanup()
 
     def after_run(self, *lines, code=0):
         """Save and run, then type lines; what was said to each of them."""
@@ -48,11 +36,23 @@ class Session:
 
     def written(self):
         """The table that the run wrote."""
-        name = re.search(r"table *= *'([^']*)'", open(self.data, encoding='utf-8').read()).group(1)
+        name = re.search(r"table *= *'([^']*)'", text_of(self.data)).group(1)
         return read_table(text_of(os.path.join(self.folder, name)))
 
     def independent(self, *options):
         return table_of(self.program, self.data, *options)
+
+
+@pytest.fixture
+def session(checks, mech9k, tmp_path):
+    """mech9k about Fig. 1."""
+    return Session(checks, mech9k, 'fig1', os.fspath(tmp_path))
+
+
+@pytest.fixture
+def swinging(checks, mech9d, tmp_path):
+    """mech9d about a pendulum."""
+    return Session(checks, mech9d, 'pendulum', os.fspath(tmp_path))
 
 
 def rows_shown(text):
@@ -154,29 +154,32 @@ def test_study(session):
 def test_failed_run(session):
     """A run that fails ends nothing; the exit code is that of the last run."""
     checks = session.checks
-    short, long = ('change pair 7 moving_point = %s, 0, 0' % length for length in ('0.1', '20'))
-    said, _ = session.after_run(short, '', 'show 1', 'compare', 'done', code=6)
+    said, _ = session.after_run('change pair 7 moving_point = 0.1, 0, 0', '', 'show 1', 'compare', 'done', code=6)
     checks.true('dead point' in said[1], 'a rocker too short for a full turn is told', said[1])
     rows = re.search(r'the last 1 of (\d+) rows', said[2])
     checks.true(rows and 0 < int(rows.group(1)) < 101, 'the results up to there are shown', said[2])
     checks.true(f'Compared at {rows.group(1)} common times' in said[3], 'and compared', said[3])
-    said, _ = session.after_run(long, 'run', 'show 1', 'compare', 'done', code=5)
+
+
+def test_run_that_cannot_begin(session):
+    checks = session.checks
+    said, _ = session.after_run('change pair 7 moving_point = 20, 0, 0', 'run', 'show 1', 'compare', 'done', code=5)
     checks.true('assembled' in said[1], 'a rocker that reaches nothing is told', said[1])
     checks.true('no results' in said[2] and 'no results' in said[3], 'there is nothing to look at', said[2:4])
 
 
-def test_dynamics(session):
-    said, _ = session.after_run('show 4', 'done')
-    table = session.written()
+def test_show_in_dynamics(swinging):
+    said, _ = swinging.after_run('show 4', 'done')
+    table = swinging.written()
     names, _, rows = rows_shown(said[0])
-    session.checks.true(np.allclose(rows, np.array([table[name][-4:] for name in names]).T, rtol=5e-7, atol=1e-12),
+    swinging.checks.true(np.allclose(rows, np.array([table[name][-4:] for name in names]).T, rtol=5e-7, atol=1e-12),
                         'mech9d: the last rows of the table', said[0])
 
 
-def test_rest(session):
+def test_equilibria_and_modes(swinging):
     """Equilibria and modes of the pendulum as it stands, also with a change that was not run: g/l = 9.81, then 4, in 1/s^2."""
-    checks = session.checks
-    said, shown = session.after_run('equilibrium', 'equilibrium 5', 'modes', 'gravity acceleration = 0 -4 0', 'modes', 'modes 4',
+    checks = swinging.checks
+    said, shown = swinging.after_run('equilibrium', 'equilibrium 5', 'modes', 'gravity acceleration = 0 -4 0', 'modes', 'modes 4',
                                     'equilibrium x', 'equilibrium 0', 'run', 'modes', 'done')
     checks.true('its lowest frequency is 0.498488 Hz' in said[0], 'equilibrium: told', said[0])
     checks.true('2 positions of equilibrium from the initial position and 5 random ones, 1 of them stable' in said[1],
@@ -194,6 +197,7 @@ def test_no_rest_in_kinematics(session):
     session.checks.true('no answer that can be changed' in said[0], 'mech9k finds no equilibria', said[0])
 
 
+@needs_terminal
 def test_interrupted(session):
     """Ctrl-C ends the run and not the conversation."""
     with Terminal([session.program, '--edit', f'{session.example}.nml'], folder=session.folder) as terminal:
@@ -216,6 +220,7 @@ def test_interrupted(session):
         session.checks.equal(terminal.ends(), 130, 'its exit code tells that the run was interrupted')
 
 
+@needs_terminal
 def test_simple_terminal(session):
     """80 x 24, no colour wanted, and a cursor that only goes on: nothing but letters, in lines that fit."""
     with Terminal([session.program, '--edit', 'fig1.nml'], folder=session.folder, term='dumb', NO_COLOR='1') as terminal:
@@ -227,27 +232,3 @@ def test_simple_terminal(session):
         session.checks.true('\x1b' not in terminal.seen, 'dumb terminal: no sequences', repr(terminal.seen))
         long = [line for line in terminal.plain().split('\n') if len(line) > 80]
         session.checks.equal(long, [], 'dumb terminal: every line fits')
-
-
-def main():
-    checks = Checks()
-    kinematics, dynamics = sys.argv[1:3]
-    for test in (test_show, test_bare_change, test_compare, test_change, test_change_before, test_plot, test_failed_run,
-                 test_no_rest_in_kinematics, test_study):
-        with Session(checks, kinematics, 'fig1') as session:
-            test(session)
-    with Session(checks, dynamics, 'pendulum') as session:
-        test_dynamics(session)
-    with Session(checks, dynamics, 'pendulum') as session:
-        test_rest(session)
-    if available():
-        with Session(checks, kinematics, 'fig1') as session:
-            test_interrupted(session)
-        with Session(checks, kinematics, 'fig1') as session:
-            test_simple_terminal(session)
-    else:
-        checks.left_out('there are no pseudo-terminals here, at which Ctrl-C could be typed')
-    checks.finish()
-
-
-main()
