@@ -1,4 +1,4 @@
-!> Reads every file that tests/cases/malformed/expected.txt lists, in that folder, and holds the exit code
+!> Reads every file that tests/input/malformed/expected.txt lists, in that folder, and holds the exit code
 !> and what is printed against the list.
 program test_malformed
   use mech9_text, only: to_text

@@ -41,9 +41,9 @@ contains
     integer, intent(in) :: count                          !< of runs
     type(run_type), allocatable, intent(out) :: runs(:)   !< still to be carried out
     character(len=*), parameter :: names(*) = [character(len=40) :: 'reference/kinematics_fig1', &
-      'reference/dynamics_fig1', 'cases/malformed/errors_together', 'reference/kinematics_general_7r', &
+      'reference/dynamics_fig1', 'input/malformed/errors_together', 'reference/kinematics_general_7r', &
       'reference/dynamics_fivebar', 'reference/kinematics_bennett', 'reference/dynamics_open_chain', &
-      'reference/kinematics_fig1_driven_at_q1', 'cases/malformed/links_apart', &
+      'reference/kinematics_fig1_driven_at_q1', 'input/malformed/links_apart', &
       'reference/dynamics_spatial_slider_crank', 'reference/kinematics_slider_crank', 'threads/study', 'threads/search', &
       'threads/forced_search']
     integer :: i, which
