@@ -1,23 +1,17 @@
 """The samples of user_procs: their programs against closed forms, and the two forms of a procedure
-against each other.
+against each other, however the programs are made.
 
 Compares the program with itself in part: procedures in Taylor form and in plain reals, which are both held against
 closed forms, too.
-
-usage: user_programs.py FOLDER      FOLDER holds trammel_k, trammel_values_k, cam_follower_k,
-                                    cycloidal_drive_k, cycloidal_drive_values_k, cardan_coupling_k,
-                                    cardan_coupling_values_k, air_drag_d
 """
 import os
 import re
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
 import numpy as np
+import pytest
 
 from jets import Jet, arccos, arcsin, check_coordinate, check_point, cos, sin, sqrt
-from mech9_cases import TREE, Checks, table_of, text_of, tolerance_of
+from mech9_cases import TREE, table_of, text_of, tolerance_of
 
 
 def check_trammel(checks, table, why):
@@ -86,8 +80,33 @@ def check_air(checks, table, why):
     checks.near(lost, work, 1e-8, f'{why}: the energy falls by the work of the drag')
 
 
-def check_air_forces(checks, program, data):
+CLOSED = (('trammel', check_trammel), ('trammel_values', check_trammel), ('cam_follower', check_cam), ('cycloidal_drive', check_cycloid),
+          ('cycloidal_drive_values', check_cycloid), ('cardan_coupling', check_cardan), ('cardan_coupling_values', check_cardan))
+
+
+def data_of(program):
+    """The data file of a sample, which both forms of its procedure share."""
+    name = program.replace('_values', '')
+    return os.path.join(TREE, 'user_procs', name, name + '.nml')
+
+
+@pytest.mark.parametrize('program, check', CLOSED, ids=[program for program, _ in CLOSED])
+def test_closed_form(checks, programs, program, check):
+    check(checks, table_of(os.path.join(programs, program + '_k'), data_of(program)), program)
+
+
+def test_torque_of_a_coupling(checks, programs):
+    forces = table_of(os.path.join(programs, 'cardan_coupling_k'), data_of('cardan_coupling'), '--set', 'output.reactions=.true.')
+    checks.near(forces['C1'], 0.05 * forces['ddq2'], 1e-13, 'Cardan coupling: its torque turns the second shaft', scale=1.0)
+
+
+def test_air_drag(checks, programs):
+    check_air(checks, table_of(os.path.join(programs, 'air_drag_d'), data_of('air_drag')), 'air drag')
+
+
+def test_forces_beside_air_drag(checks, programs, tmp_path):
     """Forces in pairs and of drives beside those of a user procedure, by hand: free, and driven."""
+    program, data = os.path.join(programs, 'air_drag_d'), data_of('air_drag')
     settings = ('--set', 'output.reactions=.true.', '--set', 'output.drive_forces=.true.')
     free = table_of(program, data, *settings)
     zero = [free[f'R1.{c}'] for c in ('fx', 'fy', 'fz', 'mx', 'my', 'mz')] + [free[f'R2.{c}'] for c in ('fx', 'fy', 'mx', 'my', 'mz')]
@@ -95,11 +114,9 @@ def check_air_forces(checks, program, data):
     checks.near(free['R2.fz'], 9.81, 1e-14, 'air drag: the wheel is carried')
     text = re.sub(r'&initial.*\n', '', text_of(data))
     text += "&drive coordinate=1, kind='polynomial', coefficients=0,1,0.5 /\n&drive coordinate=2, kind='polynomial', coefficients=0,20,-2 /\n"
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, 'driven.nml')
-        with open(path, 'w', encoding='utf-8') as file:
-            file.write(text)
-        table = table_of(program, path, *settings)
+    path = tmp_path / 'driven.nml'
+    path.write_text(text, encoding='utf-8')
+    table = table_of(program, path, *settings)
     drag, brake = 0.10 * table['dq1']**2, 2 * 0.04 * 0.3**3 * table['dq2'] * abs(table['dq2'])
     checks.near(table['F1'], 2.0 * (table['ddq1'] - 9.81) + drag, 1e-13, 'air drag: the force that drives the weight', scale=20.0)
     checks.near(table['R1.fz'], -table['F1'], 1e-14, 'air drag: it is that of the pair', scale=20.0)
@@ -107,35 +124,10 @@ def check_air_forces(checks, program, data):
     checks.near(table['R2.mz'], table['F2'], 1e-14, 'air drag: it is that of the pair', scale=1.0)
 
 
-def check_same(checks, first, second, why):
+@pytest.mark.parametrize('name', ('trammel', 'cycloidal_drive', 'cardan_coupling'))
+def test_taylor_arithmetic_and_plain_values_agree(checks, programs, name):
+    why = f'{name}: Taylor arithmetic and plain values agree'
+    first, second = (table_of(os.path.join(programs, f'{name}{form}_k'), data_of(name)) for form in ('', '_values'))
     for column in first:
         if column != 'closure':
             checks.near(second[column], first[column], tolerance_of(column), f'{why}: {column}')
-
-
-def main():
-    folder = sys.argv[1]
-    checks = Checks()
-    forms = {}
-    for sample, program, check in (('trammel', 'trammel', check_trammel),
-                                   ('trammel', 'trammel_values', check_trammel),
-                                   ('cam_follower', 'cam_follower', check_cam),
-                                   ('cycloidal_drive', 'cycloidal_drive', check_cycloid),
-                                   ('cycloidal_drive', 'cycloidal_drive_values', check_cycloid),
-                                   ('cardan_coupling', 'cardan_coupling', check_cardan),
-                                   ('cardan_coupling', 'cardan_coupling_values', check_cardan)):
-        data = os.path.join(TREE, 'user_procs', sample, sample + '.nml')
-        forms[program] = table_of(os.path.join(folder, program + '_k'), data)
-        check(checks, forms[program], program)
-    data = os.path.join(TREE, 'user_procs', 'cardan_coupling', 'cardan_coupling.nml')
-    forces = table_of(os.path.join(folder, 'cardan_coupling_k'), data, '--set', 'output.reactions=.true.')
-    checks.near(forces['C1'], 0.05 * forces['ddq2'], 1e-13, 'Cardan coupling: its torque turns the second shaft', scale=1.0)
-    air = table_of(os.path.join(folder, 'air_drag_d'), os.path.join(TREE, 'user_procs', 'air_drag', 'air_drag.nml'))
-    check_air(checks, air, 'air drag')
-    check_air_forces(checks, os.path.join(folder, 'air_drag_d'), os.path.join(TREE, 'user_procs', 'air_drag', 'air_drag.nml'))
-    for name in ('trammel', 'cycloidal_drive', 'cardan_coupling'):
-        check_same(checks, forms[name], forms[name + '_values'], f'{name}: Taylor arithmetic and plain values agree')
-    checks.finish()
-
-
-main()
