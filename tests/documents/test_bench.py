@@ -1,19 +1,14 @@
-"""The benchmarks, in their quick form: they run, and their figures are there and can be true. Times are not judged.
-
-usage: bench.py FOLDER BUILD_TYPE     (of the bench programs)
-"""
+"""The benchmarks, in their quick form: they run, and their figures are there and can be true. Times are not judged."""
 import math
 import os
 import re
 import subprocess
-import sys
-import tempfile
 import xml.etree.ElementTree as xml
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import TREE, Checks, text_of
+import pytest
 
-checks = Checks()
+from mech9_cases import PATIENCE, TREE, text_of
+
 OTHER_TABLES = ['Time per position', 'Values of an objective', 'Growth', 'Mixed structures', 'Memory of mixed structures', 'Other programs']
 METHODS = ['auto', 'prince-dormand', 'dormand-prince', 'verner', 'fehlberg', 'merson', 'adams', 'bdf']
 
@@ -29,7 +24,37 @@ def tables_of(text):
     return found
 
 
-def check_positions(rows):
+@pytest.fixture(scope='module')
+def folder(build, tmp_path_factory):
+    """The folder that a quick run fills."""
+    folder, programs = tmp_path_factory.mktemp('bench'), os.path.join(build.folder, 'bench')
+    done = subprocess.run([os.path.join(TREE, 'bench', 'run'), '--quick', '--programs', programs, '--output', folder],
+                          capture_output=True, text=True, timeout=250 * PATIENCE)
+    assert done.returncode == 0, f'bench/run --quick ended with {done.returncode}:\n{done.stdout}\n{done.stderr}'
+    return folder
+
+
+@pytest.fixture(scope='module')
+def page(folder):
+    return text_of(folder / 'benchmarks.md')
+
+
+@pytest.fixture(scope='module')
+def tables(page):
+    return tables_of(page)
+
+
+def problems_of(tables):
+    """The headings of the problems that are solved with growing precision."""
+    return [heading for heading in tables if heading not in OTHER_TABLES]
+
+
+def test_page(checks, page):
+    checks.true('quick run' in page, 'the page says that it was a quick run')
+
+
+def test_positions(checks, tables):
+    rows = tables['Time per position']
     names = [row[0] for row in rows[1:]]
     checks.equal(names, ['four-bar, closed form', 'four-bar', 'six-bar', 'Fig. 1', 'spatial R-S-U-R',
                          'Stewart-Gough platform'], 'the mechanisms')
@@ -44,7 +69,8 @@ def check_positions(rows):
             checks.near(float(row[3 + k]) / ratio, 1.0, 0.05 + 0.0006 / closed[k], f'{row[0]}: the ratio is that of the times')
 
 
-def check_values(rows):
+def test_values(checks, tables):
+    rows = tables['Values of an objective']
     checks.equal(len(rows), 5, 'a position, a value, a gradient, and a value that is followed')
     position = float(rows[1][1])
     checks.true(position > 0, 'a position takes time', rows)
@@ -54,7 +80,20 @@ def check_values(rows):
     checks.true(0 < float(rows[2][1]) < float(rows[4][1]), 'a value beside a known run costs less than one that is followed', rows)
 
 
-def check_precision(heading, rows):
+def test_accelerations_of_the_closed_form(checks, page):
+    error = float(re.search(r'largest acceleration:\n(\S+)\.\n', page).group(1))
+    # round-off times the conditioning of a chain
+    checks.true(error < 1e-10, 'the accelerations of the four-bar are those of the closed form', error)
+
+
+def test_precision(checks, tables):
+    problems = problems_of(tables)
+    checks.equal(len(problems), 6, 'six problems')
+    for heading in problems:
+        check_precision(checks, heading, tables[heading])
+
+
+def check_precision(checks, heading, rows):
     methods = METHODS + (['by hand'] if heading.startswith('Andrews') else [])
     checks.equal([row[0] for row in rows[1:]], methods, f'{heading}: all methods')
     for row in rows[1:]:
@@ -66,7 +105,8 @@ def check_precision(heading, rows):
                     f'{heading}, {row[0]}: times and evaluations', row)
 
 
-def check_by_hand(page, rows):
+def test_by_hand(checks, page, tables):
+    rows = next(tables[heading] for heading in problems_of(tables) if heading.startswith('Andrews'))
     by_hand = rows[-1]
     # round-off of a short motion, in angles of order one
     checks.true(float(by_hand[-1]) < 1e-13, 'the equation by hand has the motion of the reference', by_hand)
@@ -76,7 +116,8 @@ def check_by_hand(page, rows):
     checks.near(ratio / (times['prince-dormand'] / times['by hand']), 1.0, 0.02, 'the ratio is that of the times to 1e-8')
 
 
-def check_growth(rows):
+def test_growth(checks, tables):
+    rows = tables['Growth']
     titles = [i for i, row in enumerate(rows) if row[0] == 'N']
     checks.equal(len(titles), 2, 'ladders and chains')
     for first, last, links in ((titles[0] + 1, titles[1], lambda n: 2 * n + 2), (titles[1] + 1, len(rows), lambda n: n + 1)):
@@ -87,7 +128,8 @@ def check_growth(rows):
         checks.true(float(rows[last - 1][6]) > float(rows[first][6]), 'more links take longer', rows[first:last])
 
 
-def check_mixed(rows):
+def test_mixed_structures(checks, tables):
+    rows = tables['Mixed structures']
     chains = {row[1]: row for row in rows[1:] if row[0] == 'open chain'}
     checks.equal(len({row[0] for row in rows[1:]}), 6, 'six structures')
     for row in rows[1:]:
@@ -98,16 +140,18 @@ def check_mixed(rows):
             checks.near(float(row[k + 2]) / ratio, 1.0, 0.05, f'{row[0]}: the ratio is that of the times')
 
 
-def check_memory(rows):
+def test_memory(checks, build, tables):
+    rows = tables['Memory of mixed structures']
     checks.equal(len(rows), 7, 'memory of six structures')
     for row in rows[1:]:
         # some 10 kB for a link; between mechanisms as small as those of a quick run, pages that the system gives at once
         # count more. The sanitizer of addresses keeps memory that was given back
-        limit = math.inf if sys.argv[2] == 'Sanitize' else 200
+        limit = math.inf if build.kind == 'Sanitize' else 200
         checks.true(all(abs(float(cell)) < limit for cell in row[2:]), f'{row[0]}: memory for a link', row)
 
 
-def check_others(page, rows):
+def test_other_programs(checks, page, tables):
+    rows = tables['Other programs']
     mechanisms = {}
     for row in rows[1:]:
         mechanisms.setdefault((row[0], row[1]), {})[row[2].split(',')[0]] = row
@@ -128,35 +172,14 @@ def check_others(page, rows):
         checks.true(not any(found) if absent else all(found), f'{program} is measured, or said to be missing')
 
 
-programs = os.path.abspath(sys.argv[1])
-with tempfile.TemporaryDirectory() as folder:
-    done = subprocess.run([os.path.join(TREE, 'bench', 'run'), '--quick', '--programs', programs, '--output', folder],
-                          capture_output=True, text=True, timeout=250)
-    if checks.equal(done.returncode, 0, 'bench/run --quick'):
-        page = text_of(os.path.join(folder, 'benchmarks.md'))
-        tables = tables_of(page)
-        checks.true('quick run' in page, 'the page says that it was a quick run')
-        check_positions(tables['Time per position'])
-        check_values(tables['Values of an objective'])
-        error = float(re.search(r'largest acceleration:\n(\S+)\.\n', page).group(1))
-        # round-off times the conditioning of a chain
-        checks.true(error < 1e-10, 'the accelerations of the four-bar are those of the closed form', error)
-        problems = [heading for heading in tables if heading not in OTHER_TABLES]
-        checks.equal(len(problems), 6, 'six problems')
-        for heading in problems:
-            check_precision(heading, tables[heading])
-        check_by_hand(page, next(tables[heading] for heading in problems if heading.startswith('Andrews')))
-        check_growth(tables['Growth'])
-        check_mixed(tables['Mixed structures'])
-        check_memory(tables['Memory of mixed structures'])
-        check_others(page, tables['Other programs'])
-        pictures = re.findall(r'\((pictures/\S+\.svg)\)', page)
-        if checks.has('gnuplot', 'gnuplot-nox'):
-            checks.equal(len(pictures), 7, 'a picture for each problem and one of the growth')
-        for picture in pictures:
-            xml.parse(os.path.join(folder, picture))
-    else:
-        print(done.stdout, done.stderr)
-done = subprocess.run([os.path.join(TREE, 'bench', 'run'), '--nonsense'], capture_output=True, text=True, timeout=60)
-checks.true(done.returncode == 2 and 'bench/run [--quick]' in done.stderr, 'an unknown option', done.stderr)
-checks.finish()
+def test_pictures(checks, folder, page):
+    pictures = re.findall(r'\((pictures/\S+\.svg)\)', page)
+    for picture in pictures:
+        xml.parse(folder / picture)
+    if checks.has('gnuplot', 'gnuplot-nox'):
+        checks.equal(len(pictures), 7, 'a picture for each problem and one of the growth')
+
+
+def test_unknown_option(checks):
+    done = subprocess.run([os.path.join(TREE, 'bench', 'run'), '--nonsense'], capture_output=True, text=True, timeout=60 * PATIENCE)
+    checks.true(done.returncode == 2 and 'bench/run [--quick]' in done.stderr, 'an unknown option', done.stderr)

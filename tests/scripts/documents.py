@@ -1,7 +1,5 @@
 """The commands that documents show, run as they stand; their links, and the places in the code that they name.
 
-usage: documents.py BIN DOCUMENT...      BIN holds the programs and mech9-link, DOCUMENT is a path within the tree
-
 Blocks between ``` sh: commands that must succeed. Blocks between ``` console: commands after '$ ', each followed by what
 it says; '...' stands for anything within a line, or for any lines where it stands alone. The commands run in a scratch copy of
 the tree, one block after the other in the folder where the one before left off, with the programs on PATH and in
@@ -12,11 +10,8 @@ import os
 import re
 import shutil
 import subprocess
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import TREE, Checks
+from mech9_cases import PATIENCE, TREE, text_of
 
 BLOCK = re.compile(r'^(?P<not_run><!-- not run: [^\n]* -->\n)?'
                    r'(?P<indent> *)```(?P<kind>\w*)\n(?P<text>.*?)^ *```$', re.M | re.S)
@@ -34,6 +29,7 @@ def blocks_of(text):
 
 
 def scratch_copy(folder, binaries):
+    """The tree in another folder, with the programs in its build folder."""
     for name in COPIED:
         shutil.copytree(os.path.join(TREE, name), os.path.join(folder, name),
                         ignore=shutil.ignore_patterns('__pycache__', 'malformed'))
@@ -56,7 +52,7 @@ class Shell:
         before = before or f'(exit {self.answer})'      # sets $?
         script = f'trap \'pwd >"{self.note}"\' EXIT\n{before}\n{text}'
         done = subprocess.run(['bash', '-c', script], cwd=self.where, env=self.environment, stdin=subprocess.DEVNULL,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors='replace', timeout=200)
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors='replace', timeout=200 * PATIENCE)
         with open(self.note, encoding='utf-8') as file:
             self.where = file.read().rstrip('\n')
         self.answer = done.returncode
@@ -77,6 +73,7 @@ def matches(shown, said):
 
 
 def run_blocks(checks, shell, text):
+    """The commands of a text succeed, or say what it shows."""
     for kind, block in blocks_of(text):
         if kind == 'sh':
             done = shell.run(block, 'set -e -o pipefail')
@@ -93,40 +90,37 @@ def anchor(heading):
     return re.sub(r'[^\w\- ]', '', heading.strip().lower()).replace(' ', '-')
 
 
+def check_document(checks, document):
+    """The title of a document, its links, and the places in the code that it names."""
+    path = os.path.join(TREE, document)
+    text = text_of(path)
+    checks.true(text.startswith('# '), f'{document} begins with its title')
+    check_links(checks, path, text)
+    check_places(checks, text)
+
+
+def check_commands(checks, documents, folder, binaries):
+    """The commands of some documents, one after the other in one copy of the tree."""
+    scratch_copy(folder, binaries)
+    for document in documents:
+        run_blocks(checks, Shell(folder, binaries), text_of(os.path.join(TREE, document)))
+
+
 def check_links(checks, path, text):
+    """Links lead to files and headings that are there."""
     text = re.sub(r'```.*?```', '', text, flags=re.S)
     for target, part in LINK.findall(text) + [(source, '') for source in re.findall(r'<img src="([^"]+)"', text)]:
         there = os.path.normpath(os.path.join(os.path.dirname(path), target)) if target else path
         if checks.true(os.path.exists(there), f'the link {target} leads to something') and part and there.endswith('.md'):
-            with open(there, encoding='utf-8') as file:
-                headings = [anchor(line.lstrip('#')) for line in file if line.startswith('#')]
+            headings = [anchor(line.lstrip('#')) for line in text_of(there).splitlines() if line.startswith('#')]
             checks.true(part[1:] in headings, f'the link {target}{part} leads to a heading', headings)
 
 
 def check_places(checks, text):
+    """Files that the text names are there and hold the names that it gives them."""
     for place, names in PLACE.findall(text):
         path = os.path.join(TREE, place.rstrip('/'))
         if '*' in place or place == 'docs/build-api' or not checks.true(os.path.exists(path), f'{place} is there'):
             continue
         for name in re.findall(r'\w+', names):
-            with open(path, encoding='utf-8') as file:
-                checks.true(re.search(rf'\b{name}\b', file.read()), f'{place} holds {name}')
-
-
-def main():
-    binaries = os.path.abspath(sys.argv[1])
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as folder:
-        scratch_copy(folder, binaries)
-        for document in sys.argv[2:]:
-            path = os.path.join(TREE, document)
-            with open(path, encoding='utf-8') as file:
-                text = file.read()
-            checks.true(text.startswith('# '), f'{document} begins with its title')
-            check_links(checks, path, text)
-            check_places(checks, text)
-            run_blocks(checks, Shell(folder, binaries), text)
-    checks.finish()
-
-
-main()
+            checks.true(re.search(rf'\b{name}\b', text_of(path)), f'{place} holds {name}')

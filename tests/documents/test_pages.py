@@ -1,19 +1,28 @@
-"""Manual pages and completions of bash say what the programs themselves say, and work.
-
-usage: pages.py FOLDER MECH9K MECH9D    (the folder of the pages)
-"""
+"""Manual pages and completions of bash say what the programs themselves say, and work."""
 import os
 import re
 import subprocess
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scripts'))
-from mech9_cases import Checks, run
-from terminal import Terminal, available
+import pytest
 
-FOLDER, PROGRAMS = os.path.abspath(sys.argv[1]), [os.path.abspath(path) for path in sys.argv[2:4]]
-checks = Checks()
+from mech9_cases import PATIENCE, run
+from terminal import Terminal, needs_terminal
+
+BOTH = pytest.mark.parametrize('name', ('mech9k', 'mech9d'))
+
+
+@pytest.fixture
+def pages(build):
+    return os.path.join(build.folder, 'pages')
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder with files whose names can be completed."""
+    for file in ('mine.nml', 'a b.nml', 'old.dat'):
+        (tmp_path / file).touch()
+    (tmp_path / 'sub').mkdir()
+    return tmp_path
 
 
 def options_of(program):
@@ -31,11 +40,13 @@ def data_names(program):
     return groups, sorted(set(names))
 
 
-def test_manual(name, program):
-    page = os.path.join(FOLDER, f'{name}.1')
+@BOTH
+def test_manual(checks, build, pages, name):
+    page, program = os.path.join(pages, f'{name}.1'), build.program(name)
     if not checks.has('groff', 'groff-base'):
         return
-    done = subprocess.run(['groff', '-man', '-Tutf8', '-ww', '-rLL=200n', '-P-c', page], capture_output=True, timeout=60)
+    done = subprocess.run(['groff', '-man', '-Tutf8', '-ww', '-rLL=200n', '-P-c', page], capture_output=True,
+                          timeout=60 * PATIENCE)
     text = re.sub('.\b', '', done.stdout.decode())
     checks.true(done.returncode == 0 and not done.stderr, f'{name}.1 is set without a warning', done.stderr.decode())
     for option, rest in options_of(program).items():
@@ -53,21 +64,23 @@ def test_manual(name, program):
         checks.true(re.search(rf'^ +{code}\b', text, re.M), f'{name}.1 explains the exit code {code}')
 
 
-def completed(name, words, folder):
+def completed(checks, pages, name, words, folder):
     """The completions offered to bash for the last of the words, which it cut at each `=`."""
     quoted = ' '.join("'" + word.replace("'", "'\\''") + "'" for word in [name, *words])
-    script = (f'compopt() {{ :; }}\nsource "{FOLDER}/{name}.bash"\nCOMP_WORDS=({quoted})\n'
+    script = (f'compopt() {{ :; }}\nsource "{pages}/{name}.bash"\nCOMP_WORDS=({quoted})\n'
               f'COMP_CWORD={len(words)}\n_{name}\nprintf "%s\\n" "${{COMPREPLY[@]}}"\n')
     done = subprocess.run(['bash', '--norc', '--noprofile', '-c', script], cwd=folder, capture_output=True, text=True,
-                          timeout=60)
+                          timeout=60 * PATIENCE)
     checks.true(done.returncode == 0 and not done.stderr, f'{name} {words}: no error', done.stderr)
     return sorted(word for word in done.stdout.split('\n') if word)
 
 
-def test_completion(name, program, folder):
+@BOTH
+def test_completion(checks, build, pages, folder, name):
+    program = build.program(name)
     options = options_of(program)
     groups, names = data_names(program)
-    offered = lambda *words: completed(name, words, folder)
+    offered = lambda *words: completed(checks, pages, name, words, folder)
     checks.equal(offered('--'), sorted(options), f'{name}: all options')
     checks.equal(offered('--ver'), ['--verbose', '--version'], f'{name}: options that begin so')
     checks.equal(offered('--help-data', ''), sorted(groups + names), f'{name}: groups and names after --help-data')
@@ -83,11 +96,12 @@ def test_completion(name, program, folder):
     checks.equal(offered('mine.nml', '--table', '=', 'o'), ['old.dat'], f'{name}: also after an equals sign')
 
 
-def test_in_bash(folder):
+@needs_terminal
+def test_in_bash(checks, pages, folder):
     """Tab, pressed in a shell."""
     with Terminal(['bash', '--norc', '--noprofile', '-i'], folder=folder, INPUTRC='/dev/null', PS1='ready> ') as shell:
         shell.expect('ready> ')
-        shell.type(f'source "{FOLDER}/mech9k.bash"; true\r')
+        shell.type(f'source "{pages}/mech9k.bash"; true\r')
         shell.expect('ready> ')
         shell.type('mech9k --verb\t')
         checks.true(shell.expect('--verbose '), 'an option is completed', shell.seen)
@@ -99,22 +113,3 @@ def test_in_bash(folder):
         checks.true(shell.expect('a\\ b.nml '), 'a file with a blank in its name', shell.seen)
         shell.type('\x15exit\r')
         shell.ends()
-
-
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        for file in ('mine.nml', 'a b.nml', 'old.dat'):
-            open(os.path.join(folder, file), 'w', encoding='utf-8').close()
-        os.mkdir(os.path.join(folder, 'sub'))
-        for program in PROGRAMS:
-            name = os.path.basename(program)
-            test_manual(name, program)
-            test_completion(name, program, folder)
-        if available():
-            test_in_bash(folder)
-        else:
-            print('no pseudo-terminals here: Tab was not pressed')
-    checks.finish()
-
-
-main()
