@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 """Draws the floors of src and which floor uses which, from the `use` statements, in docs/pictures.
 
-usage: floor_picture.py             draw; needs Graphviz (dot)
-       floor_picture.py --check     test that the drawing is up to date
+usage: floor_picture.py      needs Graphviz (dot). A test tells when the drawing is out of date: tests/tree/test_floor_picture.py
 
 An arrow leads from a floor to one that it uses. Arrows that follow from two others are left out (a transitive
 reduction), so that the order can be seen. Sub-floors, that is, folders of one folder, stand in a common box.
@@ -11,11 +10,9 @@ import html
 import os
 import re
 import subprocess
-import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from check_floors import FLOORS, sources, used_floors
-from mech9_cases import TREE, Checks, text_of
+from floors import FLOORS, sources, used_floors
+from mech9_cases import TREE, text_of
 
 DRAWING = os.path.join(TREE, 'docs', 'pictures', 'architecture.dot')
 PICTURE = os.path.join(TREE, 'docs', 'pictures', 'architecture.svg')
@@ -74,20 +71,9 @@ def arrows_of_picture(path):
     return sorted(tuple(title.split('->')) for title in titles if '->' in title)
 
 
-def check(text):
-    checks = Checks()
-    checks.true(text_of(DRAWING) == text, 'the drawing shows the floors and which floor uses which',
-                'draw it anew: tests/scripts/floor_picture.py')
-    checks.equal(arrows_of_picture(PICTURE), arrows_of_drawing(text), 'the picture shows the arrows of the drawing')
-    checks.finish()
-
-
 def main():
-    text = drawing(list(sources(os.path.join(TREE, 'src'))))
-    if sys.argv[1:] == ['--check']:
-        check(text)
     with open(DRAWING, 'w', encoding='utf-8') as file:
-        file.write(text)
+        file.write(drawing(list(sources())))
     subprocess.run(['dot', '-Tsvg', '-o', PICTURE, DRAWING], check=True)
 
 

@@ -1,4 +1,4 @@
-!> A program that does one thing of the session's floor for session_behaviour.py, which looks from outside:
+!> A program that does one thing of the session's floor for test_session_behaviour.py, which looks from outside:
 !> `exit CODE`, `wait` (until interrupted), `progress SECONDS [quiet]`, `table PATH ROWS`.
 program session_probe
   use mech9_kinds, only: wp

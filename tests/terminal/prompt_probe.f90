@@ -1,4 +1,4 @@
-!> A program that asks for lines until there are none, for line_input.py, which looks from outside. To standard
+!> A program that asks for lines until there are none, for test_line_input.py, which looks from outside. To standard
 !> output: each line's bytes in hexadecimal, and in the end why there are no more.
 program prompt_probe
   use mech9_error, only: exit_done, exit_interrupted

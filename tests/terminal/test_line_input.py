@@ -33,7 +33,7 @@ def answers(output):
 
 
 MILLION = bytes(33 + i % 90 for i in range(1000000))
-# what is sent through a pipe, and the lines that the program gets
+# bytes that are sent through a pipe, and the lines that the program gets
 PIPED = {'two lines': (b'one\ntwo\n', [b'one', b'two']),
          'nothing': (b'', []),
          'lines of another system': (b'one\r\n\r\n', [b'one', b'']),
@@ -89,7 +89,7 @@ def dialogue(checks, probe, why, typed, expected, end='ended', leave='\x04', sho
             checks.true(text in terminal.plain(), f'{why}: shows {text!r}', terminal.seen)
 
 
-# what is typed, and the lines that the program gets
+# keys that are typed, and the lines that the program gets
 EDITED = {
     'plain lines': (['abc\r', '\r', 'x\r'], ['abc', '', 'x']),
     'moving and erasing': (['abd' + LEFT + 'c\r', 'abx\x7fc\r', 'xab' + HOME + DELETE + '\r', 'one two\x17three\r'],
@@ -118,7 +118,7 @@ def test_letters_of_several_bytes_in_any_locale(checks, probe, edits, locale):
     dialogue(checks, probe, f'LC_ALL={locale}', ['ąé中' + LEFT + '\x7fü\r'], ['ąü中'], LC_ALL=locale)
 
 
-# what is typed, the lines that the program gets, and what is shown
+# keys that are typed, the lines that the program gets, and texts that are shown
 COMPLETED = {
     'one word fits': (['rev\t\r', 'a,bac\tc\r'], ['revolute ', 'a,back c'], []),
     'two words fit': ([[('p\t', 'prism'), ('\t', 'prism'), 'atic\r']], ['prismatic'], ['prismatic  prism\n']),

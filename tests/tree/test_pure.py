@@ -5,11 +5,10 @@ procedure an argument of intent(out), that is polymorphic or holds a polymorphic
 """
 import os
 import re
-import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from check_floors import sources
-from mech9_cases import TREE, Checks
+import pytest
+
+from mech9_cases import TREE
 
 TYPE = re.compile(r'^ *type\b([^\n(]*(?:extends\((\w+)\))?[^\n(]*)::\s*(\w+)\s*(?:!.*)?\n(.*?)^ *end type', re.M | re.S)
 OWNED = re.compile(r'^ *class\(\w+\)[^\n:]*\ballocatable\b', re.M)
@@ -42,17 +41,18 @@ def forbidden(kind, name, body, types):
     return found
 
 
-def main():
-    checks = Checks()
-    found = list(sources(os.path.join(TREE, 'src')))
-    types = owners([text for _, _, text in found])
+@pytest.fixture(scope='module')
+def types(sources):
+    return owners([text for _, _, text in sources])
+
+
+def test_types_that_own_something_polymorphic_are_found(checks, types):
     checks.true({'mechanism_type', 'plan_type', 'load_slot_type', 'motion_system_type'} <= types, 'types with pairs, drives or loads',
                 types)
-    for _, path, text in found:
+
+
+def test_pure_procedures_are_pure_by_the_standard(checks, sources, types):
+    for _, path, text in sources:
         for kind, name, body in PURE.findall(text):
             wrong = forbidden(kind, name, body, types)
             checks.equal(wrong, [], f'{os.path.relpath(path, TREE)}: {name} is not pure by the standard')
-    checks.finish()
-
-
-main()

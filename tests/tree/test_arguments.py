@@ -1,17 +1,15 @@
 """Every argument of every procedure is explained: reads the Fortran files of the tree.
 
-usage: check_arguments.py [PATH...]      files or folders; src, bench, user_procs and tests unless given
-
 An argument stands alone on a declaration of its own, at whose end `!<` tells its meaning, with unit, shape and frame
 where these make sense. The rule holds for private procedures and for interfaces too.
 """
 import glob
 import os
 import re
-import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from mech9_cases import TREE, Checks, text_of
+from mech9_cases import TREE, text_of
+
+FOLDERS = ('src', 'bench', 'user_procs', 'tests')
 
 STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
 PROCEDURE = re.compile(r'^(?P<before>[^!]*?)\b(?:subroutine|function)\s+(?P<name>\w+)\s*(?:\((?P<arguments>[^)]*)\))?', re.I)
@@ -86,14 +84,12 @@ def unexplained(text, folder=''):
 
 
 def files_of(path):
-    if os.path.isfile(path):
-        return [path]
     return sorted(glob.glob(os.path.join(path, '**', '*.f90'), recursive=True)
                   + glob.glob(os.path.join(path, '**', '*.f90.in'), recursive=True))
 
 
-def check_reader(checks):
-    """The reader of sources itself, on a small one."""
+def test_reader_of_sources(checks):
+    """The reader itself, on a small source."""
     text = '''
   pure subroutine turn(angle, r, &
                        axis)
@@ -109,17 +105,9 @@ def check_reader(checks):
                  'arguments that share a line, or are explained by their name alone, are found')
 
 
-def main():
-    checks = Checks()
-    check_reader(checks)
-    for path in sys.argv[1:] or [os.path.join(TREE, folder) for folder in ('src', 'bench', 'user_procs', 'tests')]:
-        for file in files_of(path):
-            missing = [f'line {line}: {argument} of {name}' for line, name, argument in unexplained(text_of(file), os.path.dirname(file))]
-            checks.true(not missing, f'{os.path.relpath(file, TREE)}: every argument has a declaration of its own with !<',
-                        '\n'.join(missing))
-    checks.true(checks.passed + checks.failed > 50, 'the sources were found')
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()
+def test_arguments_are_explained(checks):
+    files = [file for folder in FOLDERS for file in files_of(os.path.join(TREE, folder))]
+    checks.true(len(files) > 50, 'the sources were found', len(files))
+    for file in files:
+        missing = [f'line {line}: {argument} of {name}' for line, name, argument in unexplained(text_of(file), os.path.dirname(file))]
+        checks.true(not missing, f'{os.path.relpath(file, TREE)}: every argument has a declaration of its own with !<', '\n'.join(missing))

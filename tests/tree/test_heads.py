@@ -11,11 +11,10 @@ its subject, in whatever language.
 import glob
 import os
 import re
-import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from check_floors import sources
-from mech9_cases import TREE, Checks
+import pytest
+
+from mech9_cases import TREE, text_of
 
 MODULE = re.compile(r'\A((?:!>[^\n]*\n)+)module (mech9\w*)\n(.*?)^end module \2\n?\Z', re.S | re.M)
 DEFINITION = re.compile(
@@ -84,50 +83,66 @@ def definitions(body):
     return lines, found
 
 
-def check_module(checks, path, text):
-    match = MODULE.match(text)
-    if not checks.true(match, f'{path}: begins with its head and holds one module'):
-        return
-    head, name, body = match.groups()
-    checks.true(not re.search(r'\bUses\b', head), f'{path}: the head leaves it to the use statements which modules are used')
-    checks.true(not METADATA.match(head), f'{path}: begins with a sentence; "word:" would be metadata to FORD')
-    order = [re.search(pattern, body, re.M) for pattern in (r'^  implicit none$', r'^  private$', r'^  public ::')]
-    if checks.true(all(order), f'{path}: implicit none, private and a list of public names'):
-        places = [found.start() for found in order]
-        checks.true(places == sorted(places), f'{path}: in this order')
-        checks.true(not re.search(r'^  use\b', body[places[0]:], re.M), f'{path}: `use` stands before them')
-    lines, defined = definitions(body)
-    for public in public_names(body):
-        if public.lower() in INTRINSIC or public.lower() not in defined:
-            continue   # constants, and what is handed on from elsewhere
-        if f'mech9_{public.lower()}' == f'{name}_type':
-            continue
-        checks.true(any(explained(lines, number) for number in defined[public.lower()]),
-                    f'{path}: a comment above {public}')
-
-
-def main():
-    checks = Checks()
-    found = list(sources(os.path.join(TREE, 'src')))
-    modules = {name for _, _, text in found for name in re.findall(r'^module (mech9_\w+)$', text, re.M)}
-    for floor, path, text in found:
+@pytest.fixture(scope='module')
+def modules(sources):
+    """(path, head, name, body) of every module of src; head, name and body are None where a file does not begin with its head and
+    hold one module."""
+    found = []
+    for floor, path, text in sources:
         if floor != 'programs' and not re.search(r'^submodule\b', text, re.M):
-            check_module(checks, os.path.relpath(path, TREE), text)
-    checks.true(len(modules) > 50, 'the modules were found')
+            match = MODULE.match(text)
+            found.append((os.path.relpath(path, TREE), *(match.groups() if match else (None, None, None))))
+    assert len(found) > 50, 'the modules were found'
+    return found
+
+
+def test_file_begins_with_its_head_and_holds_one_module(checks, modules):
+    for path, head, _, _ in modules:
+        checks.true(head, f'{path}: begins with its head and holds one module')
+
+
+def test_head_is_a_sentence(checks, modules):
+    for path, head, _, _ in modules:
+        checks.true(not re.search(r'\bUses\b', head or ''), f'{path}: the head leaves it to the use statements which modules are used')
+        checks.true(not METADATA.match(head or ''), f'{path}: begins with a sentence; "word:" would be metadata to FORD')
+
+
+def test_order_of_declarations(checks, modules):
+    """`use`, implicit none, private, the list of public names."""
+    for path, _, _, body in modules:
+        order = [re.search(pattern, body or '', re.M) for pattern in (r'^  implicit none$', r'^  private$', r'^  public ::')]
+        if checks.true(all(order), f'{path}: implicit none, private and a list of public names'):
+            places = [found.start() for found in order]
+            checks.true(places == sorted(places), f'{path}: in this order')
+            checks.true(not re.search(r'^  use\b', body[places[0]:], re.M), f'{path}: `use` stands before them')
+
+
+def test_public_names_are_explained(checks, modules):
+    for path, _, name, body in modules:
+        lines, defined = definitions(body or '')
+        for public in public_names(body or ''):
+            if public.lower() in INTRINSIC or public.lower() not in defined:
+                continue   # constants, and what is handed on from elsewhere
+            if f'mech9_{public.lower()}' == f'{name}_type':
+                continue
+            checks.true(any(explained(lines, number) for number in defined[public.lower()]), f'{path}: a comment above {public}')
+
+
+def test_names_of_only_lists_are_used(checks):
     for folder in ('src', 'tests', 'bench', 'user_procs'):
         for path in glob.glob(os.path.join(TREE, folder, '**', '*.f90'), recursive=True):
-            with open(path, encoding='utf-8') as file:
-                checks.equal(unused_names(file.read()), [], f'{path}: every name in an only list is used')
+            checks.equal(unused_names(text_of(path)), [], f'{path}: every name in an only list is used')
+
+
+def test_comments_begin_with_their_subjects(checks):
+    read = 0
     for folder in ('src', 'tests', 'bench', 'cmake', 'user_procs', 'examples'):
         for path in glob.glob(os.path.join(TREE, folder, '**', '*'), recursive=True):
             if not re.search(r'\.(f90|py|sh|cmake|f90\.in|nml)$|CMakeLists\.txt$|expected\.txt$|mech9-link\.in$', path):
                 continue
+            read += 1
             with open(path, encoding='utf-8', errors='replace') as file:
                 for number, comment in beginnings(path, file.read()):
                     if NO_SUBJECT.match(comment):
                         checks.true(False, f'{path}:{number}: the comment begins with its subject: {comment}')
-    checks.finish()
-
-
-if __name__ == '__main__':
-    main()
+    checks.true(read > 50, 'the files were found', read)
