@@ -265,7 +265,8 @@ def test_changes(talks, folder):
              ('inertia', ''), ('all is right', 'remove body 2'), ('Removed', 'remove point 1'),
              ('Removed', 'remove time start'), ('Removed', '?'),
              ('Give the number', '999'), ('no answer that can be changed', 'zero zero zero zero'),
-             ('no answer that can be changed', 'add nothing'), ('What can be added: drive, body, load, motor, point, parameter, quantity, study, objective,', ''),
+             ('no answer that can be changed', 'add nothing'),
+             ('What can be added: drive, body, load, motor, point, parameter, quantity, study, objective,', ''),
              ('[both]', 'save'), ('data file [p.nml]', '/'),
              ('exists; overwrite it [no]', 'yes'), ('cannot open', '')]
     talks.pipe(talks.mech9d, steps, 'changes', arguments=('--edit', 'p.nml'), folder=folder)
@@ -488,7 +489,8 @@ def test_forces_of_drives(talks, folder, steps, why):
 
 
 def test_no_masses_without_forces(talks, folder):
-    done = talks.pipe(talks.mech9k, BAR + PLAIN + [('all is right', 'add body'), ('What can be added: point, parameter, quantity, study, objective, limit, optimum;', 'quit')],
+    done = talks.pipe(talks.mech9k, BAR + PLAIN + [
+        ('all is right', 'add body'), ('What can be added: point, parameter, quantity, study, objective, limit, optimum;', 'quit')],
                       'without forces', folder=folder)
     talks.checks.true(not any(word in done.stderr for word in ('Bodies', 'Gravity', 'Loads')), 'no masses without forces',
                       done.stderr)

@@ -75,7 +75,8 @@ def test_compiler_that_is_not_here(checks, link, tmp_path, monkeypatch):
 def test_wrong_argument_list(checks, link, tmp_path):
     """The compiler holds the user's argument list against the hook's."""
     command, samples = link
-    wrong = spoiled(os.path.join(samples, 'trammel', 'trammel.f90'), 'type(taylor), intent(in) :: q', 'real(wp), intent(in) :: q', tmp_path / 'wrong.f90')
+    wrong = spoiled(os.path.join(samples, 'trammel', 'trammel.f90'), 'type(taylor), intent(in) :: q', 'real(wp), intent(in) :: q',
+                    tmp_path / 'wrong.f90')
     expect(checks, 1, 'does not compile', command, '-o', tmp_path / 'none', wrong)
     checks.equal(os.listdir(tmp_path), ['wrong.f90'], 'nothing is left behind')
 
