@@ -103,7 +103,7 @@ contains
         program_name = 'mech9k'
         of_both = of_both + 1
       end if
-      if (name == 'dakota' .or. name == 'merge') cycle   ! they take several files: tests/cases
+      if (name == 'dakota' .or. name == 'merge') cycle   ! they take several files: tests/study
       word = '--'//name
       if (options_table(i)%form == whole_number) then
         word = trim(word)//'=7'
