@@ -14,6 +14,7 @@ module mech9_resting_mechanism
   use mech9_planning, only: make_plan
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_linearisation, only: linearisation_type, new_linearisation, find_forces, find_matrix, by_position
+  use mech9_clusters, only: clusters_type, find_clusters
   use mech9_coordinate_choice, only: best_independent
   implicit none
   private
@@ -185,8 +186,9 @@ contains
     end do
   end subroutine refuse_singular
 
-  !> Take other free coordinates near a singular position of the present ones. Driven coordinates stay driven. Nothing is changed
-  !> where others do not serve clearly better.
+  !> Take other free coordinates near a singular position of the present ones. Driven coordinates stay driven, and the free ones
+  !> beside a moving drive stay free: other ones at rest would be another motion. Nothing is changed where others do not serve
+  !> clearly better.
   subroutine choose_coordinates(mechanism, resting, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(resting_type), intent(inout) :: resting        !< the mechanism at rest
@@ -197,10 +199,31 @@ contains
     present_conditioning = conditioning_of(resting)
     if (present_conditioning > doubtful_conditioning) return
     call best_independent(resting%plan, resting%state, independent)
+    call keep_beside_moving_drives(resting, independent)
     if (all(independent .eqv. resting%partition%independent())) return
     if (.not. all(independent .or. resting%partition%kind /= driven_coordinate)) return
     call take_coordinates(mechanism, independent, worthwhile_improvement*present_conditioning, resting, err)
   end subroutine choose_coordinates
+
+  !> Keep the independent coordinates of the chains that a drive moves. In other chains all coordinates rest where the free ones do,
+  !> whichever these are.
+  pure subroutine keep_beside_moving_drives(resting, independent)
+    type(resting_type), intent(in) :: resting       !< the mechanism at rest
+    logical, intent(inout) :: independent(:)        !< (M) the coordinate is to be independent
+    type(clusters_type) :: clusters
+    logical :: present(size(independent)), kept(size(independent))
+    integer :: k
+
+    clusters = find_clusters(resting%plan)
+    kept = .false.
+    do k = 1, size(independent)
+      if (resting%partition%kind(k) /= driven_coordinate) cycle
+      if (.not. max(abs(resting%state%dq(k)), abs(resting%state%ddq(k))) > 0.0_wp) cycle
+      kept = kept .or. clusters%of_step(resting%plan%step_of) == clusters%of_step(resting%plan%step_of(k))
+    end do
+    present = resting%partition%independent()
+    where (kept) independent = present
+  end subroutine keep_beside_moving_drives
 
   !> Take the free coordinates of a partition again, where these are not singular in the present position.
   subroutine return_to_coordinates(mechanism, partition, least, resting, err)
