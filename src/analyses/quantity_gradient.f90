@@ -2,6 +2,8 @@
 !>
 !> The sums are linear in the values of the column, and the time of an extreme changes its value in second order only, or is an end
 !> of the motion. So the derivative of the number is that of the column at the time of the extreme, or summed as the column is.
+!> Where the column jumps at a time that depends on a parameter, its integral changes by the jump as well, and an extreme at this
+!> time moves with it.
 module mech9_quantity_gradient
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
@@ -24,8 +26,12 @@ module mech9_quantity_gradient
   contains
     procedure :: begin
     procedure :: add_piece
+    procedure :: add_jump
     procedure :: result_of
   end type quantity_gradient_type
+
+  !> Differences of the values on both sides of a joint below this part of them are round-off of some solutions of chains.
+  real(wp), parameter :: round_off = 1.0e-10_wp
 
 contains
 
@@ -59,6 +65,18 @@ contains
     self%product = self%product + matmul(changes, weights*values)
     self%largest = max(self%largest, maxval(abs(changes), 2))
   end subroutine add_piece
+
+  !> Pass a time at which the column jumps. A jump of round-off changes nothing.
+  pure subroutine add_jump(self, before, behind, rate)
+    class(quantity_gradient_type), intent(inout) :: self   !< the derivatives
+    real(wp), intent(in) :: before                         !< value of the column before the jump
+    real(wp), intent(in) :: behind                         !< its value behind it
+    real(wp), intent(in) :: rate(:)                        !< derivatives of the time of the jump by each parameter
+
+    if (abs(behind - before) <= round_off*max(abs(behind), abs(before))) return
+    self%integral = self%integral + (before - behind)*rate
+    self%product = self%product + 0.5_wp*(before**2 - behind**2)*rate
+  end subroutine add_jump
 
   !> Derivatives of the number that is asked for: start, end, min, max, peak, range, mean, rms, integral or at. The root of a mean
   !> square that is zero has none, unless the column does not change at all.

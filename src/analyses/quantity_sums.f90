@@ -18,6 +18,7 @@ module mech9_quantity_sums
     real(wp) :: square = 0.0_wp      !< integral of its square over time
   contains
     procedure :: begin
+    procedure :: begin_extremes
     procedure :: add_value
     procedure :: add_piece
     procedure :: add_extremes
@@ -34,11 +35,20 @@ contains
 
     self%first = value
     self%last = value
+    call self%begin_extremes(t, value)
+  end subroutine begin
+
+  !> Begin the extremes with a value.
+  pure subroutine begin_extremes(self, t, value)
+    class(quantity_sums_type), intent(inout) :: self   !< the sums
+    real(wp), intent(in) :: t                          !< its time [s]
+    real(wp), intent(in) :: value                      !< of the column
+
     self%low = value
     self%high = value
     self%time_low = t
     self%time_high = t
-  end subroutine begin
+  end subroutine begin_extremes
 
   !> Take a value into account for the extremes.
   pure subroutine add_value(self, t, value)

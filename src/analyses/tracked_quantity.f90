@@ -1,12 +1,14 @@
 !> A quantity while a motion goes on: its column is followed between the outputs by polynomials.
 !>
 !> A column that comes with its rate and acceleration, or is one of these, is a polynomial through four neighbouring outputs with
-!> two derivatives each. Others are polynomials through values at further times, which the motion must visit. The derivatives of the
-!> column by parameters are followed by polynomials of the same kind, so that they are those of the number that is found.
+!> two derivatives each. Others are polynomials through values at further times, which the motion must visit. No polynomial goes
+!> across a joint of a law: the motion visits both sides of a joint, which count as outputs here. The derivatives of the column by
+!> parameters are followed by polynomials of the same kind, so that they are those of the number that is found.
 module mech9_tracked_quantity
   use mech9_kinds, only: wp
   use mech9_chebyshev, only: chebyshev_type
   use mech9_hermite, only: hermite_type, build_hermite
+  use mech9_interval_polynomials, only: polynomial, values_between, changes_between, changes_at, moved_with
   use mech9_quantity_sums, only: quantity_sums_type
   use mech9_quantity_gradient, only: quantity_gradient_type
   implicit none
@@ -30,6 +32,11 @@ module mech9_tracked_quantity
     type(quantity_gradient_type) :: gradient              !< of the number, where derivatives are followed
     real(wp), private :: value_at = 0.0_wp  !< value at the time `at`
     integer, private :: seen = 0            !< outputs so far
+    logical, private :: has_extremes = .false.   !< a piece has begun
+    logical, private :: at_joint(most_outputs) = .false.   !< each of the outputs kept is at a joint
+    real(wp), allocatable, private :: rate(:, :) !< (P,most_outputs) derivatives of the times of these joints by parameters
+    logical, private :: is_cut = .false.    !< a joint was reached, and no piece has begun since then
+    real(wp), private :: value_before = 0.0_wp   !< value before this joint
     integer, private :: count = 0           !< outputs kept
     integer, private :: done = 0            !< intervals between these that were taken into account
     real(wp), private :: t(most_outputs) = 0.0_wp
@@ -39,10 +46,11 @@ module mech9_tracked_quantity
     procedure :: follow_changes
     procedure :: changes_of
     procedure :: needs_piece
-    procedure :: is_at_start
+    procedure :: follows
     procedure :: take_output
     procedure :: take_at
-    procedure :: take_piece
+    procedure :: begin_piece
+    procedure :: end_piece
     procedure :: finish
     procedure :: number
     procedure :: find_gradient
@@ -56,6 +64,7 @@ contains
     integer, intent(in) :: columns(:, 0:)                 !< (P,0:2) of the derivatives of the family; (P,0:0) of the column alone
 
     allocate (self%changes(size(columns, 1), 0:ubound(columns, 2)), source=columns)
+    allocate (self%rate(size(columns, 1), most_outputs), source=0.0_wp)
     if (self%family(0) > 0) allocate (self%dy(size(columns, 1), most_outputs, 0:2), source=0.0_wp)
   end subroutine follow_changes
 
@@ -72,27 +81,19 @@ contains
   pure logical function needs_piece(self)
     class(tracked_quantity_type), intent(in) :: self   !< the quantity
 
-    needs_piece = self%family(0) == 0 .and. follows(self)
+    needs_piece = self%family(0) == 0 .and. self%follows()
   end function needs_piece
-
-  !> Whether no output was taken so far.
-  pure logical function is_at_start(self)
-    class(tracked_quantity_type), intent(in) :: self   !< the quantity
-
-    is_at_start = self%seen == 0
-  end function is_at_start
 
   !> Whether the column is followed between outputs.
   pure logical function follows(self)
-    type(tracked_quantity_type), intent(in) :: self   !< the quantity
+    class(tracked_quantity_type), intent(in) :: self   !< the quantity
 
     follows = all(self%take /= [character(len=8) :: 'start', 'end', 'at'])
   end function follows
 
   !> Take an output into account. The first one is the start.
-  pure subroutine take_output(self, rule, row)
+  pure subroutine take_output(self, row)
     class(tracked_quantity_type), intent(inout) :: self   !< the quantity
-    type(chebyshev_type), intent(in) :: rule              !< points in an interval
     real(wp), intent(in) :: row(:)                        !< numbers of the output, time first
 
     if (self%seen == 0) call self%sums%begin(row(1), row(self%column))
@@ -102,15 +103,72 @@ contains
     end if
     self%seen = self%seen + 1
     self%sums%last = row(self%column)
-    if (.not. follows(self) .or. self%family(0) == 0) return
-    if (self%count == most_outputs) call forget_first(self)
+  end subroutine take_output
+
+  !> Begin a piece in which the laws are smooth: at the start, or behind a joint.
+  pure subroutine begin_piece(self, row, rate)
+    class(tracked_quantity_type), intent(inout) :: self   !< the quantity
+    real(wp), intent(in) :: row(:)                        !< numbers at its beginning, time first
+    real(wp), intent(in), optional :: rate(:)             !< (P) derivatives of the time of the joint; at the start not given
+
+    if (.not. self%follows()) return
+    if (.not. self%has_extremes) then
+      self%has_extremes = .true.
+      call self%sums%begin_extremes(row(1), row(self%column))
+      if (allocated(self%changes)) self%gradient%low = self%changes_of(row)
+      if (allocated(self%changes)) self%gradient%high = self%gradient%low
+    end if
+    if (self%is_cut .and. allocated(self%changes) .and. present(rate)) &
+      call self%gradient%add_jump(self%value_before, row(self%column), rate)
+    self%is_cut = .false.
+    self%count = 0
+    self%done = 0
+    if (self%family(0) > 0) call keep_output(self, row, rate)
+  end subroutine begin_piece
+
+  !> End an interval between outputs, or end a piece at a joint.
+  pure subroutine end_piece(self, rule, from, row, values, changes, from_rate, rate)
+    class(tracked_quantity_type), intent(inout) :: self   !< the quantity
+    type(chebyshev_type), intent(in) :: rule              !< points in an interval
+    real(wp), intent(in) :: from                          !< beginning of the interval [s]
+    real(wp), intent(in) :: row(:)                        !< numbers at its end, time first
+    real(wp), intent(in) :: values(:)                     !< (rule%n) of its column, those at both ends included, if it needs them
+    real(wp), intent(in) :: changes(:, :)                 !< (P,rule%n) its derivatives by parameters, where they are followed
+    real(wp), intent(in), optional :: from_rate(:)        !< (P) derivatives of the time of a joint at its beginning
+    real(wp), intent(in), optional :: rate(:)             !< (P) those of the time of a joint at its end
+
+    if (.not. self%follows()) return
+    if (self%family(0) == 0) then
+      call take_values(self, rule, from, row(1), values, changes, from_rate, rate)
+    else
+      if (self%count == most_outputs) call forget_first(self)
+      call keep_output(self, row, rate)
+      ! an interval between others is known best
+      if (self%count > 2) call add_intervals(self, rule, self%count - 2)
+    end if
+    if (.not. present(rate)) return
+    if (self%family(0) > 0) call add_intervals(self, rule, self%count - 1)
+    self%is_cut = .true.
+    self%value_before = row(self%column)
+  end subroutine end_piece
+
+  !> Keep an output for polynomials.
+  pure subroutine keep_output(self, row, rate)
+    type(tracked_quantity_type), intent(inout) :: self    !< the quantity
+    real(wp), intent(in) :: row(:)                        !< numbers of the output
+    real(wp), intent(in), optional :: rate(:)             !< (P) derivatives of the time of its joint, if it is at one
+    integer :: order
+
     self%count = self%count + 1
     self%t(self%count) = row(1)
     self%y(:, self%count) = row(self%family)
-    if (allocated(self%changes)) call keep_changes(self, row)
-    ! an interval between others is known best
-    if (self%count > 2) call add_intervals(self, rule, self%count - 2)
-  end subroutine take_output
+    self%at_joint(self%count) = present(rate)
+    if (.not. allocated(self%changes)) return
+    if (present(rate)) self%rate(:, self%count) = rate
+    do order = 0, 2
+      self%dy(:, self%count, order) = row(self%changes(:, order))
+    end do
+  end subroutine keep_output
 
   !> Forget the earliest of the outputs that are kept.
   pure subroutine forget_first(self)
@@ -120,26 +178,17 @@ contains
     do i = 1, self%count - 1
       self%t(i) = self%t(i + 1)
       self%y(:, i) = self%y(:, i + 1)
+      self%at_joint(i) = self%at_joint(i + 1)
     end do
     if (allocated(self%changes)) then
       do i = 1, self%count - 1
         self%dy(:, i, :) = self%dy(:, i + 1, :)
+        self%rate(:, i) = self%rate(:, i + 1)
       end do
     end if
     self%count = self%count - 1
     self%done = self%done - 1
   end subroutine forget_first
-
-  !> Keep the derivatives by parameters of the latest output.
-  pure subroutine keep_changes(self, row)
-    type(tracked_quantity_type), intent(inout) :: self   !< the quantity
-    real(wp), intent(in) :: row(:)                       !< numbers of the output
-    integer :: order
-
-    do order = 0, 2
-      self%dy(:, self%count, order) = row(self%changes(:, order))
-    end do
-  end subroutine keep_changes
 
   !> Take the row at the time `at`.
   pure subroutine take_at(self, row)
@@ -150,14 +199,16 @@ contains
     if (allocated(self%changes)) self%gradient%at = self%changes_of(row)
   end subroutine take_at
 
-  !> Take the values at the points between two outputs into account.
-  pure subroutine take_piece(self, rule, from, to, values, changes)
-    class(tracked_quantity_type), intent(inout) :: self   !< the quantity
+  !> Take the values at the points of an interval into account.
+  pure subroutine take_values(self, rule, from, to, values, changes, from_rate, to_rate)
+    type(tracked_quantity_type), intent(inout) :: self    !< the quantity
     type(chebyshev_type), intent(in) :: rule              !< points in an interval
-    real(wp), intent(in) :: from                          !< time of the first output [s]
-    real(wp), intent(in) :: to                            !< time of the second one [s]
-    real(wp), intent(in) :: values(:)                     !< (rule%n) of its column, those at the outputs included
+    real(wp), intent(in) :: from                          !< its beginning [s]
+    real(wp), intent(in) :: to                            !< its end [s]
+    real(wp), intent(in) :: values(:)                     !< (rule%n) of its column, those at both ends included
     real(wp), intent(in) :: changes(:, :)                 !< (P,rule%n) its derivatives by parameters, where they are followed
+    real(wp), intent(in), optional :: from_rate(:)        !< (P) derivatives of the time of a joint at its beginning
+    real(wp), intent(in), optional :: to_rate(:)          !< (P) those of the time of a joint at its end
     type(quantity_sums_type) :: before
 
     before = self%sums
@@ -169,17 +220,20 @@ contains
 
   contains
 
-    !> The derivatives at a time between the outputs.
+    !> The derivatives at a time between the outputs, or of the value at a joint.
     pure function between(t)
       real(wp), intent(in) :: t   !< the time [s]
-      real(wp) :: between(size(changes, 1))
+      real(wp) :: between(size(changes, 1)), slopes(rule%n)
       integer :: p
 
       do p = 1, size(between)
         between(p) = rule%value_at(changes(p, :), 2.0_wp*(t - from)/(to - from) - 1.0_wp)
       end do
+      slopes = 2.0_wp/(to - from)*matmul(rule%derivative, values)
+      if (present(from_rate)) between = between + moved_with(from_rate, slopes(1), t, from, to)
+      if (present(to_rate)) between = between + moved_with(to_rate, slopes(rule%n), t, to, from)
     end function between
-  end subroutine take_piece
+  end subroutine take_values
 
   !> End with the last output.
   pure subroutine finish(self, rule)
@@ -247,80 +301,44 @@ contains
       call changes_between(hermite, self%t(j), self%t(j + 1), rule, self%order, changes)
       call self%gradient%add_piece(rule, self%t(j), self%t(j + 1), values, changes)
     end if
-    if (self%sums%low < before%low) call changes_at(hermite, self%sums%time_low, self%order, self%gradient%low)
-    if (self%sums%high > before%high) call changes_at(hermite, self%sums%time_high, self%order, self%gradient%high)
+    if (self%sums%low < before%low) self%gradient%low = of_extreme(self%sums%time_low)
+    if (self%sums%high > before%high) self%gradient%high = of_extreme(self%sums%time_high)
+
+  contains
+
+    !> The derivatives of an extreme.
+    pure function of_extreme(t) result(gradient)
+      real(wp), intent(in) :: t   !< its time [s]
+      real(wp) :: gradient(size(self%changes, 1)), slopes(2), steps(rule%n)
+
+      call changes_at(hermite, t, self%order, gradient)
+      if (.not. any(self%at_joint(j:j + 1))) return
+      associate (a => self%t(j), b => self%t(j + 1))
+        steps = 2.0_wp/(b - a)*matmul(rule%derivative, values)
+        slopes = steps([1, rule%n])
+        if (self%order == 0) slopes = self%y(1, j:j + 1)
+        if (self%at_joint(j)) gradient = gradient + moved_with(self%rate(:, j), slopes(1), t, a, b)
+        if (self%at_joint(j + 1)) gradient = gradient + moved_with(self%rate(:, j + 1), slopes(2), t, b, a)
+      end associate
+    end function of_extreme
   end subroutine add_changes
 
   !> Whether only the ends of an interval count: an extreme of a position is sought, and its rate keeps its sign in between. It
-  !> does so where the coefficients of the rate in Bernstein's form, which follow from rates and accelerations, have one sign.
+  !> does so where the coefficients in Bernstein's form of the rate of the polynomial of fifth degree have one sign.
   pure logical function has_extremes_at_ends(self, j) result(at_ends)
     type(tracked_quantity_type), intent(in) :: self   !< the quantity
     integer, intent(in) :: j                          !< number of the interval
-    real(wp) :: coefficients(4), third
+    real(wp) :: coefficients(5), a(0:2), b(0:2), h, middle
 
     at_ends = .false.
     if (self%order > 0 .or. all(self%take /= [character(len=8) :: 'min', 'max', 'peak', 'range'])) return
-    third = (self%t(j + 1) - self%t(j))/3.0_wp
-    coefficients = [self%y(1, j), self%y(1, j) + third*self%y(2, j), self%y(1, j + 1) - third*self%y(2, j + 1), self%y(1, j + 1)]
+    h = self%t(j + 1) - self%t(j)
+    a = self%y(:, j)
+    b = self%y(:, j + 1)
+    middle = 5.0_wp*(b(0) - a(0))/h - 2.0_wp*(a(1) + b(1)) + 0.25_wp*h*(b(2) - a(2))
+    coefficients = [a(1), a(1) + 0.25_wp*h*a(2), middle, b(1) - 0.25_wp*h*b(2), b(1)]
     at_ends = all(coefficients > 0.0_wp) .or. all(coefficients < 0.0_wp)
   end function has_extremes_at_ends
-
-  !> The polynomial through outputs with two derivatives each.
-  pure subroutine polynomial(t, y, hermite)
-    real(wp), intent(in) :: t(:)                 !< (outputs) times [s]
-    real(wp), intent(in) :: y(0:, :)             !< (0:2,outputs) position, rate and acceleration
-    type(hermite_type), intent(out) :: hermite   !< the polynomial
-
-    call build_hermite(t, y(0:0, :), y(1:1, :), y(2:2, :), hermite)
-  end subroutine polynomial
-
-  !> Values of a polynomial, or of a derivative of it, at the points of an interval.
-  pure subroutine values_between(hermite, from, to, rule, order, values)
-    type(hermite_type), intent(in) :: hermite   !< the polynomial
-    real(wp), intent(in) :: from                !< beginning of the interval [s]
-    real(wp), intent(in) :: to                  !< end of the interval [s]
-    type(chebyshev_type), intent(in) :: rule    !< its points
-    integer, intent(in) :: order                !< 0 to 2: order of the derivative
-    real(wp), intent(out) :: values(:)          !< (rule%n) at the points
-    real(wp) :: changes(1, rule%n)
-
-    call changes_between(hermite, from, to, rule, order, changes)
-    values = changes(1, :)
-  end subroutine values_between
-
-  !> Values of several polynomials, or of derivatives of them in time, at the points of an interval.
-  pure subroutine changes_between(hermite, from, to, rule, order, changes)
-    type(hermite_type), intent(in) :: hermite   !< the polynomials
-    real(wp), intent(in) :: from                !< beginning of the interval [s]
-    real(wp), intent(in) :: to                  !< end of the interval [s]
-    type(chebyshev_type), intent(in) :: rule    !< its points
-    integer, intent(in) :: order                !< 0 to 2: order of the derivative
-    real(wp), intent(out) :: changes(:, :)      !< (polynomials,rule%n) at the points
-    integer :: i
-
-    do i = 1, rule%n
-      call changes_at(hermite, from + 0.5_wp*(to - from)*(1.0_wp + rule%points(i)), order, changes(:, i))
-    end do
-  end subroutine changes_between
-
-  !> Values of several polynomials, or of derivatives of them in time, at a time.
-  pure subroutine changes_at(hermite, t, order, changes)
-    type(hermite_type), intent(in) :: hermite   !< the polynomials
-    real(wp), intent(in) :: t                   !< the time [s]
-    integer, intent(in) :: order                !< 0 to 2: order of the derivative
-    real(wp), intent(out) :: changes(:)         !< (polynomials) at this time
-    real(wp), dimension(size(changes)) :: y, dy, ddy
-
-    call hermite%evaluate(t, y, dy, ddy)
-    select case (order)
-    case (0)
-      changes = y
-    case (1)
-      changes = dy
-    case default
-      changes = ddy
-    end select
-  end subroutine changes_at
 
   !> The number itself, after the last output.
   pure real(wp) function number(self)

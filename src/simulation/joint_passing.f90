@@ -39,7 +39,8 @@ contains
     duration = abs(system%model%request%time%end - system%model%request%time%start)
     jumps(:, 1) = -system%state%dq
     call vary_laws(system, varied)
-    call system%interval%begin(system%model, t)
+    ! the interval begins at the joint, also where the last step ended a little before it
+    call system%interval%begin(system%model, merge(system%interval%ahead, t, system%interval%is_before_end(t)))
     call system%take_vector(t, y, err)
     if (allocated(err)) return
     jumps(:, 1) = merge(jumps(:, 1) + system%state%dq, 0.0_wp, system%plan%driven)

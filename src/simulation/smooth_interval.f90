@@ -20,6 +20,7 @@ module mech9_smooth_interval
     procedure :: begin
     procedure :: time_inside
     procedure :: is_end
+    procedure :: is_before_end
     procedure :: end_at_limit
   end type smooth_interval_type
 
@@ -80,6 +81,16 @@ contains
 
     is_end = self%ends .and. abs(t - self%ahead) <= 64.0_wp*spacing(t)
   end function is_end
+
+  !> Whether a time lies before the end of the interval, by half of the way at least by which times are moved inside.
+  pure logical function is_before_end(self, t)
+    class(smooth_interval_type), intent(in) :: self   !< the interval
+    real(wp), intent(in) :: t                         !< time [s]
+    real(wp) :: direction
+
+    direction = sign(1.0_wp, self%ahead - self%behind)
+    is_before_end = 0.5_wp*(from_inside(t, direction) - t)*direction <= (self%ahead - t)*direction
+  end function is_before_end
 
   !> End the interval where a motor passes its limit.
   pure subroutine end_at_limit(self, t, motor)

@@ -17,6 +17,7 @@ module mech9_law
     procedure(evaluate_interface), deferred :: evaluate
     procedure :: greatest_rate
     procedure :: next_joint
+    procedure :: joint_rate
     procedure :: check_time
     procedure :: owner
     procedure :: constants => unknown_constants
@@ -78,6 +79,16 @@ contains
 
     next_joint = sign(huge(t), direction)
   end function next_joint
+
+  !> The derivative of the time of a joint by one parameter, from those of the numbers of the law. This procedure is for laws without
+  !> joints.
+  pure real(wp) function joint_rate(self, change, joint)
+    class(law_type), intent(in) :: self     !< the law
+    real(wp), intent(in) :: change(:)       !< derivatives of its numbers
+    real(wp), intent(in) :: joint           !< time of the joint [s]
+
+    joint_rate = 0.0_wp
+  end function joint_rate
 
   !> Fail where the law has no value at a time. This procedure, for laws that have values at all times, never does.
   subroutine check_time(self, t, demand, err)

@@ -21,6 +21,7 @@ module mech9_segments_law
     procedure :: evaluate
     procedure :: greatest_rate
     procedure :: next_joint
+    procedure :: joint_rate
     procedure :: check_time
     procedure :: constants
     procedure :: vary
@@ -184,4 +185,20 @@ contains
       end do
     end do
   end function next_joint
+
+  !> The derivative of the time of an end of a segment by one parameter. In later periods the duration of these counts, too.
+  pure real(wp) function joint_rate(self, change, joint)
+    class(segments_law_type), intent(in) :: self   !< the law
+    real(wp), intent(in) :: change(:)              !< (2n+2) derivatives of the times, then of the values
+    real(wp), intent(in) :: joint                  !< time of the end [s]
+    real(wp) :: period, rounds
+    integer :: i, n
+
+    n = size(self%curves)
+    period = self%times(n + 1) - self%times(1)
+    ! a time in the first half of the segment behind it tells its period without round-off
+    rounds = self%rounds_before(joint + 0.5_wp*minval(self%times(2:) - self%times(:n)))
+    i = minloc(abs(self%times(:n + 1) + rounds*period - joint), dim=1)
+    joint_rate = change(i) + rounds*(change(n + 1) - change(1))
+  end function joint_rate
 end module mech9_segments_law

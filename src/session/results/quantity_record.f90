@@ -6,8 +6,9 @@ module mech9_quantity_record
   use mech9_error, only: error_type, raise, exit_data
   use mech9_quantity, only: quantity_type
   use mech9_model, only: model_type
-  use mech9_chebyshev, only: chebyshev_type, new_chebyshev
+  use mech9_tangent, only: tangent_type
   use mech9_tracked_quantity, only: tracked_quantity_type
+  use mech9_quantity_pieces, only: quantity_pieces_type
   use mech9_columns, only: columns_type
   use mech9_missing_column, only: remedy_of_missing
   use mech9_facts, only: facts_type
@@ -17,9 +18,6 @@ module mech9_quantity_record
   private
   public :: quantity_record_type
 
-  !> Points of the polynomial that follows a column between two outputs, these included.
-  integer, parameter :: points_between = 10
-
   type :: quantity_record_type
     type(quantity_type), allocatable :: quantities(:)
     type(tracked_quantity_type), allocatable :: tracked(:)
@@ -28,12 +26,10 @@ module mech9_quantity_record
                                                              !< run has them; NaN before its end and where there is none
     logical, private :: is_finished = .false.                !< the numbers are known
     type(columns_type), private :: columns
-    type(chebyshev_type), private :: rule
-    real(wp), allocatable, private :: piece(:, :)            !< (points_between,quantities) values between two outputs
-    real(wp), allocatable, private :: changes(:, :, :)       !< (P,points_between,quantities) derivatives of these values
-    real(wp), private :: previous = 0.0_wp                   !< time of the output that was taken last [s]
+    type(quantity_pieces_type), private :: pieces            !< between outputs
   contains
     procedure :: begin
+    procedure :: begin_pieces
     procedure :: is_empty
     procedure :: has_gradient
     procedure :: columns_with_gradients
@@ -63,8 +59,6 @@ contains
     self%columns = columns
     allocate (self%tracked(n))
     allocate (self%numbers(n), source=ieee_value(1.0_wp, ieee_quiet_nan))
-    allocate (self%piece(points_between, n), source=0.0_wp)
-    call new_chebyshev(points_between, self%rule)
     do i = 1, n
       associate (quantity => self%quantities(i), tracked => self%tracked(i))
         tracked%take = quantity%take
@@ -77,7 +71,6 @@ contains
     n = 0
     if (allocated(columns%parameters)) n = size(columns%parameters)
     allocate (self%gradient(n, size(self%quantities)), source=ieee_value(1.0_wp, ieee_quiet_nan))
-    allocate (self%changes(n, points_between, size(self%quantities)), source=0.0_wp)
     if (.not. self%has_gradient()) return
     do i = 1, size(self%tracked)
       call follow_changes(columns, self%tracked(i))
@@ -150,19 +143,28 @@ contains
     columns = pack([(i, i=1, size(needed))], needed)
   end function columns_with_gradients
 
-  !> The times between the output before and the next one at which rows are needed, in their order.
-  subroutine times_before(self, previous, t, times)
-    class(quantity_record_type), intent(in) :: self     !< the record
+  !> Begin with the pieces in which the laws are smooth, at the start of the run.
+  subroutine begin_pieces(self, model, tangents)
+    class(quantity_record_type), intent(inout) :: self           !< the record, begun
+    type(model_type), intent(in) :: model                        !< the model
+    type(tangent_type), allocatable, intent(in) :: tangents(:)   !< (P) of its constants, where the times of joints depend on them
+
+    call self%pieces%begin(model, self%tracked, size(self%gradient, 1), tangents)
+  end subroutine begin_pieces
+
+  !> The times between the output before and the next one at which rows are needed, in their order. To be called for all outputs
+  !> behind the start.
+  subroutine times_before(self, model, previous, t, times)
+    class(quantity_record_type), intent(inout) :: self  !< the record
+    type(model_type), intent(in) :: model               !< the model
     real(wp), intent(in) :: previous                    !< time of the output before [s]
     real(wp), intent(in) :: t                           !< time of the next output [s]
     real(wp), allocatable, intent(out) :: times(:)      !< between the two outputs [s]
-    real(wp) :: points(points_between)
     integer :: i
 
     allocate (times(0))
     if (self%is_empty()) return
-    points = points_in(self, previous, t)
-    if (needs_pieces(self)) times = points(2:self%rule%n - 1)
+    call self%pieces%times_before(model, self%tracked, previous, t, times)
     do i = 1, size(self%tracked)
       associate (at => self%tracked(i)%at)
         if (self%tracked(i)%take /= 'at') cycle
@@ -174,71 +176,41 @@ contains
     end do
   end subroutine times_before
 
-  !> The times of the points between two outputs, these included.
-  pure function points_in(self, previous, t) result(times)
-    class(quantity_record_type), intent(in) :: self     !< the record
-    real(wp), intent(in) :: previous                    !< time of the output before [s]
-    real(wp), intent(in) :: t                           !< time of the next output [s]
-    real(wp) :: times(points_between)
-
-    times = previous + 0.5_wp*(t - previous)*(1.0_wp + self%rule%points)
-  end function points_in
-
-  !> Whether a quantity needs values at the points between outputs.
-  pure logical function needs_pieces(self)
-    type(quantity_record_type), intent(in) :: self   !< the record
-    integer :: i
-
-    needs_pieces = .false.
-    do i = 1, size(self%tracked)
-      needs_pieces = needs_pieces .or. self%tracked(i)%needs_piece()
-    end do
-  end function needs_pieces
-
   !> Take a row between the output before and the next one.
-  pure subroutine take_between(self, row, next)
+  subroutine take_between(self, model, row, next)
     class(quantity_record_type), intent(inout) :: self  !< the record, which has taken all rows before this one
+    type(model_type), intent(in) :: model               !< the model
     real(wp), intent(in) :: row(:)                      !< numbers of the row, time first
     real(wp), intent(in) :: next                        !< time of the next output [s]
-    real(wp) :: times(points_between)
-    integer :: i, k
 
-    times = points_in(self, self%previous, next)
-    do i = 1, size(self%tracked)
-      associate (tracked => self%tracked(i))
-        if (tracked%take == 'at' .and. .not. abs(row(1) - tracked%at) > 0.0_wp) call tracked%take_at(row)
-        do k = 2, self%rule%n - 1
-          if (abs(row(1) - times(k)) > 0.0_wp) cycle
-          self%piece(k, i) = row(tracked%column)
-          if (allocated(tracked%changes)) self%changes(:, k, i) = tracked%changes_of(row)
-        end do
-      end associate
-    end do
+    call take_times(self, row)
+    call self%pieces%take_between(model, self%tracked, row, next)
   end subroutine take_between
 
   !> Take the row of an output.
-  pure subroutine take_output(self, row)
+  subroutine take_output(self, model, row)
     class(quantity_record_type), intent(inout) :: self  !< the record
+    type(model_type), intent(in) :: model               !< the model
     real(wp), intent(in) :: row(:)                      !< numbers of the output, time first
-    integer :: i, n
-    logical :: is_first
+    integer :: i
 
-    n = self%rule%n
     do i = 1, size(self%tracked)
-      associate (tracked => self%tracked(i))
-        is_first = tracked%is_at_start()
-        call tracked%take_output(self%rule, row)
-        if (tracked%take == 'at' .and. .not. abs(row(1) - tracked%at) > 0.0_wp) call tracked%take_at(row)
-        self%piece(n, i) = row(tracked%column)
-        if (allocated(tracked%changes)) self%changes(:, n, i) = tracked%changes_of(row)
-        if (tracked%needs_piece() .and. .not. is_first) &
-          call tracked%take_piece(self%rule, self%previous, row(1), self%piece(:, i), self%changes(:, :, i))
-        self%piece(1, i) = self%piece(n, i)
-        self%changes(:, 1, i) = self%changes(:, n, i)
-      end associate
+      call self%tracked(i)%take_output(row)
     end do
-    self%previous = row(1)
+    call take_times(self, row)
+    call self%pieces%take_output(model, self%tracked, row)
   end subroutine take_output
+
+  !> Take a row for the quantities that are values at its time.
+  pure subroutine take_times(self, row)
+    type(quantity_record_type), intent(inout) :: self   !< the record
+    real(wp), intent(in) :: row(:)                      !< numbers of a row
+    integer :: i
+
+    do i = 1, size(self%tracked)
+      if (self%tracked(i)%take == 'at' .and. .not. abs(row(1) - self%tracked(i)%at) > 0.0_wp) call self%tracked(i)%take_at(row)
+    end do
+  end subroutine take_times
 
   !> Find the numbers, after the last output.
   pure subroutine finish(self)
@@ -246,7 +218,7 @@ contains
     integer :: i
 
     do i = 1, size(self%tracked)
-      call self%tracked(i)%finish(self%rule)
+      call self%tracked(i)%finish(self%pieces%rule)
       self%numbers(i) = self%tracked(i)%number()
       if (allocated(self%tracked(i)%changes)) call self%tracked(i)%find_gradient(self%gradient(:, i))
     end do

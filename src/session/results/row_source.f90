@@ -10,6 +10,8 @@ module mech9_row_source
   use mech9_state, only: state_type
   use mech9_simulation, only: simulation_type, interruption_type
   use mech9_batch_products, only: batch_size
+  use mech9_tangent, only: tangent_type, find_tangent
+  use mech9_smooth_pieces, only: have_joints
   use mech9_sensitivity, only: sensitivity_type, find_waiting
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_film, only: film_type
@@ -29,6 +31,7 @@ module mech9_row_source
     type(varied_record_type) :: varied     !< finds those of forces and energies
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
     type(quantity_record_type) :: quantities   !< of the whole run
+    type(tangent_type), allocatable, private :: tangents(:)   !< (P) of the constants, where quantities need those of joints of laws
     integer, private :: waiting = 0                !< rows that wait for their derivatives, in the order of time
     integer, private :: outputs = 0                !< how many of them are outputs
     logical, private :: is_output(batch_size) = .true.   !< each of them is an output, not a row between two outputs
@@ -100,7 +103,26 @@ contains
     call self%columns%append_sensitivities(names, self%simulation%model%request%output%sensitivities)
     self%wanted = [(i, i=2, self%columns%motion)]
     call self%varied%begin(self%simulation, variable, self%columns, err)
+    if (.not. allocated(err) .and. allocated(self%simulation%model%request%quantities)) call find_tangents(self, variable, err)
   end subroutine add_sensitivities
+
+  !> Find the derivatives of the constants of the model, if laws have joints: the times of these may depend on parameters.
+  subroutine find_tangents(self, variable, err)
+    type(row_source_type), intent(inout) :: self              !< the row source
+    class(variable_model_type), intent(inout) :: variable     !< the model as a function of its parameters
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+    integer :: i
+
+    if (.not. have_joints(self%simulation%model)) return
+    call self%simulation%present(plan, state)
+    allocate (self%tangents(size(self%simulation%model%parameters)))
+    do i = 1, size(self%tangents)
+      call find_tangent(variable, self%simulation%model, plan, i, self%tangents(i), err)
+      if (allocated(err)) return
+    end do
+  end subroutine find_tangents
 
   !> Find the columns of the quantities that the model requests. Fails with exit_data where one is not recorded.
   subroutine begin_quantities(self, err)
@@ -110,6 +132,7 @@ contains
     if (.not. allocated(self%simulation%model%request%quantities)) return
     call self%quantities%begin(self%simulation%model, self%columns, err)
     if (allocated(err)) return
+    call self%quantities%begin_pieces(self%simulation%model, self%tangents)
     allocate (self%between(self%columns%width(), batch_size), source=0.0_wp)
     associate (needed => self%quantities%columns_with_gradients())
       self%wanted_between = pack(needed, needed <= self%columns%motion)
@@ -206,7 +229,7 @@ contains
     real(wp), allocatable :: times(:)
     integer :: i
 
-    call self%quantities%times_before(self%last_output, t, times)
+    call self%quantities%times_before(self%simulation%model, self%last_output, t, times)
     do i = 1, size(times)
       call self%simulation%visit(times(i), err)
       if (.not. allocated(err)) call fill_row(self, self%between(:, self%waiting + 1), err)
@@ -259,7 +282,7 @@ contains
       else
         if (allocated(self%sensitivity)) call self%columns%fill_sensitivities(self%sensitivity%changes, first, 1, &
                                                                               self%wanted_between, self%between(:, first:first))
-        call self%quantities%take_between(self%between(:, first), self%next_output(first))
+        call self%quantities%take_between(self%simulation%model, self%between(:, first), self%next_output(first))
       end if
       first = last + 1
     end do
@@ -278,7 +301,7 @@ contains
       call self%columns%fill_sensitivities(self%sensitivity%changes, first, size(rows, 2), self%wanted, rows)
     if (self%quantities%is_empty()) return
     do i = 1, size(rows, 2)
-      call self%quantities%take_output(rows(:, i))
+      call self%quantities%take_output(self%simulation%model, rows(:, i))
     end do
   end subroutine complete_outputs
 

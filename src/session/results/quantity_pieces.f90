@@ -1,0 +1,194 @@
+!> The quantities of a run between its outputs: the rows that they need, and the pieces of time to which these rows belong.
+module mech9_quantity_pieces
+  use mech9_kinds, only: wp
+  use mech9_chebyshev, only: chebyshev_type, new_chebyshev
+  use mech9_model, only: model_type
+  use mech9_tangent, only: tangent_type
+  use mech9_smooth_pieces, only: smooth_piece_type, smooth_pieces_type
+  use mech9_tracked_quantity, only: tracked_quantity_type
+  implicit none
+  private
+  public :: quantity_pieces_type
+
+  !> Points of the polynomial that follows a column in a piece, its ends included.
+  integer, parameter :: points_between = 10
+
+  type :: quantity_pieces_type
+    type(chebyshev_type) :: rule                             !< points in a piece
+    logical, private :: follows = .false.                    !< a quantity is followed between outputs
+    logical, private :: is_started = .false.                 !< an output was taken
+    real(wp), private :: previous = 0.0_wp                   !< time of the output that was taken last [s]
+    type(smooth_pieces_type), private :: visited             !< up to the output to which the motion goes
+    type(smooth_pieces_type), private :: taken               !< up to the output whose rows are taken
+    type(smooth_piece_type), allocatable, private :: list(:) !< of the interval whose rows are taken; not allocated before it
+    integer, private :: current = 1                          !< number of the piece in which rows are taken
+    real(wp), allocatable, private :: values(:, :)           !< (points_between,quantities) in this piece
+    real(wp), allocatable, private :: changes(:, :, :)       !< (P,points_between,quantities) derivatives of these values
+  contains
+    procedure :: begin
+    procedure :: times_before
+    procedure :: take_between
+    procedure :: take_output
+  end type quantity_pieces_type
+
+contains
+
+  !> Begin at the start of the run.
+  subroutine begin(self, model, tracked, n_parameters, tangents)
+    class(quantity_pieces_type), intent(inout) :: self           !< the pieces
+    type(model_type), intent(in) :: model                        !< the model
+    type(tracked_quantity_type), intent(in) :: tracked(:)        !< the quantities
+    integer, intent(in) :: n_parameters                          !< number of parameters whose derivatives are followed
+    type(tangent_type), allocatable, intent(in) :: tangents(:)   !< (P) of its constants, where the times of joints depend on them
+    integer :: i
+
+    call new_chebyshev(points_between, self%rule)
+    allocate (self%values(points_between, size(tracked)), self%changes(n_parameters, points_between, size(tracked)), source=0.0_wp)
+    self%follows = any([(tracked(i)%follows(), i=1, size(tracked))])
+    if (allocated(tangents)) then
+      call self%taken%begin(model, n_parameters, tangents)
+    else
+      call self%taken%begin(model, n_parameters)
+    end if
+    self%visited = self%taken
+  end subroutine begin
+
+  !> The times between the output before and the next one at which rows are needed, in their order. To be called for all outputs
+  !> behind the start.
+  subroutine times_before(self, model, tracked, previous, t, times)
+    class(quantity_pieces_type), intent(inout) :: self           !< the pieces
+    type(model_type), intent(in) :: model                        !< the model
+    type(tracked_quantity_type), intent(in) :: tracked(:)        !< the quantities
+    real(wp), intent(in) :: previous                             !< time of the output before [s]
+    real(wp), intent(in) :: t                                    !< time of the next output [s]
+    real(wp), allocatable, intent(out) :: times(:)               !< between the two outputs [s]
+    type(smooth_piece_type), allocatable :: list(:)
+    real(wp) :: points(points_between)
+    logical :: inside
+    integer :: i, last
+
+    allocate (times(0))
+    if (.not. self%follows) return
+    call self%visited%divide(model, previous, t, list)
+    inside = any([(tracked(i)%needs_piece(), i=1, size(tracked))])
+    last = points_between
+    do i = 1, size(list)
+      points = points_in(self, list(i))
+      if (list(i)%from_joint) times = [times, points(1)]
+      if (inside) times = [times, points(2:last - 1)]
+      if (list(i)%to_joint) times = [times, points(last)]
+    end do
+  end subroutine times_before
+
+  !> The times of the points in a piece, its ends included.
+  pure function points_in(self, piece) result(times)
+    type(quantity_pieces_type), intent(in) :: self      !< the pieces
+    type(smooth_piece_type), intent(in) :: piece        !< one of them
+    real(wp) :: times(points_between)
+
+    times = piece%from + 0.5_wp*(piece%to - piece%from)*(1.0_wp + self%rule%points)
+    times(1) = piece%from
+    times(points_between) = piece%to
+  end function points_in
+
+  !> Find the pieces up to the next output, unless they are known already.
+  subroutine find_pieces(self, model, next)
+    type(quantity_pieces_type), intent(inout) :: self   !< the pieces
+    type(model_type), intent(in) :: model               !< the model
+    real(wp), intent(in) :: next                        !< time of the next output [s]
+
+    if (allocated(self%list)) return
+    call self%taken%divide(model, self%previous, next, self%list)
+    self%current = 1
+  end subroutine find_pieces
+
+  !> Take a row between the output before and the next one.
+  subroutine take_between(self, model, tracked, row, next)
+    class(quantity_pieces_type), intent(inout) :: self        !< the pieces, which have taken all rows before this one
+    type(model_type), intent(in) :: model                     !< the model
+    type(tracked_quantity_type), intent(inout) :: tracked(:)  !< the quantities
+    real(wp), intent(in) :: row(:)                            !< numbers of the row, time first
+    real(wp), intent(in) :: next                              !< time of the next output [s]
+    integer :: k
+
+    if (.not. self%follows) return
+    call find_pieces(self, model, next)
+    if (self%current > size(self%list)) return
+    k = findloc(.not. abs(points_in(self, self%list(self%current)) - row(1)) > 0.0_wp, .true., dim=1)
+    if (k == 1) then
+      call begin_piece(self, tracked, row, self%list(self%current)%from_rate)
+    else if (k == points_between) then
+      call end_piece(self, tracked, row)
+      self%current = self%current + 1
+    else if (k > 0) then
+      call keep_values(self, tracked, k, row)
+    end if
+  end subroutine take_between
+
+  !> Take the row of an output. One at a joint is no end of a piece: rows on both sides of the joint are.
+  subroutine take_output(self, model, tracked, row)
+    class(quantity_pieces_type), intent(inout) :: self        !< the pieces
+    type(model_type), intent(in) :: model                     !< the model
+    type(tracked_quantity_type), intent(inout) :: tracked(:)  !< the quantities
+    real(wp), intent(in) :: row(:)                            !< numbers of the output, time first
+
+    if (.not. self%follows) return
+    if (self%is_started) then
+      call find_pieces(self, model, row(1))
+      if (self%current <= size(self%list)) then
+        call end_piece(self, tracked, row)
+        call keep_values(self, tracked, 1, row)
+      end if
+      deallocate (self%list)
+    else if (.not. self%taken%is_at_joint(row(1))) then
+      call begin_piece(self, tracked, row)
+    end if
+    self%is_started = .true.
+    self%previous = row(1)
+  end subroutine take_output
+
+  !> Keep the values of a row as those of a point of the piece.
+  pure subroutine keep_values(self, tracked, k, row)
+    type(quantity_pieces_type), intent(inout) :: self       !< the pieces
+    type(tracked_quantity_type), intent(in) :: tracked(:)   !< the quantities
+    integer, intent(in) :: k                                !< number of the point
+    real(wp), intent(in) :: row(:)                          !< numbers of the row
+    integer :: i
+
+    do i = 1, size(tracked)
+      self%values(k, i) = row(tracked(i)%column)
+      if (allocated(tracked(i)%changes)) self%changes(:, k, i) = tracked(i)%changes_of(row)
+    end do
+  end subroutine keep_values
+
+  !> Begin a piece of each quantity.
+  pure subroutine begin_piece(self, tracked, row, rate)
+    type(quantity_pieces_type), intent(inout) :: self         !< the pieces
+    type(tracked_quantity_type), intent(inout) :: tracked(:)  !< the quantities
+    real(wp), intent(in) :: row(:)                            !< numbers at its beginning
+    real(wp), intent(in), optional :: rate(:)                 !< (P) derivatives of the time of its joint; not given at the start
+    integer :: i
+
+    do i = 1, size(tracked)
+      call tracked(i)%begin_piece(row, rate)
+    end do
+    call keep_values(self, tracked, 1, row)
+  end subroutine begin_piece
+
+  !> End the present piece of each quantity.
+  pure subroutine end_piece(self, tracked, row)
+    type(quantity_pieces_type), intent(inout) :: self         !< the pieces
+    type(tracked_quantity_type), intent(inout) :: tracked(:)  !< the quantities
+    real(wp), intent(in) :: row(:)                            !< numbers at its end
+    integer :: i
+
+    call keep_values(self, tracked, points_between, row)
+    associate (piece => self%list(self%current))
+      do i = 1, size(tracked)
+        ! rates that are not allocated, at outputs, are not present
+        call tracked(i)%end_piece(self%rule, piece%from, row, self%values(:, i), self%changes(:, :, i), piece%from_rate, &
+                                  piece%to_rate)
+      end do
+    end associate
+  end subroutine end_piece
+end module mech9_quantity_pieces
