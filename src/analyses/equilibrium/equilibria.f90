@@ -8,10 +8,12 @@ module mech9_equilibria
   use mech9_plan, only: plan_type, within_range
   use mech9_state, only: state_type
   use mech9_assemblies, only: close_from
+  use mech9_posture, only: posture_type, new_posture
   use mech9_frame_motion, only: place_all
   use mech9_failure, only: failure_interrupted_starts
   use mech9_simulation, only: interruption_type
   use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, is_balanced, copy_resting
+  use mech9_same_position, only: is_same_position, same_position
   use mech9_resting_motors, only: hold_setpoints
   use mech9_linearised_equilibrium, only: equilibrium_type, linearise, copy_equilibrium
   use mech9_equilibrium_search, only: settle, find_any
@@ -22,10 +24,9 @@ module mech9_equilibria
   !> One of several equilibria.
   type :: equilibrium_slot_type
     type(equilibrium_type), allocatable :: item
+    real(wp), allocatable :: numbers(:)   !< of its posture
   end type equilibrium_slot_type
 
-  !> Equilibria whose coordinates differ by less are the same, in units of the coordinates.
-  real(wp), parameter :: same_position = 1.0e-5_wp
   !> Random positions tried for each start, because chains do not close everywhere.
   integer, parameter :: most_trials = 10
 
@@ -66,6 +67,7 @@ contains
     class(interruption_type), intent(in), optional :: interruption    !< is asked before each start whether the search shall stop
     type(equilibrium_type) :: found
     type(equilibrium_slot_type), allocatable :: slots(:)
+    type(posture_type) :: posture
     type(random_type) :: random
     type(error_type), allocatable :: failure
     type(partition_type) :: held
@@ -76,12 +78,13 @@ contains
 
     allocate (list(0), slots(16))
     n = 0
+    posture = new_posture(mechanism, plan)
     call find_equilibrium(mechanism, partition, plan, assembled, found, failure)
     if (allocated(failure)) then
       if (failure%code /= exit_assembly .and. failure%code /= exit_singular) call move_alloc(failure, err)
       if (allocated(err)) return
     else
-      call add_new(found, slots, n)
+      call add_new(mechanism, posture, found, slots, n)
     end if
     call hold_setpoints(mechanism, partition, plan, assembled, held, held_plan, position, err)
     if (allocated(err)) return
@@ -92,7 +95,7 @@ contains
       if (.not. allocated(err)) call try_anywhere(mechanism, partition, held, held_plan, position, random, found, &
                                                    reached, err)
       if (allocated(err)) exit
-      if (reached) call add_new(found, slots, n)
+      if (reached) call add_new(mechanism, posture, found, slots, n)
     end do
     if (allocated(err)) then
       if (err%code /= exit_interrupted) return
@@ -204,16 +207,22 @@ contains
   end subroutine reduce_turns
 
   !> Add an equilibrium to those found so far, unless it is among them; then its finds are counted.
-  subroutine add_new(found, slots, n)
+  subroutine add_new(mechanism, posture, found, slots, n)
+    type(mechanism_type), intent(in) :: mechanism                         !< the mechanism
+    type(posture_type), intent(in) :: posture                             !< the quantities that make its posture
     type(equilibrium_type), intent(in) :: found                           !< the equilibrium
     type(equilibrium_slot_type), allocatable, intent(inout) :: slots(:)   !< equilibria found so far; it grows
     integer, intent(inout) :: n                                           !< their number
     type(equilibrium_slot_type), allocatable :: longer(:)
+    type(state_type) :: state
+    real(wp), allocatable :: numbers(:)
     integer :: i
 
+    state = found%resting%state
+    numbers = posture%numbers(found%resting%plan, state)
     do i = 1, n
       associate (known => slots(i)%item)
-        if (any(abs(known%resting%state%q - found%resting%state%q) > same_position*found%resting%plan%unit_of)) cycle
+        if (.not. is_same_position(mechanism, posture, known%resting, found%resting, slots(i)%numbers, numbers)) cycle
         known%found = known%found + 1
         return
       end associate
@@ -222,6 +231,7 @@ contains
       allocate (longer(2*n))
       do i = 1, n
         call move_alloc(slots(i)%item, longer(i)%item)
+        call move_alloc(slots(i)%numbers, longer(i)%numbers)
       end do
       call move_alloc(longer, slots)
     end if
@@ -229,6 +239,7 @@ contains
     allocate (slots(n)%item)
     call copy_equilibrium(found, slots(n)%item)
     slots(n)%item%found = 1
+    slots(n)%numbers = numbers
   end subroutine add_new
 
   !> Make the list of the equilibria that were found, sorted by their first coordinates, where these are the same by the second
