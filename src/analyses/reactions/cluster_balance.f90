@@ -36,6 +36,7 @@ module mech9_cluster_balance
     procedure :: find_motion
     procedure :: find_lacking
     procedure :: complete
+    procedure :: remove_determined
   end type cluster_balance_type
 
 contains
@@ -211,6 +212,24 @@ contains
     if (present(size_of_all)) largest = max(largest, size_of_all)
     converged = error <= balanced*largest
   end subroutine complete
+
+  !> Remove from wrenches in a regular position the part that the balance of the links determines.
+  pure subroutine remove_determined(self, cluster, wrenches)
+    class(cluster_balance_type), intent(inout) :: self       !< the equations, factorized
+    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
+    real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled
+    !> Each removal leaves a part of the round-off of the one before it.
+    integer, parameter :: removals = 4
+    real(wp) :: lacking(6, size(cluster%links)), nothing(6, size(cluster%links))
+    integer :: i
+
+    nothing = 0.0_wp
+    do i = 1, removals
+      call self%find_lacking(cluster, nothing, wrenches, lacking)
+      call self%factors%solve(lacking)
+      call self%spread(cluster, lacking, wrenches)
+    end do
+  end subroutine remove_determined
 
   !> The wrench about its place that each link requires beside those that it receives from its pairs.
   pure subroutine find_lacking(self, cluster, required, wrenches, lacking)

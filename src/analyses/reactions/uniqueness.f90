@@ -103,7 +103,7 @@ contains
     do sample = 1, samples
       call draw(balance, cluster, geometry, forces(:, sample), random, wrenches)
       if (regular) then
-        call remove_determined(cluster, balance, wrenches)
+        call balance%remove_determined(cluster, wrenches)
       else
         call singular%remove_determined(wrenches)
       end if
@@ -134,24 +134,6 @@ contains
         wrenches(:, i) = wrenches(:, i) + (forces(k)/geometry%length(k))*balance%axis(:, i)
     end do
   end subroutine draw
-
-  !> Remove from wrenches the part that the balance of the links determines.
-  pure subroutine remove_determined(cluster, balance, wrenches)
-    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
-    type(cluster_balance_type), intent(inout) :: balance     !< its equations, factorized
-    real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled
-    !> Each removal leaves a part of the round-off of the one before it.
-    integer, parameter :: removals = 4
-    real(wp) :: lacking(6, size(cluster%links)), nothing(6, size(cluster%links))
-    integer :: i
-
-    nothing = 0.0_wp
-    do i = 1, removals
-      call balance%find_lacking(cluster, nothing, wrenches, lacking)
-      call balance%factors%solve(lacking)
-      call balance%spread(cluster, lacking, wrenches)
-    end do
-  end subroutine remove_determined
 
   !> Mark the components of a pair's wrench that are not zero, in the axes of its frame in the moving link.
   pure subroutine judge_pair(plan, reactions, k, state, wrench, tolerance, unique)

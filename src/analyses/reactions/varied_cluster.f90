@@ -28,6 +28,7 @@ module mech9_varied_cluster
   contains
     procedure :: set_position
     procedure :: complete
+    procedure :: remove_determined
   end type equations_type
 
   !> The wrenches of a cluster in one position, and what belongs to them. Scaled: force, then moment over the length.
@@ -82,6 +83,26 @@ contains
     end if
   end subroutine complete
 
+  !> Remove from wrenches the part that the balance of the links and the loads on coordinates determine.
+  subroutine remove_determined(self, cluster, wrenches)
+    class(equations_type), intent(inout) :: self             !< the equations
+    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
+    real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled
+    integer :: i
+
+    associate (balance => self%balance)
+      do i = 1, size(cluster%pairs)
+        if (balance%held(i)) &
+          wrenches(:, i) = wrenches(:, i) - dot_product(balance%axis(:, i), wrenches(:, i))*balance%axis(:, i)
+      end do
+      if (allocated(self%singular)) then
+        call self%singular%remove_determined(wrenches)
+      else
+        call balance%remove_determined(cluster, wrenches)
+      end if
+    end associate
+  end subroutine remove_determined
+
   !> Find the derivatives of the wrenches of a cluster. `regular` is false beside a singular position.
   subroutine vary_cluster(reactions, cluster, geometry, varied, links, sizes, tolerance, equations, force, moment, regular)
     type(reaction_plan_type), intent(in) :: reactions        !< the plan of inverse dynamics
@@ -96,20 +117,18 @@ contains
     real(wp), intent(inout) :: moment(:, :, :)               !< (P,3,M) about the points of the joints' last pairs [N m per unit]
     logical, intent(out) :: regular                          !< the wrenches have derivatives
     type(balanced_type) :: present
-    real(wp), dimension(6, size(cluster%pairs)) :: changes, others
+    real(wp) :: changes(6, size(cluster%pairs))
     integer :: p, i
 
     call equations%set_position(reactions, cluster, geometry, tolerance)
     call find_balance(reactions, cluster, geometry, varied, links, equations, present, regular)
     do p = 1, size(links%alongs, 1)
       if (.not. regular) return
-      call vary_balance(reactions, cluster, geometry, varied, links, sizes, p, varied%length(p), present, equations, changes, &
+      call vary_balance(reactions, cluster, geometry, varied, links, sizes(p), p, varied%length(p), present, equations, changes, &
                         regular)
-      if (abs(varied%other_length(p) - varied%length(p)) > equal_lengths*abs(varied%length(p))) then
-        call vary_balance(reactions, cluster, geometry, varied, links, sizes, p, varied%other_length(p), present, equations, &
-                          others, regular)
-        call keep_common(others, changes)
-      end if
+      if (abs(varied%other_length(p) - varied%length(p)) > equal_lengths*max(abs(varied%length(p)), sizes(p)*reactions%length)) &
+        call keep_common(reactions, cluster, geometry, varied, links, varied%other_length(p) - varied%length(p), present, &
+                         equations, changes, regular)
       do i = 1, size(cluster%pairs)
         force(p, :, cluster%pairs(i)) = changes(1:3, i)
         moment(p, :, cluster%pairs(i)) = changes(4:6, i)
@@ -158,15 +177,17 @@ contains
     end function length_of
   end subroutine find_balance
 
-  !> The derivatives of the wrenches by one parameter, for one change of the length by which moments are divided.
-  subroutine vary_balance(reactions, cluster, geometry, varied, links, sizes, p, longer, present, equations, changes, regular)
+  !> The derivatives of the wrenches by one parameter, for one change of the length by which moments are divided; or by this length
+  !> alone.
+  subroutine vary_balance(reactions, cluster, geometry, varied, links, size_of_change, p, longer, present, equations, changes, &
+                          regular)
     type(reaction_plan_type), intent(in) :: reactions        !< the plan of inverse dynamics
     type(joined_cluster_type), intent(in) :: cluster         !< the cluster
     type(joint_geometry_type), intent(in) :: geometry        !< of the position
     type(varied_geometry_type), intent(in) :: varied         !< its derivatives
     type(link_requirements_type), intent(in) :: links        !< requirements of its links, and loads
-    real(wp), intent(in) :: sizes(:)                         !< (P) change of the constants by each parameter, as a part of them
-    integer, intent(in) :: p                                 !< number of the parameter
+    real(wp), intent(in) :: size_of_change                   !< change of the constants, as a part of them
+    integer, intent(in) :: p                                 !< number of the parameter; 0: the length changes alone
     real(wp), intent(in) :: longer                           !< derivative of the length [m per unit]
     type(balanced_type), intent(in) :: present               !< the balance of the position
     type(equations_type), intent(inout) :: equations         !< of the position
@@ -181,7 +202,8 @@ contains
     do i = 1, size(cluster%pairs)
       k = cluster%pairs(i)
       ! B'^T y: the point of the pair moves, and moments are divided by another length
-      lever = varied%point(p, :, reactions%pairs(k)%last)
+      lever = 0.0_wp
+      if (p > 0) lever = varied%point(p, :, reactions%pairs(k)%last)
       wrenches(1:3, i) = cross(present%motions(4:6, i), lever)/reactions%length
       wrenches(4:6, i) = longer/reactions%length*present%motions(4:6, i)
       associate (balance => equations%balance)
@@ -194,7 +216,7 @@ contains
       end associate
     end do
     ! derivatives by a parameter that hardly matters are round-off of the wrenches
-    call equations%complete(cluster, required, wrenches, regular, size_of_all=sizes(p)*maxval(abs(present%wrenches)))
+    call equations%complete(cluster, required, wrenches, regular, size_of_all=size_of_change*maxval(abs(present%wrenches)))
     changes(1:3, :) = wrenches(1:3, :)
     changes(4:6, :) = reactions%length*wrenches(4:6, :) + longer*present%wrenches(4:6, :)
   end subroutine vary_balance
@@ -206,19 +228,21 @@ contains
     type(joint_geometry_type), intent(in) :: geometry        !< of the position
     type(varied_geometry_type), intent(in) :: varied         !< its derivatives
     type(link_requirements_type), intent(in) :: links        !< requirements of its links
-    integer, intent(in) :: p                                 !< number of the parameter
+    integer, intent(in) :: p                                 !< number of the parameter; 0: the length changes alone
     real(wp), intent(in) :: longer                           !< derivative of the length [m per unit]
     type(balanced_type), intent(in) :: present               !< the balance of the position
     real(wp), intent(out) :: required(:, :)                  !< (6,nodes)
     real(wp) :: sums(6, size(cluster%links)), point(3), moment(3)
     integer :: i, side
 
+    sums = 0.0_wp
+    point = 0.0_wp
     do i = 1, size(cluster%links)
-      sums(:, i) = links%wrenches(p, :, cluster%links(i))
+      if (p > 0) sums(:, i) = links%wrenches(p, :, cluster%links(i))
     end do
     do i = 1, size(cluster%pairs)
       ! a wrench of the same scaled numbers changes about the origin as its point moves and the length changes
-      point = varied%point(p, :, reactions%pairs(cluster%pairs(i))%last)
+      if (p > 0) point = varied%point(p, :, reactions%pairs(cluster%pairs(i))%last)
       moment = longer*present%wrenches(4:6, i) + cross(point, present%wrenches(1:3, i))
       do side = 1, 2
         if (cluster%nodes(side, i) == 0) cycle
@@ -237,7 +261,7 @@ contains
     type(reaction_plan_type), intent(in) :: reactions        !< the plan of inverse dynamics
     type(varied_geometry_type), intent(in) :: varied         !< derivatives of the screws
     type(link_requirements_type), intent(in) :: links        !< with the loads
-    integer, intent(in) :: p                                 !< number of the parameter
+    integer, intent(in) :: p                                 !< number of the parameter; 0: the length changes alone
     real(wp), intent(in) :: longer                           !< derivative of the length [m per unit]
     integer, intent(in) :: k                                 !< coordinate of the pair
     real(wp), intent(in) :: wrench(6)                        !< r, scaled
@@ -245,16 +269,22 @@ contains
     real(wp), intent(in) :: axis(6)                          !< N: the screw, of length 1
     real(wp), intent(in) :: parts                            !< number of pairs that count as one
     real(wp), intent(inout) :: change(6)                     !< B'^T y; gets the change, as far as it is known
-    real(wp) :: screw_change(6), axis_change(6), length, length_change, held
+    real(wp) :: screw_change(6), axis_change(6), length, length_change, along_change, held
 
     associate (screw => varied%screw(:, k))
       length = norm2([screw(1:3), reactions%length*screw(4:6)])
-      screw_change(1:3) = varied%screw_change(p, 1:3, k)
-      screw_change(4:6) = reactions%length*varied%screw_change(p, 4:6, k) + longer*screw(4:6)
+      screw_change(1:3) = 0.0_wp
+      screw_change(4:6) = longer*screw(4:6)
     end associate
+    along_change = 0.0_wp
+    if (p > 0) then
+      screw_change(1:3) = varied%screw_change(p, 1:3, k)
+      screw_change(4:6) = screw_change(4:6) + reactions%length*varied%screw_change(p, 4:6, k)
+      along_change = links%alongs(p, k)
+    end if
     length_change = dot_product(axis, screw_change)
     axis_change = (screw_change - length_change*axis)/length
-    held = (links%alongs(p, k) - links%along(k)*length_change/length)/length - dot_product(axis_change, wrench)
+    held = (along_change - links%along(k)*length_change/length)/length - dot_product(axis_change, wrench)
     change = change + along*axis_change
     change = held*axis + parts*(change - dot_product(axis, change)*axis)
   end subroutine vary_held
@@ -270,14 +300,27 @@ contains
     scaled(4:6) = (wrench(1:3) - cross(place, wrench(4:6)))/length
   end function at_place
 
-  !> Keep the components on which two results agree. The others have no derivative: NaN.
-  subroutine keep_common(others, changes)
-    real(wp), intent(in) :: others(:, :)       !< (6,pairs)
-    real(wp), intent(inout) :: changes(:, :)   !< (6,pairs)
-    real(wp) :: largest(6)
+  !> Keep the components that do not depend on the change of the length by which moments are divided. The others have no derivative:
+  !> NaN. What the length alone changes balances nothing, so that the part that equilibrium determines is round-off. It is taken
+  !> off: beside a singular position it is large, and derivatives are so much larger that their differences would tell nothing.
+  subroutine keep_common(reactions, cluster, geometry, varied, links, longer, present, equations, changes, regular)
+    type(reaction_plan_type), intent(in) :: reactions        !< the plan of inverse dynamics
+    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
+    type(joint_geometry_type), intent(in) :: geometry        !< of the position
+    type(varied_geometry_type), intent(in) :: varied         !< its derivatives
+    type(link_requirements_type), intent(in) :: links        !< requirements of its links, and loads
+    real(wp), intent(in) :: longer                           !< difference of two derivatives of the length [m per unit]
+    type(balanced_type), intent(in) :: present               !< the balance of the position
+    type(equations_type), intent(inout) :: equations         !< of the position
+    real(wp), intent(inout) :: changes(:, :)                 !< (6,pairs) forces [N per unit] and moments [N m per unit]
+    logical, intent(out) :: regular                          !< the derivatives are found
+    real(wp) :: differences(6, size(cluster%pairs)), least
 
-    largest(1:3) = maxval(abs(changes(1:3, :)))
-    largest(4:6) = maxval(abs(changes(4:6, :)))
-    where (abs(others - changes) > equal_lengths*spread(largest, 2, size(changes, 2))) changes = ieee_value(1.0_wp, ieee_quiet_nan)
+    call vary_balance(reactions, cluster, geometry, varied, links, abs(longer)/reactions%length, 0, longer, present, equations, &
+                      differences, regular)
+    differences(4:6, :) = differences(4:6, :)/reactions%length
+    call equations%remove_determined(cluster, differences)
+    least = equal_lengths*abs(longer)/reactions%length*maxval(abs(present%wrenches))
+    where (abs(differences) > least) changes = ieee_value(1.0_wp, ieee_quiet_nan)
   end subroutine keep_common
 end module mech9_varied_cluster
