@@ -27,7 +27,7 @@ PATH = """&structure cq=1 /
 """
 
 
-# what the slider-crank of ball_mechanisms moves by
+# the drive, times and results of the slider-crank of ball_mechanisms
 RUN = DRIVE.format(start='0.2') + '&time end=6.5, intervals=13 /\n&output sensitivities=.true. /\n'
 
 
