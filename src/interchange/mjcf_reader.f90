@@ -121,7 +121,7 @@ contains
     character(len=:), allocatable :: name
     type(robot_joint_type) :: joint
     type(pose_type) :: start
-    integer :: e, n, last
+    integer :: e, n, last, own
 
     if (allocated(err)) return
     name = tree%attribute(element, 'name')
@@ -153,8 +153,10 @@ contains
     end if
     call robot%add_link(tree, element, name, err)
     if (allocated(err)) return
-    robot%joints(robot%n_joints)%links(2) = robot%n_links
-    call read_contents(tree, element, settings, class, pose_type(), robot%n_links, robot, err)
+    ! bodies in this one change the number of links
+    own = robot%n_links
+    robot%joints(robot%n_joints)%links(2) = own
+    call read_contents(tree, element, settings, class, pose_type(), own, robot, err)
   end subroutine read_body
 
   !> Read a joint, whose moving link follows.

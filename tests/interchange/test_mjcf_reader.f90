@@ -22,6 +22,7 @@ contains
     type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
 
     if (tester%runs('bodies')) call bodies(tester)
+    if (tester%runs('siblings')) call siblings(tester)
     if (tester%runs('several_joints')) call several_joints(tester)
     if (tester%runs('references')) call references(tester)
     if (tester%runs('frames_and_sites')) call frames_and_sites(tester)
@@ -64,6 +65,24 @@ contains
     end associate
     call tester%is_true(robot%joints(3)%kind == free_joint .and. robot%joints(3)%links(2) == 4, 'a free joint')
   end subroutine bodies
+
+  !> Each of several bodies in a body hangs on that body, whatever stands in the bodies before it.
+  subroutine siblings(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    type(robot_type) :: robot
+    type(error_type), allocatable :: err
+
+    call read_robot(tester, [character(len=110) :: '<worldbody><body name="a"><joint name="ja"/>', &
+      '<body name="b"><joint name="jb"/><body name="c"><joint name="jc"/></body></body>', &
+      '<body name="d"><joint name="jd"/></body>', &
+      '<site name="s"/><inertial mass="5" pos="0 0 0"/></body></worldbody>'], robot, err)
+    call tester%no_error(err, 'a tree of bodies')
+    if (robot%n_joints /= 4) return
+    call tester%is_true(all(robot%joints(2)%links == [2, 3]) .and. all(robot%joints(3)%links == [3, 4]), 'the first branch')
+    call tester%is_true(all(robot%joints(4)%links == [2, 5]), 'the second branch begins at the body around it')
+    call tester%is_true(robot%points(1)%link == 2, 'a site behind the bodies is in the body around it')
+    call near_vector(tester, robot%links(:5)%mass, [0.0_wp, 5.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], 0.0_wp, 'and so is a mass')
+  end subroutine siblings
 
   !> Links without mass stand between the joints of a body.
   subroutine several_joints(tester)
