@@ -4,7 +4,8 @@ module test_expat_reader
   use mech9_expat_reader, only: read_xml
   use mech9_xml_tree, only: xml_tree_type, deepest_element
   use mech9_testing, only: tester_type
-  use xml_texts, only: read_lines, save_lines, remove_file, has_message
+  use mech9_checks, only: has_message
+  use xml_texts, only: read_lines, save_lines, remove_file
   implicit none
   private
   public :: run

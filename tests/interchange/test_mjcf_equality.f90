@@ -8,7 +8,8 @@ module test_mjcf_equality
   use mech9_mjcf_settings, only: mjcf_settings_type
   use mech9_mjcf_equality, only: read_equalities
   use mech9_testing, only: tester_type
-  use xml_texts, only: read_lines, near_vector, has_message
+  use mech9_checks, only: near_vector, has_message
+  use xml_texts, only: read_lines
   implicit none
   private
   public :: run

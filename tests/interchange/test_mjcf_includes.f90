@@ -5,7 +5,8 @@ module test_mjcf_includes
   use mech9_xml_reader, only: read_xml
   use mech9_mjcf_includes, only: follow_includes
   use mech9_testing, only: tester_type
-  use xml_texts, only: save_lines, remove_file, has_message
+  use mech9_checks, only: has_message
+  use xml_texts, only: save_lines, remove_file
   implicit none
   private
   public :: run

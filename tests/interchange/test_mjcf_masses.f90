@@ -8,7 +8,8 @@ module test_mjcf_masses
   use mech9_mjcf_settings, only: mjcf_settings_type, read_settings
   use mech9_mjcf_masses, only: read_inertial, add_geom
   use mech9_testing, only: tester_type
-  use xml_texts, only: read_lines, near_vector, near_matrix, has_message, symmetric
+  use mech9_checks, only: near_vector, near_matrix, has_message
+  use xml_texts, only: read_lines, symmetric
   implicit none
   private
   public :: run

@@ -6,7 +6,8 @@ module test_mjcf_settings
   use mech9_xml_tree, only: xml_tree_type
   use mech9_mjcf_settings, only: mjcf_settings_type, read_settings
   use mech9_testing, only: tester_type
-  use xml_texts, only: read_lines, near_vector, near_matrix, has_message
+  use mech9_checks, only: near_vector, near_matrix, has_message
+  use xml_texts, only: read_lines
   implicit none
   private
   public :: run

@@ -4,7 +4,7 @@ module test_orientations
   use mech9_rotation, only: identity, about_axis
   use mech9_orientations, only: rotation_of_rpy, from_quaternion, orientation_from_z, from_euler
   use mech9_testing, only: tester_type
-  use xml_texts, only: near_vector, near_matrix
+  use mech9_checks, only: near_vector, near_matrix
   implicit none
   private
   public :: run

@@ -8,7 +8,7 @@ module test_pair_series
     universal_joint, spherical_joint, planar_joint, free_joint
   use mech9_pair_series, only: series_type, find_series
   use mech9_testing, only: tester_type
-  use xml_texts, only: has_message
+  use mech9_checks, only: has_message
   implicit none
   private
   public :: run

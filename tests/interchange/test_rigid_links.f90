@@ -7,7 +7,7 @@ module test_rigid_links
   use mech9_robot, only: robot_type, robot_joint_type, fixed_joint, revolute_joint
   use mech9_rigid_links, only: join_rigid_links
   use mech9_testing, only: tester_type
-  use xml_texts, only: near_vector, near_matrix, has_message
+  use mech9_checks, only: near_vector, near_matrix, has_message
   implicit none
   private
   public :: run

@@ -7,7 +7,7 @@ module test_robot
   use mech9_robot, only: robot_type, robot_joint_type, revolute_joint, prismatic_joint, helical_joint, spherical_joint, &
     universal_joint, most_links, most_joints
   use mech9_testing, only: tester_type
-  use xml_texts, only: has_message
+  use mech9_checks, only: has_message
   implicit none
   private
   public :: run

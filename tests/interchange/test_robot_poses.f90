@@ -7,7 +7,7 @@ module test_robot_poses
   use mech9_robot, only: robot_type, robot_joint_type, revolute_joint, prismatic_joint, spherical_joint
   use mech9_robot_poses, only: all_poses, make_planar_loops_planar
   use mech9_testing, only: tester_type
-  use xml_texts, only: near_vector
+  use mech9_checks, only: near_vector
   implicit none
   private
   public :: run

@@ -7,7 +7,8 @@ module test_sdf_frames
   use mech9_robot, only: robot_type
   use mech9_sdf_frames, only: sdf_frames_type, list_frames, own_pose
   use mech9_testing, only: tester_type
-  use xml_texts, only: read_lines, near_vector, has_message
+  use mech9_checks, only: near_vector, has_message
+  use xml_texts, only: read_lines
   implicit none
   private
   public :: run

@@ -8,7 +8,8 @@ module test_sdf_reader
   use mech9_sdf_joints, only: read_joints
   use mech9_sdf_reader, only: read_sdf
   use mech9_testing, only: tester_type
-  use xml_texts, only: read_lines, near_vector, near_matrix, has_message, symmetric
+  use mech9_checks, only: near_vector, near_matrix, has_message
+  use xml_texts, only: read_lines, symmetric
   implicit none
   private
   public :: run

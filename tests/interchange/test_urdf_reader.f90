@@ -6,7 +6,8 @@ module test_urdf_reader
   use mech9_robot, only: robot_type, revolute_joint, prismatic_joint, spherical_joint, free_joint
   use mech9_urdf_reader, only: read_urdf, read_loops
   use mech9_testing, only: tester_type
-  use xml_texts, only: read_lines, near_vector, near_matrix, has_message, symmetric
+  use mech9_checks, only: near_vector, near_matrix, has_message
+  use xml_texts, only: read_lines, symmetric
   implicit none
   private
   public :: run

@@ -6,7 +6,7 @@ module test_xml_values
   use mech9_xml_values, only: get_numbers, get_number, get_list, needed_attribute, numbers_in, get_content, get_content_number, &
     is_true, place_in, one_of
   use mech9_testing, only: tester_type
-  use xml_texts, only: has_message
+  use mech9_checks, only: has_message
   implicit none
   private
   public :: run

@@ -1,14 +1,14 @@
-!> XML documents from lines of text, for the tests of readers, and comparisons of what they read.
+!> XML documents from lines of text, for the tests of readers.
 module xml_texts
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text_file, only: save_text
   use mech9_xml_tree, only: xml_tree_type
   use mech9_xml_reader, only: read_xml
-  use mech9_testing, only: tester_type, message_of
+  use mech9_testing, only: tester_type
   implicit none
   private
-  public :: read_lines, save_lines, remove_file, near_vector, near_matrix, has_message, symmetric
+  public :: read_lines, save_lines, remove_file, symmetric
 
 contains
 
@@ -51,45 +51,6 @@ contains
     open (newunit=unit, file=path, status='old', iostat=status)
     if (status == 0) close (unit, status='delete')
   end subroutine remove_file
-
-  !> Check the components of a vector.
-  subroutine near_vector(tester, value, expected, tol, why)
-    type(tester_type), intent(inout) :: tester   !< counts the checks
-    real(wp), intent(in) :: value(:)             !< vector that is checked
-    real(wp), intent(in) :: expected(:)          !< the right one, of the same size
-    real(wp), intent(in) :: tol                  !< for each component, as in `near`
-    character(len=*), intent(in) :: why          !< the statement that is checked
-    integer :: i
-
-    call tester%is_true(size(value) == size(expected), why//': the number of components')
-    do i = 1, min(size(value), size(expected))
-      call tester%near(value(i), expected(i), tol, why)
-    end do
-  end subroutine near_vector
-
-  !> Check the elements of a matrix.
-  subroutine near_matrix(tester, value, expected, tol, why)
-    type(tester_type), intent(inout) :: tester   !< counts the checks
-    real(wp), intent(in) :: value(:, :)          !< matrix that is checked
-    real(wp), intent(in) :: expected(:, :)       !< the right one, of the same shape
-    real(wp), intent(in) :: tol                  !< for each element, as in `near`
-    character(len=*), intent(in) :: why          !< the statement that is checked
-
-    call near_vector(tester, pack(value, .true.), pack(expected, .true.), tol, why)
-  end subroutine near_matrix
-
-  !> Check the code of a failure, and words of its message.
-  subroutine has_message(tester, err, code, words, why)
-    type(tester_type), intent(inout) :: tester         !< counts the checks
-    type(error_type), allocatable, intent(in) :: err   !< of the call
-    integer, intent(in) :: code                        !< the right code
-    character(len=*), intent(in) :: words              !< part of the message
-    character(len=*), intent(in) :: why                !< the statement that is checked
-
-    call tester%has_error(err, code, why)
-    if (.not. allocated(err)) return
-    call tester%is_true(index(message_of(err), words) > 0, why//': the message is "'//message_of(err)//'"')
-  end subroutine has_message
 
   !> The symmetric tensor of its components xx, yy, zz, xy, xz, yz.
   pure function symmetric(j) result(tensor)
