@@ -5,7 +5,8 @@ module test_expat_reader
   use mech9_xml_tree, only: xml_tree_type, deepest_element
   use mech9_testing, only: tester_type
   use mech9_checks, only: has_message
-  use xml_texts, only: read_lines, save_lines, remove_file
+  use mech9_test_files, only: save_lines, remove_file
+  use xml_texts, only: read_lines
   implicit none
   private
   public :: run

@@ -11,7 +11,7 @@ module test_importing
   use mech9_model, only: model_type
   use mech9_importing, only: import_robot
   use mech9_testing, only: tester_type
-  use xml_texts, only: save_lines, remove_file
+  use mech9_test_files, only: save_lines, remove_file
   implicit none
   private
   public :: run

@@ -6,7 +6,7 @@ module test_mjcf_includes
   use mech9_mjcf_includes, only: follow_includes
   use mech9_testing, only: tester_type
   use mech9_checks, only: has_message
-  use xml_texts, only: save_lines, remove_file
+  use mech9_test_files, only: save_lines, remove_file
   implicit none
   private
   public :: run

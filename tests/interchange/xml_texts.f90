@@ -2,13 +2,13 @@
 module xml_texts
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_text_file, only: save_text
   use mech9_xml_tree, only: xml_tree_type
   use mech9_xml_reader, only: read_xml
   use mech9_testing, only: tester_type
+  use mech9_test_files, only: save_lines, remove_file
   implicit none
   private
-  public :: read_lines, save_lines, remove_file, symmetric
+  public :: read_lines, symmetric
 
 contains
 
@@ -25,32 +25,6 @@ contains
     call tester%no_error(err, 'the document of the case is XML')
     call remove_file(path)
   end subroutine read_lines
-
-  !> Write lines to a file.
-  subroutine save_lines(tester, path, lines)
-    type(tester_type), intent(inout) :: tester    !< counts the checks
-    character(len=*), intent(in) :: path          !< file that is written
-    character(len=*), intent(in) :: lines(:)      !< its lines
-    type(error_type), allocatable :: err
-    character(len=:), allocatable :: text
-    integer :: i
-
-    text = ''
-    do i = 1, size(lines)
-      text = text//trim(lines(i))//achar(10)
-    end do
-    call save_text(path, text, err)
-    call tester%no_error(err, 'the file of the case is written')
-  end subroutine save_lines
-
-  !> Remove a file.
-  subroutine remove_file(path)
-    character(len=*), intent(in) :: path   !< path of the file, which may be absent
-    integer :: unit, status
-
-    open (newunit=unit, file=path, status='old', iostat=status)
-    if (status == 0) close (unit, status='delete')
-  end subroutine remove_file
 
   !> The symmetric tensor of its components xx, yy, zz, xy, xz, yz.
   pure function symmetric(j) result(tensor)
