@@ -179,7 +179,8 @@ contains
     integer :: i
 
     do i = 1, size(numbers)
-      if (numbers(i) >= 1.0_wp .and. numbers(i) <= size(request%variables)) cycle
+      if (numbers(i) >= 1.0_wp .and. numbers(i) <= size(request%variables) .and. &
+          abs(numbers(i) - anint(numbers(i))) <= 0.0_wp) cycle
       call fail_at(source, line - 1 - size(numbers) + i, trim(merge('there is ', 'there are', size(request%variables) == 1))// &
                    ' '//counted(size(request%variables), 'variable')//', and this is the number of none', err)
       return

@@ -72,6 +72,7 @@ contains
     call refused(5, '8 ASV_1:stroke', ':5: the active set vector has numbers from 0 to 7')
     call refused(6, '1.5 ASV_2:speed', ':6: the active set vector has numbers from 0 to 7')
     call refused(8, '3 DVV_1:none', ':8: there are 2 variables, and this is the number of none')
+    call refused(8, '1.5 DVV_1:none', ':8: there are 2 variables, and this is the number of none')
     call refused(7, '2 derivative_variables', ':9: a value and a tag are expected')
   contains
     subroutine refused(line, text, words)
