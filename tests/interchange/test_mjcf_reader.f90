@@ -6,7 +6,7 @@ module test_mjcf_reader
   use mech9_robot, only: robot_type, fixed_joint, revolute_joint, prismatic_joint, free_joint
   use mech9_mjcf_reader, only: read_mjcf
   use mech9_testing, only: tester_type
-  use mech9_checks, only: near_vector, near_matrix, has_message
+  use mech9_checks, only: near_vector, has_message
   use xml_texts, only: read_lines
   implicit none
   private

@@ -2,7 +2,6 @@
 module test_study_file
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_file
-  use mech9_text, only: string_type
   use mech9_run_maker, only: made_run_type
   use mech9_study_file, only: study_file_type, not_made
   use mech9_study_layout, only: study_layout_type
