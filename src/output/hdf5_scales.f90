@@ -148,11 +148,11 @@ contains
   pure function common_unit(units) result(text)
     type(string_type), intent(in) :: units(:)  !< units of the coordinates
     character(len=:), allocatable :: text
-    integer :: i
+    integer :: i, k
 
     text = ''
     do i = 1, size(units)
-      if (index(' '//text//' ', ' '//units(i)%text//' ') > 0) cycle
+      if (any([(units(k)%text == units(i)%text, k=1, i - 1)])) cycle
       if (i > 1) text = text//' or '
       text = text//units(i)%text
     end do

@@ -257,5 +257,8 @@ contains
     call tester%is_true(common_unit(list) == 'rad or m', 'two units: '//common_unit(list))
     call tester%is_true(common_unit(list([1, 3])) == 'rad', 'one unit')
     call tester%is_true(common_unit(list(:0)) == '', 'no numbers')
+    list(1)%text = 'N m'
+    list(2)%text = 'N'
+    call tester%is_true(common_unit(list(:2)) == 'N m or N', 'a unit that is a part of another one: '//common_unit(list(:2)))
   end subroutine units
 end module test_hdf5_files
