@@ -26,7 +26,7 @@ contains
     character(len=*), intent(in) :: coupler                  !< its length [m]
     character(len=*), intent(in) :: axis                     !< of pair 4, in both of its links
     integer, intent(in) :: code                              !< of the error
-    character(len=:), allocatable, intent(out) :: message    !< what users read
+    character(len=:), allocatable, intent(out) :: message    !< the message for users
     type(model_type) :: model
     type(error_type), allocatable :: err
 
