@@ -190,7 +190,7 @@ contains
       row = row_of(group, name)
       associate (default => item_table(row)%default)
         length = 0
-        if (index(default, '''''') == 1) length = len_trim(default) - 2
+        if (index(default, '''') == 1) length = len_trim(default) - 2
       end associate
     end if
   end function text_length

@@ -143,7 +143,7 @@ contains
     p = document%groups(2)
     t = group_or_empty(document, 'time')
     call tester%is_true(get_text(m, 'title') == 'A Title' .and. get_integer(m, 'links') == 2, 'a text and a whole number')
-    call tester%is_true(.not. has_name(m, 'angle_unit'), 'a text that is not given')
+    call tester%is_true(get_text(m, 'angle_unit') == 'rad' .and. .not. has_name(m, 'angle_unit'), 'a default that is a text')
     call near_vector(tester, get_reals(p, 'position'), [1.0_wp, 2.5_wp, 3.0_wp], 0.0_wp, 'numbers')
     call tester%is_true(get_logical(o, 'reactions') .and. .not. get_logical(o, 'drive_forces'), 'a logical and a default')
     call tester%is_true(all(get_integers(o, 'coordinates') == [1]) .and. count_values(o, 'coordinates') == 1, 'a list')
