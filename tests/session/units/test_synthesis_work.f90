@@ -118,7 +118,7 @@ contains
     type(tester_type), intent(inout) :: tester         !< counts the checks
     type(model_type), intent(in) :: model              !< the model
     type(synthesis_type), intent(in) :: synthesis      !< with its designs
-    type(starts_type), intent(in) :: starts            !< that were made
+    type(starts_type), intent(in) :: starts            !< all of them, made
     type(start_type) :: again(3), others(3)
     type(error_type), allocatable :: err
     integer :: i, k
