@@ -166,7 +166,7 @@ contains
         end if
       end if
       if (size(words) > next) return
-      if (draft%find(trim(words(1)), place) == 0 .and. group_table(row)%repeats) return
+      if (draft%find(trim(words(1)), place) == 0 .and. (group_table(row)%repeats .or. place > 1)) return
       group = trim(words(1))
       if (size(words) == next) name = trim(words(next))
     end associate

@@ -116,11 +116,11 @@ contains
     end subroutine names
   end subroutine words
 
-  !> Numbers beyond the list, unknown groups, pairs and loads that are not there, and too many words name nothing.
+  !> Numbers beyond the list, unknown groups, groups that are not there, and too many words name nothing.
   subroutine nothing(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=*), parameter :: lines(*) = [character(len=20) :: '0', '7', '-1', '1.5', '', 'wheel', 'pair 2', 'pair 9 kind', &
-                                               'load 3', 'load 1 link 2', 'time end end']
+                                               'load 3', 'load 1 link 2', 'time end end', 'time 5', 'time 5 end']
     type(draft_type) :: draft
     character(len=:), allocatable :: group, name
     integer :: i, place
