@@ -23,6 +23,8 @@ module mech9_coupling_forces
   !> Forces of all couplings, and scratch.
   type :: coupling_forces_type
     real(wp), allocatable :: values(:)   !< (couplings) generalized force on the second coordinate of each [N m, N]
+    !> (M) largest of the forces of couplings and of the loads whose sum acts on each coordinate; the sum has its round-off [N m, N]
+    real(wp), allocatable :: largest(:)
     type(block_work_type), allocatable, private :: blocks(:)   !< with the factors of their Jacobians
     type(loop_forces_type), private :: loops                   !< forces of the equations of all blocks
     real(wp), allocatable, private :: multipliers(:)           !< (couplings) of their weighed equations
@@ -39,7 +41,7 @@ contains
     type(coupling_forces_type) :: self
     integer :: b
 
-    allocate (self%values(size(plan%couplings)), source=0.0_wp)
+    allocate (self%values(size(plan%couplings)), self%largest(plan%n_coordinates), source=0.0_wp)
     if (size(plan%couplings) == 0) return
     allocate (self%blocks(size(plan%blocks)))
     do b = 1, size(plan%blocks)
@@ -70,7 +72,10 @@ contains
     call take_multipliers(plan, self%loops, self%multipliers)
     call take_least(plan, state, self)
     call sum_forces(plan, state, self)
-    if (loads%any_generalized) self%together = self%together + loads%generalized
+    if (loads%any_generalized) then
+      self%largest = max(self%largest, abs(loads%generalized))
+      self%together = self%together + loads%generalized
+    end if
     loads%generalized = self%together
     loads%any_generalized = .true.
   end subroutine add_couplings
@@ -154,16 +159,20 @@ contains
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism, with all blocks
     type(state_type), intent(in) :: state                 !< the position
     type(coupling_forces_type), intent(inout) :: self     !< with multipliers; gets the forces
+    real(wp) :: force
     integer :: c, i, k, number
 
     self%together = 0.0_wp
+    self%largest = 0.0_wp
     do c = 1, size(plan%closures)
       number = plan%closures(c)%coupling
       if (number == 0) cycle
       associate (coordinates => plan%couplings(number)%coupling%coordinates)
         do i = 1, size(coordinates)
           k = coordinates(i)
-          self%together(k) = self%together(k) + coupling_force(plan, c, k, state, self%multipliers(number))
+          force = coupling_force(plan, c, k, state, self%multipliers(number))
+          self%together(k) = self%together(k) + force
+          self%largest(k) = max(self%largest(k), abs(force))
         end do
         self%values(number) = coupling_force(plan, c, coordinates(2), state, self%multipliers(number))
       end associate

@@ -299,7 +299,7 @@ contains
     type(reactions_type), intent(inout) :: self             !< with what its links require; gets the wrenches
     type(error_type), allocatable, intent(out) :: err       !< allocated if the wrenches are infinite
     type(singular_cluster_type) :: singular
-    real(wp) :: largest
+    real(wp) :: loads, largest
     integer :: i, k, n, m
     logical :: regular
 
@@ -311,8 +311,9 @@ contains
       self%required(4:6, i) = self%link_moment(:, cluster%links(i))/reactions%length
     end do
     call hold_loads(cluster, balance, self)
+    loads = largest_load(plan, cluster, balance, self)
     associate (wrenches => self%wrenches(:, :m), required => self%required(:, :n), lacking => self%lacking(:, :n))
-      if (regular) call balance%complete(cluster, required, wrenches, lacking, regular)
+      if (regular) call balance%complete(cluster, required, wrenches, lacking, regular, size_of_all=loads)
       if (.not. regular) then
         call hold_loads(cluster, balance, self)
         call decompose_cluster(cluster, balance, rank_tolerance_for(plan%data_tolerance), singular)
@@ -320,7 +321,7 @@ contains
         call singular%solve(lacking, self%changes(:, :m))
         wrenches = wrenches + self%changes(:, :m)
         call balance%find_lacking(cluster, required, wrenches, lacking)
-        largest = max(maxval(abs(wrenches)), maxval(abs(required)))
+        largest = max(maxval(abs(wrenches)), maxval(abs(required)), loads)
         if (maxval(abs(lacking)) > balanced_singular*largest) then
           call raise(err, exit_singular, failure_unbalanced)
           err%failure%coordinates = pack([(k, k=1, plan%n_coordinates)], [(any(cluster%pairs == k), k=1, plan%n_coordinates)])
@@ -350,6 +351,24 @@ contains
         self%wrenches(:, i) = (self%sum%generalized(k)/self%geometry%length(k))*self%geometry%axis(:, k)
     end do
   end subroutine hold_loads
+
+  !> The largest of the loads and forces of couplings on the dependent coordinates of a cluster, scaled. Their sums may be small, and
+  !> have the round-off of the largest.
+  pure real(wp) function largest_load(plan, cluster, balance, self) result(largest)
+    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
+    type(joined_cluster_type), intent(in) :: cluster       !< the cluster
+    type(cluster_balance_type), intent(in) :: balance      !< its equations
+    type(reactions_type), intent(in) :: self               !< with the loads
+    integer :: i, k
+
+    largest = 0.0_wp
+    if (size(plan%couplings) == 0) return
+    do i = 1, size(cluster%pairs)
+      k = cluster%pairs(i)
+      if (balance%held(i) .and. self%geometry%length(k) > 0.0_wp) &
+        largest = max(largest, self%couplings%largest(k)/self%geometry%length(k))
+    end do
+  end function largest_load
 
   !> The generalized forces that independent coordinates need beside the loads on them.
   pure subroutine find_needed(plan, reactions, self)

@@ -24,6 +24,7 @@ module mech9_varied_cluster
   !> coordinates do not satisfy the couplings; the forces of these are known, and count as loads.
   type :: equations_type
     type(cluster_balance_type) :: balance
+    real(wp), private :: tolerance = 0.0_wp     !< of ranks
     type(singular_cluster_type), allocatable, private :: singular   !< allocated if the equations are singular
   contains
     procedure :: set_position
@@ -36,6 +37,7 @@ module mech9_varied_cluster
     real(wp), allocatable :: wrenches(:, :)   !< (6,pairs) about the points of the pairs
     real(wp), allocatable :: motions(:, :)    !< (6,pairs) B^T y: motion of the moving link in the reference link
     real(wp), allocatable :: along(:)         !< (pairs) m, the force along a dependent coordinate; zero for others
+    real(wp) :: largest = 0.0_wp              !< number by whose round-off balance is judged: of wrenches, loads and forces of couplings
   end type balanced_type
 
 contains
@@ -58,6 +60,7 @@ contains
     real(wp), intent(in) :: tolerance                     !< of ranks
     logical :: regular
 
+    self%tolerance = tolerance
     if (allocated(self%singular)) deallocate (self%singular)
     call self%balance%set_position(cluster, geometry, reactions, reactions%length, regular)
     if (regular) return
@@ -65,7 +68,8 @@ contains
     call decompose_cluster(cluster, self%balance, tolerance, self%singular)
   end subroutine set_position
 
-  !> Complete wrenches so that the links are in balance; `balanced` is false where they cannot be.
+  !> Complete wrenches so that the links are in balance; `balanced` is false where they cannot be. Where corrections do not converge,
+  !> singular values decide, as they do for the wrenches themselves.
   subroutine complete(self, cluster, required, wrenches, balanced, displacements, size_of_all)
     class(equations_type), intent(inout) :: self             !< the equations
     type(joined_cluster_type), intent(in) :: cluster         !< the cluster
@@ -74,13 +78,17 @@ contains
     logical, intent(out) :: balanced                         !< the links are in balance
     real(wp), intent(out), optional :: displacements(:, :)   !< (6,nodes) that belong to the wrenches, scaled
     real(wp), intent(in), optional :: size_of_all            !< by which balance is judged where wrenches are smaller
-    real(wp) :: lacking(size(required, 1), size(required, 2))
+    real(wp) :: lacking(size(required, 1), size(required, 2)), given(size(wrenches, 1), size(wrenches, 2))
 
-    if (allocated(self%singular)) then
-      call self%singular%complete(self%balance, cluster, required, wrenches, balanced, displacements, size_of_all)
-    else
+    if (.not. allocated(self%singular)) then
+      given = wrenches
       call self%balance%complete(cluster, required, wrenches, lacking, balanced, displacements, size_of_all)
+      if (balanced) return
+      wrenches = given
+      allocate (self%singular)
+      call decompose_cluster(cluster, self%balance, self%tolerance, self%singular)
     end if
+    call self%singular%complete(self%balance, cluster, required, wrenches, balanced, displacements, size_of_all)
   end subroutine complete
 
   !> Remove from wrenches the part that the balance of the links and the loads on coordinates determine.
@@ -156,26 +164,45 @@ contains
     end do
     associate (balance => equations%balance)
       do i = 1, size(cluster%pairs)
-        if (balance%held(i)) present%wrenches(:, i) = links%along(cluster%pairs(i))/length_of(i)*balance%axis(:, i)
+        if (balance%held(i)) present%wrenches(:, i) = links%along(cluster%pairs(i)) &
+                                                      /length_of(reactions, varied, cluster%pairs(i))*balance%axis(:, i)
       end do
-      call equations%complete(cluster, required, present%wrenches, regular, displacements)
+      present%largest = largest_of(reactions, cluster, balance, varied, links%largest)
+      call equations%complete(cluster, required, present%wrenches, regular, displacements, present%largest)
+      present%largest = max(present%largest, maxval(abs(present%wrenches)))
       do i = 1, size(cluster%pairs)
         present%motions(:, i) = balance%find_motion(cluster, i, displacements)
         if (balance%held(i)) present%along(i) = dot_product(balance%axis(:, i), present%wrenches(:, i)/balance%parts(i) &
                                                             - present%motions(:, i))
       end do
     end associate
-  contains
-
-    !> The length of the screw of a pair [m per unit].
-    pure real(wp) function length_of(number)
-      integer, intent(in) :: number   !< place of the pair in the cluster
-
-      associate (screw => varied%screw(:, cluster%pairs(number)))
-        length_of = norm2([screw(1:3), reactions%length*screw(4:6)])
-      end associate
-    end function length_of
   end subroutine find_balance
+
+  !> The length of the screw of a pair [m per unit].
+  pure real(wp) function length_of(reactions, varied, k)
+    type(reaction_plan_type), intent(in) :: reactions        !< the plan of inverse dynamics
+    type(varied_geometry_type), intent(in) :: varied         !< with the screws of the pairs
+    integer, intent(in) :: k                                 !< coordinate of the pair
+
+    associate (screw => varied%screw(:, k))
+      length_of = norm2([screw(1:3), reactions%length*screw(4:6)])
+    end associate
+  end function length_of
+
+  !> The largest of the forces that act along the dependent coordinates of a cluster, scaled.
+  pure real(wp) function largest_of(reactions, cluster, balance, varied, forces) result(largest)
+    type(reaction_plan_type), intent(in) :: reactions        !< the plan of inverse dynamics
+    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
+    type(cluster_balance_type), intent(in) :: balance        !< its equations
+    type(varied_geometry_type), intent(in) :: varied         !< with the screws of the pairs
+    real(wp), intent(in) :: forces(:)                        !< (M) the forces, or derivatives of them [N m, N]
+    integer :: i
+
+    largest = 0.0_wp
+    do i = 1, size(cluster%pairs)
+      if (balance%held(i)) largest = max(largest, forces(cluster%pairs(i))/length_of(reactions, varied, cluster%pairs(i)))
+    end do
+  end function largest_of
 
   !> The derivatives of the wrenches by one parameter, for one change of the length by which moments are divided; or by this length
   !> alone.
@@ -195,7 +222,7 @@ contains
     logical, intent(out) :: regular                          !< the derivatives are found
     real(wp), dimension(6, size(cluster%pairs)) :: wrenches
     real(wp), dimension(6, size(cluster%links)) :: required
-    real(wp) :: lever(3)
+    real(wp) :: lever(3), largest
     integer :: i, k
 
     call vary_lacking(reactions, cluster, geometry, varied, links, p, longer, present, required)
@@ -216,7 +243,9 @@ contains
       end associate
     end do
     ! derivatives by a parameter that hardly matters are round-off of the wrenches
-    call equations%complete(cluster, required, wrenches, regular, size_of_all=size_of_change*maxval(abs(present%wrenches)))
+    largest = size_of_change*present%largest
+    if (p > 0) largest = max(largest, largest_of(reactions, cluster, equations%balance, varied, links%largest_changes(p, :)))
+    call equations%complete(cluster, required, wrenches, regular, size_of_all=largest)
     changes(1:3, :) = wrenches(1:3, :)
     changes(4:6, :) = reactions%length*wrenches(4:6, :) + longer*present%wrenches(4:6, :)
   end subroutine vary_balance

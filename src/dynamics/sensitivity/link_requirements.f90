@@ -19,6 +19,9 @@ module mech9_link_requirements
     real(wp), allocatable :: wrenches(:, :, :)     !< (P,6,N) derivatives
     real(wp), allocatable :: along(:)              !< (M) loads on the coordinates, with the forces of couplings [N m, N]
     real(wp), allocatable :: alongs(:, :)          !< (P,M) derivatives
+    !> (M) largest of the loads and forces of couplings whose sum acts on a coordinate; the sum has its round-off [N m, N]
+    real(wp), allocatable :: largest(:)
+    real(wp), allocatable :: largest_changes(:, :) !< (P,M) the same of the derivatives
     real(wp), allocatable :: coupling(:, :)        !< (P,couplings) derivatives of the force of each on its second coordinate
   end type link_requirements_type
 
@@ -47,6 +50,7 @@ contains
             do i = 1, size(coordinates)
               k = coordinates(i)
               forces(k) = forces(k) + coupling_force(plan, c, k, motion%state, coupling_multiplier(plan, b, c, loops))
+              self%largest_changes(p, k) = max(self%largest_changes(p, k), abs(self%alongs(p, k)), abs(forces(k)))
               self%alongs(p, k) = self%alongs(p, k) + forces(k)
             end do
             self%coupling(p, number) = forces(coordinates(2))
@@ -62,6 +66,7 @@ contains
     type(state_type), intent(in) :: state                  !< the motion
     type(loop_forces_type), intent(in) :: held             !< with the multipliers of the motion
     type(link_requirements_type), intent(inout) :: self    !< gets the forces
+    real(wp) :: force
     integer :: b, c, i, k
 
     do b = 1, size(plan%blocks)
@@ -70,8 +75,9 @@ contains
         associate (coordinates => plan%couplings(plan%closures(c)%coupling)%coupling%coordinates)
           do i = 1, size(coordinates)
             k = coordinates(i)
-            self%along(k) = self%along(k) &
-                                  + coupling_force(plan, c, k, state, coupling_multiplier(plan, b, c, held))
+            force = coupling_force(plan, c, k, state, coupling_multiplier(plan, b, c, held))
+            self%largest(k) = max(self%largest(k), abs(self%along(k)), abs(force))
+            self%along(k) = self%along(k) + force
           end do
         end associate
       end do

@@ -72,7 +72,8 @@ contains
     if (.not. with_links) return
     allocate (self%links)
     allocate (self%links%wrench(6, links), self%links%wrenches(n, 6, links), self%links%along(m), self%links%alongs(n, m), &
-              self%links%coupling(n, size(motion%plan%couplings)), source=0.0_wp)
+              self%links%largest(m), self%links%largest_changes(n, m), self%links%coupling(n, size(motion%plan%couplings)), &
+              source=0.0_wp)
   end subroutine new_varied_forces
 
   !> The forces of the present motion and their derivatives, after find_varied_motion for this motion. Fails where a load does.
@@ -108,6 +109,8 @@ contains
     self%links%along = 0.0_wp
     if (size(self%acting) > 0) self%links%along = self%sum%generalized
     self%links%alongs = -self%changes
+    self%links%largest = 0.0_wp
+    self%links%largest_changes = 0.0_wp
   end subroutine keep_required
 
   !> Add the inertial forces of all bodies, less their weights, and the derivatives.
