@@ -7,6 +7,11 @@
 !> for each link and each pair, and is factorized by Cholesky's method; a correction from the balance of the links removes
 !> the error that squaring M makes.
 !>
+!> Links of a cluster with couplings can move where the coordinates do not satisfy these; the forces of couplings are known and count
+!> as loads, so that M^T M is singular while a solution exists. It becomes regular where M^T M holds one dependent coordinate for each
+!> such motion, as it holds independent ones: nothing is required along these motions, so that y does not move the held coordinates and
+!> M y stays what it is (mech9_singular_cluster chooses them).
+!>
 !> All pairs of a joint with several freedoms pass on the same wrench, since the links between them have neither mass nor loads. Their
 !> wrenches are taken about one point, that of the last pair, and the square of each is divided by the number of the joint's pairs:
 !> the joint counts once. All turns of such a joint are about lines through this point, so that the moments about them stay the same.
@@ -27,6 +32,7 @@ module mech9_cluster_balance
     integer, allocatable :: block_of(:)           !< (pairs) block that joins both links; 0 where one is not a node
     logical, allocatable :: turned(:)             !< (pairs) the block's rows are those of the reference link
     logical, allocatable :: held(:)               !< (pairs) only the part across the axis is unknown
+    logical, allocatable :: stands(:)             !< (pairs) M^T M holds the dependent coordinate, since a coupling does
     real(wp), allocatable :: parts(:)             !< (pairs) number of pairs that count as one together
     real(wp), allocatable :: axis(:, :)           !< (6,pairs) of length 1
     real(wp), allocatable :: arm(:, :, :)         !< (3,2,pairs) from the places of moving and reference link, over the size
@@ -52,6 +58,7 @@ contains
     self%factors = new_block_cholesky(6, size(cluster%links), cluster%nodes)
     call self%factors%find_blocks(cluster%nodes, self%block_of, self%turned)
     self%held = reactions%pairs(cluster%pairs)%dependent
+    allocate (self%stands(n), source=.false.)
     self%parts = real(reactions%pairs(cluster%pairs)%in_joint, wp)
     allocate (self%axis(6, n), self%arm(3, 2, n), source=0.0_wp)
   end function new_cluster_balance
@@ -92,7 +99,7 @@ contains
       work_on(1:3, side) = self%axis(1:3, i)
       work_on(4:6, side) = self%axis(4:6, i) + cross(self%arm(:, side, i), self%axis(1:3, i))
     end do
-    if (.not. self%held(i)) work_on = 0.0_wp
+    if (self%stands(i) .or. .not. self%held(i)) work_on = 0.0_wp
     if (nodes(1) == nodes(2)) return
     do side = 1, 2
       if (nodes(side) == 0) cycle

@@ -41,6 +41,7 @@ module mech9_reaction_plan
     !> Equilibrium alone determines the wrenches of all pairs, in planar mechanisms those in the plane: there are as many equations
     !> of closed chains as loops can have, and all are independent.
     logical :: determined = .false.
+    logical :: coupled = .false.         !< some of its closures are couplings
   end type joined_cluster_type
 
   !> The plan of inverse dynamics.
@@ -239,6 +240,7 @@ contains
         if (clusters%of_step(plan%closures(block%first_closure)%loop%steps(1)) /= steps(1)) cycle
         cluster%blocks = [cluster%blocks, b]
         regular = regular .and. block%equations == size(block%unknowns)
+        cluster%coupled = cluster%coupled .or. any(plan%closures(block%first_closure:block%last_closure)%coupling > 0)
         closures = closures + block%last_closure - block%first_closure + 1
       end associate
     end do

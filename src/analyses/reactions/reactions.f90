@@ -317,6 +317,7 @@ contains
       if (.not. regular) then
         call hold_loads(cluster, balance, self)
         call decompose_cluster(cluster, balance, rank_tolerance_for(plan%data_tolerance), singular)
+        call singular%hold_motions(cluster, balance)
         call balance%find_lacking(cluster, required, wrenches, lacking)
         call singular%solve(lacking, self%changes(:, :m))
         wrenches = wrenches + self%changes(:, :m)

@@ -5,7 +5,7 @@
 module mech9_singular_cluster
   use mech9_kinds, only: wp
   use mech9_lapack, only: dgesvd
-  use mech9_tolerances, only: balanced_singular
+  use mech9_tolerances, only: balanced_singular, least_rate
   use mech9_reaction_plan, only: joined_cluster_type
   use mech9_cluster_balance, only: cluster_balance_type
   implicit none
@@ -23,6 +23,7 @@ module mech9_singular_cluster
     procedure :: solve
     procedure :: complete
     procedure :: remove_determined
+    procedure :: hold_motions
   end type singular_cluster_type
 
 contains
@@ -122,4 +123,33 @@ contains
       wrenches(:, i) = self%root(i)*wrenches(:, i)
     end do
   end subroutine remove_determined
+
+  !> Let the equations hold one dependent coordinate for each motion that links can make while all independent coordinates stand
+  !> still: those that move most, by elimination with pivots. A cluster with couplings has such motions in every position, and the same
+  !> coordinates serve in others; where they do not, corrections do not lead to balance.
+  subroutine hold_motions(self, cluster, balance)
+    class(singular_cluster_type), intent(in) :: self        !< singular values and vectors of a position
+    type(joined_cluster_type), intent(in) :: cluster        !< the cluster
+    type(cluster_balance_type), intent(inout) :: balance    !< its equations; those of other positions hold the coordinates
+    real(wp) :: along(size(cluster%pairs), size(self%values) - self%rank), direction(size(along, 2))
+    integer :: i, j, n
+
+    balance%stands = .false.
+    if (.not. cluster%coupled) return
+    along = 0.0_wp
+    n = size(cluster%links)
+    do j = 1, size(along, 2)
+      do i = 1, size(cluster%pairs)
+        if (balance%held(i)) along(i, j) = &
+          dot_product(balance%axis(:, i), balance%find_motion(cluster, i, reshape(self%forces(:, self%rank + j), [6, n])))
+      end do
+    end do
+    do j = 1, size(along, 2)
+      i = maxloc(sum(along**2, dim=2), dim=1)
+      if (.not. norm2(along(i, :)) > least_rate) return
+      balance%stands(i) = .true.
+      direction = along(i, :)/norm2(along(i, :))
+      along = along - spread(matmul(along, direction), 2, size(along, 2))*spread(direction, 1, size(along, 1))
+    end do
+  end subroutine hold_motions
 end module mech9_singular_cluster

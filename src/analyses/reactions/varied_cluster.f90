@@ -64,9 +64,18 @@ contains
     if (allocated(self%singular)) deallocate (self%singular)
     call self%balance%set_position(cluster, geometry, reactions, reactions%length, regular)
     if (regular) return
-    allocate (self%singular)
-    call decompose_cluster(cluster, self%balance, tolerance, self%singular)
+    call decompose(self, cluster)
   end subroutine set_position
+
+  !> Decompose the equations of a position, whose factors do not serve, and prepare those of the next one.
+  subroutine decompose(self, cluster)
+    type(equations_type), intent(inout) :: self           !< the equations; get singular values and vectors
+    type(joined_cluster_type), intent(in) :: cluster      !< the cluster
+
+    allocate (self%singular)
+    call decompose_cluster(cluster, self%balance, self%tolerance, self%singular)
+    call self%singular%hold_motions(cluster, self%balance)
+  end subroutine decompose
 
   !> Complete wrenches so that the links are in balance; `balanced` is false where they cannot be. Where corrections do not converge,
   !> singular values decide, as they do for the wrenches themselves.
@@ -85,8 +94,7 @@ contains
       call self%balance%complete(cluster, required, wrenches, lacking, balanced, displacements, size_of_all)
       if (balanced) return
       wrenches = given
-      allocate (self%singular)
-      call decompose_cluster(cluster, self%balance, self%tolerance, self%singular)
+      call decompose(self, cluster)
     end if
     call self%singular%complete(self%balance, cluster, required, wrenches, balanced, displacements, size_of_all)
   end subroutine complete
