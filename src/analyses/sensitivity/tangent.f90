@@ -47,6 +47,9 @@ module mech9_tangent
     !> Largest change of a constant, as a part of it, of the mechanism's size or of a rad: the inverse of the change of the
     !> parameter that matters.
     real(wp) :: size = 0.0_wp
+    !> Round-off of the derivatives of poses: what two estimates differ by, and that of the differences [rad, parts of the mechanism's
+    !> size].
+    real(wp) :: round_off = 0.0_wp
   end type tangent_type
 
   integer, parameter :: half_width = 4
@@ -56,6 +59,9 @@ module mech9_tangent
   !> The step is a power of two, near this part of the length over which the constants change: truncation of a function such as
   !> 1/x is then near 1e-15, and differences lose two digits of the sixteen that numbers have.
   real(wp), parameter :: step_part = 2.0_wp**(-7)
+  !> This length is the value of the parameter, or one unit of it. The unit comes first where the value is below this, so that the step
+  !> is not lost in the round-off of numbers to which the parameter is added.
+  real(wp), parameter :: small_value = 1.0e-6_wp
   !> Factors of this length that are tried one after the other, until the two orders agree to `agreement` of the largest derivative.
   real(wp), parameter :: factors(7) = [1.0_wp, 2.0_wp**(-4), 2.0_wp**4, 2.0_wp**(-8), 2.0_wp**8, 2.0_wp**(-12), 2.0_wp**(-16)]
   real(wp), parameter :: agreement = 2.0e-12_wp
@@ -77,11 +83,12 @@ contains
     type(tangent_type), intent(out) :: tangent              !< the derivatives
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     real(wp), allocatable :: change(:)
+    real(wp) :: round_off
 
     if (.not. knows_derivatives(model, model%parameters(number))) then
       call raise(err, exit_data, failure_unknown_derivative)
     else
-      call differentiate(variable, model, plan, number, change, err)
+      call differentiate(variable, model, plan, number, change, round_off, err)
     end if
     if (allocated(err)) then
       err%failure%name = model%parameters(number)%name
@@ -89,6 +96,7 @@ contains
       return
     end if
     call read_change(model, plan, change, tangent)
+    tangent%round_off = round_off
   end subroutine find_tangent
 
   !> Whether the numbers that a parameter may set have known derivatives.
@@ -126,30 +134,37 @@ contains
   end function sets_any
 
   !> The derivatives of all constants by one parameter.
-  subroutine differentiate(variable, model, plan, number, change, err)
+  subroutine differentiate(variable, model, plan, number, change, round_off, err)
     class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the present model
     type(plan_type), intent(in) :: plan                     !< its plan
     integer, intent(in) :: number                           !< of the parameter
     real(wp), allocatable, intent(out) :: change(:)         !< the derivatives
+    real(wp), intent(out) :: round_off                      !< of those of poses [rad, parts of the mechanism's size]
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(plan_type) :: renewed
     real(wp), allocatable :: present(:), trial(:)
-    real(wp) :: scale, error, best
-    integer :: i
+    real(wp) :: lengths(2), error, best, of_poses
+    integer :: i, j
 
     renewed = plan
     call renew_constants(model, renewed, present)
-    scale = abs(model%parameters(number)%value)
-    if (.not. scale > 0.0_wp) scale = 1.0_wp
+    lengths = [abs(model%parameters(number)%value), 1.0_wp]
+    if (lengths(1) < small_value) lengths = lengths(2:1:-1)
     best = huge(best)
-    do i = 1, size(factors)
-      call try_step(variable, model, number, step_part*2.0_wp**exponent(scale)*factors(i), present, renewed, trial, error)
-      if (error < best) then
-        best = error
-        change = trial
-      end if
-      if (best <= agreement) exit
+    round_off = 0.0_wp
+    do j = 1, 2
+      if (.not. lengths(j) > 0.0_wp .or. best <= agreement) exit
+      do i = 1, size(factors)
+        call try_step(variable, model, number, step_part*2.0_wp**exponent(lengths(j))*factors(i), present, renewed, trial, error, &
+                      of_poses)
+        if (error < best) then
+          best = error
+          round_off = of_poses
+          change = trial
+        end if
+        if (best <= agreement) exit
+      end do
     end do
     if (.not. allocated(change)) call raise(err, exit_data, failure_no_neighbours)
   end subroutine differentiate
@@ -165,7 +180,7 @@ contains
 
   !> The derivatives from differences at one step, and an estimate of their error: what two orders or two steps differ by, and the
   !> round-off of the constants, as a part of the largest derivative.
-  subroutine try_step(variable, model, number, h, present, plan, change, error)
+  subroutine try_step(variable, model, number, h, present, plan, change, error, of_poses)
     class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the present model
     integer, intent(in) :: number                           !< of the parameter
@@ -174,12 +189,14 @@ contains
     type(plan_type), intent(inout) :: plan                  !< scratch: the plan of the present model, with other numbers
     real(wp), allocatable, intent(out) :: change(:)         !< the derivatives
     real(wp), intent(out) :: error                          !< estimated; huge where a model beside the present one does not exist
+    real(wp), intent(out) :: of_poses                       !< error of the derivatives of poses [rad, parts of the mechanism's size]
     real(wp) :: difference(size(present), half_width), round_off(size(present)), lower(size(present))
     integer, parameter :: order(half_width) = [1, half_width, 2, 3]
     integer :: i
     logical :: exists
 
     error = huge(error)
+    of_poses = 0.0_wp
     change = 0.0_wp*present
     do i = 1, half_width
       call find_difference(variable, model, number, order(i)*h, plan, difference(:, order(i)), exists)
@@ -199,7 +216,18 @@ contains
     round_off = merge(2.0_wp*epsilon(h)*abs(present), 0.0_wp, any(abs(difference) > 0.0_wp, dim=2))
     error = maxval(abs(change - lower) + round_off/h)
     if (error > 0.0_wp) error = error/max(maxval(abs(change)), tiny(error))
+    of_poses = maxval(abs(change - lower), mask=is_of_pose(plan, size(change)))/min(1.0_wp, plan%length) + linear_round_off/h
   end subroutine try_step
+
+  !> Mark the constants that belong to poses of pairs and links: those before all others.
+  pure function is_of_pose(plan, n)
+    type(plan_type), intent(in) :: plan   !< the plan
+    integer, intent(in) :: n              !< number of constants
+    logical :: is_of_pose(n)
+
+    is_of_pose = .false.
+    is_of_pose(:constants_of_coordinate*plan%n_coordinates + constants_of_pose*plan%n_links) = .true.
+  end function is_of_pose
 
   !> The difference of the constants at two values of a parameter, on both sides of the present one.
   subroutine find_difference(variable, model, number, distance, plan, difference, exists)

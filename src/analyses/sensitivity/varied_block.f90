@@ -2,7 +2,7 @@
 module mech9_varied_block
   use mech9_kinds, only: wp, long
   use mech9_batch_products, only: batch_size
-  use mech9_tolerances, only: singular_conditioning, opened_by_parameter, inexact_dimensions
+  use mech9_tolerances, only: singular_conditioning, opened_by_parameter, round_off_of_opening, inexact_dimensions
   use mech9_least_squares, only: least_squares_type, nearly_dependent
   use mech9_cofactors, only: invert_several
   use mech9_several_inverses, only: most_rows, find_pivot_order, invert_in_order, bound_conditioning
@@ -24,6 +24,7 @@ module mech9_varied_block
     integer :: at_once = batch_size                    !< most positions that are treated at once
     logical, private :: is_checked = .false.           !< chains may stay open although the equations are solved
     integer, allocatable, private :: parameters(:)     !< those that change the block
+    real(wp), allocatable, private :: round_off(:)     !< (P) of an opening by each parameter [rad, m]
     integer, allocatable, private :: coordinates(:)    !< unknowns
     real(wp), allocatable, private :: units(:)         !< of the unknowns: 1 rad, or the length of the mechanism [m]
     !> Factors of the Jacobian: those of one position after the other, or of each position where `solver` does not serve.
@@ -64,6 +65,7 @@ contains
       block%coordinates = planned%coordinates
       block%units = plan%unit_of(planned%coordinates)
       block%parameters = pack([(i, i=1, size(tangents))], any(support%touched(planned%coordinates, :), dim=1))
+      block%round_off = round_off_of_opening*tangents%round_off*max(1.0_wp, plan%length)
       allocate (block%forms(planned%last_closure - planned%first_closure + 1))
       rows = 0
       do i = 1, size(block%forms)
@@ -351,6 +353,7 @@ contains
       if (is_coupling) sizes(:good) = max(sizes(:good), abs(parts(:good, 1)))
       do k = 1, good
         if (maxval(abs(parts(k, :))) <= max(opened_by_parameter, inexact_dimensions*plan%data_tolerance)*sizes(k)) cycle
+        if (maxval(abs(parts(k, :))) <= block%round_off(p)) cycle
         good = k - 1
         opened_by = p
         return

@@ -4,7 +4,7 @@
 !> get the twists by which they move with a parameter, and closed chains may have any independent coordinates.
 module mech9_varied_motion
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: singular_conditioning, opened_by_parameter, inexact_dimensions
+  use mech9_tolerances, only: singular_conditioning, opened_by_parameter, round_off_of_opening, inexact_dimensions
   use mech9_error, only: error_type, raise, exit_data, exit_singular
   use mech9_failure, only: failure_singular_sensitivity, failure_opening_parameter
   use mech9_rotation, only: turn, cross
@@ -405,6 +405,7 @@ contains
           gap = size_of(place, self%plan%length)
         end if
         if (gap <= max(opened_by_parameter, inexact_dimensions*self%plan%data_tolerance)*largest) cycle
+        if (gap <= round_off_of_opening*self%tangents(p)%round_off) cycle
         call fail_with(failure_opening_parameter, exit_data, block, self%state%t, err)
         err%failure%number = p
         err%failure%name = model%parameters(p)%name

@@ -20,7 +20,8 @@ module mech9_tolerances
     trusted_crossing_rates, first_move, doubtful_conditioning, worthwhile_improvement, regular_conditioning, &
     refused_conditioning, trusted_closing, trusted_between_steps, steepest_slope, negligible_inertia, &
     doubtful_margin, lesser_share, lesser_share_near, short_way, third_derivative_step, locked, locked_together, balanced, &
-    equal_lengths, balanced_singular, regular_balance, opened_by_parameter, round_off_of_jumps, hidden_part, one_point
+    equal_lengths, balanced_singular, regular_balance, opened_by_parameter, round_off_of_opening, &
+    round_off_of_jumps, hidden_part, one_point
 
   ! Ranks and singular positions: judged alike by --check, driven motion and dynamics.
 
@@ -265,6 +266,9 @@ module mech9_tolerances
   !> A chain that a parameter opens does so by a part of the order of 1 of the largest shift of its links; one that stays closed does
   !> so to round-off times the conditioning of its block, which is 1e-7 or better.
   real(wp), parameter :: opened_by_parameter = 1.0e-7_wp
+  !> A parameter may move no link of a chain. The shifts of the links and the opening of the chain are then round-off of the constants'
+  !> derivatives: the opening is a sum of this over some dozen constants, which the conditioning of the chain makes larger.
+  real(wp), parameter :: round_off_of_opening = 1000.0_wp
 
 contains
 
