@@ -12,7 +12,7 @@ module mech9_motion
   use mech9_frame_motion, only: point_motion
   use mech9_simulation, only: simulation_type, simulation_statistics_type, interruption_type, &
     coordinate_change_type, estimated_errors_type, judge_error
-  use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
+  use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan, is_made_for
   use mech9_reactions, only: reactions_type, new_reactions, find_reactions
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation
@@ -285,7 +285,7 @@ contains
       call raise(err, exit_usage, 'forces are known only where they are asked for; give &output reactions=.true. /')
     end if
     if (allocated(err)) return
-    if (self%planned /= size(self%simulation%events)) then
+    if (self%planned /= size(self%simulation%events) .or. .not. is_made_for(self%reaction_plan, plan)) then
       call make_reaction_plan(self%model%mechanism, plan, self%reaction_plan)
       self%reactions = new_reactions(plan, self%reaction_plan)
       self%planned = size(self%simulation%events)

@@ -38,6 +38,7 @@ module mech9_ball_angles
     procedure :: in_doubt
     procedure :: move_as
     procedure :: change
+    procedure :: follow
     procedure :: may_continue
     procedure :: continue_to
     procedure :: in_lock
@@ -63,8 +64,8 @@ contains
     call self%restart(model, model%problem%partition, requested, plan, state, err)
   end subroutine begin
 
-  !> Find the ball joints of a plan, replace the angles of those that are near gimbal lock, and hold other angles of rods where
-  !> these serve clearly better.
+  !> Find the ball joints of a plan and replace the angles of those that are near gimbal lock. In the angles that move the joints then,
+  !> hold or free other angles of rods where these serve clearly better.
   subroutine restart(self, model, partition, requested, plan, state, err)
     class(ball_angles_type), intent(inout) :: self      !< the angles; gets the partition of the motion
     type(model_type), intent(in) :: model               !< the model
@@ -78,9 +79,6 @@ contains
 
     self%held%partition = partition
     call find_joints(self, model, plan)
-    call self%held%take_best(model, requested, self%joints, self%in_doubt(state%q), plan, state, changed, err)
-    if (allocated(err)) return
-    if (changed) call find_joints(self, model, plan)
     self%lock = model%request%solver%absolute_tolerance + model%request%solver%relative_tolerance
     if (size(self%joints) > 0) then
       self%plan = plan
@@ -90,8 +88,75 @@ contains
         if (allocated(err)) return
       end if
     end if
-    call self%held%hold_positions(plan, state)
+    call self%held%take_best(model, requested, self%in_use(), plan, state, changed, err)
+    if (.not. allocated(err) .and. changed) call self%follow(model, plan, state, err)
+    if (.not. allocated(err)) call self%held%hold_positions(plan, state)
   end subroutine restart
+
+  !> Follow the integrated motion to other independent coordinates, whose partition is known: the joints, and the plan and the state in
+  !> the angles of the data file.
+  subroutine follow(self, model, plan, state, err)
+    class(ball_angles_type), intent(inout) :: self      !< the angles; get joints, plan and state
+    type(model_type), intent(in) :: model               !< the model
+    type(plan_type), intent(in) :: plan                 !< of the integrated motion from now on
+    type(state_type), intent(inout) :: state            !< for this plan, with rates; gets its frames
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
+    type(ball_angles_type) :: before
+    type(plan_type) :: given
+    integer :: i, j, s, old
+
+    call place_all(plan, state, err)
+    if (allocated(err)) return
+    before%replaced = self%replaced
+    before%joints = self%joints
+    before%headings = self%headings
+    before%swings = self%swings
+    given = plan
+    do i = 1, size(before%joints)
+      do j = 1, 3
+        associate (step => before%joints(i)%steps(j), k => before%joints(i)%coordinates(j))
+          s = plan%step_of(k)
+          given%steps(s)%before = self%plan%steps(step)%before
+          given%steps(s)%turn = self%plan%steps(step)%turn
+          given%steps(s)%offset = self%plan%steps(step)%offset
+        end associate
+      end do
+    end do
+    call find_joints(self, model, given)
+    do i = 1, size(self%joints)
+      do old = 1, size(before%joints)
+        if (any(self%joints(i)%coordinates /= before%joints(old)%coordinates)) cycle
+        self%replaced(i) = before%replaced(old)
+        self%headings(i) = before%headings(old)
+        self%swings(i) = before%swings(old)
+      end do
+    end do
+    if (size(self%joints) == 0) return
+    self%plan = given
+    if (.not. self%in_use()) return
+    call carry_given_angles(self, state, err)
+  end subroutine follow
+
+  !> Carry the angles of the data file over to a state of a plan with other frames, in another order.
+  subroutine carry_given_angles(self, state, err)
+    class(ball_angles_type), intent(inout) :: self      !< the angles, with joints and plan; get the state
+    type(state_type), intent(in) :: state               !< of the integrated motion
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
+    type(state_type) :: given
+    integer :: i
+
+    given = state
+    do i = 1, size(self%joints)
+      if (.not. self%replaced(i)) cycle
+      associate (k => self%joints(i)%coordinates)
+        given%q(k) = self%state%q(k)
+        given%dq(k) = self%state%dq(k)
+        given%ddq(k) = self%state%ddq(k)
+      end associate
+    end do
+    self%state = given
+    call place_all(self%plan, self%state, err)
+  end subroutine carry_given_angles
 
   !> Find the ball joints of a plan, none of whose angles is replaced yet.
   subroutine find_joints(self, model, plan)
@@ -131,17 +196,14 @@ contains
     end do
   end function in_doubt
 
-  !> Whether the same angles move the joints, and the same are held, as with others of the same mechanism.
+  !> Whether the same angles move the joints, and the same coordinates are independent, as with others of the same mechanism.
   pure logical function move_as(self, other)
     class(ball_angles_type), intent(in) :: self   !< the angles
     class(ball_angles_type), intent(in) :: other  !< angles of the other motion
-    integer :: i
 
     move_as = size(self%replaced) == size(other%replaced)
     if (move_as) move_as = all(self%replaced .eqv. other%replaced)
-    do i = 1, size(self%held%rods)
-      move_as = move_as .and. self%held%rods(i)%held == other%held%rods(i)%held
-    end do
+    if (move_as) move_as = all(self%held%partition%kind == other%held%partition%kind)
   end function move_as
 
   !> Change the angles of the joints that are in doubt. The plan and the state of the integrated motion follow from those in the

@@ -237,7 +237,8 @@ contains
   !> The plan and the state in other independent coordinates. Blocks that do not change are taken over; where that cannot be, the
   !> plan is made from the beginning. Fails with exit_singular where these coordinates cannot serve or the state cannot be
   !> carried over, and with the code of the failure where a pair or the program itself fails.
-  subroutine carry_over(mechanism, partition, plan, state, requested, new_plan, new_state, err, wanted, in_vain, same_frames)
+  subroutine carry_over(mechanism, partition, plan, state, requested, new_plan, new_state, err, wanted, in_vain, same_frames, &
+                        other_turns)
     type(mechanism_type), intent(in) :: mechanism        !< the mechanism
     type(partition_type), intent(in) :: partition        !< with the other independent coordinates
     type(plan_type), intent(in) :: plan                  !< the present plan
@@ -249,6 +250,9 @@ contains
     type(wanted_type), intent(in), optional :: wanted    !< conditioning for which the change is worthwhile; any unless given
     logical, intent(out), optional :: in_vain            !< it is not worthwhile, and no plan was made
     logical, intent(out), optional :: same_frames        !< the plan has the frames of the present one, perhaps in another order
+    !> The present plan has other angles of ball joints than the mechanism, so that none can be made from the beginning; not unless
+    !> given.
+    logical, intent(in), optional :: other_turns
     type(replanning_type) :: replanning
     type(wanted_type) :: enough
 
@@ -257,8 +261,12 @@ contains
     if (present(in_vain)) in_vain = replanning%in_vain
     if (present(same_frames)) same_frames = replanning%serves
     if (allocated(err) .or. replanning%in_vain) return
-    if (.not. replanning%serves) &
-      call plan_from_beginning(mechanism, partition, plan, state, requested, new_plan, new_state, err)
+    if (.not. replanning%serves) then
+      if (present(other_turns)) then
+        if (other_turns) call raise(err, exit_singular, failure_other_branch)
+      end if
+      if (.not. allocated(err)) call plan_from_beginning(mechanism, partition, plan, state, requested, new_plan, new_state, err)
+    end if
     if (allocated(err)) return
     new_state%t = state%t
     new_state%dq = state%dq

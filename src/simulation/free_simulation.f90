@@ -94,7 +94,7 @@ contains
     type(free_simulation_type), intent(out) :: simulation   !< to be started
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     logical, intent(in), optional :: pictures               !< the motion of all links is requested; not unless given
-    type(plan_type) :: used
+    type(plan_type) :: used, given
     type(state_type) :: start
 
     simulation%model => model
@@ -110,6 +110,7 @@ contains
     call leave_out_unrequested(used, simulation%requested)
     call request_planned(used, simulation%requested)
     start = assembled
+    given = used
     call simulation%motion%angles%begin(model, simulation%requested, used, start, err)
     if (allocated(err)) return
     allocate (simulation%motion%system)
@@ -126,10 +127,28 @@ contains
     simulation%coefficients = simulation%motion%system%work%coefficients
     if (.not. simulation%motion%angles%in_use()) return
     ! with other angles held, those of the data file may be singular; the coefficients do not depend on which is held
-    if (size(simulation%motion%angles%held%rods) == 0) &
-      call find_coefficients(model%mechanism, simulation%motion%angles%plan, assembled, simulation%coefficients, err)
+    if (all(simulation%motion%angles%held%rods%is_free)) &
+      call keep_coefficients(model, given, assembled, simulation%coefficients, err)
     if (.not. allocated(err)) call add_event(simulation)
   end subroutine new_free_simulation
+
+  !> Keep the coefficients of motion in the angles of the data file. In closed chains those may be singular at the start: then the ones
+  !> of the integrated motion remain.
+  subroutine keep_coefficients(model, plan, assembled, coefficients, err)
+    type(model_type), intent(in) :: model                       !< the model
+    type(plan_type), intent(in) :: plan                         !< with the angles of the data file
+    type(state_type), intent(in) :: assembled                   !< its closed position
+    real(wp), allocatable, intent(inout) :: coefficients(:, :)  !< of the integrated motion; lower triangle
+    type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
+    real(wp), allocatable :: found(:, :)
+
+    call find_coefficients(model%mechanism, plan, assembled, found, err)
+    if (.not. allocated(err)) then
+      call move_alloc(found, coefficients)
+    else if (size(plan%closures) > 0 .and. err%code == exit_singular) then
+      deallocate (err)
+    end if
+  end subroutine keep_coefficients
 
   !> Begin to integrate. The position at the start is that of the system.
   subroutine begin(self, t, err)
@@ -307,7 +326,7 @@ contains
       end if
       call motion%change_angles(self%requested, changed, err)
     end associate
-    if (changed) changed = .not. same_replaced(self)
+    if (changed) changed = .not. (same_replaced(self) .and. same_independent(self))
     if (changed) call add_event(self)
   end subroutine change_angles
 
@@ -339,6 +358,25 @@ contains
       if (same_replaced) same_replaced = all(now == before)
     end associate
   end function same_replaced
+
+  !> Whether the same coordinates were independent at the last event, or at the start, beside the angles of joints with several freedoms.
+  logical function same_independent(self)
+    class(free_simulation_type), intent(in) :: self   !< the simulation
+    logical, dimension(self%motion%system%plan%n_coordinates) :: before, now
+    integer :: k
+
+    before = self%model%problem%partition%independent()
+    if (size(self%events) > 0) then
+      before = .false.
+      before(self%events(size(self%events))%independent) = .true.
+    end if
+    now = .false.
+    now(self%motion%system%plan%independent) = .true.
+    same_independent = .true.
+    do k = 1, size(now)
+      if (self%model%mechanism%structure%joint_of(k) == 0) same_independent = same_independent .and. (now(k) .eqv. before(k))
+    end do
+  end function same_independent
 
   !> One more event: the present choice of coordinates. By hand: an array constructor of them would leak (gfortran 12).
   subroutine add_event(self)

@@ -6,14 +6,13 @@ module mech9_held_angles
   use mech9_error, only: error_type
   use mech9_law, only: drive_slot_type
   use mech9_polynomial_law, only: polynomial_law_type
-  use mech9_partition, only: partition_type, dependent_coordinate, driven_coordinate
+  use mech9_partition, only: partition_type, dependent_coordinate
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_requested, only: requested_type, request_planned
   use mech9_frame_motion, only: place_all
-  use mech9_ball_joints, only: ball_joint_type
-  use mech9_held_rods, only: held_rod_type, find_held_rods, find_steps, best_angles, should_change, stop_turn
+  use mech9_held_rods, only: held_rod_type, find_held_rods, find_steps, best_angles, should_change, stop_turn, note_free
   use mech9_coordinate_choice, only: carry_over
   implicit none
   private
@@ -64,7 +63,7 @@ contains
 
     partition = self%partition
     do i = 1, size(self%rods)
-      partition%kind(self%rods(i)%held) = dependent_coordinate
+      if (.not. self%rods(i)%is_free) partition%kind(self%rods(i)%held) = dependent_coordinate
     end do
   end function as_if_not_held
 
@@ -80,14 +79,13 @@ contains
     end do
   end function in_doubt
 
-  !> Hold other angles of rods where these serve clearly better, in the angles that will move the joints.
-  subroutine take_best(self, model, requested, joints, other_turns, plan, state, changed, err)
+  !> Hold other angles of rods where these serve clearly better, in the angles that move the joints.
+  subroutine take_best(self, model, requested, other_turns, plan, state, changed, err)
     class(held_angles_type), intent(inout) :: self      !< the angles
     type(model_type), intent(in) :: model               !< the model
     type(requested_type), intent(in) :: requested       !< the part of the motion that is worked out
-    type(ball_joint_type), intent(in) :: joints(:)      !< ball joints whose angles may be replaced
-    logical, intent(in) :: other_turns(:)               !< (joints) other angles will move the joint
-    type(plan_type), intent(inout) :: plan              !< with the angles of the data file
+    logical, intent(in) :: other_turns                  !< other angles than those of the data file move joints
+    type(plan_type), intent(inout) :: plan              !< with the angles that move the joints
     type(state_type), intent(inout) :: state            !< for this plan, with rates
     logical, intent(out) :: changed                     !< plan and state are those with other angles held
     type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
@@ -97,27 +95,34 @@ contains
     type(plan_type) :: other_plan
     type(state_type) :: other_state
     integer, dimension(size(self%rods)) :: before, held
-    integer :: i
+    integer :: i, kind
 
     changed = .false.
     if (size(self%rods) == 0) return
+    call note_free(self%partition, self%rods)
     call find_steps(plan, self%rods)
     before = [(self%rods(i)%held, i=1, size(before))]
-    held = best_angles(self%rods, joints, other_turns, plan, state)
+    held = best_angles(self%rods, state)
     if (all(held == before)) return
     partition = self%partition
-    partition%kind(before) = dependent_coordinate
-    partition%kind(held) = driven_coordinate
+    do i = 1, size(held)
+      if (held(i) == before(i)) cycle
+      kind = partition%kind(before(i))
+      partition%kind(before(i)) = dependent_coordinate
+      partition%kind(held(i)) = kind
+    end do
     all_requested = requested
     call request_planned(plan, all_requested)
-    call carry_over(model%mechanism, partition, plan, state, all_requested, other_plan, other_state, failure)
+    call carry_over(model%mechanism, partition, plan, state, all_requested, other_plan, other_state, failure, &
+                    other_turns=other_turns)
     ! the present angles serve, too, if not as well
     if (allocated(failure)) return
+    other_state%ddq = state%ddq
     plan = other_plan
     state = other_state
     self%partition = partition
     do i = 1, size(held)
-      call exchange_drive(before(i), held(i), self%drives)
+      if (.not. self%rods(i)%is_free) call exchange_drive(before(i), held(i), self%drives)
       self%rods(i)%held = held(i)
     end do
     call find_steps(plan, self%rods)
@@ -147,6 +152,7 @@ contains
     integer :: i, j
 
     do j = 1, size(self%rods)
+      if (self%rods(j)%is_free) cycle
       call stop_turn(self%rods(j), plan, state)
       do i = 1, size(self%drives)
         if (self%drives(i)%drive%coordinate /= self%rods(j)%held) cycle

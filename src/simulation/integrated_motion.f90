@@ -167,19 +167,18 @@ contains
     in_vain = .false.
     partition = self%system%partition%in_same_order(independent)
     wanted = worth_taking(self%system%conditioning(), self%system%work%blocks)
-    if (self%angles%in_use()) then
-      call self%show_angles(err)
-      if (allocated(err)) return
-      call carry_over(self%system%model%mechanism, partition, self%angles%plan, self%angles%state, requested, other%plan, &
-                      other%state, failure, wanted, in_vain)
-      same_frames = .false.
-    else
-      call carry_over(self%system%model%mechanism, partition, self%system%plan, self%system%state, requested, other%plan, &
-                      other%state, failure, wanted, in_vain, same_frames)
-    end if
+    call self%show_angles(err)
+    if (allocated(err)) return
+    call carry_over(self%system%model%mechanism, partition, self%system%plan, self%system%state, requested, other%plan, &
+                    other%state, failure, wanted, in_vain, same_frames, self%angles%in_use())
     if (gives_up(failure, err) .or. in_vain) return
     angles = self%angles
-    call angles%restart(self%system%model, partition, requested, other%plan, other%state, failure)
+    if (angles%in_use()) then
+      angles%held%partition = partition
+      call angles%follow(self%system%model, other%plan, other%state, failure)
+    else
+      call angles%restart(self%system%model, partition, requested, other%plan, other%state, failure)
+    end if
     if (gives_up(failure, err)) return
     same_frames = same_frames .and. .not. angles%in_use() .and. all(angles%held%partition%kind == partition%kind)
     call copy_drives(angles%held%drives, other%drives)
@@ -232,7 +231,7 @@ contains
     type(motion_system_type), intent(inout) :: other        !< gets the system
     type(error_type), allocatable, intent(out) :: failure   !< allocated if these angles cannot serve
 
-    if (size(angles%held%rods) > 0) then
+    if (size(self%system%plan%closures) > 0) then
       if (angles%in_use()) then
         other%plan = angles%plan
         other%state = angles%state

@@ -17,7 +17,7 @@ module mech9_reaction_plan
   use mech9_plan, only: plan_type
   implicit none
   private
-  public :: reaction_plan_type, joined_pair_type, joined_cluster_type, make_reaction_plan
+  public :: reaction_plan_type, joined_pair_type, joined_cluster_type, make_reaction_plan, is_made_for
 
   !> One pair, as inverse dynamics sees it.
   type :: joined_pair_type
@@ -103,6 +103,22 @@ contains
     allocate (reactions%flat_bodies(0))
     if (plan%planar%used .and. all(reactions%clusters%determined)) call lay_flat(mechanism, plan, reactions)
   end subroutine make_reaction_plan
+
+  !> Whether a plan of inverse dynamics was made for a plan with the same independent coordinates and the same order of steps.
+  pure logical function is_made_for(reactions, plan)
+    type(reaction_plan_type), intent(in) :: reactions     !< the plan of inverse dynamics, perhaps not made yet
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    integer :: k
+
+    is_made_for = allocated(reactions%pairs)
+    if (.not. is_made_for) return
+    do k = 1, size(reactions%pairs)
+      associate (pair => reactions%pairs(k))
+        is_made_for = is_made_for .and. plan%steps(pair%step)%coordinate == k &
+                      .and. (plan%steps(pair%step)%dependent .eqv. pair%dependent)
+      end associate
+    end do
+  end function is_made_for
 
   !> Whether inertia and weight act in the plane of a planar mechanism, and its bodies there.
   subroutine lay_flat(mechanism, plan, reactions)

@@ -1,8 +1,8 @@
 !> Ball joints that are made of three revolute pairs, whose angles may be replaced by those of another triple of axes.
 !>
 !> The axes of the three pairs meet in one point, each at a right angle to the next. The two links between them have no
-!> inertia, bear no load and carry no other link. The three angles are either all free, outside closed chains, or all determined
-!> by closed chains. Then nothing depends on them but the rotation that they give together. Another triple of axes with the same
+!> inertia, bear no load and carry no other link. The three angles are either all free, outside closed chains, or each of them is free
+!> or determined by closed chains. Then nothing depends on them but the rotation that they give together. Another triple of axes with the same
 !> rotation gives the same motion, and need not be singular where the angles of the data file are. Where the links between have
 !> inertia, or neighbouring axes are not at right angles, the mechanism itself is another one beside such a position, and nothing
 !> may be replaced.
@@ -86,7 +86,7 @@ contains
   end function passive_frames
 
   !> Steps of revolute pairs that no load or coupling reads or moves, with free coordinates outside closed chains or with
-  !> dependent ones inside. All steps of one kind are followed by others of the same kind in a joint, since its chain has no
+  !> free or dependent ones inside. All steps of one kind are followed by others of the same kind in a joint, since its chain has no
   !> branches.
   function free_steps(mechanism, partition, plan) result(free)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
@@ -112,7 +112,8 @@ contains
       associate (step => plan%steps(i))
         free(i) = free(i) .and. step%is_screw .and. abs(step%turn) > 0.0_wp .and. .not. abs(step%slide) > 0.0_wp &
                   .and. .not. loaded(step%coordinate) &
-                  .and. partition%kind(step%coordinate) == merge(dependent_coordinate, free_coordinate, in_loop(i))
+                  .and. (partition%kind(step%coordinate) == free_coordinate &
+                         .or. in_loop(i) .and. partition%kind(step%coordinate) == dependent_coordinate)
       end associate
     end do
   end function free_steps

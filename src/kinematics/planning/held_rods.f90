@@ -1,4 +1,5 @@
-!> Rods between two ball joints, one of whose six angles the program holds because the rod can turn by itself.
+!> Rods between two ball joints that can turn by themselves: one of their six angles is independent, which the program holds or which
+!> is free.
 !>
 !> The other five angles are determined as long as the held one changes when the rod turns about itself. Its share in such a turn is
 !> its rate times the sine of the angle between the first and the third axis of its joint: finite in gimbal lock, too. Where
@@ -9,13 +10,14 @@ module mech9_held_rods
   use mech9_tolerances, only: lesser_share, lesser_share_near
   use mech9_rotation, only: cross, unit
   use mech9_idle_rods, only: idle_rod_type, find_idle_rods
+  use mech9_partition, only: partition_type, free_coordinate, dependent_coordinate
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_ball_joints, only: ball_joint_type
   implicit none
   private
-  public :: held_rod_type, held_angle, find_held_rods, find_steps, best_angles, should_change, stop_turn
+  public :: held_rod_type, held_angle, find_held_rods, find_steps, best_angles, should_change, stop_turn, &
+    note_free
 
   !> One rod. The first index is that of the angle in its joint, the second that of the joint.
   type :: held_rod_type
@@ -23,7 +25,8 @@ module mech9_held_rods
     integer :: ends(2) = 0             !< the rod's link at each joint
     integer :: steps(3, 2) = 0         !< steps of the plan that make them
     logical :: taken(3, 2) = .false.   !< the angle is an independent coordinate itself, so that it cannot be held
-    integer :: held = 0                !< number of the coordinate that is held
+    integer :: held = 0                !< number of the coordinate that is held, or free; 0: a free one, if other angles are independent
+    logical :: is_free = .false.       !< the angle moves freely
   end type held_rod_type
 
 contains
@@ -42,7 +45,7 @@ contains
     end do
   end function held_angle
 
-  !> The rods that the program holds and whose positions the plan computes.
+  !> The rods that turn by themselves and whose positions the plan computes: those that the program holds, and those that move freely.
   subroutine find_held_rods(model, plan, rods)
     type(model_type), intent(in) :: model                        !< the model
     type(plan_type), intent(in) :: plan                          !< its plan
@@ -67,15 +70,37 @@ contains
         associate (rod => found(n + 1))
           rod%ends = [idle(i)%links(1), idle(i)%links(size(idle(i)%links))]
           rod%held = held_angle(model, [rod%coordinates])
-          if (rod%held == 0 .or. count(planned([rod%coordinates])) < 5) cycle
+          rod%is_free = rod%held == 0 .and. any(model%problem%partition%kind([rod%coordinates]) == free_coordinate)
+          if (.not. (rod%held > 0 .or. rod%is_free) .or. count(planned([rod%coordinates])) < 5) cycle
         end associate
         n = n + 1
       end do
     end if
     allocate (rods(n))
     rods = found(:n)
+    call note_free(model%problem%partition, rods)
     call find_steps(plan, rods)
   end subroutine find_held_rods
+
+  !> Note which angle of each free rod is independent; none where several are, or none, since other coordinates were chosen.
+  pure subroutine note_free(partition, rods)
+    type(partition_type), intent(in) :: partition    !< of the coordinates
+    type(held_rod_type), intent(inout) :: rods(:)    !< get their free angles
+    integer :: i, j, k
+
+    do i = 1, size(rods)
+      if (.not. rods(i)%is_free) cycle
+      rods(i)%held = 0
+      associate (kinds => reshape(partition%kind([rods(i)%coordinates]), [3, 2]))
+        if (count(kinds /= dependent_coordinate) /= 1) cycle
+        do j = 1, 2
+          do k = 1, 3
+            if (kinds(k, j) == free_coordinate) rods(i)%held = rods(i)%coordinates(k, j)
+          end do
+        end do
+      end associate
+    end do
+  end subroutine note_free
 
   !> Find the steps that make the angles of rods in a plan, and those that are independent in it.
   pure subroutine find_steps(plan, rods)
@@ -132,6 +157,8 @@ contains
     logical, intent(in) :: is_near             !< a closed chain is near a singular position, perhaps because of the held angle
     real(wp) :: shares(3, 2), share
 
+    should_change = .false.
+    if (rod%held == 0) return
     shares = shares_of(rod, state)
     share = maxval(shares, mask=rod%coordinates == rod%held)
     should_change = share < merge(lesser_share_near, lesser_share, is_near)*maxval(shares, mask=.not. rod%taken)
@@ -139,28 +166,18 @@ contains
 
   !> The angle of each rod to be held from now on: the present one, unless another one has a clearly greater share, which
   !> the greatest is then.
-  function best_angles(rods, joints, second_chart, plan, state) result(held)
-    type(held_rod_type), intent(in) :: rods(:)          !< the rods
-    type(ball_joint_type), intent(in) :: joints(:)      !< ball joints whose angles may be replaced
-    logical, intent(in) :: second_chart(:)              !< (joints) other angles will move the joint
-    type(plan_type), intent(in) :: plan                 !< with the angles of the data file
-    type(state_type), intent(in) :: state               !< in these angles, frames in place
+  function best_angles(rods, state) result(held)
+    type(held_rod_type), intent(in) :: rods(:)          !< the rods, with their steps
+    type(state_type), intent(in) :: state               !< in the angles that move the joints, frames in place
     integer :: held(size(rods))
-    real(wp) :: shares(3, 2), in_order(3)
-    integer :: i, j, k, n, at(2)
+    real(wp) :: shares(3, 2)
+    integer :: i, at(2)
 
     do i = 1, size(rods)
       associate (rod => rods(i))
-        shares = shares_of(rod, state)
-        do k = 1, size(joints)
-          if (.not. second_chart(k)) cycle
-          do j = 1, 2
-            if (.not. any(rod%steps(:, j) == joints(k)%steps(1))) cycle
-            in_order = shares_about(substitute_axes(joints(k), plan, state), line_of(rod, state))
-            shares(:, j) = [(in_order(findloc(joints(k)%steps, rod%steps(n, j), dim=1)), n=1, 3)]
-          end do
-        end do
         held(i) = rod%held
+        if (rod%held == 0) cycle
+        shares = shares_of(rod, state)
         if (maxval(shares, mask=rod%coordinates == rod%held) >= &
             lesser_share_near*maxval(shares, mask=.not. rod%taken)) cycle
         at = maxloc(shares, mask=.not. rod%taken)
@@ -198,16 +215,4 @@ contains
     end if
     state%dq(rod%held) = 0.0_wp
   end subroutine stop_turn
-
-  !> Directions of the substitute turns of a ball joint, in the order of its steps.
-  pure function substitute_axes(joint, plan, state) result(axes)
-    type(ball_joint_type), intent(in) :: joint   !< the joint
-    type(plan_type), intent(in) :: plan          !< with the angles of the data file
-    type(state_type), intent(in) :: state        !< in these angles, frames in place
-    real(wp) :: axes(3, 3)
-
-    axes(:, 1) = matmul(state%r(:, :, plan%steps(joint%steps(1))%parent), joint%replaced(1)%before%r(:, 3))
-    axes(:, 3) = state%axis_w(:, joint%steps(3))
-    axes(:, 2) = unit(cross(axes(:, 3), axes(:, 1)))
-  end function substitute_axes
 end module mech9_held_rods

@@ -6,7 +6,7 @@ module mech9_force_record
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_simulation, only: simulation_type
-  use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
+  use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan, is_made_for
   use mech9_reactions, only: reactions_type, new_reactions, find_reactions
   use mech9_uniqueness, only: uniqueness_type, find_unique
   use mech9_columns, only: columns_type
@@ -82,7 +82,7 @@ contains
     type(state_type), intent(in) :: state               !< its present state
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    if (self%events /= size(simulation%events)) then
+    if (self%events /= size(simulation%events) .or. .not. is_made_for(self%plan, plan)) then
       call make_reaction_plan(simulation%model%mechanism, plan, self%plan)
       self%reactions = new_reactions(plan, self%plan)
       self%events = size(simulation%events)
