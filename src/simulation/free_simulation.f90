@@ -26,7 +26,7 @@ module mech9_free_simulation
   use mech9_variable_model, only: variable_model_type
   use mech9_sensitivity, only: sensitivity_type, new_given_sensitivity
   use mech9_varied_motion, only: varied_motion_type
-  use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type
+  use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type, standing_type
   implicit none
   private
   public :: free_simulation_type, new_free_simulation, assemble_free
@@ -50,6 +50,7 @@ module mech9_free_simulation
     procedure :: watch_conditioning
     procedure :: energies
     procedure :: count_work
+    procedure :: standing
     procedure :: close => close_simulation
     procedure, private :: step
     procedure, private :: change_coordinates
@@ -510,6 +511,21 @@ contains
     statistics%evaluations = counts%rate_evaluations
     statistics%newton_iterations = self%motion%iterations()
   end subroutine count_work
+
+  !> The end of the last step, and the coordinate that moves fastest there.
+  type(standing_type) function standing(self)
+    class(free_simulation_type), intent(inout) :: self              !< the simulation
+    type(integration_statistics_type) :: counts
+
+    counts = self%motion%statistics()
+    standing%t = self%motion%t
+    standing%step = abs(counts%last_step)
+    standing%conditioning = self%motion%conditioning_here
+    associate (system => self%motion%system)
+      standing%fastest = maxloc(abs(system%state%dq)/system%plan%unit_of, dim=1)
+      standing%rate = system%state%dq(standing%fastest)
+    end associate
+  end function standing
 
   !> Free the memory of the motion.
   subroutine close_simulation(self)

@@ -15,7 +15,7 @@ module mech9_simulation
   implicit none
   private
   public :: simulation_type, interruption_type, simulation_statistics_type, coordinate_change_type
-  public :: estimated_errors_type, judge_error
+  public :: estimated_errors_type, judge_error, standing_type
 
   !> Answers whether a motion shall stop. It is asked before each time and before each step of an integrator.
   type, abstract :: interruption_type
@@ -32,6 +32,15 @@ module mech9_simulation
     integer(long) :: halvings = 0            !< steps of branch stepping that were too long
     integer(long) :: crossings = 0           !< singular positions that were crossed
   end type simulation_statistics_type
+
+  !> The place of a motion between two outputs, and reasons for short steps.
+  type :: standing_type
+    real(wp) :: t = 0.0_wp              !< end of the last step [s]
+    real(wp) :: step = 0.0_wp           !< its length [s]; 0: not known
+    integer :: fastest = 0              !< the coordinate that moves fastest in its unit; 0: not known
+    real(wp) :: rate = 0.0_wp           !< its rate [rad/s, m/s]
+    real(wp) :: conditioning = 1.0_wp   !< least pivot ratio of all blocks
+  end type standing_type
 
   !> An event: a change of the independent coordinates, or of the angles that are integrated for ball joints.
   type :: coordinate_change_type
@@ -88,6 +97,7 @@ module mech9_simulation
     procedure :: visit
     procedure :: stop_if_interrupted
     procedure :: statistics
+    procedure :: standing => standing_at_output
     procedure :: keep_counts
     procedure :: return_to_counts
     procedure :: keep_work => keep_no_work
@@ -167,7 +177,10 @@ contains
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
 
-    if (present(interruption)) allocate (self%interruption, source=interruption)
+    if (present(interruption)) then
+      if (allocated(self%interruption)) deallocate (self%interruption)
+      allocate (self%interruption, source=interruption)
+    end if
     self%direction = sign(1.0_wp, self%model%request%time%end - self%model%request%time%start)
     self%t = self%model%request%time%start
     call self%stop_if_interrupted(self%t, err)
@@ -298,6 +311,13 @@ contains
     statistics%positions = self%positions
     call self%count_work(statistics)
   end function statistics
+
+  !> The place of the motion: its present position, unless a simulation tells more.
+  type(standing_type) function standing_at_output(self) result(standing)
+    class(simulation_type), intent(inout) :: self   !< the simulation
+
+    standing%t = self%t
+  end function standing_at_output
 
   !> Keep the counts of the present position, which is one of several that wait for their derivatives.
   subroutine keep_counts(self, place)

@@ -25,6 +25,7 @@ module mech9_progress
   contains
     procedure :: start
     procedure :: update
+    procedure :: clear
     procedure :: finish
   end type progress_type
 
@@ -65,8 +66,8 @@ contains
     self%shown = .true.
   end subroutine update
 
-  !> Remove the line; this is called before any other output on the terminal.
-  subroutine finish(self)
+  !> Remove the line until the next update; this is called before any other output on the terminal.
+  subroutine clear(self)
     class(progress_type), intent(inout) :: self   !< the progress
     integer :: status
 
@@ -75,6 +76,13 @@ contains
       flush (error_unit, iostat=status)
     end if
     self%shown = .false.
+  end subroutine clear
+
+  !> Remove the line for good.
+  subroutine finish(self)
+    class(progress_type), intent(inout) :: self   !< the progress
+
+    call self%clear()
     self%active = .false.
   end subroutine finish
 

@@ -1,13 +1,18 @@
 !> Recording of a motion: rows are computed and written alternately.
 module mech9_recording
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_error, only: error_type, exit_interrupted
   use mech9_clock, only: seconds, pacer_type
+  use mech9_system, only: interrupted
+  use mech9_text, only: to_text
   use mech9_model, only: model_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_row_source, only: row_source_type
   use mech9_results, only: results_type
   use mech9_progress, only: progress_type
+  use mech9_simulation, only: standing_type
+  use mech9_standing_text, only: standing_text
   implicit none
   private
   public :: recording_outcome_type, record
@@ -17,6 +22,9 @@ module mech9_recording
   integer, parameter :: rows_together = 256
   !> Time after which computed rows are written even if there are fewer, so that a killed run does not lose them [s].
   real(wp), parameter :: longest_wait = 0.25_wp
+
+  !> Time without a new row after which the user is told where the motion stands [s]; the next time comes after twice as long.
+  real(wp), parameter :: first_words_after = 10.0_wp
 
   !> The outcome of a recording.
   type :: recording_outcome_type
@@ -28,7 +36,8 @@ module mech9_recording
 contains
 
   !> Record the rows at all output times in the results, which stay open. When the motion cannot go on, or the
-  !> user interrupts, the computed rows are written first.
+  !> user interrupts, the computed rows are written first. A motion that takes long to its next output pauses: rows before reach
+  !> the files, and the user is told where it stands.
   subroutine record(source, model, results, quiet, outcome, err, kept)
     type(row_source_type), intent(inout) :: source              !< computes the rows
     type(model_type), intent(in) :: model       !< the model
@@ -40,9 +49,11 @@ contains
     type(error_type), allocatable :: stopped, at_flush
     type(progress_type) :: progress
     type(pacer_type) :: pacer
+    type(pacer_type), target :: pause
     real(wp), allocatable :: rows(:, :)
-    real(wp) :: clock
+    real(wp) :: clock, last_row, words_after
     integer :: next, count
+    logical :: held_back
 
     allocate (rows(source%columns%width(), rows_together), source=0.0_wp)
     if (present(kept)) &
@@ -51,6 +62,11 @@ contains
     clock = seconds()
     call progress%start(source%program_name, quiet)
     call pacer%start(longest_wait)
+    call pause%start(longest_wait)
+    source%pause => pause
+    last_row = clock
+    words_after = first_words_after
+    held_back = .false.
     next = 0
     do while (next <= model%request%time%intervals .and. .not. allocated(stopped))
       call lap(clock, outcome%seconds_writing)
@@ -60,7 +76,24 @@ contains
       if (present(kept)) call kept%take(rows(:source%columns%count, :count))
       call results%write_rows(rows(:, :count), err)
       if (allocated(err)) exit
+      if (count > 0) then
+        last_row = clock
+        words_after = first_words_after
+        held_back = .true.
+      else if (held_back) then
+        call results%flush(err)
+        if (allocated(err)) exit
+        held_back = .false.
+      end if
+      if (.not. is_pause(stopped)) cycle
+      deallocate (stopped)
+      call progress%update(part_done(source, model))
+      if (quiet .or. clock - last_row < words_after) cycle
+      call progress%clear()
+      call tell_standing(source, model, int(clock - last_row))
+      words_after = 2.0_wp*words_after
     end do
+    source%pause => null()
     call progress%finish()
     if (.not. (allocated(stopped) .or. allocated(err) .or. source%quantities%is_empty())) call source%quantities%finish()
     call results%flush(at_flush)
@@ -68,6 +101,41 @@ contains
     if (.not. allocated(err)) call move_alloc(at_flush, err)
     if (.not. allocated(err)) call move_alloc(stopped, err)
   end subroutine record
+
+  !> Whether a motion stopped for a pause and not for the user.
+  logical function is_pause(stopped)
+    type(error_type), allocatable, intent(in) :: stopped   !< why it stopped, if it did
+
+    is_pause = allocated(stopped)
+    if (is_pause) is_pause = stopped%code == exit_interrupted .and. .not. interrupted()
+  end function is_pause
+
+  !> Tell where the motion stands.
+  subroutine tell_standing(source, model, waited)
+    type(row_source_type), intent(inout) :: source   !< computes the rows
+    type(model_type), intent(in) :: model            !< the model
+    integer, intent(in) :: waited                    !< time without a new row [s]
+    type(standing_type) :: standing
+    integer :: status
+
+    standing = source%standing()
+    write (error_unit, '(a)') source%program_name//': no new row for '//to_text(waited)//' s: the motion is at '// &
+      standing_text(model, standing)
+    flush (error_unit, iostat=status)
+  end subroutine tell_standing
+
+  !> The part of the run's time that is over.
+  real(wp) function part_done(source, model)
+    type(row_source_type), intent(inout) :: source   !< computes the rows
+    type(model_type), intent(in) :: model            !< the model
+    type(standing_type) :: standing
+
+    standing = source%standing()
+    associate (time => model%request%time)
+      part_done = 0.0_wp
+      if (abs(time%end - time%start) > 0.0_wp) part_done = (standing%t - time%start)/(time%end - time%start)
+    end associate
+  end function part_done
 
   !> Compute the next rows, from output number `next` on; there are fewer where the motion or the run ends, or takes long.
   subroutine compute_rows(source, model, progress, pacer, next, rows, count, err)

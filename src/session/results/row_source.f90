@@ -8,7 +8,8 @@ module mech9_row_source
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_simulation, only: simulation_type, interruption_type
+  use mech9_clock, only: pacer_type
+  use mech9_simulation, only: simulation_type, interruption_type, standing_type
   use mech9_batch_products, only: batch_size
   use mech9_tangent, only: tangent_type, find_tangent
   use mech9_smooth_pieces, only: have_joints
@@ -32,10 +33,12 @@ module mech9_row_source
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
     type(quantity_record_type) :: quantities   !< of the whole run
     type(tangent_type), allocatable, private :: tangents(:)   !< (P) of the constants, where quantities need those of joints of laws
+    type(pacer_type), pointer :: pause => null()   !< the motion stops, to go on with the same row, where this is due; not owned
     integer, private :: waiting = 0                !< rows that wait for their derivatives, in the order of time
     integer, private :: outputs = 0                !< how many of them are outputs
     logical, private :: is_output(batch_size) = .true.   !< each of them is an output, not a row between two outputs
     real(wp), private :: next_output(batch_size) = 0.0_wp   !< time of each output, or of the output after each row between [s]
+    integer, private :: visited = 0                !< times after the last output that were visited
     real(wp), private :: last_output = 0.0_wp      !< time of the output that was reached last [s]
     real(wp), allocatable, private :: between(:, :)      !< (width,batch) rows between two outputs
     integer, allocatable, private :: wanted(:)           !< columns whose derivatives are wanted at outputs
@@ -44,13 +47,15 @@ module mech9_row_source
     procedure :: begin_quantities
     procedure :: add_row
     procedure :: complete
+    procedure :: standing
     procedure :: row_at
     procedure :: go_through
     procedure :: add_sensitivities
   end type row_source_type
 
-  !> A motion stops where the user interrupts the program.
+  !> A motion stops where the user interrupts the program, or for a pause.
   type, extends(interruption_type) :: signal_interruption_type
+    type(pacer_type), pointer :: pause => null()   !< not owned; where it is associated, a motion stops when this is due
   contains
     procedure :: is_wanted
   end type signal_interruption_type
@@ -142,7 +147,7 @@ contains
 
   !> Go on to output time t. Its row follows those that are complete, and those that wait for their derivatives: these are found for
   !> many rows at once. Output times come in order, the first one is the start. Quantities take what they need on the way. After a
-  !> failure no row waits: those before the failure are complete.
+  !> failure no row waits: those before the failure are complete. A pause is a failure after which the same output may be asked for again.
   subroutine add_row(self, t, rows, count, err)
     class(row_source_type), intent(inout) :: self             !< the row source
     real(wp), intent(in) :: t                                 !< output time [s]
@@ -155,12 +160,13 @@ contains
       if (.not. self%quantities%is_empty()) call visit_between(self, t, rows, count, err)
       if (.not. allocated(err)) call self%simulation%advance(t, err)
     else
-      call self%simulation%start(err, signal_interruption_type())
+      call self%simulation%start(err, signal_interruption_type(self%pause))
     end if
     if (.not. allocated(err)) call fill_row(self, rows(:, count + self%outputs + 1), err)
     if (.not. allocated(err)) then
       if (allocated(self%film)) call film_row(self, rows(:, count + self%outputs + 1))
       self%last_output = t
+      self%visited = 0
       if (.not. allocated(self%sensitivity) .and. self%quantities%is_empty()) then
         count = count + 1
         return
@@ -173,6 +179,13 @@ contains
     call self%complete(rows, count, earlier)
     if (allocated(earlier)) call move_alloc(earlier, err)
   end subroutine add_row
+
+  !> The place of the motion.
+  type(standing_type) function standing(self)
+    class(row_source_type), intent(inout) :: self       !< the row source
+
+    standing = self%simulation%standing()
+  end function standing
 
   !> Go on to output time t and give its row.
   subroutine row_at(self, t, row, err)
@@ -230,8 +243,9 @@ contains
     integer :: i
 
     call self%quantities%times_before(self%simulation%model, self%last_output, t, times)
-    do i = 1, size(times)
+    do i = self%visited + 1, size(times)
       call self%simulation%visit(times(i), err)
+      if (.not. allocated(err)) self%visited = i
       if (.not. allocated(err)) call fill_row(self, self%between(:, self%waiting + 1), err)
       if (.not. allocated(err)) call let_wait(self, .false., t, rows, count, err)
       if (allocated(err)) return
@@ -370,10 +384,11 @@ contains
     end if
   end subroutine film_row
 
-  !> Whether the user has interrupted the program.
+  !> Whether the user has interrupted the program, or a pause is due.
   logical function is_wanted(self)
-    class(signal_interruption_type), intent(in) :: self   !< asks the operating system; it has no data of its own
+    class(signal_interruption_type), intent(in) :: self   !< asks the operating system
 
     is_wanted = interrupted()
+    if (.not. is_wanted .and. associated(self%pause)) is_wanted = self%pause%due()
   end function is_wanted
 end module mech9_row_source
