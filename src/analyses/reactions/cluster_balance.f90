@@ -220,22 +220,30 @@ contains
     converged = error <= balanced*largest
   end subroutine complete
 
-  !> Remove from wrenches in a regular position the part that the balance of the links determines.
-  pure subroutine remove_determined(self, cluster, wrenches)
+  !> Remove from wrenches in a regular position the part that the balance of the links determines. `removed` is false where removals
+  !> do not end in round-off: components of the rest that are zero could count as others.
+  pure subroutine remove_determined(self, cluster, wrenches, removed)
     class(cluster_balance_type), intent(inout) :: self       !< the equations, factorized
     type(joined_cluster_type), intent(in) :: cluster         !< the cluster
     real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled
+    logical, intent(out), optional :: removed                !< the rest balances nothing but for round-off
     !> Each removal leaves a part of the round-off of the one before it.
-    integer, parameter :: removals = 4
-    real(wp) :: lacking(6, size(cluster%links)), nothing(6, size(cluster%links))
+    integer, parameter :: most_removals = 12
+    real(wp) :: lacking(6, size(cluster%links)), nothing(6, size(cluster%links)), before(6, size(cluster%pairs)), largest
+    logical :: is_round_off
     integer :: i
 
     nothing = 0.0_wp
-    do i = 1, removals
+    largest = maxval(abs(wrenches))
+    do i = 1, most_removals
+      before = wrenches
       call self%find_lacking(cluster, nothing, wrenches, lacking)
       call self%factors%solve(lacking)
       call self%spread(cluster, lacking, wrenches)
+      is_round_off = maxval(abs(wrenches - before)) <= balanced*largest
+      if (is_round_off) exit
     end do
+    if (present(removed)) removed = is_round_off
   end subroutine remove_determined
 
   !> The wrench about its place that each link requires beside those that it receives from its pairs.

@@ -94,7 +94,7 @@ contains
     type(random_type) :: random
     real(wp) :: wrenches(6, size(cluster%pairs)), tolerance
     integer :: sample, i
-    logical :: regular
+    logical :: regular, removed
 
     tolerance = rank_tolerance_for(plan%data_tolerance)
     balance = new_cluster_balance(reactions, cluster)
@@ -102,10 +102,15 @@ contains
     if (.not. regular) call decompose_cluster(cluster, balance, tolerance, singular)
     do sample = 1, samples
       call draw(balance, cluster, geometry, forces(:, sample), random, wrenches)
-      if (regular) then
-        call balance%remove_determined(cluster, wrenches)
-      else
+      removed = .false.
+      if (regular) call balance%remove_determined(cluster, wrenches, removed)
+      if (regular .and. .not. removed) then
+        regular = .false.
+        call decompose_cluster(cluster, balance, tolerance, singular)
+      end if
+      if (.not. regular) then
         call singular%remove_determined(wrenches)
+        call hold(balance, cluster, geometry, forces(:, sample), wrenches)
       end if
       do i = 1, size(cluster%pairs)
         call judge_pair(plan, reactions, cluster%pairs(i), state, wrenches(:, i), tolerance, unique(:, cluster%pairs(i)))
@@ -121,19 +126,34 @@ contains
     real(wp), intent(in) :: forces(:)                   !< (M) of couplings on the coordinates [N m, N]
     type(random_type), intent(inout) :: random          !< source of the numbers
     real(wp), intent(out) :: wrenches(:, :)             !< (6,pairs) scaled
-    integer :: i, j, k
+    integer :: i, j
 
     do i = 1, size(wrenches, 2)
-      k = cluster%pairs(i)
       do j = 1, 6
         wrenches(j, i) = random%symmetric()
       end do
+    end do
+    call hold(balance, cluster, geometry, forces, wrenches)
+  end subroutine draw
+
+  !> Let wrenches do no work on dependent coordinates beside that of the couplings. Singular vectors of small values have parts along the
+  !> axes, of round-off over the value.
+  pure subroutine hold(balance, cluster, geometry, forces, wrenches)
+    type(cluster_balance_type), intent(in) :: balance   !< the equations of the cluster
+    type(joined_cluster_type), intent(in) :: cluster    !< the cluster
+    type(joint_geometry_type), intent(in) :: geometry   !< of the position
+    real(wp), intent(in) :: forces(:)                   !< (M) of couplings on the coordinates [N m, N]
+    real(wp), intent(inout) :: wrenches(:, :)           !< (6,pairs) scaled
+    integer :: i, k
+
+    do i = 1, size(wrenches, 2)
       if (.not. balance%held(i)) cycle
+      k = cluster%pairs(i)
       wrenches(:, i) = wrenches(:, i) - dot_product(balance%axis(:, i), wrenches(:, i))*balance%axis(:, i)
       if (geometry%length(k) > 0.0_wp) &
         wrenches(:, i) = wrenches(:, i) + (forces(k)/geometry%length(k))*balance%axis(:, i)
     end do
-  end subroutine draw
+  end subroutine hold
 
   !> Mark the components of a pair's wrench that are not zero, in the axes of its frame in the moving link.
   pure subroutine judge_pair(plan, reactions, k, state, wrench, tolerance, unique)
