@@ -49,7 +49,7 @@ contains
     type(error_type), allocatable :: stopped, at_flush
     type(progress_type) :: progress
     type(pacer_type) :: pacer
-    type(pacer_type), target :: pause
+    type(pacer_type), pointer :: pause
     real(wp), allocatable :: rows(:, :)
     real(wp) :: clock, last_row, words_after
     integer :: next, count
@@ -62,6 +62,7 @@ contains
     clock = seconds()
     call progress%start(source%program_name, quiet)
     call pacer%start(longest_wait)
+    allocate (pause)
     call pause%start(longest_wait)
     source%pause => pause
     last_row = clock
@@ -94,6 +95,7 @@ contains
       words_after = 2.0_wp*words_after
     end do
     source%pause => null()
+    deallocate (pause)
     call progress%finish()
     if (.not. (allocated(stopped) .or. allocated(err) .or. source%quantities%is_empty())) call source%quantities%finish()
     call results%flush(at_flush)
