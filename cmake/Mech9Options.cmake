@@ -3,10 +3,10 @@
 option(MECH9_BUILD_TESTS "build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(MECH9_BUILD_BENCH "build the benchmarks of bench/run" OFF)
 option(MECH9_NATIVE "use every instruction of this machine (-march=native)" OFF)
-option(MECH9_LTO "release: optimise across files when linking (a fifth faster, measured on Fig. 1)" ON)
+option(MECH9_LTO "release: optimise across the files of the computing floors when linking (a fifth faster)" ON)
 option(MECH9_LINE_EDITING "edit lines at the terminal by libedit, where it is found" ON)
 option(MECH9_THREADS "make the runs of a study in threads by OpenMP, where it is found" ON)
-option(MECH9_MPI "build mech9k-mpi and mech9d-mpi, studies in several processes, where MPI is found" ON)
+option(MECH9_MPI "build mech9k-mpi and mech9d-mpi, studies in several processes" OFF)
 option(MECH9_IMPORT "import robots from XML by expat, where it is found" ON)
 option(MECH9_LIMITS "keep limits and find what is not a sum of squares by NLopt, where it is found" ON)
 
@@ -25,7 +25,7 @@ set(MECH9_FORTRAN77_OPTIONS -std=legacy -fno-implicit-none -w)
 # Optimising gfortran 12 takes the bounds of an array, and the length of a text, that are (re)allocated by an assignment for
 # uninitialized (PR fortran/108889); the debug build still warns of variables that are uninitialized on every way.
 set(mech9_no_false_warnings "-Wno-uninitialized -Wno-maybe-uninitialized")
-set(CMAKE_Fortran_FLAGS_RELEASE "-O3 ${mech9_no_false_warnings}")
+set(CMAKE_Fortran_FLAGS_RELEASE "-O2 ${mech9_no_false_warnings}")
 set(CMAKE_Fortran_FLAGS_DEBUG
   "-g -Og -Wno-maybe-uninitialized -fcheck=all,no-array-temps -finit-real=snan -finit-derived -ffpe-trap=invalid,zero,overflow")
 set(mech9_sanitizers "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer")
@@ -40,11 +40,19 @@ if(MECH9_NATIVE)
   add_compile_options(-march=native)
 endif()
 
-# Optimisation across files: the library carries both kinds of code (fat objects). mech9k and mech9d are linked with the one,
-# in some seconds; unit tests and users' programs with the other, at once.
-if(MECH9_LTO AND CMAKE_BUILD_TYPE STREQUAL "Release")
+# Of the floors that read, talk and draw (src/CMakeLists.txt), and what all programs leave out: procedures that nothing calls.
+if(CMAKE_BUILD_TYPE STREQUAL "Release")
+  set(MECH9_FAST_COMPILE -O3)
+  set(MECH9_QUICK_COMPILE -Os)
+  add_compile_options(-ffunction-sections -fdata-sections)
+  add_link_options(-Wl,--gc-sections)
+endif()
+
+# Optimisation across files, for the computing floors alone (src/CMakeLists.txt): they carry both kinds of code (fat objects).
+# mech9k and mech9d are linked with the one, in some seconds; unit tests and users' programs with the other, at once.
+if(MECH9_LTO AND CMAKE_BUILD_TYPE STREQUAL "Release" AND CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
   set(MECH9_LTO_COMPILE -flto -ffat-lto-objects)
   # in one piece: as fast as several in parallel, for which the compiler would want make
-  set(MECH9_LTO_LINK -flto -flto-partition=one)
+  set(MECH9_LTO_LINK -O3 -flto -flto-partition=one)
   set(MECH9_LTO_NO_LINK -fno-lto)
 endif()
