@@ -13,46 +13,54 @@ option(MECH9_LIMITS "keep limits and find what is not a sum of squares by NLopt,
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "kind of build" FORCE)
 endif()
-set_property(CACHE CMAKE_BUILD_TYPE PROPERTY STRINGS Release Debug Sanitize Threads Coverage)
+set_property(CACHE CMAKE_BUILD_TYPE PROPERTY STRINGS Release Dev Debug Sanitize Threads Coverage)
 
-# The language and its warnings, for the project's own sources only. Sums are rounded as they are written and numbers that
-# are not finite are looked for: -ffast-math among the user's flags would break both, silently.
-set(MECH9_FORTRAN_OPTIONS -fno-fast-math -std=f2008 -fimplicit-none -Wall -Wextra -Wpedantic
-  -Wno-unused-dummy-argument -Wtrampolines -Werror=implicit-interface)
-# Undoes what would refuse fixed-form FORTRAN 77: implicit types, arithmetic IF, calls without interface.
-set(MECH9_FORTRAN77_OPTIONS -std=legacy -fno-implicit-none -w)
+# Flags for the compiler that knows them; another compiler gets none but the user's own, and those of its kind of build.
+set(MECH9_FORTRAN_OPTIONS "")
+set(MECH9_FORTRAN77_OPTIONS "")
+set(MECH9_SCALAR_COMPILE "")
+if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
+  # The language and its warnings, for the project's own sources only. Sums are rounded as they are written and numbers that
+  # are not finite are looked for: -ffast-math among the user's flags would break both, silently.
+  set(MECH9_FORTRAN_OPTIONS -fno-fast-math -std=f2008 -fimplicit-none -Wall -Wextra -Wpedantic
+    -Wno-unused-dummy-argument -Wtrampolines -Werror=implicit-interface)
+  # Undoes what would refuse fixed-form FORTRAN 77: implicit types, arithmetic IF, calls without interface.
+  set(MECH9_FORTRAN77_OPTIONS -std=legacy -fno-implicit-none -w)
+  # Of files whose numbers are read again before they have arrived as vectors (src/CMakeLists.txt).
+  set(MECH9_SCALAR_COMPILE -fno-tree-slp-vectorize)
 
-# Optimising gfortran 12 takes the bounds of an array, and the length of a text, that are (re)allocated by an assignment for
-# uninitialized (PR fortran/108889); the debug build still warns of variables that are uninitialized on every way.
-set(mech9_no_false_warnings "-Wno-uninitialized -Wno-maybe-uninitialized")
-set(CMAKE_Fortran_FLAGS_RELEASE "-O2 ${mech9_no_false_warnings}")
-set(CMAKE_Fortran_FLAGS_DEBUG
-  "-g -Og -Wno-maybe-uninitialized -fcheck=all,no-array-temps -finit-real=snan -finit-derived -ffpe-trap=invalid,zero,overflow")
-set(mech9_sanitizers "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer")
-foreach(language C Fortran)
-  set(CMAKE_${language}_FLAGS_SANITIZE "-g -O1 ${mech9_sanitizers} ${mech9_no_false_warnings}")
-  set(CMAKE_${language}_FLAGS_THREADS "-g -O1 -fsanitize=thread ${mech9_no_false_warnings}")
-  set(CMAKE_${language}_FLAGS_COVERAGE "-g -O0 --coverage")
-endforeach()
+  # Optimising gfortran 12 takes the bounds of an array, and the length of a text, that are (re)allocated by an assignment for
+  # uninitialized (PR fortran/108889); the debug build still warns of variables that are uninitialized on every way.
+  set(mech9_no_false_warnings "-Wno-uninitialized -Wno-maybe-uninitialized")
+  set(CMAKE_Fortran_FLAGS_RELEASE "-O2 ${mech9_no_false_warnings}")
+  set(CMAKE_Fortran_FLAGS_DEV "-g -O1 ${mech9_no_false_warnings}")
+  set(CMAKE_Fortran_FLAGS_DEBUG
+    "-g -Og -Wno-maybe-uninitialized -fcheck=all,no-array-temps -finit-real=snan -finit-derived -ffpe-trap=invalid,zero,overflow")
+  set(mech9_sanitizers "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer")
+  foreach(language C Fortran)
+    set(CMAKE_${language}_FLAGS_SANITIZE "-g -O1 ${mech9_sanitizers} ${mech9_no_false_warnings}")
+    set(CMAKE_${language}_FLAGS_THREADS "-g -O1 -fsanitize=thread ${mech9_no_false_warnings}")
+    set(CMAKE_${language}_FLAGS_COVERAGE "-g -O0 --coverage")
+  endforeach()
+
+  # How the floors are compiled in an optimised build (src/CMakeLists.txt); procedures that nothing calls are left out of programs.
+  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    set(MECH9_FAST_COMPILE -O3)
+    set(MECH9_SMALL_COMPILE -Os)
+    add_compile_options(-ffunction-sections -fdata-sections)
+    add_link_options(-Wl,--gc-sections)
+    # Optimisation across files, for the computing floors alone: they carry both kinds of code (fat objects). mech9k and mech9d are
+    # linked with the one, in some seconds; unit tests and users' programs with the other, at once.
+    if(MECH9_LTO)
+      set(MECH9_LTO_COMPILE -flto -ffat-lto-objects)
+      # in one piece: as fast as several in parallel, for which the compiler would want make
+      set(MECH9_LTO_LINK -O3 -flto -flto-partition=one)
+      set(MECH9_LTO_NO_LINK -fno-lto)
+    endif()
+  endif()
+endif()
 
 add_compile_options("$<$<COMPILE_LANGUAGE:Fortran>:${MECH9_FORTRAN_OPTIONS}>")
 if(MECH9_NATIVE)
   add_compile_options(-march=native)
-endif()
-
-# Of the floors that read, talk and draw (src/CMakeLists.txt), and what all programs leave out: procedures that nothing calls.
-if(CMAKE_BUILD_TYPE STREQUAL "Release")
-  set(MECH9_FAST_COMPILE -O3)
-  set(MECH9_QUICK_COMPILE -Os)
-  add_compile_options(-ffunction-sections -fdata-sections)
-  add_link_options(-Wl,--gc-sections)
-endif()
-
-# Optimisation across files, for the computing floors alone (src/CMakeLists.txt): they carry both kinds of code (fat objects).
-# mech9k and mech9d are linked with the one, in some seconds; unit tests and users' programs with the other, at once.
-if(MECH9_LTO AND CMAKE_BUILD_TYPE STREQUAL "Release" AND CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
-  set(MECH9_LTO_COMPILE -flto -ffat-lto-objects)
-  # in one piece: as fast as several in parallel, for which the compiler would want make
-  set(MECH9_LTO_LINK -O3 -flto -flto-partition=one)
-  set(MECH9_LTO_NO_LINK -fno-lto)
 endif()

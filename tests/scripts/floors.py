@@ -22,9 +22,9 @@ USE = re.compile(r'^\s*use\b\s*(?:,\s*(?:non_)?intrinsic\s*)?(?:::)?\s*([\w@]+)\
 PARENT = re.compile(r'^\s*submodule\s*\(\s*(\w+)', re.I | re.M)
 
 
-def sources():
+def sources(folder='src'):
     """(floor, path, text) of every Fortran file under src; its floor is its folder."""
-    source_folder = os.path.join(TREE, 'src')
+    source_folder = os.path.join(TREE, folder)
     for where, folders, names in os.walk(source_folder):
         folders.sort()
         for name in sorted(names):
