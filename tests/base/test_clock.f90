@@ -1,16 +1,21 @@
 !> The clock, and the pacer of long loops.
-program test_clock
+module test_clock
   use mech9_kinds, only: wp
   use mech9_clock, only: seconds, pacer_type
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call clock_goes_on(test)
-  call pacer_keeps_time(test)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('clock_goes_on')) call clock_goes_on(test)
+    if (test%runs('pacer_keeps_time')) call pacer_keeps_time(test)
+  end subroutine run
 
   subroutine clock_goes_on(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
@@ -53,4 +58,4 @@ contains
     call pacer%start(0.0_wp)
     call test%is_true(pacer%due(), 'an interval of nothing is over at once')
   end subroutine pacer_keeps_time
-end program test_clock
+end module test_clock

@@ -1,14 +1,19 @@
 !> Failures as values: made, and given places on the way up.
-program test_error
+module test_error
   use mech9_error, only: error_type, place_type, raise, add_place, exit_internal, exit_data, exit_structure
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call failures(test)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('failures')) call failures(test)
+  end subroutine run
 
   subroutine failures(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
@@ -37,4 +42,4 @@ contains
                       'a new failure replaces the message and the place of the old one')
     call test%is_true(fresh%code == exit_internal, 'a failure without a code is a defect of the program')
   end subroutine failures
-end program test_error
+end module test_error

@@ -1,13 +1,23 @@
 !> Tests of mech9_path by what a person calls the parts of a file's name.
-program test_path
+module test_path
   use mech9_path, only: folder_of, name_of, ending_of, with_ending
   use mech9_testing, only: tester_type
   implicit none
-  call run_tests()
+  private
+  public :: run
+
 contains
 
-  subroutine run_tests()
-    type(tester_type) :: tester
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('parts_of_paths')) call parts_of_paths(tester)
+  end subroutine run
+
+  !> Folder, name and ending, and another ending.
+  subroutine parts_of_paths(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
 
     call check(tester, 'a/b/c.dat', 'a/b/', 'c.dat', 'dat', 'a/b/c.svg')
     call check(tester, 'c.tar.GZ', '', 'c.tar.GZ', 'gz', 'c.tar.svg')
@@ -18,8 +28,7 @@ contains
     call check(tester, '', '', '', '', '.svg')
     call check(tester, 'c.', '', 'c.', '', 'c..svg')
     call tester%is_true(with_ending('a/c.dat', '') == 'a/c', 'a path with an empty ending has no dot')
-    call tester%finish()
-  end subroutine run_tests
+  end subroutine parts_of_paths
 
   subroutine check(tester, path, folder, name, ending, changed)
     type(tester_type), intent(inout) :: tester   !< counts the checks
@@ -34,4 +43,4 @@ contains
     call tester%is_true(ending_of(path) == ending, path//': the ending is right')
     call tester%is_true(with_ending(path, 'svg') == changed, path//': the ending is replaced')
   end subroutine check
-end program test_path
+end module test_path

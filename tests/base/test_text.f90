@@ -1,5 +1,5 @@
 !> Texts: numbers as text and back, case, lists, nearest names.
-program test_text
+module test_text
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf, ieee_negative_inf
   use mech9_kinds, only: wp, long
   use mech9_text, only: string_type, to_text, lower, join, nearest_name, starts_with
@@ -7,17 +7,22 @@ program test_text
   use mech9_random, only: random_type
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call integers_as_text(test)
-  call integers_with_nouns(test)
-  call reals_as_text(test)
-  call reals_read_back(test)
-  call pieces_of_text(test)
-  call near_names(test)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('integers_as_text')) call integers_as_text(test)
+    if (test%runs('integers_with_nouns')) call integers_with_nouns(test)
+    if (test%runs('reals_as_text')) call reals_as_text(test)
+    if (test%runs('reals_read_back')) call reals_read_back(test)
+    if (test%runs('pieces_of_text')) call pieces_of_text(test)
+    if (test%runs('near_names')) call near_names(test)
+  end subroutine run
 
   subroutine same(test, text, expected)
     type(tester_type), intent(inout) :: test   !< counts the checks
@@ -157,4 +162,4 @@ contains
     call same(test, nearest_name('', known), '')
     call same(test, nearest_name('revolute', [character(len=4) ::]), '')
   end subroutine near_names
-end program test_text
+end module test_text
