@@ -1,5 +1,5 @@
 !> Poses: composition, points, axes, Denavit-Hartenberg, the default zero direction.
-program test_pose
+module test_pose
   use mech9_kinds, only: wp, pi
   use mech9_random, only: random_type
   use mech9_rotation, only: identity, cross, about_axis, about_z
@@ -8,20 +8,26 @@ program test_pose
   use mech9_random_geometry, only: random_vector, random_unit, random_pose, largest_difference
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   !> A few roundings of numbers of order one.
   real(wp), parameter :: round_off = 4.0e-15_wp
-  type(tester_type) :: test
-
-  call composition(test)
-  call from_points(test)
-  call nearly_in_line(test)
-  call in_line(test)
-  call from_axis(test)
-  call denavit_hartenberg(test)
-  call default_directions(test)
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('composition')) call composition(test)
+    if (test%runs('from_points')) call from_points(test)
+    if (test%runs('nearly_in_line')) call nearly_in_line(test)
+    if (test%runs('in_line')) call in_line(test)
+    if (test%runs('from_axis')) call from_axis(test)
+    if (test%runs('denavit_hartenberg')) call denavit_hartenberg(test)
+    if (test%runs('default_directions')) call default_directions(test)
+  end subroutine run
 
   subroutine composition(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
@@ -229,4 +235,4 @@ contains
     end do
     call check_default(test, [cos(0.25_wp*pi), sin(0.25_wp*pi), 0.0_wp], 1, 'an axis from an angle of 45 degrees')
   end subroutine default_directions
-end program test_pose
+end module test_pose

@@ -1,5 +1,5 @@
 !> Rotations: matrices against quaternions, rotation vectors at all angles, vectors.
-program test_rotation
+module test_rotation
   use mech9_kinds, only: wp, pi
   use mech9_random, only: random_type
   use mech9_rotation, only: identity, cross, unit, about_axis, about_z, rotation_vector, rotation_between, axial_vector, &
@@ -7,22 +7,28 @@ program test_rotation
   use mech9_random_geometry, only: random_vector, random_unit, random_rotation, rotation_from_quaternion
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   !> A few roundings of numbers up to one.
   real(wp), parameter :: round_off = 2.0e-15_wp
-  type(tester_type) :: test
-
-  call vectors(test)
-  call unit_vectors(test)
-  call axis_and_angle(test)
-  call vector_of_rotation(test)
-  call vector_of_small_rotation(test)
-  call half_turns(test)
-  call vector_of_any_rotation(test)
-  call vector_between_frames(test)
-  call quaternion_of_any_rotation(test)
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('vectors')) call vectors(test)
+    if (test%runs('unit_vectors')) call unit_vectors(test)
+    if (test%runs('axis_and_angle')) call axis_and_angle(test)
+    if (test%runs('vector_of_rotation')) call vector_of_rotation(test)
+    if (test%runs('vector_of_small_rotation')) call vector_of_small_rotation(test)
+    if (test%runs('half_turns')) call half_turns(test)
+    if (test%runs('vector_of_any_rotation')) call vector_of_any_rotation(test)
+    if (test%runs('vector_between_frames')) call vector_between_frames(test)
+    if (test%runs('quaternion_of_any_rotation')) call quaternion_of_any_rotation(test)
+  end subroutine run
 
   subroutine vectors(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
@@ -250,4 +256,4 @@ contains
     end do
     call test%near(maxval(abs(rotation_between(r_ab, r_ab))), 0.0_wp, 0.0_wp, 'no turn leads from a frame to itself')
   end subroutine vector_between_frames
-end program test_rotation
+end module test_rotation

@@ -1,5 +1,5 @@
 !> Screws: brackets, change of frame, bases, and the algebras that joints generate.
-program test_screw
+module test_screw
   use mech9_kinds, only: wp
   use mech9_random, only: random_type
   use mech9_differentiation, only: half_width, derivatives_from_stencil
@@ -9,21 +9,27 @@ program test_screw
   use mech9_random_geometry, only: random_vector, random_unit, random_pose, random_matrix
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   !> A few roundings of numbers of order one.
   real(wp), parameter :: round_off = 1.0e-14_wp
   !> Components of directions below this are zero for the program.
   real(wp), parameter :: tolerance = 1.0e-9_wp
-  type(tester_type) :: test
-
-  call bracket_identities(test)
-  call change_of_frame(test)
-  call bracket_as_rate(test)
-  call bases(test)
-  call algebras(test)
-  call split_spaces(test)
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('bracket_identities')) call bracket_identities(test)
+    if (test%runs('change_of_frame')) call change_of_frame(test)
+    if (test%runs('bracket_as_rate')) call bracket_as_rate(test)
+    if (test%runs('bases')) call bases(test)
+    if (test%runs('algebras')) call algebras(test)
+    if (test%runs('split_spaces')) call split_spaces(test)
+  end subroutine run
 
   function random_screw(random) result(s)
     type(random_type), intent(inout) :: random   !< source of the random numbers
@@ -337,4 +343,4 @@ contains
     call test%near(maxval(abs(abs(slides(:, 1)) - x)), 0.0_wp, round_off, 'the first translation of planar screws lies along x')
     call test%near(maxval(abs(abs(slides(:, 2)) - y)), 0.0_wp, round_off, 'the second translation of planar screws lies along y')
   end subroutine split_spaces
-end program test_screw
+end module test_screw

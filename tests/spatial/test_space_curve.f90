@@ -1,6 +1,6 @@
 !> Curves by their arc length: lines are exact, circles and ellipses converge with sixth order, derivatives and frames agree with
 !> differences, and frames of closed curves close.
-program test_space_curve
+module test_space_curve
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, exit_data
   use mech9_random, only: random_type
@@ -8,18 +8,23 @@ program test_space_curve
   use mech9_space_curve, only: space_curve_type, curve_place_type, build_curve
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call straight_line(test)
-  call circle(test)
-  call ellipse(test)
-  call helix(test)
-  call derivatives(test)
-  call closed_frame(test)
-  call refused(test)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('straight_line')) call straight_line(test)
+    if (test%runs('circle')) call circle(test)
+    if (test%runs('ellipse')) call ellipse(test)
+    if (test%runs('helix')) call helix(test)
+    if (test%runs('derivatives')) call derivatives(test)
+    if (test%runs('closed_frame')) call closed_frame(test)
+    if (test%runs('refused')) call refused(test)
+  end subroutine run
 
   !> On points of a line at uneven distances, the arc length is the distance to round-off, and nothing turns.
   subroutine straight_line(test)
@@ -266,4 +271,4 @@ contains
     call build_curve(points(:, :3), .false., curve, err)
     call test%has_error(err, exit_data, 'three points are refused')
   end subroutine refused
-end program test_space_curve
+end module test_space_curve

@@ -1,5 +1,5 @@
 !> Three turns: one motion in the angles of two triples of axes, and angles through gimbal lock.
-program test_three_turns
+module test_three_turns
   use mech9_kinds, only: wp, pi
   use mech9_random, only: random_type
   use mech9_rotation, only: combine, cross, about_z
@@ -7,19 +7,25 @@ program test_three_turns
   use mech9_random_geometry, only: random_vector, random_unit
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   !> A few roundings of numbers of order one.
   real(wp), parameter :: round_off = 1.0e-13_wp
-  type(tester_type) :: test
-
-  call common_form(test)
-  call axes_not_at_right_angles(test)
-  call one_motion_in_two_triples(test)
-  call limits_in_lock(test)
-  call way_past_the_lock(test)
-  call way_through_the_lock(test)
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('common_form')) call common_form(test)
+    if (test%runs('axes_not_at_right_angles')) call axes_not_at_right_angles(test)
+    if (test%runs('one_motion_in_two_triples')) call one_motion_in_two_triples(test)
+    if (test%runs('limits_in_lock')) call limits_in_lock(test)
+    if (test%runs('way_past_the_lock')) call way_past_the_lock(test)
+    if (test%runs('way_through_the_lock')) call way_through_the_lock(test)
+  end subroutine run
 
   !> Three rotations before turns about z whose neighbouring axes are at right angles.
   subroutine make_before(random, before)
@@ -115,11 +121,11 @@ contains
 
   !> Compare two motions of a joint: rotation, angular velocity and acceleration.
   subroutine same_motion(test, a, b, tolerance, why)
-    type(tester_type), intent(inout) :: test     !< counts the checks
-    type(swing_type), intent(in) :: a            !< a motion
-    type(swing_type), intent(in) :: b            !< another one
-    real(wp), intent(in) :: tolerance            !< largest difference of components
-    character(len=*), intent(in) :: why          !< the statement that is checked
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(swing_type), intent(in) :: a          !< a motion
+    type(swing_type), intent(in) :: b          !< another one
+    real(wp), intent(in) :: tolerance          !< largest difference of components
+    character(len=*), intent(in) :: why        !< the statement that is checked
 
     call test%near(maxval(abs(rotation_of(a) - rotation_of(b))), 0.0_wp, tolerance, why//': the rotations are equal')
     call test%near(maxval(abs(a%omega + a%spin(2)*a%d - b%omega - b%spin(2)*b%d)), 0.0_wp, tolerance, &
@@ -275,4 +281,4 @@ contains
       call test%is_true(heading%second > 1.9_wp, 'the second angle goes beyond 90 degrees')
     end do
   end subroutine way_through_the_lock
-end program test_three_turns
+end module test_three_turns
