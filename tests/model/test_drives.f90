@@ -1,5 +1,5 @@
 !> Drives: values by their formulas, derivatives against differences, tables and where they end.
-program test_drives
+module test_drives
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, place_type, exit_data
   use mech9_random, only: random_type
@@ -12,23 +12,29 @@ program test_drives
   use mech9_request, only: time_grid_type
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   !> A few roundings of numbers of order one.
   real(wp), parameter :: round_off = 1.0e-14_wp
-  type(tester_type) :: test
-
-  call polynomials(test)
-  call harmonics(test)
-  call table_of_cubic(test)
-  call table_of_sine(test)
-  call ends_of_table(test)
-  call time_grid(test)
-  call test%finish()
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('polynomials')) call polynomials(test)
+    if (test%runs('harmonics')) call harmonics(test)
+    if (test%runs('table_of_cubic')) call table_of_cubic(test)
+    if (test%runs('table_of_sine')) call table_of_sine(test)
+    if (test%runs('ends_of_table')) call ends_of_table(test)
+    if (test%runs('time_grid')) call time_grid(test)
+  end subroutine run
+
   real(wp) function value_at(test, drive, t)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    class(law_type), intent(in) :: drive     !< the drive
+    class(law_type), intent(in) :: drive       !< the drive
     real(wp), intent(in) :: t                  !< time [s]
     type(error_type), allocatable :: err
     real(wp) :: dq, ddq
@@ -41,7 +47,7 @@ contains
   !> of the values, of order one, times 2/h and 8/h^2.
   subroutine check_derivatives(test, drive, t, why)
     type(tester_type), intent(inout) :: test   !< counts the checks
-    class(law_type), intent(in) :: drive     !< the drive
+    class(law_type), intent(in) :: drive       !< the drive
     real(wp), intent(in) :: t                  !< time [s]
     character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     real(wp), parameter :: h = 1.0_wp/32.0_wp
@@ -197,4 +203,4 @@ contains
       call test%near(grid%time(i) - grid%time(i - 1), 0.6_wp/7.0_wp, 2.0e-16_wp, 'times are evenly spaced')
     end do
   end subroutine time_grid
-end program test_drives
+end module test_drives

@@ -1,5 +1,5 @@
 !> Third derivatives of path pairs, seen from either link, agree with differences of the second ones that the pairs give.
-program test_path_pair
+module test_path_pair
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -9,14 +9,19 @@ program test_path_pair
   use mech9_path_pair, only: path_pair_type, path_pair
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call third_derivatives(test, along=.false., closed=.false.)
-  call third_derivatives(test, along=.true., closed=.false.)
-  call third_derivatives(test, along=.true., closed=.true.)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('fixed')) call third_derivatives(test, along=.false., closed=.false.)
+    if (test%runs('along')) call third_derivatives(test, along=.true., closed=.false.)
+    if (test%runs('closed')) call third_derivatives(test, along=.true., closed=.true.)
+  end subroutine run
 
   !> A random curve, at places away from its points, where the fourth derivative of the spline has corners, and at its ends.
   subroutine third_derivatives(test, along, closed)
@@ -74,11 +79,11 @@ contains
   !> Differences of fourth order at a distance of 1e-3 of the pair's second derivatives: errors of some 1e-12 times the sixth
   !> derivatives, which are up to some thousands here, and round-off of 1e-16 times second derivatives over 1e-3.
   subroutine compare(test, pair, q, thirds, reversed)
-    type(tester_type), intent(inout) :: test      !< counts the checks
-    type(path_pair_type), intent(in) :: pair      !< the pair
-    real(wp), intent(in) :: q                     !< its coordinate [m]
-    type(pair_thirds_type), intent(in) :: thirds  !< the derivatives that are tested
-    logical, intent(in) :: reversed               !< they are those of the reference link in the moving one
+    type(tester_type), intent(inout) :: test       !< counts the checks
+    type(path_pair_type), intent(in) :: pair       !< the pair
+    real(wp), intent(in) :: q                      !< its coordinate [m]
+    type(pair_thirds_type), intent(in) :: thirds   !< the derivatives that are tested
+    logical, intent(in) :: reversed                !< they are those of the reference link in the moving one
     type(pair_motion_type) :: motion
     type(error_type), allocatable :: err
     real(wp), parameter :: h = 1.0e-3_wp, weights(-2:2) = [1.0_wp, -8.0_wp, 0.0_wp, 8.0_wp, -1.0_wp]/12.0_wp
@@ -97,4 +102,4 @@ contains
     call test%is_true(norm2(thirds%w - w) <= 1.0e-6_wp*max(1.0_wp, norm2(w)), 'third derivative of the rotation')
     call test%is_true(norm2(thirds%v - v) <= 1.0e-6_wp*max(1.0_wp, norm2(v)), 'third derivative of the origin')
   end subroutine compare
-end program test_path_pair
+end module test_path_pair

@@ -1,6 +1,6 @@
 !> Revolute, prismatic and helical pairs: their motion against elementary poses, their derivatives
 !> against differences, their factors against their motion.
-program test_screw_pair
+module test_screw_pair
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -13,21 +13,33 @@ program test_screw_pair
   use mech9_motion_check, only: check_derivatives
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   !> A few roundings of numbers of order one.
   real(wp), parameter :: round_off = 1.0e-14_wp
-  type(tester_type) :: test
-  type(random_type) :: random
-  integer :: trial
-
-  do trial = 1, 15
-    call with_frames(test, random)
-    call with_denavit_hartenberg(test, random)
-    call fixed_axes(test, random)
-  end do
-  call kinds_and_units(test)
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('random_pairs')) call random_pairs(test)
+    if (test%runs('kinds_and_units')) call kinds_and_units(test)
+  end subroutine run
+
+  subroutine random_pairs(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(random_type) :: random
+    integer :: trial
+
+    do trial = 1, 15
+      call with_frames(test, random)
+      call with_denavit_hartenberg(test, random)
+      call fixed_axes(test, random)
+    end do
+  end subroutine random_pairs
 
   function pose_at(test, pair, q) result(pose)
     type(tester_type), intent(inout) :: test    !< counts the checks
@@ -164,4 +176,4 @@ contains
                       'a helical pair by Denavit-Hartenberg parameters has an angle')
     call test%is_true(pair%user_calls() == 0, 'a pair of the program calls no procedure of a user')
   end subroutine kinds_and_units
-end program test_screw_pair
+end module test_screw_pair

@@ -1,29 +1,36 @@
 !> A coupling by a table of a sine over a turn gives the sine and its derivatives, also turns before and after the table, and the
 !> gain of gears that are not round.
-program test_table_coupling
+module test_table_coupling
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, exit_singular
   use mech9_table_coupling, only: table_coupling_type, new_table_coupling, new_turning_table
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   integer, parameter :: n = 121
   !> A quintic spline over steps h misses the sine by h^6 (B6(t) - B6(0))/6!, with the Bernoulli polynomials B, and derivative k by
   !> h^(6-k) B_(6-k)(t)/(6-k)!. For h = 3 degrees the largest values are 1.4e-12, 8.1e-11, 1.05e-8, 1.15e-6; the next terms are
   !> a hundred times smaller.
   real(wp), parameter :: error(0:3) = [1.5e-12_wp, 8.5e-11_wp, 1.1e-8_wp, 1.2e-6_wp]
-  type(tester_type) :: test
-
-  call derivatives(0.0_wp)
-  call derivatives(-2.0_wp)
-  call with_ends()
-  call repeated_points()
-  call test%finish()
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('derivatives')) call derivatives(test, 0.0_wp)
+    if (test%runs('derivatives_from_other_turn')) call derivatives(test, -2.0_wp)
+    if (test%runs('with_ends')) call with_ends(test)
+    if (test%runs('repeated_points')) call repeated_points(test)
+  end subroutine run
+
   !> The function a sin x + gain x and its derivatives between the points, over several turns.
-  subroutine derivatives(gain)
-    real(wp), intent(in) :: gain   !< change of the second coordinate per rad of the first one
+  subroutine derivatives(test, gain)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), intent(in) :: gain               !< change of the second coordinate per rad of the first one
     real(wp), parameter :: first = 0.4_wp
     type(table_coupling_type) :: coupling
     type(error_type), allocatable :: err
@@ -57,7 +64,8 @@ contains
   end subroutine derivatives
 
   !> A table over a slide: a polynomial of fifth degree is reproduced, and the coordinate ends with the table.
-  subroutine with_ends()
+  subroutine with_ends(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(table_coupling_type) :: coupling
     type(error_type), allocatable :: err
     real(wp) :: x(9), q, found(0:3), expected(0:3), limits(2)
@@ -88,7 +96,8 @@ contains
   end subroutine with_ends
 
   !> Points of one place have no spline.
-  subroutine repeated_points()
+  subroutine repeated_points(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(table_coupling_type) :: coupling
     type(error_type), allocatable :: err
     real(wp) :: x(6)
@@ -97,4 +106,4 @@ contains
     call new_turning_table(x, 0.0_wp*x, 0.0_wp, coupling, err)
     call test%is_true(allocated(err), 'points of one place are refused')
   end subroutine repeated_points
-end program test_table_coupling
+end module test_table_coupling
