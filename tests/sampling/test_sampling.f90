@@ -1,5 +1,5 @@
 !> Values of studies: known answers of the random numbers, strata of Latin hypercubes, evenness of Sobol's points, quantiles, grids.
-program test_sampling
+module test_sampling
   use mech9_kinds, only: wp, long
   use mech9_counted_random, only: philox, uniform_at
   use mech9_latin_hypercube, only: latin_at, permuted
@@ -10,20 +10,26 @@ program test_sampling
   use mech9_study_values, only: values_of_run
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: tester
-
-  call known_answers()
-  call strata()
-  call even_points()
-  call quantiles()
-  call grids()
-  call moments()
-  call tester%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('known_answers')) call known_answers(tester)
+    if (tester%runs('strata')) call strata(tester)
+    if (tester%runs('even_points')) call even_points(tester)
+    if (tester%runs('quantiles')) call quantiles(tester)
+    if (tester%runs('grids')) call grids(tester)
+    if (tester%runs('moments')) call moments(tester)
+  end subroutine run
+
   !> The answers that the authors of Philox publish for tests of it (Random123, kat_vectors).
-  subroutine known_answers()
+  subroutine known_answers(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer(long), parameter :: ones = 4294967295_long
     integer(long) :: words(2)
 
@@ -36,7 +42,8 @@ contains
   end subroutine known_answers
 
   !> Each stratum of each dimension holds one run, for numbers of runs on both sides of powers of four.
-  subroutine strata()
+  subroutine strata(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer, parameter :: counts(*) = [1, 2, 3, 4, 5, 15, 16, 17, 63, 64, 65, 300]
     integer :: i, k, n, dimension
     logical :: hit(300)
@@ -57,7 +64,8 @@ contains
 
   !> Of 2**m points, each interval of length 2**-m holds one in each dimension; in the first two dimensions each cell of 2**-k by
   !> 2**(k-m), too: they form a net with t = 0. Shifted points are as even.
-  subroutine even_points()
+  subroutine even_points(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer, parameter :: m = 8
     integer(long), allocatable :: digits(:, :)
     logical :: hit(0:2**m - 1)
@@ -88,7 +96,8 @@ contains
   end subroutine even_points
 
   !> The quantile of the probability of x is x.
-  subroutine quantiles()
+  subroutine quantiles(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     real(wp) :: x
     integer :: i
 
@@ -101,7 +110,8 @@ contains
   end subroutine quantiles
 
   !> The last parameter changes fastest; ends are met exactly.
-  subroutine grids()
+  subroutine grids(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(parameter_type) :: parameters(2)
     type(study_type) :: study
     real(wp) :: values(2)
@@ -113,21 +123,22 @@ contains
     study%kind = 'grid'
     study%runs = 15
     call values_of_run(study, parameters, 1, values)
-    call near_all(values, [0.1_wp, -1.0_wp], 0.0_wp, 'the first point')
+    call near_all(tester, values, [0.1_wp, -1.0_wp], 0.0_wp, 'the first point')
     call values_of_run(study, parameters, 2, values)
-    call near_all(values, [0.1_wp, -0.5_wp], 0.0_wp, 'the last parameter changes first')
+    call near_all(tester, values, [0.1_wp, -0.5_wp], 0.0_wp, 'the last parameter changes first')
     call values_of_run(study, parameters, 8, values)
-    call near_all(values, [0.4_wp, 0.0_wp], 1e-16_wp, 'the middle')
+    call near_all(tester, values, [0.4_wp, 0.0_wp], 1e-16_wp, 'the middle')
     call values_of_run(study, parameters, 15, values)
-    call near_all(values, [0.7_wp, 1.0_wp], 0.0_wp, 'the last point')
+    call near_all(tester, values, [0.7_wp, 1.0_wp], 0.0_wp, 'the last point')
   end subroutine grids
 
   !> Check several numbers.
-  subroutine near_all(numbers, expected, tolerance, why)
-    real(wp), intent(in) :: numbers(:)      !< found
-    real(wp), intent(in) :: expected(:)     !< as many, the right ones
-    real(wp), intent(in) :: tolerance       !< largest difference
-    character(len=*), intent(in) :: why     !< words for the check
+  subroutine near_all(tester, numbers, expected, tolerance, why)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    real(wp), intent(in) :: numbers(:)           !< found
+    real(wp), intent(in) :: expected(:)          !< as many, the right ones
+    real(wp), intent(in) :: tolerance            !< largest difference
+    character(len=*), intent(in) :: why          !< words for the check
     integer :: i
 
     do i = 1, size(numbers)
@@ -136,7 +147,8 @@ contains
   end subroutine near_all
 
   !> Means and deviations of drawn values, within five standard errors where they are independent; better where they are not.
-  subroutine moments()
+  subroutine moments(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer, parameter :: n = 4096
     character(len=6), parameter :: kinds(3) = ['random', 'latin ', 'sobol ']
     type(parameter_type) :: parameters(3)
@@ -161,11 +173,11 @@ contains
       mean = sum(values, dim=2)/n
       deviation = sqrt(sum((values - spread(mean, 2, n))**2, dim=2)/(n - 1))
       tolerance = merge(5.0_wp/sqrt(real(n, wp)), 0.01_wp, k == 1)
-      call near_all((mean - [2.0_wp, 1.0_wp, 3.5_wp])/[0.5_wp, 0.25_wp, 0.5_wp], [0.0_wp, 0.0_wp, 0.0_wp], tolerance, &
+      call near_all(tester, (mean - [2.0_wp, 1.0_wp, 3.5_wp])/[0.5_wp, 0.25_wp, 0.5_wp], [0.0_wp, 0.0_wp, 0.0_wp], tolerance, &
                     kinds(k)//': means')
-      call near_all(deviation/[0.5_wp, 0.25_wp/sqrt(3.0_wp), 1.0_wp/sqrt(12.0_wp)], [1.0_wp, 1.0_wp, 1.0_wp], tolerance, &
+      call near_all(tester, deviation/[0.5_wp, 0.25_wp/sqrt(3.0_wp), 1.0_wp/sqrt(12.0_wp)], [1.0_wp, 1.0_wp, 1.0_wp], tolerance, &
                        kinds(k)//': deviations')
     end do
     call tester%is_true(abs(uniform_at(1, 1, 1) - uniform_at(1, 2, 1)) > 0.0_wp, 'runs differ')
   end subroutine moments
-end program test_sampling
+end module test_sampling

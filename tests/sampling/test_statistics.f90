@@ -1,5 +1,5 @@
 !> Quantiles and their errors, the sample that is kept of many rows, and shares of variance of functions whose shares are known.
-program test_statistics
+module test_statistics
   use mech9_kinds, only: wp, pi
   use mech9_parameter, only: parameter_type
   use mech9_study, only: study_type
@@ -10,21 +10,27 @@ program test_statistics
   use mech9_main_effects, only: shares_type, find_shares
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: tester
-
-  call sorted_numbers()
-  call quantile_errors()
-  call kept_rows()
-  call linear_shares()
-  call ishigami_shares()
-  call share_errors()
-  call unknown_shares()
-  call tester%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('sorted_numbers')) call sorted_numbers(tester)
+    if (tester%runs('quantile_errors')) call quantile_errors(tester)
+    if (tester%runs('kept_rows')) call kept_rows(tester)
+    if (tester%runs('linear_shares')) call linear_shares(tester)
+    if (tester%runs('ishigami_shares')) call ishigami_shares(tester)
+    if (tester%runs('share_errors')) call share_errors(tester)
+    if (tester%runs('unknown_shares')) call unknown_shares(tester)
+  end subroutine run
+
   !> Numbers in any order, with equal ones among them, are ascending afterwards, and none is lost.
-  subroutine sorted_numbers()
+  subroutine sorted_numbers(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     real(wp) :: numbers(1000)
     integer :: n, i
 
@@ -43,7 +49,8 @@ contains
 
   !> The errors of quantiles tell how they scatter: over many samples of uniform numbers, the deviation of each quantile is the root
   !> of the mean square of its errors. A few samples only leave 10 % of doubt.
-  subroutine quantile_errors()
+  subroutine quantile_errors(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer, parameter :: n = 400, samples = 300
     real(wp), parameter :: levels(3) = [0.05_wp, 0.5_wp, 0.95_wp]
     real(wp) :: numbers(n), quantile, error, squares(3), errors(3)
@@ -75,7 +82,8 @@ contains
 
   !> As many rows as are kept stay in their order; of more, each is kept with the same probability: the mean place of the kept
   !> ones is the middle, within four deviations of a mean of so many.
-  subroutine kept_rows()
+  subroutine kept_rows(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(kept_sample_type) :: sample, again
     integer, parameter :: rows = 5*most_kept
     integer :: i
@@ -110,7 +118,8 @@ contains
 
   !> Shares of linear functions are exact whatever the runs are: squares of the slopes times the variances. A number that is far
   !> from zero loses digits, no more.
-  subroutine linear_shares()
+  subroutine linear_shares(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(parameter_type) :: parameters(3)
     real(wp), allocatable :: drawn(:, :), numbers(:, :)
     type(shares_type), allocatable :: shares(:)
@@ -137,7 +146,8 @@ contains
 
   !> Ishigami's function, whose shares are known in closed form (0.3139, 0.4424, 0). Polynomials of fourth degree
   !> have 0.3111 and 0.3008 of them, by Gauss' quadrature; the third parameter has a share only together with the first one.
-  subroutine ishigami_shares()
+  subroutine ishigami_shares(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(parameter_type) :: parameters(3)
     real(wp), allocatable :: drawn(:, :), numbers(:, :)
     type(shares_type), allocatable :: shares(:)
@@ -164,7 +174,8 @@ contains
 
   !> The errors of shares tell how they scatter, for a function with a product of two parameters, which makes the deviations from
   !> the polynomials uneven: over many studies the deviation of a share from its value is its error, or up to a third less.
-  subroutine share_errors()
+  subroutine share_errors(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer, parameter :: studies = 200
     type(parameter_type) :: parameters(3)
     real(wp), allocatable :: drawn(:, :), numbers(:, :)
@@ -200,7 +211,8 @@ contains
   end subroutine share_errors
 
   !> Too few runs, and a quantity that does not vary, have no shares. A parameter of one value has none of the variance.
-  subroutine unknown_shares()
+  subroutine unknown_shares(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(parameter_type) :: parameters(3)
     real(wp), allocatable :: drawn(:, :), numbers(:, :)
     type(shares_type), allocatable :: shares(:)
@@ -227,4 +239,4 @@ contains
     call tester%near(shares(1)%share(3), 0.0_wp, 0.0_wp, 'a parameter of one value has no share')
     call tester%near(shares(1)%share(1), 0.01_wp/0.13_wp, 1e-12_wp, 'the other ones have all')
   end subroutine unknown_shares
-end program test_statistics
+end module test_statistics
