@@ -1,20 +1,22 @@
 !> Tests of completion: words that fit, what they have in common, the list of them.
-program test_completion
+module test_completion
   use mech9_text, only: string_type
   use mech9_completion, only: beginning_of_word, completions, common_beginning, in_columns
   use mech9_testing, only: tester_type
   implicit none
-  call run_tests()
+  private
+  public :: run
+
 contains
 
-  subroutine run_tests()
-    type(tester_type) :: tester
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
 
-    call test_beginning(tester)
-    call test_completions(tester)
-    call test_columns(tester)
-    call tester%finish()
-  end subroutine run_tests
+    if (tester%runs('test_beginning')) call test_beginning(tester)
+    if (tester%runs('test_completions')) call test_completions(tester)
+    if (tester%runs('test_columns')) call test_columns(tester)
+  end subroutine run
 
   subroutine test_beginning(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
@@ -61,4 +63,4 @@ contains
     call tester%is_true(in_columns(words, 12) == 'a    bcd'//eol//'ef'//eol, 'two words stand in a line with room for two')
     call tester%is_true(in_columns(words, 3) == 'a'//eol//'bcd'//eol//'ef'//eol, 'a word wider than the line stands alone')
   end subroutine test_columns
-end program test_completion
+end module test_completion

@@ -1,19 +1,21 @@
 !> Tests of text as bytes and as code points: encodings from the tables of Unicode, and there and back.
-program test_wide_text
+module test_wide_text
   use mech9_wide_text, only: to_wide, to_bytes, code_point, unknown_character
   use mech9_testing, only: tester_type
   implicit none
-  call run_tests()
+  private
+  public :: run
+
 contains
 
-  subroutine run_tests()
-    type(tester_type) :: tester
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
 
-    call test_known(tester)
-    call test_round_trip(tester)
-    call test_no_text(tester)
-    call tester%finish()
-  end subroutine run_tests
+    if (tester%runs('test_known')) call test_known(tester)
+    if (tester%runs('test_round_trip')) call test_round_trip(tester)
+    if (tester%runs('test_no_text')) call test_no_text(tester)
+  end subroutine run
 
   !> One character of each length, and the first and the last of each.
   subroutine test_known(tester)
@@ -70,4 +72,4 @@ contains
     call tester%is_true(size(to_wide('')) == 1, 'an empty text is a zero alone')
     call tester%is_true(code_point('') == unknown_character, 'an empty text holds no character')
   end subroutine test_no_text
-end program test_wide_text
+end module test_wide_text
