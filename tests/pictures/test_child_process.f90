@@ -1,23 +1,25 @@
 !> Tests of mech9_child_process against what every Unix has: sh, true, pwd.
-program test_child_process
+module test_child_process
   use mech9_error, only: error_type
   use mech9_text, only: string_type
   use mech9_child_process, only: child_outcome_type, run_child
   use mech9_testing, only: tester_type
   implicit none
-  call run_tests()
+  private
+  public :: run
+
 contains
 
-  subroutine run_tests()
-    type(tester_type) :: tester
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
 
-    call test_codes(tester)
-    call test_no_start(tester)
-    call test_words(tester)
-    call test_much_input(tester)
-    call test_dropped_output(tester)
-    call tester%finish()
-  end subroutine run_tests
+    if (tester%runs('test_codes')) call test_codes(tester)
+    if (tester%runs('test_no_start')) call test_no_start(tester)
+    if (tester%runs('test_words')) call test_words(tester)
+    if (tester%runs('test_much_input')) call test_much_input(tester)
+    if (tester%runs('test_dropped_output')) call test_dropped_output(tester)
+  end subroutine run
 
   !> sh -c SCRIPT NAME WORD, with an input.
   subroutine run_shell(script, word, input, outcome, err, folder, drop_output)
@@ -124,4 +126,4 @@ contains
     call run_shell(script, '', '', outcome, err)
     call tester%is_true(index(outcome%error_output, 'same') > 0, 'output that is not dropped is that of this program')
   end subroutine test_dropped_output
-end program test_child_process
+end module test_child_process

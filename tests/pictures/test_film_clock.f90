@@ -1,15 +1,25 @@
 !> Tests of mech9_film_clock: texts that tell all frames apart, and are not longer than they need be.
-program test_film_clock
+module test_film_clock
   use mech9_kinds, only: wp
   use mech9_film, only: film_type
   use mech9_film_clock, only: clock_decimals, clock_text
   use mech9_testing, only: tester_type
   implicit none
-  call run_tests()
+  private
+  public :: run
+
 contains
 
-  subroutine run_tests()
-    type(tester_type) :: tester
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('texts')) call texts(tester)
+  end subroutine run
+
+  !> Texts of whole films, and of single times.
+  subroutine texts(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
 
     call check_film(tester, 0.0_wp, 0.01_wp, 101, 2, 't = 0.00 s', 't = 1.00 s')
     call check_film(tester, 0.0_wp, 1.0_wp, 11, 0, 't = 0 s', 't = 10 s')
@@ -22,8 +32,7 @@ contains
     call check_film(tester, 0.0_wp, 1.0e6_wp, 11, -1, 't = 0 s', 't = 1e7 s')
     call tester%is_true(clock_text(-1.0e-9_wp, 2) == 't = 0.00 s', 'a zero has no sign')
     call tester%is_true(clock_text(-0.2_wp, 1) == 't = -0.2 s', 'a number that is not zero keeps its sign')
-    call tester%finish()
-  end subroutine run_tests
+  end subroutine texts
 
   !> A film of evenly spaced frames: its decimals, and its first and last time.
   subroutine check_film(tester, start, step, frames, decimals, first, last)
@@ -52,4 +61,4 @@ contains
     end do
     call tester%is_true(equal == 0, 'no frame shows the time of the one before')
   end subroutine check_film
-end program test_film_clock
+end module test_film_clock

@@ -1,27 +1,33 @@
 !> Places of labels: beside bars, on the page, apart from each other, and with a leading line where all near is covered.
-program test_label_places
+module test_label_places
   use mech9_kinds, only: wp, pi
   use mech9_text, only: to_text
   use mech9_label_places, only: obstacles_type, label_type, spots_around, place_labels
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   real(wp), parameter :: page(2) = [600.0_wp, 400.0_wp], at(2) = [300.0_wp, 200.0_wp]
   !> A joint and its name [px].
   real(wp), parameter :: ring = 6.0_wp, box(2) = [13.0_wp, 10.0_wp]
   !> Half the width of a bar [px].
   real(wp), parameter :: half = 4.7_wp
-  type(tester_type) :: test
-
-  call one_bar(test)
-  call two_bars(test)
-  call at_the_edge(test)
-  call several(test)
-  call surrounded(test)
-  call own_link(test)
-  call neighbours(test)
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('one_bar')) call one_bar(test)
+    if (test%runs('two_bars')) call two_bars(test)
+    if (test%runs('at_the_edge')) call at_the_edge(test)
+    if (test%runs('several')) call several(test)
+    if (test%runs('surrounded')) call surrounded(test)
+    if (test%runs('own_link')) call own_link(test)
+    if (test%runs('neighbours')) call neighbours(test)
+  end subroutine run
 
   !> A bar from the joint in any direction: the name lies beside it, near its joint, without a leading line.
   subroutine one_bar(test)
@@ -208,4 +214,4 @@ contains
       end do
     end associate
   end function any_covered
-end program test_label_places
+end module test_label_places

@@ -1,5 +1,5 @@
 !> Shapes of links: bars, plates around points of a plane, bars between points in space.
-program test_link_shapes
+module test_link_shapes
   use mech9_kinds, only: wp
   use mech9_random, only: random_type
   use mech9_rotation, only: cross
@@ -7,18 +7,24 @@ program test_link_shapes
   use mech9_link_shapes, only: distinct_points, find_shape
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   real(wp), parameter :: tolerance = 1.0e-6_wp
   integer, parameter :: no_rails(2, 0) = 0
-  type(tester_type) :: test
-
-  call few_points(test)
-  call plates(test)
-  call points_in_space(test)
-  call rails(test)
-  call same_points(test)
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('few_points')) call few_points(test)
+    if (test%runs('plates')) call plates(test)
+    if (test%runs('points_in_space')) call points_in_space(test)
+    if (test%runs('rails')) call rails(test)
+    if (test%runs('same_points')) call same_points(test)
+  end subroutine run
 
   !> No shape for a point; for points of a line the bar between the outermost.
   subroutine few_points(test)
@@ -128,4 +134,4 @@ contains
     points(1, :) = [0.0_wp, 1.0_wp, 1.0e-9_wp, 1.0_wp, 2.0_wp, 0.0_wp]
     call test%is_true(all([distinct_points(points, tolerance), 0, 0, 0] == [1, 2, 5, 0, 0, 0]), 'each place is taken once')
   end subroutine same_points
-end program test_link_shapes
+end module test_link_shapes

@@ -1,23 +1,25 @@
 !> Tests of mech9_plot_request and mech9_plot_panels: what the words of --plot mean, by the rules in docs/pictures.md.
-program test_plot_request
+module test_plot_request
   use mech9_error, only: error_type, exit_usage
   use mech9_text, only: string_type
   use mech9_plot_request, only: plot_request_type, read_plot_request
   use mech9_plot_panels, only: panels_of, axis_label
   use mech9_testing, only: tester_type
   implicit none
-  call run_tests()
+  private
+  public :: run
+
 contains
 
-  subroutine run_tests()
-    type(tester_type) :: tester
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
 
-    call test_curves(tester)
-    call test_targets(tester)
-    call test_refusals(tester)
-    call test_panels(tester)
-    call tester%finish()
-  end subroutine run_tests
+    if (tester%runs('test_curves')) call test_curves(tester)
+    if (tester%runs('test_targets')) call test_targets(tester)
+    if (tester%runs('test_refusals')) call test_refusals(tester)
+    if (tester%runs('test_panels')) call test_panels(tester)
+  end subroutine run
 
   !> Columns: 1 t, 2 q1, 3 q2, 4 dq1, 5 P.x, 6 P.y, 7 a,b.x, 8 a, 9 a:P.x, 10 q12.x, 11 closure
   subroutine set_columns(names, units)
@@ -142,4 +144,4 @@ contains
     units(4)%text = '1'
     call tester%is_true(axis_label([4], names, units) == 'dq1', 'a plain number has no unit')
   end subroutine test_panels
-end program test_plot_request
+end module test_plot_request

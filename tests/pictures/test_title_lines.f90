@@ -1,20 +1,26 @@
 !> Titles in lines: nothing of them is lost but what has no room, whatever bytes they hold.
-program test_title_lines
+module test_title_lines
   use mech9_text, only: string_type
   use mech9_title_lines, only: title_lines, letters_of
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   character(len=*), parameter :: more = char(226)//char(128)//char(166)
   !> A letter of four bytes, a face.
   character(len=*), parameter :: face = char(240)//char(159)//char(153)//char(130)
-  type(tester_type) :: test
-
-  call short_titles(test)
-  call long_titles(test)
-  call other_letters(test)
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('short_titles')) call short_titles(test)
+    if (test%runs('long_titles')) call long_titles(test)
+    if (test%runs('other_letters')) call other_letters(test)
+  end subroutine run
 
   subroutine short_titles(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
@@ -66,4 +72,4 @@ contains
       call test%is_true(lines(i)%text == trim(expected(i)), 'each line is right of the title '//title//': '//lines(i)%text)
     end do
   end subroutine expect
-end program test_title_lines
+end module test_title_lines

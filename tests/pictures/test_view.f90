@@ -1,5 +1,5 @@
 !> Views: what they mean as directions, and words that are none.
-program test_view
+module test_view
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_usage
   use mech9_random, only: random_type
@@ -8,17 +8,23 @@ program test_view
   use mech9_view, only: view_type, view_from, read_view
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   !> A few roundings of numbers up to one.
   real(wp), parameter :: round_off = 2.0e-15_wp
-  type(tester_type) :: test
-
-  call directions(test)
-  call words_for_axes(test)
-  call words_for_directions(test)
-  call no_views(test)
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('directions')) call directions(test)
+    if (test%runs('words_for_axes')) call words_for_axes(test)
+    if (test%runs('words_for_directions')) call words_for_directions(test)
+    if (test%runs('no_views')) call no_views(test)
+  end subroutine run
 
   !> From everywhere, also from straight above: three directions across each other, and up is up.
   subroutine directions(test)
@@ -93,4 +99,4 @@ contains
       call test%has_error(err, exit_usage, "'"//trim(wrong(i))//"' is refused")
     end do
   end subroutine no_views
-end program test_view
+end module test_view
