@@ -1,21 +1,23 @@
 !> Tests of mech9_json: documents letter by letter, as the standard (RFC 8259) has them.
-program test_json
+module test_json
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, exit_internal, exit_file
   use mech9_json, only: json_type
   use mech9_testing, only: tester_type
   implicit none
-  call run_tests()
+  private
+  public :: run
+
 contains
 
-  subroutine run_tests()
-    type(tester_type) :: tester
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
 
-    call test_document(tester)
-    call test_numbers(tester)
-    call test_misuse(tester)
-    call tester%finish()
-  end subroutine run_tests
+    if (tester%runs('test_document')) call test_document(tester)
+    if (tester%runs('test_numbers')) call test_numbers(tester)
+    if (tester%runs('test_misuse')) call test_misuse(tester)
+  end subroutine run
 
   subroutine test_document(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
@@ -138,4 +140,4 @@ contains
     read (unit) text
     close (unit)
   end function file_text
-end program test_json
+end module test_json

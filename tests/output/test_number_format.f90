@@ -1,28 +1,30 @@
 !> Tests of mech9_number_format against the compiler's formatted write, which is exact, and by
 !> reading back. The hard cases were found by a search in exact integers (a m mod M next to M/2)
 !> and their digits by arbitrary-precision arithmetic.
-program test_number_format
+module test_number_format
   use mech9_kinds, only: wp, long
   use mech9_clock, only: seconds
   use mech9_number_format, only: number_format_type, number_width
   use mech9_testing, only: tester_type
   implicit none
-  call run_tests()
+  private
+  public :: run
+
 contains
 
-  subroutine run_tests()
-    type(tester_type) :: tester
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
     type(number_format_type) :: format
 
     format = number_format_type()
-    call test_special(tester, format)
-    call test_ties(tester, format)
-    call test_hard(tester, format)
-    call test_edges(tester, format)
-    call test_random(tester, format)
-    call test_speed(tester, format)
-    call tester%finish()
-  end subroutine run_tests
+    if (tester%runs('test_special')) call test_special(tester, format)
+    if (tester%runs('test_ties')) call test_ties(tester, format)
+    if (tester%runs('test_hard')) call test_hard(tester, format)
+    if (tester%runs('test_edges')) call test_edges(tester, format)
+    if (tester%runs('test_random')) call test_random(tester, format)
+    if (tester%runs('test_speed')) call test_speed(tester, format)
+  end subroutine run
 
   subroutine test_special(tester, format)
     type(tester_type), intent(inout) :: tester       !< counts the checks
@@ -190,4 +192,4 @@ contains
     print '(2(f0.1,a))', own/many*1.0e9_wp, ' ns a number, formatted write ', compilers/many*1.0e9_wp, ' ns'
     call tester%is_true(3*own < compilers, 'numbers are written at least three times as fast as by the formatted write')
   end subroutine test_speed
-end program test_number_format
+end module test_number_format

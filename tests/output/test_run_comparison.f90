@@ -1,5 +1,5 @@
 !> Tests of rows kept after a run, of their list, and of two runs held against each other.
-program test_run_comparison
+module test_run_comparison
   use mech9_kinds, only: wp
   use mech9_text, only: string_type
   use mech9_kept_rows, only: kept_rows_type
@@ -7,20 +7,23 @@ program test_run_comparison
   use mech9_run_comparison, only: comparison_type, compare_runs, comparison_text
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   character, parameter :: eol = achar(10)
-  call run_tests()
+
 contains
 
-  subroutine run_tests()
-    type(tester_type) :: tester
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
 
-    call test_kept(tester)
-    call test_thinned(tester)
-    call test_text(tester)
-    call test_comparison(tester)
-    call test_common_times(tester)
-    call tester%finish()
-  end subroutine run_tests
+    if (tester%runs('test_kept')) call test_kept(tester)
+    if (tester%runs('test_thinned')) call test_thinned(tester)
+    if (tester%runs('test_text')) call test_text(tester)
+    if (tester%runs('test_comparison')) call test_comparison(tester)
+    if (tester%runs('test_common_times')) call test_common_times(tester)
+  end subroutine run
 
   !> A run of n + 1 rows from 0 to 1 s: t, q1 = a t, P.x = 1 + a t^2, P.z = round-off that has the sign of a.
   function new_run(n, a) result(kept)
@@ -145,4 +148,4 @@ contains
                         index(comparison_text(comparison, later), 'no time in common') > 0, &
                         'runs without a time in common are told as such')
   end subroutine test_common_times
-end program test_run_comparison
+end module test_run_comparison
