@@ -1,6 +1,6 @@
 !> Drafts: what is given is found, taken away is gone; written as a data file and read again nothing is lost, and each
 !> error is found at the entry that it is about.
-program test_drafts
+module test_drafts
   use mech9_source, only: source_from_text
   use mech9_document, only: document_type
   use mech9_parser, only: parse_document
@@ -15,6 +15,9 @@ program test_drafts
   use mech9_answer, only: read_answer
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   character(len=*), parameter :: eol = achar(10)
   character(len=*), parameter :: slider_crank = &
     "! An offset slider-crank."//eol//eol// &
@@ -23,16 +26,19 @@ program test_drafts
     "! the crank"//eol// &
     "&pair coordinate=1, links=1,2, kind='revolute', axis=2*0,1 /"//eol// &
     "&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point(1)=0.3, point(2:3)=0,0, moving_point=0,0,0 /"//eol
-  type(tester_type) :: tester
-
-  call give_and_take(tester)
-  call there_and_back(tester)
-  call places(tester)
-  call answers(tester)
-  call names_of_files(tester)
-  call tester%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('give_and_take')) call give_and_take(tester)
+    if (tester%runs('there_and_back')) call there_and_back(tester)
+    if (tester%runs('places')) call places(tester)
+    if (tester%runs('answers')) call answers(tester)
+    if (tester%runs('names_of_files')) call names_of_files(tester)
+  end subroutine run
 
   subroutine give_and_take(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
@@ -177,4 +183,4 @@ contains
     call tester%is_true(.not. file_exists('kept.draft.nml'), 'a file that is deleted is gone from the disk')
     call tester%is_true(free_draft_path('kept') == 'kept.draft.nml', 'where no draft is on the disk the plain name is free')
   end subroutine names_of_files
-end program test_drafts
+end module test_drafts

@@ -1,7 +1,7 @@
 !> Every name of the data file is asked for in the conversation of a program that uses it, whatever the table of
 !> names holds; each question is told from the others by its label, and explained in whole sentences with an example in the
 !> unit that is asked for. A group that was begun can be left out, and nothing is proposed that was meant for something else.
-program test_questions
+module test_questions
   use mech9_text, only: string_type
   use mech9_grammar, only: group_table, item_table, find_group_row
   use mech9_item_rows, only: item_row_for_kind
@@ -19,20 +19,25 @@ program test_questions
   use mech9_answer, only: read_answer
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: tester
-
-  call the_topics(tester)
-  call all_names(tester)
-  call explained_names(tester)
-  call units_of_examples(tester)
-  call leaving_out(tester)
-  call studies(tester)
-  call proposals(tester)
-  call dropped_drives(tester)
-  call changed_joints(tester)
-  call tester%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('the_topics')) call the_topics(tester)
+    if (tester%runs('all_names')) call all_names(tester)
+    if (tester%runs('explained_names')) call explained_names(tester)
+    if (tester%runs('units_of_examples')) call units_of_examples(tester)
+    if (tester%runs('leaving_out')) call leaving_out(tester)
+    if (tester%runs('studies')) call studies(tester)
+    if (tester%runs('proposals')) call proposals(tester)
+    if (tester%runs('dropped_drives')) call dropped_drives(tester)
+    if (tester%runs('changed_joints')) call changed_joints(tester)
+  end subroutine run
 
   !> Each group belongs to one topic.
   subroutine the_topics(tester)
@@ -147,8 +152,8 @@ contains
 
   !> A bar on a joint with several freedoms, all of which are independent.
   subroutine begin_joint(kind, interview)
-    character(len=*), intent(in) :: kind                !< kind of the joint
-    type(interview_type), intent(out) :: interview      !< gets all questions about the bar
+    character(len=*), intent(in) :: kind             !< kind of the joint
+    type(interview_type), intent(out) :: interview   !< gets all questions about the bar
     type(draft_type) :: draft
     character(len=:), allocatable :: coordinates
 
@@ -353,11 +358,11 @@ contains
 
   !> Hold what a study needs of its parameter against what it should need.
   subroutine needs(tester, interview, kind, has_low, expected)
-    type(tester_type), intent(inout) :: tester           !< counts the checks
-    type(interview_type), intent(inout) :: interview     !< with a parameter
-    character(len=*), intent(in) :: kind                 !< of the study
-    logical, intent(in) :: has_low                       !< the parameter has its least value
-    logical, intent(in) :: expected(4)                   !< low, high, count and spread must be given
+    type(tester_type), intent(inout) :: tester         !< counts the checks
+    type(interview_type), intent(inout) :: interview   !< with a parameter
+    character(len=*), intent(in) :: kind               !< of the study
+    logical, intent(in) :: has_low                     !< the parameter has its least value
+    logical, intent(in) :: expected(4)                 !< low, high, count and spread must be given
     character(len=6), parameter :: names(4) = [character(len=6) :: 'low', 'high', 'count', 'spread']
     integer :: i, at
     logical :: lacks
@@ -467,4 +472,4 @@ contains
     call interview%step()
     call tester%is_true(label_of(interview%due()) == 'pair(4).links', 'the links of the pair that came back are asked for')
   end subroutine changed_joints
-end program test_questions
+end module test_questions

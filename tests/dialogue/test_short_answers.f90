@@ -1,18 +1,23 @@
 !> Short answers become what a data file holds in full; what only looks like one stays as it is.
-program test_short_answers
+module test_short_answers
   use mech9_grammar, only: item_table
   use mech9_item_rows, only: item_row_for_kind
   use mech9_short_answers, only: full_form, word_meant
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: tester
-
-  call words(tester)
-  call directions(tester)
-  call links(tester)
-  call tester%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('words')) call words(tester)
+    if (tester%runs('directions')) call directions(tester)
+    if (tester%runs('links')) call links(tester)
+  end subroutine run
 
   !> Compare the full form of an answer with what it should be.
   subroutine becomes(tester, group, name, kind, typed, full)
@@ -75,4 +80,4 @@ contains
     call becomes(tester, 'pair', 'links', '', '1 2', '1 2')
     call becomes(tester, 'time', 'end', '', '1-2', '1-2')
   end subroutine links
-end program test_short_answers
+end module test_short_answers
