@@ -1,19 +1,24 @@
 !> Designs: values set in code arrive to the bit, and are checked as those of a data file are.
-program test_design
+module test_design
   use mech9, only: wp, design_type, mechanism_type, motion_type, error_type, read_text, exit_data, exit_usage
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call check_bits()
-  call check_refusals()
-  call check_everything_else()
-  call check_path()
-  call check_couplings()
-  call check_compound_joint()
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('check_bits')) call check_bits(test)
+    if (test%runs('check_refusals')) call check_refusals(test)
+    if (test%runs('check_everything_else')) call check_everything_else(test)
+    if (test%runs('check_path')) call check_path(test)
+    if (test%runs('check_couplings')) call check_couplings(test)
+    if (test%runs('check_compound_joint')) call check_compound_joint(test)
+  end subroutine run
 
   !> A pendulum of length 1/3 that turns about y.
   subroutine pendulum(design)
@@ -25,7 +30,8 @@ contains
   end subroutine pendulum
 
   !> The start, the drive and a point of the pendulum are as they were set.
-  subroutine check_bits()
+  subroutine check_bits(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(design_type) :: design
     type(mechanism_type) :: mechanism
     type(motion_type) :: motion
@@ -51,7 +57,8 @@ contains
   end subroutine check_bits
 
   !> Two wheels and a rack: the couplings arrive, and their forces are those that turn the wheel and push the rack.
-  subroutine check_couplings()
+  subroutine check_couplings(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], x(3) = [1.0_wp, 0.0_wp, 0.0_wp]
     type(design_type) :: design
     type(mechanism_type) :: mechanism
@@ -89,7 +96,8 @@ contains
   end subroutine check_couplings
 
   !> A bead on a straight wire through the points of a file, which is looked for in the current folder.
-  subroutine check_path()
+  subroutine check_path(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(design_type) :: design
     type(mechanism_type) :: mechanism
     type(motion_type) :: motion
@@ -120,7 +128,8 @@ contains
 
   !> A shaft that drives another one at an angle beta by a universal joint: tan(q4) = cos(beta) tan(q1), with q1 and q4 counted from
   !> the position in which the fork of the first shaft stands across the plane of both.
-  subroutine check_compound_joint()
+  subroutine check_compound_joint(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp), parameter :: beta = 0.5_wp, angle = 0.7_wp, ahead(3) = [cos(beta), sin(beta), 0.0_wp], &
       across(3) = [-sin(beta), cos(beta), 0.0_wp], x(3) = [1.0_wp, 0.0_wp, 0.0_wp], y(3) = [0.0_wp, 1.0_wp, 0.0_wp], &
       z(3) = [0.0_wp, 0.0_wp, 1.0_wp]
@@ -145,7 +154,8 @@ contains
     call test%has_error(err, exit_data, 'a joint with too few coordinates is refused')
   end subroutine check_compound_joint
 
-  subroutine check_refusals()
+  subroutine check_refusals(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(design_type) :: design, empty
     type(mechanism_type) :: mechanism
     type(motion_type) :: motion
@@ -190,7 +200,8 @@ contains
   end subroutine check_refusals
 
   !> Groups without a procedure of their own: a spring on a sliding mass. Its motion is a cosine.
-  subroutine check_everything_else()
+  subroutine check_everything_else(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(design_type) :: design
     type(mechanism_type) :: mechanism
     type(motion_type) :: motion
@@ -216,4 +227,4 @@ contains
     call test%near(potential, 0.25_wp*cos(6.0_wp)**2, 1e-8_wp, 'the energy of the spring is that of its closed form')
     call motion%close()
   end subroutine check_everything_else
-end program test_design
+end module test_design

@@ -1,28 +1,35 @@
 !> The library's motions: bad calls are answered by values, energies of a driven motion, motions one after the other.
-program test_library
+module test_library
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use mech9, only: wp, mechanism_type, motion_type, error_type, read_text, coordinate_change_type, simulation_statistics_type, &
     exit_usage, exit_file, exit_integrator, read_file
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
+  private
+  public :: run
+
   !> A body of 3 kg, 0.5 m from its axis, that turns against gravity.
   character(len=*), parameter :: turning = '&structure cq=1 / &pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 / '// &
     '&body link=2, mass=3, centre=0.5,0,0, inertia=0,0,0.1,0,0,0 / &gravity acceleration=0,-9.81,0 /'
   character(len=*), parameter :: driven = turning//' &drive coordinate=1, kind=''polynomial'', coefficients=0.2,2.0 /'
   character(len=*), parameter :: free = turning//' &initial coordinate=1, position=0.2, velocity=2.0 /'
 
-  call check_nothing_started()
-  call check_driven_energies()
-  call check_all_driven()
-  call check_one_after_the_other()
-  call check_accuracy()
-  call test%finish()
-
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('check_nothing_started')) call check_nothing_started(test)
+    if (test%runs('check_driven_energies')) call check_driven_energies(test)
+    if (test%runs('check_all_driven')) call check_all_driven(test)
+    if (test%runs('check_one_after_the_other')) call check_one_after_the_other(test)
+    if (test%runs('check_accuracy')) call check_accuracy(test)
+  end subroutine run
+
   !> Questions to a motion that was never started have no numbers, and do no harm.
-  subroutine check_nothing_started()
+  subroutine check_nothing_started(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(mechanism_type) :: mechanism
     type(motion_type) :: motion
     type(error_type), allocatable :: err
@@ -49,7 +56,8 @@ contains
   end subroutine check_nothing_started
 
   !> Kinetic energy is half of (0.1 + 3*0.5**2) dq**2, potential energy is 3*9.81 times the height.
-  subroutine check_driven_energies()
+  subroutine check_driven_energies(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(mechanism_type) :: mechanism
     type(motion_type) :: motion
     type(error_type), allocatable :: err
@@ -77,7 +85,8 @@ contains
   end subroutine check_driven_energies
 
   !> Dynamics of a body whose only coordinate is driven: it has the motion of the drive, its energies, and no steps of an integrator.
-  subroutine check_all_driven()
+  subroutine check_all_driven(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(mechanism_type) :: mechanism
     type(motion_type) :: motion
     type(error_type), allocatable :: err
@@ -97,7 +106,8 @@ contains
   end subroutine check_all_driven
 
   !> One variable holds a driven motion, then a free one, then nothing.
-  subroutine check_one_after_the_other()
+  subroutine check_one_after_the_other(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(mechanism_type) :: with_drive, without
     type(motion_type) :: motion, beside
     type(error_type), allocatable :: err
@@ -125,7 +135,8 @@ contains
   end subroutine check_one_after_the_other
 
   !> An accuracy gives tolerances for all of the motion; one below round-off is refused.
-  subroutine check_accuracy()
+  subroutine check_accuracy(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(mechanism_type) :: loose, accurate, truth, impossible
     type(motion_type) :: motion
     type(error_type), allocatable :: err
@@ -136,9 +147,9 @@ contains
     call read_text(free//'&solver relative_tolerance=1e-13, absolute_tolerance=1e-13 / &time end=5 /', truth, err)
     call read_text(free//'&solver accuracy=1e-17 / &time end=5 /', impossible, err)
     call test%no_error(err, 'mechanisms of a body that swings are accepted')
-    call ride(loose, q(1))
-    call ride(accurate, q(2))
-    call ride(truth, q(3))
+    call ride(test, loose, q(1))
+    call ride(test, accurate, q(2))
+    call ride(test, truth, q(3))
     call test%is_true(abs(q(1) - q(3)) > 1e-6_wp, 'loose tolerances change the motion visibly')
     call test%near(q(2), q(3), 1e-9_wp, 'the accuracy that was set is kept for five seconds')
     call motion%start_dynamics(impossible, err)
@@ -147,7 +158,8 @@ contains
   end subroutine check_accuracy
 
   !> The angle of a free motion after five seconds.
-  subroutine ride(mechanism, q)
+  subroutine ride(test, mechanism, q)
+    type(tester_type), intent(inout) :: test        !< counts the checks
     type(mechanism_type), intent(in) :: mechanism   !< of one coordinate
     real(wp), intent(out) :: q                      !< its value [rad]
     type(motion_type) :: motion
@@ -159,4 +171,4 @@ contains
     q = motion%q(1)
     call motion%close()
   end subroutine ride
-end program test_library
+end module test_library
