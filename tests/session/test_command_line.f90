@@ -1,5 +1,5 @@
 !> Tests of mech9_command_line: the words are an array, so that any command line can be tried here.
-program test_command_line
+module test_command_line
   use mech9_error, only: error_type, exit_usage
   use mech9_text, only: string_type
   use mech9_options, only: options_table, option_names, find_option, needed_argument, whole_number, part_of_whole
@@ -7,19 +7,21 @@ program test_command_line
   use mech9_help_text, only: help_text
   use mech9_testing, only: tester_type
   implicit none
-  call run_tests()
+  private
+  public :: run
+
 contains
 
-  subroutine run_tests()
-    type(tester_type) :: tester
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
 
-    call test_good_lines(tester)
-    call test_every_option(tester)
-    call test_bad_lines(tester)
-    call test_line_for_shell(tester)
-    call test_help(tester)
-    call tester%finish()
-  end subroutine run_tests
+    if (tester%runs('test_good_lines')) call test_good_lines(tester)
+    if (tester%runs('test_every_option')) call test_every_option(tester)
+    if (tester%runs('test_bad_lines')) call test_bad_lines(tester)
+    if (tester%runs('test_line_for_shell')) call test_line_for_shell(tester)
+    if (tester%runs('test_help')) call test_help(tester)
+  end subroutine run
 
   !> Parse a line whose words are separated by `|`.
   subroutine parse(line, options, err, program_name)
@@ -266,4 +268,4 @@ contains
       first = next + 1
     end do
   end subroutine test_help
-end program test_command_line
+end module test_command_line

@@ -1,6 +1,6 @@
 !> Derivatives by which a search goes on, against differences of what they are derivatives of: of the limit that a crank turns fully,
 !> and of the equations of open chains and couplings.
-program test_design_derivatives
+module test_design_derivatives
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_source, only: source_from_text
@@ -21,9 +21,11 @@ program test_design_derivatives
   use mech9_crank_limit, only: crank_limit_type, new_crank_limit, find_crank_numbers
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
 
   character, parameter :: eol = new_line('a')
-  character(len=*), parameter :: run = &
+  character(len=*), parameter :: run_of_crank = &
     "&drive coordinate=1, kind='polynomial', coefficients=0.7,1 /"//eol//"&time end=1, intervals=4 /"//eol// &
     "&parameter name='begin', sets='drive(1).coefficients(1)', low=0.5, high=0.9 /"//eol
   character(len=*), parameter :: four_bar = &
@@ -68,20 +70,25 @@ program test_design_derivatives
 
   real(wp), parameter :: step_part = 1.0e-3_wp   !< step of differences, as a part of the range of a parameter
 
-  call run_tests()
-
 contains
 
-  subroutine run_tests()
-    type(tester_type) :: tester
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('four_bar')) call check(four_bar//run_of_crank, 'four-bar linkage', tester)
+    if (tester%runs('screw')) call check(screw//run_of_crank, 'crank, rod and screw', tester)
+    if (tester%runs('geared')) call check(geared//run_of_crank, 'geared five-bar linkage', tester)
+    if (tester%runs('guided')) call check_guided(tester)
+  end subroutine run
+
+  !> A guide on a curve from a file.
+  subroutine check_guided(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
 
     call write_curve()
-    call check(four_bar//run, 'four-bar linkage', tester)
-    call check(screw//run, 'crank, rod and screw', tester)
-    call check(geared//run, 'geared five-bar linkage', tester)
-    call check(guided//run, 'guide of another size', tester)
-    call tester%finish()
-  end subroutine run_tests
+    call check(guided//run_of_crank, 'guide of another size', tester)
+  end subroutine check_guided
 
   !> The file of a guide: a part of a large circle about (0.9, -2).
   subroutine write_curve()
@@ -163,9 +170,9 @@ contains
   !> The derivatives of how far a design is from the edge of those whose crank turns.
   subroutine check_crank(space, start, name, tester)
     type(design_space_type), intent(inout), target :: space   !< the designs
-    type(state_type), intent(in) :: start             !< the closed position
-    character(len=*), intent(in) :: name              !< of the mechanism
-    type(tester_type), intent(inout) :: tester        !< counts the checks
+    type(state_type), intent(in) :: start                     !< the closed position
+    character(len=*), intent(in) :: name                      !< of the mechanism
+    type(tester_type), intent(inout) :: tester                !< counts the checks
     type(design_type) :: design
     type(open_position_type) :: position
     type(exact_fit_type) :: fit
@@ -266,4 +273,4 @@ contains
       call tester%near(exact(i)/largest, slopes(i)/largest, 1.0e-8_wp, why)
     end do
   end subroutine compare
-end program test_design_derivatives
+end module test_design_derivatives

@@ -1,5 +1,5 @@
 !> Quantities of a driven motion and their derivatives, without any results: the stroke of a slider-crank.
-program test_design_gradient
+module test_design_gradient
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -12,6 +12,8 @@ program test_design_gradient
   use mech9_design_gradient, only: find_design_gradient
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
 
   character, parameter :: eol = new_line('a')
   character(len=*), parameter :: slider_crank = &
@@ -26,12 +28,18 @@ program test_design_gradient
     "&parameter name='crank', sets='pair(2).point(1)' / &parameter name='rod', sets='pair(3).point(1)' /"//eol// &
     "&quantity name='stroke', of='q4', take='range' / &quantity name='closure', of='closure', take='max' /"//eol
 
-  call run_tests()
-
 contains
 
-  subroutine run_tests()
-    type(tester_type) :: tester
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('stroke')) call stroke(tester)
+  end subroutine run
+
+  !> The stroke of a slider-crank is twice its crank.
+  subroutine stroke(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
     type(varied_document_type) :: varied
@@ -54,6 +62,5 @@ contains
     call varied%at([0.3_wp, 0.25_wp], model, err)
     if (.not. allocated(err)) call find_design_gradient('mech9k', model, varied, numbers, gradient, err)
     call tester%is_true(allocated(err), 'a rod that is too short fails')
-    call tester%finish()
-  end subroutine run_tests
-end program test_design_gradient
+  end subroutine stroke
+end module test_design_gradient

@@ -1,22 +1,30 @@
 !> Tests of the text of the progress line, and of its pacer in a loop that slows down.
-program test_progress
+module test_progress
   use mech9_kinds, only: wp
   use mech9_clock, only: seconds, pacer_type
   use mech9_progress, only: progress_line
   use mech9_version, only: version, version_text
   use mech9_testing, only: tester_type
   implicit none
-  call run_tests()
+  private
+  public :: run
+
 contains
 
-  subroutine run_tests()
-    type(tester_type) :: tester
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
 
-    call test_line(tester)
-    call test_slow_pacer(tester)
+    if (tester%runs('test_line')) call test_line(tester)
+    if (tester%runs('test_slow_pacer')) call test_slow_pacer(tester)
+    if (tester%runs('test_version')) call test_version(tester)
+  end subroutine run
+
+  subroutine test_version(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+
     call tester%is_true(index(version_text('mech9k'), 'mech9k '//version) == 1, 'the version tells program and version')
-    call tester%finish()
-  end subroutine run_tests
+  end subroutine test_version
 
   subroutine test_line(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
@@ -69,5 +77,4 @@ contains
     end do
     call tester%is_true(first > 0, 'an interruption is noticed within 64 calls and one')
   end subroutine test_slow_pacer
-
-end program test_progress
+end module test_progress
