@@ -1,19 +1,24 @@
 !> Balanced matrices: eigenvalues are kept, units are of no account.
-program test_balance
+module test_balance
   use mech9_kinds, only: wp
   use mech9_random, only: random_type
   use mech9_balance, only: balance
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call units_are_of_no_account()
-  call triangular_ones_become_diagonal()
-  call eigenvalues_are_kept()
-  call zeros_are_left()
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('units_are_of_no_account')) call units_are_of_no_account(test)
+    if (test%runs('triangular_ones_become_diagonal')) call triangular_ones_become_diagonal(test)
+    if (test%runs('eigenvalues_are_kept')) call eigenvalues_are_kept(test)
+    if (test%runs('zeros_are_left')) call zeros_are_left(test)
+  end subroutine run
 
   !> Entries at random, from -1 to 1.
   subroutine fill(random, a)
@@ -29,7 +34,8 @@ contains
   end subroutine fill
 
   !> D^-1 A D is as large as A once both are balanced: the scales are powers of ten far apart.
-  subroutine units_are_of_no_account()
+  subroutine units_are_of_no_account(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: a(6, 6), scaled(6, 6), unit(6)
     integer :: case, i, j
@@ -50,7 +56,8 @@ contains
   end subroutine units_are_of_no_account
 
   !> The entries of a triangular matrix beside its diagonal have no part in its eigenvalues.
-  subroutine triangular_ones_become_diagonal()
+  subroutine triangular_ones_become_diagonal(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: a(5, 5), before
     integer :: i, j
@@ -66,7 +73,8 @@ contains
   end subroutine triangular_ones_become_diagonal
 
   !> Traces of powers are sums of powers of the eigenvalues.
-  subroutine eigenvalues_are_kept()
+  subroutine eigenvalues_are_kept(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: a(4, 4), b(4, 4), power_a(4, 4), power_b(4, 4), trace_a, trace_b
     integer :: i, power
@@ -90,7 +98,8 @@ contains
   end subroutine eigenvalues_are_kept
 
   !> No row, no column, no matrix at all.
-  subroutine zeros_are_left()
+  subroutine zeros_are_left(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp) :: a(3, 3), none(0, 0)
 
     a = 0.0_wp
@@ -100,4 +109,4 @@ contains
     call balance(size(none, 1), none)
     call test%is_true(size(none) == 0, 'balancing leaves an empty matrix empty')
   end subroutine zeros_are_left
-end program test_balance
+end module test_balance

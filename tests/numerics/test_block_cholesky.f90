@@ -1,21 +1,27 @@
 !> Sparse Cholesky factors solve random symmetric matrices of blocks: the residual of the equations is round-off.
-program test_block_cholesky
+module test_block_cholesky
   use mech9_kinds, only: wp
   use mech9_random, only: random_type
   use mech9_block_cholesky, only: block_cholesky_type, new_block_cholesky
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call random_graphs()
-  call ladder()
-  call singular()
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('random_graphs')) call random_graphs(test)
+    if (test%runs('ladder')) call ladder(test)
+    if (test%runs('singular')) call singular(test)
+  end subroutine run
+
   !> Random graphs, with nodes that no edge joins, and edges that count nothing or twice.
-  subroutine random_graphs()
+  subroutine random_graphs(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     integer, parameter :: sizes(4) = [3, 6, 2, 1]
     integer :: trial, n, d, i
@@ -28,13 +34,14 @@ contains
       do i = 1, 2*n
         edges(:, i) = [int(0.4999_wp*(1.0_wp + random%symmetric())*(n + 1)), int(0.4999_wp*(1.0_wp + random%symmetric())*(n + 1))]
       end do
-      call compare(random, d, n, edges)
+      call compare(test, random, d, n, edges)
       deallocate (edges)
     end do
   end subroutine random_graphs
 
   !> A long ladder: its factor has few blocks more than the matrix.
-  subroutine ladder()
+  subroutine ladder(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     integer, parameter :: n = 200
     type(block_cholesky_type) :: matrix
     type(random_type) :: random
@@ -49,11 +56,12 @@ contains
     end do
     matrix = new_block_cholesky(3, n, edges)
     call test%is_true(size(matrix%row) < 3*n, 'the factor of a ladder is sparse')
-    call compare(random, 3, n, edges)
+    call compare(test, random, 3, n, edges)
   end subroutine ladder
 
   !> Sums of squares of differences over the edges, and a part of each node's own: the matrix is positive definite.
-  subroutine compare(random, d, n, edges)
+  subroutine compare(test, random, d, n, edges)
+    type(tester_type), intent(inout) :: test     !< counts the checks
     type(random_type), intent(inout) :: random   !< source of the random numbers
     integer, intent(in) :: d                     !< rows of a block
     integer, intent(in) :: n                     !< number of nodes
@@ -107,7 +115,8 @@ contains
   end subroutine compare
 
   !> Two nodes that only an edge holds: the last pivot is zero but for round-off.
-  subroutine singular()
+  subroutine singular(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(block_cholesky_type) :: matrix
     integer :: j, e
 
@@ -121,4 +130,4 @@ contains
     call matrix%factorize()
     call test%is_true(matrix%least_part < 1.0e-15_wp, 'a singular matrix is known by its least pivot')
   end subroutine singular
-end program test_block_cholesky
+end module test_block_cholesky

@@ -131,7 +131,7 @@ end module published_problems
 
 !> Least squares with bounds: problems whose minima are published, the same with bounds, and groups of residuals with unknowns of
 !> their own.
-program test_bounded_least_squares
+module test_bounded_least_squares
   use mech9_kinds, only: wp
   use mech9_bounded_least_squares, only: least_squares_settings_type, least_squares_outcome_type, minimise_squares, ended_short, &
     ended_flat, ended_by_count, ended_without_value
@@ -139,27 +139,34 @@ program test_bounded_least_squares
     jennrich_sampson, one_direction, with_gap
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: tester
-  real(wp), parameter :: far = 1.0e30_wp
+  private
+  public :: run
 
-  call test_published()
-  call test_bounds()
-  call test_deficient()
-  call test_gaps()
-  call test_groups()
-  call tester%finish()
+  real(wp), parameter :: far = 1.0e30_wp
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('test_published')) call test_published(tester)
+    if (tester%runs('test_bounds')) call test_bounds(tester)
+    if (tester%runs('test_deficient')) call test_deficient(tester)
+    if (tester%runs('test_gaps')) call test_gaps(tester)
+    if (tester%runs('test_groups')) call test_groups(tester)
+  end subroutine run
+
   !> Solve a problem between bounds.
-  subroutine solve(name, rows, x, low, high, outcome, most_steps)
-    integer, intent(in) :: name                              !< of the problem
-    integer, intent(in) :: rows                              !< its number of residuals
-    real(wp), intent(inout) :: x(:)                          !< start, then the minimum
-    real(wp), intent(in) :: low(:)                           !< least x
-    real(wp), intent(in) :: high(:)                          !< largest x
-    type(least_squares_outcome_type), intent(out) :: outcome !< how the search ended
-    integer, intent(in) :: most_steps                        !< number of steps that are allowed
+  subroutine solve(tester, name, rows, x, low, high, outcome, most_steps)
+    type(tester_type), intent(inout) :: tester                 !< counts the checks
+    integer, intent(in) :: name                                !< of the problem
+    integer, intent(in) :: rows                                !< its number of residuals
+    real(wp), intent(inout) :: x(:)                            !< start, then the minimum
+    real(wp), intent(in) :: low(:)                             !< least x
+    real(wp), intent(in) :: high(:)                            !< largest x
+    type(least_squares_outcome_type), intent(out) :: outcome   !< how the search ended
+    integer, intent(in) :: most_steps                          !< number of steps that are allowed
     type(problem_type) :: problem
     type(least_squares_settings_type) :: settings
     real(wp) :: y(0, 1), bounds(0, 1)
@@ -176,66 +183,69 @@ contains
   end subroutine solve
 
   !> Minima without bounds, as published.
-  subroutine test_published()
+  subroutine test_published(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(least_squares_outcome_type) :: outcome
     real(wp) :: x2(2), x3(3), x4(4)
 
     x2 = [-1.2_wp, 1.0_wp]
-    call solve(rosenbrock, 2, x2, [-far, -far], [far, far], outcome, 100)
+    call solve(tester, rosenbrock, 2, x2, [-far, -far], [far, far], outcome, 100)
     call tester%near(norm2(x2 - 1.0_wp), 0.0_wp, 1e-10_wp, 'Rosenbrock''s valley ends at (1,1)')
     x4 = [3.0_wp, -1.0_wp, 0.0_wp, 1.0_wp]
-    call solve(powell_singular, 4, x4, [-far, -far, -far, -far], [far, far, far, far], outcome, 100)
+    call solve(tester, powell_singular, 4, x4, [-far, -far, -far, -far], [far, far, far, far], outcome, 100)
     ! the Jacobian is singular there, so that each step gains a factor only
     call tester%near(norm2(x4), 0.0_wp, 1e-5_wp, 'Powell''s singular function is zero at the origin')
     x4 = [-3.0_wp, -1.0_wp, -3.0_wp, -1.0_wp]
-    call solve(wood, 6, x4, [-far, -far, -far, -far], [far, far, far, far], outcome, 200)
+    call solve(tester, wood, 6, x4, [-far, -far, -far, -far], [far, far, far, far], outcome, 200)
     call tester%near(norm2(x4 - 1.0_wp), 0.0_wp, 1e-10_wp, 'Wood''s function is zero at (1,1,1,1)')
     x2 = [0.5_wp, -2.0_wp]
-    call solve(freudenstein_roth, 2, x2, [-far, -far], [far, far], outcome, 100)
+    call solve(tester, freudenstein_roth, 2, x2, [-far, -far], [far, far], outcome, 100)
     ! the published value has six digits
     call tester%near(outcome%value/48.9842_wp, 1.0_wp, 2e-6_wp, 'Freudenstein and Roth''s local minimum')
     x3 = 1.0_wp
-    call solve(bard, 15, x3, [-far, -far, -far], [far, far, far], outcome, 100)
+    call solve(tester, bard, 15, x3, [-far, -far, -far], [far, far, far], outcome, 100)
     call tester%near(outcome%value/8.21487e-3_wp, 1.0_wp, 1e-6_wp, 'Bard''s minimum')
     x2 = [0.3_wp, 0.4_wp]
-    call solve(jennrich_sampson, 10, x2, [-far, -far], [far, far], outcome, 100)
+    call solve(tester, jennrich_sampson, 10, x2, [-far, -far], [far, far], outcome, 100)
     call tester%near(outcome%value/124.362_wp, 1.0_wp, 2e-6_wp, 'Jennrich and Sampson''s minimum, whose residual is large')
     call tester%near(norm2(x2 - 0.257825_wp), 0.0_wp, 2e-5_wp, 'and its place')
   end subroutine test_published
 
   !> Minima at bounds, which follow by hand.
-  subroutine test_bounds()
+  subroutine test_bounds(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(least_squares_outcome_type) :: outcome
     real(wp) :: x2(2), x4(4)
 
     x2 = [-1.2_wp, 1.0_wp]
-    call solve(rosenbrock, 2, x2, [-far, -far], [0.5_wp, far], outcome, 100)
+    call solve(tester, rosenbrock, 2, x2, [-far, -far], [0.5_wp, far], outcome, 100)
     call tester%near(norm2(x2 - [0.5_wp, 0.25_wp]), 0.0_wp, 1e-10_wp, 'with x1 <= 1/2 the valley is left at (1/2,1/4)')
     call tester%near(outcome%value, 0.25_wp, 1e-12_wp, 'with the value (1 - 1/2)^2')
     x2 = [-1.2_wp, 3.0_wp]
-    call solve(rosenbrock, 2, x2, [-far, 1.5_wp], [far, far], outcome, 100)
+    call solve(tester, rosenbrock, 2, x2, [-far, 1.5_wp], [far, far], outcome, 100)
     ! 100 (1.5 - x^2)^2 + (1 - x)^2 has its minima at the zeros of 200 x^3 - 299 x - 1
     call tester%near(200.0_wp*x2(1)**3 - 299.0_wp*x2(1) - 1.0_wp, 0.0_wp, 1e-7_wp, 'the other unknown is free at a bound')
     call tester%near(x2(2), 1.5_wp, 0.0_wp, 'a bound is reached exactly')
     x2 = [5.0_wp, -7.0_wp]
-    call solve(rosenbrock, 2, x2, [2.0_wp, -1.0_wp], [3.0_wp, 0.0_wp], outcome, 100)
+    call solve(tester, rosenbrock, 2, x2, [2.0_wp, -1.0_wp], [3.0_wp, 0.0_wp], outcome, 100)
     call tester%near(norm2(x2 - [2.0_wp, 0.0_wp]), 0.0_wp, 0.0_wp, 'a corner is found from a start outside the box')
     call tester%is_true(outcome%kind == ended_flat, 'nothing is free at a corner')
     x2 = [-1.2_wp, 1.0_wp]
-    call solve(rosenbrock, 2, x2, [-1.2_wp, -far], [-1.2_wp, far], outcome, 100)
+    call solve(tester, rosenbrock, 2, x2, [-1.2_wp, -far], [-1.2_wp, far], outcome, 100)
     call tester%near(x2(2), 1.44_wp, 1e-12_wp, 'an unknown whose bounds are one number stays')
     x4 = [-3.0_wp, -1.0_wp, -3.0_wp, -1.0_wp]
-    call solve(wood, 6, x4, [-far, -far, -far, -far], [0.0_wp, far, far, far], outcome, 300)
+    call solve(tester, wood, 6, x4, [-far, -far, -far, -far], [0.0_wp, far, far, far], outcome, 300)
     call tester%near(x4(1), 0.0_wp, 0.0_wp, 'Wood''s function with x1 <= 0 ends at this bound')
   end subroutine test_bounds
 
   !> Columns that are zero or depend on each other.
-  subroutine test_deficient()
+  subroutine test_deficient(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(least_squares_outcome_type) :: outcome
     real(wp) :: x(3)
 
     x = [1.0_wp, 1.0_wp, 7.0_wp]
-    call solve(one_direction, 5, x, [-far, -far, -far], [far, far, far], outcome, 100)
+    call solve(tester, one_direction, 5, x, [-far, -far, -far], [far, far, far], outcome, 100)
     ! minimum at x1 + 2 x2 = sum(i)/sum(i^2) = 15/55, with the value 5 - 15^2/55
     call tester%near(x(1) + 2.0_wp*x(2), 15.0_wp/55.0_wp, 1e-9_wp, 'one direction is determined')
     call tester%near(outcome%value, 5.0_wp - 225.0_wp/55.0_wp, 1e-12_wp, 'the value is that of the projection')
@@ -243,23 +253,25 @@ contains
   end subroutine test_deficient
 
   !> Places without residuals.
-  subroutine test_gaps()
+  subroutine test_gaps(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(least_squares_outcome_type) :: outcome
     real(wp) :: x(1)
 
     x = [-5.0_wp]
-    call solve(with_gap, 2, x, [-10.0_wp], [10.0_wp], outcome, 200)
+    call solve(tester, with_gap, 2, x, [-10.0_wp], [10.0_wp], outcome, 200)
     ! the derivative of 0.9 - x + 9 (x - 1)^2 is zero at 1 + 1/18, in the gap: the least value is at its edge
     call tester%is_true(x(1) > 0.85_wp .and. x(1) <= 0.9_wp, 'steps into a gap become shorter, and end near its edge')
     call tester%is_true(outcome%kind == ended_short .or. outcome%kind == ended_by_count, 'by short steps')
     x = [5.0_wp]
-    call solve(with_gap, 2, x, [-10.0_wp], [10.0_wp], outcome, 200)
+    call solve(tester, with_gap, 2, x, [-10.0_wp], [10.0_wp], outcome, 200)
     call tester%is_true(outcome%kind == ended_without_value, 'a start without numbers is told')
     call tester%near(x(1), 5.0_wp, 0.0_wp, 'and is left as it is')
   end subroutine test_gaps
 
   !> The circle of least distances: unknowns of groups give the same minimum as unknowns that all share.
-  subroutine test_groups()
+  subroutine test_groups(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     integer, parameter :: n = 9
     type(circle_type) :: apart, together
     type(least_squares_settings_type) :: settings
@@ -293,4 +305,4 @@ contains
     call tester%near(norm2(all_x - [x, y]), 0.0_wp, 1e-6_wp, 'at the same place')
     call tester%is_true(abs(other%steps - outcome%steps) <= 2, 'in as many steps: elimination changes round-off only')
   end subroutine test_groups
-end program test_bounded_least_squares
+end module test_bounded_least_squares

@@ -1,19 +1,24 @@
 !> The sign of a determinant from its factors, against exact determinants of whole numbers.
-program test_determinant_sign
+module test_determinant_sign
   use mech9_kinds, only: wp, long
   use mech9_random, only: random_type
   use mech9_least_squares, only: least_squares_type
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call small_matrices(test)
-  call permutations(test)
-  call large_matrices(test)
-  call other_shapes(test)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('small_matrices')) call small_matrices(test)
+    if (test%runs('permutations')) call permutations(test)
+    if (test%runs('large_matrices')) call large_matrices(test)
+    if (test%runs('other_shapes')) call other_shapes(test)
+  end subroutine run
 
   !> Exact determinant by Bareiss' elimination, which divides without remainder.
   function determinant(matrix) result(value)
@@ -176,4 +181,4 @@ contains
     call system%factorize()
     call test%is_true(system%determinant_sign() == 1, 'the determinant of an empty matrix is one')
   end subroutine other_shapes
-end program test_determinant_sign
+end module test_determinant_sign

@@ -3,26 +3,32 @@
 !> The polynomial of degree 2n through x +- h ... +- n h errs by h^2n f^(2n+1) (n!)^2/(2n+1)! in the first
 !> derivative and by 2 h^2n f^(2n+2) (n!)^2/(2n+2)! in the second; here n = 8. Roundings of the values come
 !> in by less than 4/h and 8/h^2.
-program test_differentiation
+module test_differentiation
   use mech9_kinds, only: wp
   use mech9_random, only: random_type
   use mech9_differentiation, only: half_width, stencil_size, step_count, trial_step, derivatives_from_stencil
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   !> (8!)^2/17! and 2 (8!)^2/18!
   real(wp), parameter :: truncation_first = 40320.0_wp**2/355687428096000.0_wp
   real(wp), parameter :: truncation_second = truncation_first/9.0_wp
-  type(tester_type) :: test
-
-  call steps(test)
-  call powers(test)
-  call sines(test)
-  call exponential(test)
-  call rational(test)
-  call order_and_estimate(test)
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('steps')) call steps(test)
+    if (test%runs('powers')) call powers(test)
+    if (test%runs('sines')) call sines(test)
+    if (test%runs('exponential')) call exponential(test)
+    if (test%runs('rational')) call rational(test)
+    if (test%runs('order_and_estimate')) call order_and_estimate(test)
+  end subroutine run
 
   subroutine steps(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
@@ -153,4 +159,4 @@ contains
     call test%is_true(e_second(1)/e_second(2) > 2.0_wp**15 .and. e_second(1)/e_second(2) < 2.0_wp**17, &
                       'the second derivative is of order 16')
   end subroutine order_and_estimate
-end program test_differentiation
+end module test_differentiation

@@ -1,29 +1,40 @@
 !> Eigenvalues and shapes of M x'' + C x' + K x = 0: residuals of all modes, sums of roots, zero and double roots by structure.
-program test_eigenmodes
+module test_eigenmodes
   use mech9_kinds, only: wp
   use mech9_random, only: random_type
   use mech9_eigenmodes, only: eigenmodes_type, find_eigenmodes
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-  type(random_type) :: random
-  integer :: n
-
-  do n = 1, 6
-    call random_systems(test, random, n)
-  end do
-  call zero_roots(test)
-  call gyroscopic(test)
-  call finish_without_inertia(test)
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('all_sizes')) call all_sizes(test)
+    if (test%runs('zero_roots')) call zero_roots(test)
+    if (test%runs('gyroscopic')) call gyroscopic(test)
+    if (test%runs('finish_without_inertia')) call finish_without_inertia(test)
+  end subroutine run
+
+  subroutine all_sizes(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(random_type) :: random
+    integer :: n
+
+    do n = 1, 6
+      call random_systems(test, random, n)
+    end do
+  end subroutine all_sizes
+
   !> Random inertia and stiffness, without and with damping. The residuals are round-off of the terms.
   subroutine random_systems(test, random, n)
-    type(tester_type), intent(inout) :: test      !< counts the checks
-    type(random_type), intent(inout) :: random    !< source of random numbers
-    integer, intent(in) :: n                      !< order of the matrices
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of random numbers
+    integer, intent(in) :: n                     !< order of the matrices
     real(wp), dimension(n, n) :: m, c, k, a
     type(eigenmodes_type) :: modes
     integer :: i, j
@@ -53,12 +64,12 @@ contains
 
   !> (root^2 M + root C + K) shape is zero, and the shape is not.
   subroutine check_residuals(test, m, c, k, modes, why)
-    type(tester_type), intent(inout) :: test      !< counts the checks
-    real(wp), intent(in) :: m(:, :)               !< inertia
-    real(wp), intent(in) :: c(:, :)               !< damping
-    real(wp), intent(in) :: k(:, :)               !< stiffness
-    type(eigenmodes_type), intent(in) :: modes    !< modes to be checked
-    character(len=*), intent(in) :: why           !< the system
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    real(wp), intent(in) :: m(:, :)              !< inertia
+    real(wp), intent(in) :: c(:, :)              !< damping
+    real(wp), intent(in) :: k(:, :)              !< stiffness
+    type(eigenmodes_type), intent(in) :: modes   !< modes to be checked
+    character(len=*), intent(in) :: why          !< the system
     complex(wp) :: residual(size(m, 1)), matrix(size(m, 1), size(m, 1))
     integer :: i
 
@@ -114,4 +125,4 @@ contains
     call find_eigenmodes(m, 0.0_wp*m, m, 1.0e-12_wp, 1.0e-12_wp, modes)
     call test%is_true(modes%without_inertia == 2 .and. modes%count == 0, 'the second coordinate has no inertia')
   end subroutine finish_without_inertia
-end program test_eigenmodes
+end module test_eigenmodes

@@ -1,5 +1,5 @@
 !> The factorization by fronts against that of the full matrix and against singular values.
-program test_fronts
+module test_fronts
   use mech9_kinds, only: wp
   use mech9_random, only: random_type
   use mech9_random_geometry, only: random_matrix
@@ -8,26 +8,44 @@ program test_fronts
   use mech9_lapack, only: dgesvd
   use mech9_testing, only: tester_type
   implicit none
-
-  type(tester_type) :: test
-  type(random_type) :: random
-  integer :: trial
-
-  call fronts_follow_the_structure()
-  do trial = 1, 40
-    call check_structure(platform(6, 6, 5), 'a platform on six legs')
-    call check_structure(platform(4, 6, 4), 'a platform on four legs with more equations than unknowns')
-    call check_structure(platform(5, 3, 2), 'a plane platform on five legs')
-    call check_structure(ladder(6, 6), 'a ladder')
-    call check_structure(two_floors(), 'a platform on a platform')
-    call check_structure(random_structure(), 'a structure at random')
-  end do
-  do trial = 1, 10
-    call check_structure(with_diagonal(platform(6, 6, 5)), 'a platform on six legs with a diagonal')
-  end do
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('fronts_follow_the_structure')) call fronts_follow_the_structure(test)
+    if (test%runs('random_numbers')) call random_numbers(test)
+    if (test%runs('diagonals')) call diagonals(test)
+  end subroutine run
+
+  subroutine random_numbers(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer :: trial
+    type(random_type) :: random
+
+    do trial = 1, 40
+      call check_structure(test, random, platform(6, 6, 5), 'a platform on six legs')
+      call check_structure(test, random, platform(4, 6, 4), 'a platform on four legs with more equations than unknowns')
+      call check_structure(test, random, platform(5, 3, 2), 'a plane platform on five legs')
+      call check_structure(test, random, ladder(6, 6), 'a ladder')
+      call check_structure(test, random, two_floors(), 'a platform on a platform')
+      call check_structure(test, random, random_structure(random), 'a structure at random')
+    end do
+  end subroutine random_numbers
+
+  subroutine diagonals(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer :: trial
+    type(random_type) :: random
+
+    do trial = 1, 10
+      call check_structure(test, random, with_diagonal(test, platform(6, 6, 5)), 'a platform on six legs with a diagonal')
+    end do
+  end subroutine diagonals
 
   !> A platform on legs: each group has the unknowns of the first leg and those of one other leg.
   pure function platform(legs, equations, unknowns) result(structure)
@@ -70,7 +88,8 @@ contains
   end function two_floors
 
   !> Up to eight groups of three or six rows in which unknowns occur at random.
-  function random_structure() result(structure)
+  function random_structure(random) result(structure)
+    type(random_type), intent(inout) :: random   !< source of the numbers
     type(row_groups_type) :: structure
     integer :: groups, g, i, n, rows
     logical, allocatable :: occurs(:)
@@ -98,7 +117,8 @@ contains
   end function random_structure
 
   !> A structure with one more row for each column.
-  function with_diagonal(structure) result(longer)
+  function with_diagonal(test, structure) result(longer)
+    type(tester_type), intent(inout) :: test         !< counts the checks
     type(row_groups_type), intent(in) :: structure   !< groups and columns
     type(row_groups_type) :: longer
     integer :: row_of(structure%n), m, i, g
@@ -118,7 +138,8 @@ contains
   end function with_diagonal
 
   !> A matrix with this structure, with entries at random.
-  function matrix_of(structure) result(a)
+  function matrix_of(random, structure) result(a)
+    type(random_type), intent(inout) :: random       !< source of the numbers
     type(row_groups_type), intent(in) :: structure   !< groups and columns
     real(wp), allocatable :: a(:, :)
     integer :: g, i, row
@@ -134,7 +155,8 @@ contains
   end function matrix_of
 
   !> Each leg of a platform is a front, and the leg that all groups share is the last one.
-  subroutine fronts_follow_the_structure()
+  subroutine fronts_follow_the_structure(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(row_groups_type) :: structure
     type(front_plan_type) :: plan
 
@@ -145,7 +167,7 @@ contains
                       'a front has the rows of a closure, and the last one those that remain')
     call test%is_true(all(plan%fronts%pivots == 5), 'every front eliminates a leg')
     call test%is_true(all(plan%fronts(:5)%parent == 6), 'the legs pass their rows on to the last front')
-    plan = new_front_plan(with_diagonal(structure))
+    plan = new_front_plan(with_diagonal(test, structure))
     call test%is_true(plan%used .and. all(plan%fronts%pivots == 5) .and. all(plan%fronts(:5)%rows == 11), &
                       'with a diagonal, every leg remains a front')
     structure = platform(2, 6, 3)
@@ -154,32 +176,36 @@ contains
   end subroutine fronts_follow_the_structure
 
   !> Regular, nearly singular, and singular matrices of one structure.
-  subroutine check_structure(structure, name)
+  subroutine check_structure(test, random, structure, name)
+    type(tester_type), intent(inout) :: test         !< counts the checks
+    type(random_type), intent(inout) :: random       !< source of the numbers
     type(row_groups_type), intent(in) :: structure   !< groups and columns
-    character(len=*), intent(in) :: name            !< of the structure, for the report of a failure
+    character(len=*), intent(in) :: name             !< of the structure, for the report of a failure
     real(wp), allocatable :: a(:, :)
     integer :: exponent, j
 
-    a = matrix_of(structure)
-    call check_matrix(structure, a, name)
+    a = matrix_of(random, structure)
+    call check_matrix(test, random, structure, a, name)
     ! a column of the first group becomes dependent, or nearly dependent, on another of the same group
     j = structure%first(1)
     associate (first => a(:structure%sizes(1), structure%members(j)), second => a(:structure%sizes(1), structure%members(j + 1)))
       do exponent = 1, 4
         second = first + 10.0_wp**(-4*exponent)*second
         a(structure%sizes(1) + 1:, structure%members(j + 1)) = a(structure%sizes(1) + 1:, structure%members(j))
-        call check_matrix(structure, a, name//', nearly singular')
+        call check_matrix(test, random, structure, a, name//', nearly singular')
       end do
       second = first
-      call check_matrix(structure, a, name//', singular')
+      call check_matrix(test, random, structure, a, name//', singular')
     end associate
   end subroutine check_structure
 
   !> Pivots, rank, least singular value, sign and solutions of a matrix by fronts and as a full one.
-  subroutine check_matrix(structure, a, name)
+  subroutine check_matrix(test, random, structure, a, name)
+    type(tester_type), intent(inout) :: test         !< counts the checks
+    type(random_type), intent(inout) :: random       !< source of the numbers
     type(row_groups_type), intent(in) :: structure   !< groups and columns
-    real(wp), intent(in) :: a(:, :)                 !< the matrix
-    character(len=*), intent(in) :: name            !< for the report of a failure
+    real(wp), intent(in) :: a(:, :)                  !< the matrix
+    character(len=*), intent(in) :: name             !< for the report of a failure
     type(least_squares_type) :: by_fronts, full
     real(wp) :: b(size(a, 1)), side(size(a, 1)), x(size(a, 2)), y(size(a, 2)), remainder, expected, s(size(a, 2)), allowed
 
@@ -201,8 +227,8 @@ contains
       call test%is_true(norm2(x - y) <= allowed*(norm2(y) + norm2(b)*s(1)/s(size(s))**2), &
                         name//': the solution is that of the full matrix')
       call test%is_true(abs(remainder - expected) <= allowed*norm2(b), name//': the remainder is that of the full matrix')
-      call check_transposed(by_fronts, a, norm2(b), allowed, name//', by fronts')
-      call check_transposed(full, a, norm2(b), allowed, name)
+      call check_transposed(test, random, by_fronts, a, norm2(b), allowed, name//', by fronts')
+      call check_transposed(test, random, full, a, norm2(b), allowed, name)
       call test%is_true(by_fronts%determinant_sign() == full%determinant_sign(), &
                         name//': the determinant has the sign of the full matrix')
     end if
@@ -223,7 +249,9 @@ contains
   end subroutine check_matrix
 
   !> A solution of the transposed equations satisfies them, and is the shortest: it is a linear combination of the columns.
-  subroutine check_transposed(factors, a, length, allowed, name)
+  subroutine check_transposed(test, random, factors, a, length, allowed, name)
+    type(tester_type), intent(inout) :: test             !< counts the checks
+    type(random_type), intent(inout) :: random           !< source of the numbers
     type(least_squares_type), intent(inout) :: factors   !< of the matrix
     real(wp), intent(in) :: a(:, :)                      !< the matrix
     real(wp), intent(in) :: length                       !< of a typical right-hand side
@@ -251,4 +279,4 @@ contains
     call dgesvd('A', 'N', size(a, 1), size(a, 2), copy, size(a, 1), s, u, size(a, 1), vt, 1, work, size(work), info)
     if (info /= 0) error stop 'singular values did not converge'
   end function singular_values
-end program test_fronts
+end module test_fronts

@@ -1,6 +1,6 @@
 !> Least squares against their definition, against normal equations in quadruple precision, and
 !> ranks and conditioning against singular values.
-program test_least_squares
+module test_least_squares
   use mech9_kinds, only: wp
   use mech9_random, only: random_type
   use mech9_random_geometry, only: random_matrix
@@ -8,21 +8,27 @@ program test_least_squares
   use mech9_lapack, only: dgesvd
   use mech9_testing, only: tester_type
   implicit none
-  integer, parameter :: quad = selected_real_kind(30)
-  type(tester_type) :: test
+  private
+  public :: run
 
-  call all_shapes(test)
-  call against_normal_equations(test)
-  call deficient(test)
-  call hidden_behind_zeros(test)
-  call zero_matrices(test)
-  call known_conditioning(test)
-  call conditioning_within_bounds(test)
-  call several_right_sides(test)
-  call fewer_columns(test)
-  call test%finish()
+  integer, parameter :: quad = selected_real_kind(30)
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('all_shapes')) call all_shapes(test)
+    if (test%runs('against_normal_equations')) call against_normal_equations(test)
+    if (test%runs('deficient')) call deficient(test)
+    if (test%runs('hidden_behind_zeros')) call hidden_behind_zeros(test)
+    if (test%runs('zero_matrices')) call zero_matrices(test)
+    if (test%runs('known_conditioning')) call known_conditioning(test)
+    if (test%runs('conditioning_within_bounds')) call conditioning_within_bounds(test)
+    if (test%runs('several_right_sides')) call several_right_sides(test)
+    if (test%runs('fewer_columns')) call fewer_columns(test)
+  end subroutine run
 
   !> Singular values, the largest first.
   function singular_values(a) result(s)
@@ -360,4 +366,4 @@ contains
     end do
     call test%is_true(left_out == 100, 'a column is left out in each trial')
   end subroutine fewer_columns
-end program test_least_squares
+end module test_least_squares

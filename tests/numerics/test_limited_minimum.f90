@@ -65,28 +65,33 @@ contains
 end module limited_problems
 
 !> Least values of smooth functions between bounds and within limits, by each method.
-program test_limited_minimum
+module test_limited_minimum
   use mech9_kinds, only: wp
   use mech9_smooth_problem, only: smooth_settings_type, smooth_outcome_type, ended_converged, ended_infeasible, ended_nowhere
-  use mech9_limited_minimum, only: minimise_within_limits, has_limited_minimum
+  use mech9_limited_minimum, only: minimise_within_limits
   use limited_problems, only: limited_problem_type, rosen_suzuki, with_edge, excluding, nowhere
   use mech9_testing, only: tester_type
   implicit none
-  character(len=6), parameter :: methods(4) = ['slsqp ', 'mma   ', 'ccsaq ', 'auglag']
-  type(tester_type) :: tester
+  private
+  public :: run
 
-  if (has_limited_minimum) then
-    call published()
-    call beside_an_edge()
-    call without_result()
-    call stopped()
-  end if
-  call tester%finish()
+  character(len=6), parameter :: methods(4) = ['slsqp ', 'mma   ', 'ccsaq ', 'auglag']
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('published')) call published(tester)
+    if (tester%runs('beside_an_edge')) call beside_an_edge(tester)
+    if (tester%runs('without_result')) call without_result(tester)
+    if (tester%runs('stopped')) call stopped(tester)
+  end subroutine run
+
   !> The optimum of four unknowns is (0, 1, 2, -1), with the value -44 and two limits reached.
-  subroutine published()
+  subroutine published(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(limited_problem_type) :: problem
     type(smooth_settings_type) :: settings
     type(smooth_outcome_type) :: outcome
@@ -118,7 +123,8 @@ contains
   end subroutine published
 
   !> Steps over the edge of the places that have a value are refused.
-  subroutine beside_an_edge()
+  subroutine beside_an_edge(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(limited_problem_type) :: problem
     type(smooth_settings_type) :: settings
     type(smooth_outcome_type) :: outcome
@@ -137,7 +143,8 @@ contains
   end subroutine beside_an_edge
 
   !> Limits that exclude each other, functions without value, and methods that do not exist.
-  subroutine without_result()
+  subroutine without_result(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(limited_problem_type) :: problem
     type(smooth_settings_type) :: settings
     type(smooth_outcome_type) :: outcome
@@ -161,7 +168,8 @@ contains
   end subroutine without_result
 
   !> A search that is stopped ends at once.
-  subroutine stopped()
+  subroutine stopped(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(limited_problem_type) :: problem
     type(smooth_settings_type) :: settings
     type(smooth_outcome_type) :: outcome
@@ -176,4 +184,4 @@ contains
       call tester%is_true(outcome%evaluations <= 6, methods(i)//': stops')
     end do
   end subroutine stopped
-end program test_limited_minimum
+end module test_limited_minimum

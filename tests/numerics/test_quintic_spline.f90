@@ -1,21 +1,26 @@
 !> Quintic splines: polynomials of fifth degree are reproduced, pieces join with four derivatives, errors shrink with the sixth power.
-program test_quintic_spline
+module test_quintic_spline
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, exit_data
   use mech9_random, only: random_type
   use mech9_quintic_spline, only: quintic_spline_type, build_quintic
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call polynomials(test)
-  call smoothness(test, .false.)
-  call smoothness(test, .true.)
-  call order(test)
-  call refused(test)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('polynomials')) call polynomials(test)
+    if (test%runs('smoothness')) call smoothness(test, .false.)
+    if (test%runs('smoothness_closed')) call smoothness(test, .true.)
+    if (test%runs('order')) call order(test)
+    if (test%runs('refused')) call refused(test)
+  end subroutine run
 
   !> Open curves through points of polynomials are these polynomials; through fewer than six points, up to the degree that the
   !> points determine.
@@ -67,9 +72,9 @@ contains
 
   !> A derivative of a polynomial.
   real(wp) function polynomial(c, x, derivative)
-    real(wp), intent(in) :: c(0:)          !< coefficients
-    real(wp), intent(in) :: x              !< the place
-    integer, intent(in) :: derivative      !< its order
+    real(wp), intent(in) :: c(0:)       !< coefficients
+    real(wp), intent(in) :: x           !< the place
+    integer, intent(in) :: derivative   !< its order
     integer :: i, k
 
     polynomial = 0.0_wp
@@ -181,4 +186,4 @@ contains
     call build_quintic([1.0_wp, 2.0_wp, 2.0_wp, 4.0_wp, 5.0_wp], points, .false., spline, err)
     call test%has_error(err, exit_data, 'two points at one value of the parameter are refused')
   end subroutine refused
-end program test_quintic_spline
+end module test_quintic_spline

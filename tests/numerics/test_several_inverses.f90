@@ -1,5 +1,5 @@
 !> Inverses of several matrices at once, against their definition in quadruple precision, and their judgement against singular values.
-program test_several_inverses
+module test_several_inverses
   use mech9_kinds, only: wp
   use mech9_random, only: random_type
   use mech9_random_geometry, only: random_matrix
@@ -7,25 +7,31 @@ program test_several_inverses
   use mech9_lapack, only: dgesvd
   use mech9_testing, only: tester_type
   implicit none
-  integer, parameter :: quad = selected_real_kind(30), lead = 8
-  type(tester_type) :: test
+  private
+  public :: run
 
-  call near_each_other(test)
-  call one_by_one(test)
-  call other_pivots(test)
-  call singular(test)
-  call test%finish()
+  integer, parameter :: quad = selected_real_kind(30), lead = 8
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('near_each_other')) call near_each_other(test)
+    if (test%runs('one_by_one')) call one_by_one(test)
+    if (test%runs('other_pivots')) call other_pivots(test)
+    if (test%runs('singular')) call singular(test)
+  end subroutine run
+
   !> Invert matrices in the order of pivots of the first one.
   subroutine invert(n, m, a, order, inverse, bounds)
-    integer, intent(in) :: n                          !< number of matrices
-    integer, intent(in) :: m                          !< rows and columns
-    real(wp), intent(in) :: a(lead, m, m)             !< the matrices
-    integer, intent(in) :: order(m)                   !< of their pivots
-    real(wp), intent(out) :: inverse(lead, m, m)      !< the inverses
-    real(wp), intent(out) :: bounds(lead)             !< of the conditioning
+    integer, intent(in) :: n                       !< number of matrices
+    integer, intent(in) :: m                       !< rows and columns
+    real(wp), intent(in) :: a(lead, m, m)          !< the matrices
+    integer, intent(in) :: order(m)                !< of their pivots
+    real(wp), intent(out) :: inverse(lead, m, m)   !< the inverses
+    real(wp), intent(out) :: bounds(lead)          !< of the conditioning
     real(wp) :: scratch(lead, m, m)
 
     inverse = 0.0_wp
@@ -167,4 +173,4 @@ contains
     ! round-off may leave a row that another one equals a part of 1e-16 of it
     call test%near(largest, 0.0_wp, 1e-14_wp, 'singular matrices have no conditioning')
   end subroutine singular
-end program test_several_inverses
+end module test_several_inverses

@@ -1,23 +1,29 @@
 !> Cosines and sines of many angles, against those in quadruple precision.
-program test_sine_cosine
+module test_sine_cosine
   use mech9_kinds, only: wp
   use mech9_random, only: random_type
   use mech9_sine_cosine, only: cosines_and_sines
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   integer, parameter :: quad = selected_real_kind(30)
   !> The greatest term is added last: half of the last digit of numbers below one for that sum, which is a quarter of
   !> epsilon, and as much again at most for the small terms.
   real(wp), parameter :: allowed = 0.5_wp*epsilon(1.0_wp)
-  type(tester_type) :: test
-
-  call all_sizes()
-  call about_quarter_turns()
-  call known_angles()
-  call too_large()
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('all_sizes')) call all_sizes(test)
+    if (test%runs('about_quarter_turns')) call about_quarter_turns(test)
+    if (test%runs('known_angles')) call known_angles(test)
+    if (test%runs('too_large')) call too_large(test)
+  end subroutine run
 
   !> Largest error of either.
   real(wp) function error_of(angles, turned) result(worst)
@@ -33,7 +39,8 @@ contains
   end function error_of
 
   !> Angles from a thousandth of a radian to a million, any number at once.
-  subroutine all_sizes()
+  subroutine all_sizes(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     real(wp) :: angles(97), turned(2, 97)
     integer :: power, trial, n, i
@@ -51,7 +58,8 @@ contains
   end subroutine all_sizes
 
   !> Angles at which one of them vanishes, and at which the nearest whole quarter changes.
-  subroutine about_quarter_turns()
+  subroutine about_quarter_turns(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp) :: angles(7), turned(2, 7)
     integer :: eighths
 
@@ -64,7 +72,8 @@ contains
     end do
   end subroutine about_quarter_turns
 
-  subroutine known_angles()
+  subroutine known_angles(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp) :: turned(2, 2)
 
     call cosines_and_sines(2, [0.0_wp, 1.0e-300_wp], turned)
@@ -74,11 +83,12 @@ contains
   end subroutine known_angles
 
   !> Beyond what can be reduced, the intrinsic functions answer.
-  subroutine too_large()
+  subroutine too_large(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp) :: angles(3), turned(2, 3)
 
     angles = [1.0_wp, 1.0e9_wp, -1.0e15_wp]
     call cosines_and_sines(3, angles, turned)
     call test%near(error_of(angles, turned), 0.0_wp, allowed, 'cosine and sine of large angles are right')
   end subroutine too_large
-end program test_sine_cosine
+end module test_sine_cosine

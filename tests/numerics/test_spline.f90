@@ -1,20 +1,25 @@
 !> Cubic splines: cubics are reproduced, pieces join smoothly, errors shrink with the fourth power.
-program test_spline
+module test_spline
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_data
   use mech9_random, only: random_type
   use mech9_spline, only: spline_type, build_spline
   use mech9_testing, only: tester_type, message_of
   implicit none
-  type(tester_type) :: test
-
-  call cubics(test)
-  call smoothness(test)
-  call order(test)
-  call refused(test)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('cubics')) call cubics(test)
+    if (test%runs('smoothness')) call smoothness(test)
+    if (test%runs('order')) call order(test)
+    if (test%runs('refused')) call refused(test)
+  end subroutine run
 
   !> Increasing points at distances between 0.1 and 0.3.
   function random_knots(random, n) result(x)
@@ -150,4 +155,4 @@ contains
     call test%has_error(err, exit_data, 'abscissae that fall are refused')
     call test%is_true(index(message_of(err), 'point 4') > 0, 'the message about falling abscissae names the point')
   end subroutine refused
-end program test_spline
+end module test_spline

@@ -1,6 +1,6 @@
 !> Functions of Taylor arithmetic: against differences of the same function of real numbers, against
 !> textbook derivatives, and against each other.
-program test_taylor_functions
+module test_taylor_functions
   use mech9_kinds, only: wp, pi
   use mech9_random, only: random_type
   use mech9_differentiation, only: half_width, derivatives_from_stencil
@@ -8,17 +8,23 @@ program test_taylor_functions
     sqrt, exp, log, sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, abs
   use mech9_testing, only: tester_type
   implicit none
-  integer, parameter :: function_count = 18
-  type(tester_type) :: test
+  private
+  public :: run
 
-  call against_differences(test)
-  call textbook_derivatives(test)
-  call inverse_functions(test)
-  call related_functions(test)
-  call all_quadrants(test)
-  call test%finish()
+  integer, parameter :: function_count = 18
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('against_differences')) call against_differences(test)
+    if (test%runs('textbook_derivatives')) call textbook_derivatives(test)
+    if (test%runs('inverse_functions')) call inverse_functions(test)
+    if (test%runs('related_functions')) call related_functions(test)
+    if (test%runs('all_quadrants')) call all_quadrants(test)
+  end subroutine run
 
   !> A smooth argument u(x) that stays between 0.15 and 0.85 for |x| <= 1.
   function argument_real(x, a) result(u)
@@ -203,4 +209,4 @@ contains
       call same(test, back, angle, 'the angle of a point on a circle')
     end do
   end subroutine all_quadrants
-end program test_taylor_functions
+end module test_taylor_functions
