@@ -32,7 +32,7 @@ contains
   end subroutine counted_at
 end module counting_model
 
-program test_changed_numbers
+module test_changed_numbers
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -50,6 +50,8 @@ program test_changed_numbers
   use mech9_testing, only: tester_type
   use mech9_input_support, only: slider_crank, eol
   implicit none
+  private
+  public :: run
 
   !> Numbers of many groups, some of which need the whole document. The last but one may not be negative, the last one not be zero.
   integer, parameter :: n = 14
@@ -58,13 +60,16 @@ program test_changed_numbers
     'gravity.acceleration(2)', 'body(2).centre(1)', 'time.end', 'coupling.phase', 'body(1).mass', 'pair(5).axis(3)']
   real(wp), parameter :: values(n) = [0.3_wp, 1.0_wp, 0.1_wp, 0.0_wp, 10.0_wp, 1.2_wp, 20.0_wp, 1.5_wp, -9.81_wp, 0.5_wp, 0.5_wp, &
                                       0.2_wp, 1.5_wp, 1.0_wp]
-  type(tester_type) :: tester
-
-  call models_do_not_remember()
-  call constants_are_differentiated()
-  call tester%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('models_do_not_remember')) call models_do_not_remember(tester)
+    if (tester%runs('constants_are_differentiated')) call constants_are_differentiated(tester)
+  end subroutine run
 
   !> A data file with many groups, and a parameter for each of its targets.
   function whole_file() result(text)
@@ -91,8 +96,8 @@ contains
 
   !> The model of a text as a function of its parameters.
   subroutine new_varied(text, varied)
-    character(len=*), intent(in) :: text                   !< of the data file
-    type(varied_document_type), intent(out) :: varied      !< the model
+    character(len=*), intent(in) :: text                !< of the data file
+    type(varied_document_type), intent(out) :: varied   !< the model
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 
@@ -101,7 +106,8 @@ contains
   end subroutine new_varied
 
   !> A model that has had many other values, wrong ones among them, against one that is read for the first time.
-  subroutine models_do_not_remember()
+  subroutine models_do_not_remember(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(varied_document_type) :: long_used, fresh
     type(model_type) :: model, expected
     type(error_type), allocatable :: err, expected_err
@@ -129,7 +135,7 @@ contains
                             err%place%line == expected_err%place%line .and. err%place%column == expected_err%place%column, &
                             'the error is the same: '//err%message)
       else if (.not. allocated(expected_err)) then
-        call compare(model, expected)
+        call compare(tester, model, expected)
       end if
       if (now(13) < 0.0_wp) now(13) = -now(13)
       if (.not. abs(now(14)) > 0.0_wp) now(14) = values(14)
@@ -137,9 +143,10 @@ contains
   end subroutine models_do_not_remember
 
   !> Two models have the same bits.
-  subroutine compare(model, expected)
-    type(model_type), intent(in) :: model      !< a model
-    type(model_type), intent(in) :: expected   !< the same model by another way
+  subroutine compare(tester, model, expected)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    type(model_type), intent(in) :: model        !< a model
+    type(model_type), intent(in) :: expected     !< the same model by another way
     real(wp), parameter :: origin(3) = [0.1_wp, 0.2_wp, 0.3_wp]
     real(wp), allocatable :: row(:), expected_row(:)
     integer :: i
@@ -165,8 +172,8 @@ contains
   subroutine append_loads(model, row)
     use mech9_spring_load, only: spring_load_type
     use mech9_harmonic_law, only: harmonic_law_type
-    type(model_type), intent(in) :: model              !< the model
-    real(wp), allocatable, intent(inout) :: row(:)     !< the row so far
+    type(model_type), intent(in) :: model            !< the model
+    real(wp), allocatable, intent(inout) :: row(:)   !< the row so far
     integer :: i
 
     do i = 1, size(model%mechanism%loads)
@@ -183,7 +190,8 @@ contains
   end subroutine append_loads
 
   !> The derivatives of linear constants take four models, those of others eight, and they are those of closed forms.
-  subroutine constants_are_differentiated()
+  subroutine constants_are_differentiated(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(counting_model_type) :: variable
     type(model_type) :: model
     type(plan_type) :: plan
@@ -216,4 +224,4 @@ contains
     call gather_constants(model, plan%length, plan%origin, row)
     call tester%is_true(all(transfer(row, [0_long]) == transfer(renewed, [0_long])), 'frames get their numbers as in a new plan')
   end subroutine constants_are_differentiated
-end program test_changed_numbers
+end module test_changed_numbers

@@ -1,7 +1,7 @@
-!> The documentation of the data file is what the table of names says. Argument: the path of docs/data-file.md.
+!> The documentation of the data file, docs/data-file.md, is what the table of names says.
 !>
 !> The right text is left in `data-file.md` of the current folder, to be copied over an outdated one.
-program test_data_help
+module test_data_help
   use mech9_error, only: error_type, exit_usage
   use mech9_source, only: source_type, read_source
   use mech9_grammar, only: group_table, item_table
@@ -9,23 +9,28 @@ program test_data_help
   use mech9_testing, only: tester_type
   use mech9_input_support, only: eol
   implicit none
-  character(len=*), parameter :: mark = '<!-- From here on made from the table of names; see tests/input. -->'
-  type(tester_type) :: tester
+  private
+  public :: run
 
-  call the_document()
-  call the_help()
-  call tester%finish()
+  character(len=*), parameter :: mark = '<!-- From here on made from the table of names; see tests/input. -->'
 
 contains
 
-  subroutine the_document()
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('the_document')) call the_document(tester)
+    if (tester%runs('the_help')) call the_help(tester)
+  end subroutine run
+
+  subroutine the_document(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(source_type) :: found, expected
     type(error_type), allocatable :: err
-    character(len=1000) :: path
     integer :: unit, at
 
-    call get_command_argument(1, path)
-    call read_source(trim(path), found, err)
+    call read_source(tester%tree//'/docs/data-file.md', found, err)
     call tester%no_error(err, 'the document can be read')
     at = index(found%text, mark//eol)
     call tester%is_true(at > 0, 'the document has its mark')
@@ -40,7 +45,8 @@ contains
   end subroutine the_document
 
   !> Help names every group, and help on a group every name, with its default and its words.
-  subroutine the_help()
+  subroutine the_help(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(error_type), allocatable :: err
     character(len=:), allocatable :: text
     integer :: i
@@ -96,4 +102,4 @@ contains
     call read_source('test_data_help.txt', source, trouble)
     text = source%text
   end subroutine help_of
-end program test_data_help
+end module test_data_help

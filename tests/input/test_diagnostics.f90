@@ -1,24 +1,30 @@
 !> The display of errors: place, line, carets, order, number, exit code.
-program test_diagnostics
+module test_diagnostics
   use mech9_error, only: error_type, place_type, raise, exit_data, exit_structure, exit_file, exit_assembly, exit_done
   use mech9_source, only: span_type, source_from_text
   use mech9_diagnostics, only: diagnostics_type
   use mech9_testing, only: tester_type
   use mech9_input_support, only: eol, printed, count_of
   implicit none
-  type(tester_type) :: tester
-
-  call the_form()
-  call tabs_and_alphabets()
-  call a_long_line()
-  call order_and_number()
-  call exit_codes()
-  call failures_from_elsewhere()
-  call tester%finish()
+  private
+  public :: run
 
 contains
 
-  subroutine shows(text, first, last, expected, why, name)
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('the_form')) call the_form(tester)
+    if (tester%runs('tabs_and_alphabets')) call tabs_and_alphabets(tester)
+    if (tester%runs('a_long_line')) call a_long_line(tester)
+    if (tester%runs('order_and_number')) call order_and_number(tester)
+    if (tester%runs('exit_codes')) call exit_codes(tester)
+    if (tester%runs('failures_from_elsewhere')) call failures_from_elsewhere(tester)
+  end subroutine run
+
+  subroutine shows(tester, text, first, last, expected, why, name)
+    type(tester_type), intent(inout) :: tester       !< counts the checks
     character(len=*), intent(in) :: text             !< of the file
     character(len=*), intent(in) :: expected         !< the right lines
     character(len=*), intent(in) :: why              !< the statement that is checked, printed where it is wrong
@@ -38,32 +44,36 @@ contains
     if (rendered(g, 1) /= expected) print '(a)', rendered(g, 1)
   end subroutine shows
 
-  subroutine the_form()
+  subroutine the_form(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(diagnostics_type) :: g
     integer :: number
 
-    call shows("&a"//eol//"  x = 12 /"//eol, 10, 11, &
+    call shows(tester, "&a"//eol//"  x = 12 /"//eol, 10, 11, &
                "f.nml:2:7: message"//eol//"  x = 12 /"//eol//"      ^^", 'message, line, carets under the place')
-    call shows("&a", 1, 2, "f.nml:1:1: message"//eol//"&a"//eol//"^^", 'a file without a line end')
-    call shows("ab"//eol//"cd", 2, 5, "f.nml:1:2: message"//eol//"ab"//eol//" ^", 'carets end with the line')
-    call shows("a"//achar(27)//"b"//eol, 3, 3, "f.nml:1:3: message"//eol//"a?b"//eol//"  ^", 'control bytes are not printed')
+    call shows(tester, "&a", 1, 2, "f.nml:1:1: message"//eol//"&a"//eol//"^^", 'a file without a line end')
+    call shows(tester, "ab"//eol//"cd", 2, 5, "f.nml:1:2: message"//eol//"ab"//eol//" ^", 'carets end with the line')
+    call shows(tester, "a"//achar(27)//"b"//eol, 3, 3, "f.nml:1:3: message"//eol//"a?b"//eol//"  ^", &
+               'control bytes are not printed')
     call g%add_source(source_from_text('--set', 'time.end=x', is_file=.false.), number)
     call g%add(span_type(number, 10, 10), 'message')
     call tester%is_true(rendered(g, 1) == '--set: message'//eol//'time.end=x'//eol//'         ^', 'a setting has no line number')
   end subroutine the_form
 
-  subroutine tabs_and_alphabets()
+  subroutine tabs_and_alphabets(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=2), parameter :: umlaut = char(195)//char(164)
 
-    call shows(achar(9)//"x"//achar(9)//"= 1", 4, 4, "f.nml:1:4: message"//eol//achar(9)//"x"//achar(9)//"= 1"//eol// &
+    call shows(tester, achar(9)//"x"//achar(9)//"= 1", 4, 4, "f.nml:1:4: message"//eol//achar(9)//"x"//achar(9)//"= 1"//eol// &
                achar(9)//" "//achar(9)//"^", 'tabs stand above tabs, so that the carets do not shift')
-    call shows("t='"//umlaut//umlaut//"' x", 10, 10, "f.nml:1:8: message"//eol//"t='"//umlaut//umlaut//"' x"//eol// &
+    call shows(tester, "t='"//umlaut//umlaut//"' x", 10, 10, "f.nml:1:8: message"//eol//"t='"//umlaut//umlaut//"' x"//eol// &
                "       ^", 'characters of two bytes take one column')
-    call shows("'"//umlaut//"'", 1, 4, "f.nml:1:1: message"//eol//"'"//umlaut//"'"//eol//"^^^", &
+    call shows(tester, "'"//umlaut//"'", 1, 4, "f.nml:1:1: message"//eol//"'"//umlaut//"'"//eol//"^^^", &
                'a character of two bytes has one caret')
   end subroutine tabs_and_alphabets
 
-  subroutine a_long_line()
+  subroutine a_long_line(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(diagnostics_type) :: g
     character(len=:), allocatable :: text, shown
     integer :: number, lines(3)
@@ -82,7 +92,8 @@ contains
                         'the caret stands under the place')
   end subroutine a_long_line
 
-  subroutine order_and_number()
+  subroutine order_and_number(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(diagnostics_type) :: g
     character(len=:), allocatable :: text
     integer :: number, i
@@ -102,7 +113,8 @@ contains
     call tester%is_true(g%count == 5031, 'all are counted, though not all are kept')
   end subroutine order_and_number
 
-  subroutine exit_codes()
+  subroutine exit_codes(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(diagnostics_type) :: g
 
     call tester%is_true(g%code() == exit_done .and. .not. g%failed(), 'where there are no errors the exit code is that of success')
@@ -114,7 +126,8 @@ contains
     call tester%is_true(g%code() == exit_file, 'an unreadable file comes before all other errors')
   end subroutine exit_codes
 
-  subroutine failures_from_elsewhere()
+  subroutine failures_from_elsewhere(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(diagnostics_type) :: g
     type(error_type), allocatable :: err
     integer :: number
@@ -137,4 +150,4 @@ contains
 
     call diagnostics%render(i, text)
   end function rendered
-end program test_diagnostics
+end module test_diagnostics

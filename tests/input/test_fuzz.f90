@@ -1,6 +1,6 @@
 !> Damaged data files: thousands of right ones with bytes changed, lines shuffled, pieces cut out, doubled or put
 !> in. Whatever they have become, they are read, or refused with a message and an exit code; never a crash.
-program test_fuzz
+module test_fuzz
   use mech9_kinds, only: wp
   use mech9_error, only: exit_data, exit_structure, exit_file
   use mech9_random, only: random_type
@@ -16,6 +16,8 @@ program test_fuzz
   use mech9_testing, only: tester_type
   use mech9_input_support, only: printed, slider_crank, eol
   implicit none
+  private
+  public :: run
 
   integer, parameter :: runs = 6000
   character(len=*), parameter :: everything = slider_crank// &
@@ -34,84 +36,94 @@ program test_fuzz
   character(len=12), parameter :: pieces(24) = [character(len=12) :: '/', '&', "'", '"', ',', '=', '(', ')', '(:,', ':', &
     '999999999*', '1e308', '-', '1e-320', 'NaN', '&pair', '&structure', 'c(9,9)=1', 'cq=', '2147483647', &
     '99999999999', achar(0), char(255), 'axis(1)=']
-  type(tester_type) :: tester
-  type(random_type) :: random
-  integer :: refused = 0
-
-  call damaged_files()
-  call damaged_settings()
-  call tester%finish()
 
 contains
 
-  subroutine damaged_files()
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('damaged_files')) call damaged_files(tester)
+    if (tester%runs('damaged_settings')) call damaged_settings(tester)
+  end subroutine run
+
+  subroutine damaged_files(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=:), allocatable :: text
     integer :: i
+    type(random_type) :: random
+    integer :: refused
 
+    refused = 0
     do i = 1, runs
       text = everything
       if (mod(i, 3) == 0) text = second_set
-      call damage(text)
-      call try(text, i)
+      call damage(random, text)
+      call try(tester, refused, text, i)
     end do
     call tester%is_true(refused > runs/2, 'most of the damaged files are refused')
     call tester%is_true(refused < runs, 'some of the damaged files are accepted')
   end subroutine damaged_files
 
   !> A whole number from 1 to n.
-  integer function dice(n)
-    integer, intent(in) :: n   !< greatest number
+  integer function dice(random, n)
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    integer, intent(in) :: n                     !< greatest number
 
     dice = min(n, 1 + int(0.5_wp*(random%symmetric() + 1.0_wp)*n))
   end function dice
 
   !> One to four changes.
-  subroutine damage(text)
+  subroutine damage(random, text)
+    type(random_type), intent(inout) :: random             !< source of the numbers
     character(len=:), allocatable, intent(inout) :: text   !< of a data file, changed
     integer :: i
 
-    do i = 1, dice(4)
+    do i = 1, dice(random, 4)
       if (len(text) < 2) return
-      select case (dice(7))
+      select case (dice(random, 7))
       case (1)
-        call change_byte(text)
+        call change_byte(random, text)
       case (2)
-        text = text(:dice(len(text)))
+        text = text(:dice(random, len(text)))
       case (3)
-        call move_line(text)
+        call move_line(random, text)
       case (4)
-        call cut_or_double(text, .false.)
+        call cut_or_double(random, text, .false.)
       case (5)
-        call cut_or_double(text, .true.)
+        call cut_or_double(random, text, .true.)
       case default
-        call put_piece(text)
+        call put_piece(random, text)
       end select
     end do
   end subroutine damage
 
-  subroutine change_byte(text)
-    character(len=*), intent(inout) :: text   !< of a data file, changed
+  subroutine change_byte(random, text)
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    character(len=*), intent(inout) :: text      !< of a data file, changed
     integer :: at
 
-    at = dice(len(text))
-    text(at:at) = char(dice(256) - 1)
+    at = dice(random, len(text))
+    text(at:at) = char(dice(random, 256) - 1)
   end subroutine change_byte
 
-  subroutine put_piece(text)
+  subroutine put_piece(random, text)
+    type(random_type), intent(inout) :: random             !< source of the numbers
     character(len=:), allocatable, intent(inout) :: text   !< of a data file, made longer
     integer :: at
 
-    at = dice(len(text))
-    text = text(:at)//trim(pieces(dice(size(pieces))))//text(at + 1:)
+    at = dice(random, len(text))
+    text = text(:at)//trim(pieces(dice(random, size(pieces))))//text(at + 1:)
   end subroutine put_piece
 
-  subroutine cut_or_double(text, double)
+  subroutine cut_or_double(random, text, double)
+    type(random_type), intent(inout) :: random             !< source of the numbers
     character(len=:), allocatable, intent(inout) :: text   !< of a data file, changed
     logical, intent(in) :: double                          !< a part of it is doubled, not cut
     integer :: first, last
 
-    first = dice(len(text))
-    last = min(len(text), first + dice(60))
+    first = dice(random, len(text))
+    last = min(len(text), first + dice(random, 60))
     if (double) then
       text = text(:last)//text(first:)
     else
@@ -120,25 +132,28 @@ contains
   end subroutine cut_or_double
 
   !> Take the line around some place and put it before another one.
-  subroutine move_line(text)
+  subroutine move_line(random, text)
+    type(random_type), intent(inout) :: random             !< source of the numbers
     character(len=:), allocatable, intent(inout) :: text   !< of a data file, changed
     character(len=:), allocatable :: line
     integer :: at, first, last
 
-    at = dice(len(text))
+    at = dice(random, len(text))
     first = index(text(:at), eol, back=.true.) + 1
     last = min(len(text), first - 1 + index(text(first:)//eol, eol))
     line = text(first:last)
     text = text(:first - 1)//text(last + 1:)
     if (len(text) == 0) return
-    at = dice(len(text))
+    at = dice(random, len(text))
     first = index(text(:at), eol, back=.true.) + 1
     text = text(:first - 1)//line//text(first:)
   end subroutine move_line
 
-  subroutine try(text, number)
-    character(len=*), intent(in) :: text   !< of a damaged data file
-    integer, intent(in) :: number          !< of the trial
+  subroutine try(tester, refused, text, number)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    integer, intent(inout) :: refused            !< files that were refused
+    character(len=*), intent(in) :: text         !< of a damaged data file
+    integer, intent(in) :: number                !< of the trial
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics, again
     type(model_type) :: model
@@ -150,8 +165,8 @@ contains
     call read_model(document, mod(number, 2) == 0, model, diagnostics)
     call read_structure_only(document, structure, partition, again)
     if (diagnostics%failed()) refused = refused + 1
-    call judge(diagnostics, text)
-    call judge(again, text)
+    call judge(tester, diagnostics, text)
+    call judge(tester, again, text)
     if (.not. diagnostics%failed()) call tester%is_true(is_whole(model), 'a file that is accepted is whole:'//eol//text)
   end subroutine try
 
@@ -160,7 +175,8 @@ contains
   end subroutine forget
 
   !> Either nothing is wrong and nothing is printed, or there is a message and its code.
-  subroutine judge(diagnostics, text)
+  subroutine judge(tester, diagnostics, text)
+    type(tester_type), intent(inout) :: tester          !< counts the checks
     type(diagnostics_type), intent(in) :: diagnostics   !< of the damaged text
     character(len=*), intent(in) :: text                !< of the damaged data file
     character(len=:), allocatable :: answer
@@ -190,7 +206,8 @@ contains
   end function is_whole
 
   !> Damaged settings on a right file.
-  subroutine damaged_settings()
+  subroutine damaged_settings(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=*), parameter :: settings(4) = [character(len=24) :: 'time.intervals=7', 'pair(2).axis(1)=0.5', &
                                                  'structure.c(1,:)=0,1,0,4', "output.table='x.dat'"]
     character(len=:), allocatable :: text
@@ -198,15 +215,16 @@ contains
     type(diagnostics_type) :: diagnostics
     type(model_type) :: model
     integer :: i
+    type(random_type) :: random
 
     do i = 1, runs/4
       text = trim(settings(1 + mod(i, 4)))
-      call damage(text)
+      call damage(random, text)
       call forget(diagnostics)
       call parse_document(source_from_text('test.nml', everything), document, diagnostics)
       call apply_setting(document, text, diagnostics)
       call read_model(document, .true., model, diagnostics)
-      call judge(diagnostics, text)
+      call judge(tester, diagnostics, text)
     end do
   end subroutine damaged_settings
-end program test_fuzz
+end module test_fuzz

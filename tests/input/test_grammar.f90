@@ -1,6 +1,6 @@
 !> Every row of the table of names: it is consistent, its example and default are accepted, and a value of
 !> another type, a value too many and a value out of range are refused at their place.
-program test_grammar
+module test_grammar
   use mech9_source, only: source_from_text
   use mech9_grammar, only: group_table, item_table, item_row_type, unlimited, find_group_row, words_of, for_forces
   use mech9_item_rows, only: find_item_rows, takes_kind
@@ -11,24 +11,43 @@ program test_grammar
   use mech9_testing, only: tester_type
   use mech9_input_support, only: printed
   implicit none
-  type(tester_type) :: tester
-  integer :: i, j
-
-  do i = 1, size(group_table)
-    call check_group_row(i)
-  end do
-  do i = 1, size(item_table)
-    call check_item_row(item_table(i))
-    do j = 1, i - 1
-      call tester%is_true(apart(item_table(i), item_table(j)), label(item_table(i))//': the name has one meaning for each kind')
-    end do
-  end do
-  call tester%finish()
+  private
+  public :: run
 
 contains
 
-  subroutine check_group_row(row)
-    integer, intent(in) :: row   !< number of the row among the groups
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('groups')) call groups(tester)
+    if (tester%runs('items')) call items(tester)
+  end subroutine run
+
+  subroutine groups(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    integer :: i
+
+    do i = 1, size(group_table)
+      call check_group_row(tester, i)
+    end do
+  end subroutine groups
+
+  subroutine items(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    integer :: i, j
+
+    do i = 1, size(item_table)
+      call check_item_row(tester, item_table(i))
+      do j = 1, i - 1
+        call tester%is_true(apart(item_table(i), item_table(j)), label(item_table(i))//': the name has one meaning for each kind')
+      end do
+    end do
+  end subroutine items
+
+  subroutine check_group_row(tester, row)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    integer, intent(in) :: row                   !< number of the row among the groups
 
     associate (group => group_table(row))
       call tester%is_true(find_group_row(group%name) == row, trim(group%name)//': the group is found under its name')
@@ -71,8 +90,9 @@ contains
     label = trim(row%group)//'.'//trim(row%name)
   end function label
 
-  subroutine check_item_row(row)
-    type(item_row_type), intent(in) :: row   !< of the grammar
+  subroutine check_item_row(tester, row)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    type(item_row_type), intent(in) :: row       !< of the grammar
     character(len=:), allocatable :: wrong
 
     call tester%is_true(find_group_row(row%group) > 0, label(row)//': the name belongs to a group')
@@ -87,26 +107,28 @@ contains
                         label(row)//': words and kinds fit their fields')
     call tester%is_true(.not. (row%needed .and. row%default /= ''), label(row)//': a name that is needed has no default')
     call tester%is_true(row%needed .or. row%default /= '', label(row)//': a name that is not needed has a default')
-    if (row%kinds /= '') call check_kinds(row)
-    call check_words(row)
+    if (row%kinds /= '') call check_kinds(tester, row)
+    call check_words(tester, row)
 
-    call accepted(row, example(row), 'its example')
-    if (row%default /= '' .and. row%default(1:1) /= '(') call accepted(row, assignment_of(row, trim(row%default)), 'its default')
+    call accepted(tester, row, example(row), 'its example')
+    if (row%default /= '' .and. row%default(1:1) /= '(') call accepted(tester, row, assignment_of(row, trim(row%default)), &
+                                                                       'its default')
     wrong = "'text'"
     if (row%type == 'text') wrong = '17'
-    call refused(row, assignment_of(row, wrong), 'a value of another type')
-    call refused(row, assignment_of(row, 'NaN'), 'NaN')
-    if (row%type == 'integer') call refused(row, assignment_of(row, '1.0'), 'a real number for a whole one')
-    if (row%type == 'integer' .and. row%range /= '') call refused(row, assignment_of(row, '-1'), 'a number out of range')
-    if (row%type == 'real' .and. row%range /= '') call refused(row, assignment_of(row, '-1.0'), 'a number out of range')
-    if (row%high < unlimited) call refused(row, example(row)//', '//example_value(row), 'a value too many')
-    if (row%low > 1) call refused(row, assignment_of(row, '1'), 'a value too few')
-    if (row%words /= '') call refused(row, assignment_of(row, "'no such word'"), 'a word that is not allowed')
+    call refused(tester, row, assignment_of(row, wrong), 'a value of another type')
+    call refused(tester, row, assignment_of(row, 'NaN'), 'NaN')
+    if (row%type == 'integer') call refused(tester, row, assignment_of(row, '1.0'), 'a real number for a whole one')
+    if (row%type == 'integer' .and. row%range /= '') call refused(tester, row, assignment_of(row, '-1'), 'a number out of range')
+    if (row%type == 'real' .and. row%range /= '') call refused(tester, row, assignment_of(row, '-1.0'), 'a number out of range')
+    if (row%high < unlimited) call refused(tester, row, example(row)//', '//example_value(row), 'a value too many')
+    if (row%low > 1) call refused(tester, row, assignment_of(row, '1'), 'a value too few')
+    if (row%words /= '') call refused(tester, row, assignment_of(row, "'no such word'"), 'a word that is not allowed')
   end subroutine check_item_row
 
   !> The kinds or laws of time a name belongs to are kinds or laws that the group has.
-  subroutine check_kinds(row)
-    type(item_row_type), intent(in) :: row   !< of the grammar
+  subroutine check_kinds(tester, row)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    type(item_row_type), intent(in) :: row       !< of the grammar
     character(len=len(row%kinds)), allocatable :: kinds(:)
     character(len=:), allocatable :: word
     integer, allocatable :: rows(:)
@@ -139,15 +161,16 @@ contains
     if (is_law(kind)) word = kind(len('law:') + 1:)
   end function without_law
 
-  subroutine check_words(row)
-    type(item_row_type), intent(in) :: row   !< of the grammar
+  subroutine check_words(tester, row)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    type(item_row_type), intent(in) :: row       !< of the grammar
     character(len=len(row%words)), allocatable :: words(:)
     integer :: k
 
     words = words_of(row%words)
     call tester%is_true(size(words) > 0 .eqv. row%words /= '', label(row)//': the words are told apart')
     do k = 1, size(words)
-      call accepted(row, assignment_of(row, "'"//trim(words(k))//"'"), 'the word '//trim(words(k)))
+      call accepted(tester, row, assignment_of(row, "'"//trim(words(k))//"'"), 'the word '//trim(words(k)))
     end do
   end subroutine check_words
 
@@ -205,7 +228,8 @@ contains
     errors = merge(1, 0, index(text, 'test.nml:2:') > 0)
   end subroutine check_text
 
-  subroutine accepted(row, assignment, what)
+  subroutine accepted(tester, row, assignment, what)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(item_row_type), intent(in) :: row       !< of the grammar
     character(len=*), intent(in) :: assignment   !< text within the group
     character(len=*), intent(in) :: what         !< name of the trial, for the report of a failure
@@ -217,7 +241,8 @@ contains
     if (errors > 0) print '(a)', text
   end subroutine accepted
 
-  subroutine refused(row, assignment, what)
+  subroutine refused(tester, row, assignment, what)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(item_row_type), intent(in) :: row       !< of the grammar
     character(len=*), intent(in) :: assignment   !< text within the group
     character(len=*), intent(in) :: what         !< name of the trial, for the report of a failure
@@ -227,4 +252,4 @@ contains
     call check_text(row, assignment, errors, text)
     call tester%is_true(errors == 1, label(row)//': '//what//' is refused: '//assignment)
   end subroutine refused
-end program test_grammar
+end module test_grammar

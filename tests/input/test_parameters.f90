@@ -1,5 +1,5 @@
 !> Parameters: the numbers that they set, their values by --set, what is refused, and the model at other values.
-program test_parameters
+module test_parameters
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_source, only: source_from_text
@@ -14,29 +14,35 @@ program test_parameters
   use mech9_testing, only: tester_type
   use mech9_input_support, only: printed, slider_crank, eol
   implicit none
+  private
+  public :: run
+
   !> The slider-crank with masses; the crank's length is that of point(1) of the second pair.
   character(len=*), parameter :: bodies = slider_crank// &
     "&body link=2, mass=1.5, centre=0.15,0,0 /"//eol// &
     "&load kind='spring', links=1,4, stiffness=20 /"//eol
   character(len=*), parameter :: crank = &
     "&parameter name='crank', sets='pair(2).point(1)','body.centre(1)', factors=1,0.5, value=0.4 /"
-  type(tester_type) :: tester
-
-  call numbers_are_set()
-  call the_later_decides()
-  call wrong_parameters_are_refused()
-  call models_at_other_values()
-  call tester%finish()
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('numbers_are_set')) call numbers_are_set(tester)
+    if (tester%runs('the_later_decides')) call the_later_decides(tester)
+    if (tester%runs('wrong_parameters_are_refused')) call wrong_parameters_are_refused(tester)
+    if (tester%runs('models_at_other_values')) call models_at_other_values(tester)
+  end subroutine run
+
   !> The model of a data file with groups added to it, and up to two settings.
   subroutine read_with(groups, model, answer, first, second)
-    character(len=*), intent(in) :: groups                   !< added to the data file
-    type(model_type), intent(out) :: model                   !< its model
-    character(len=:), allocatable, intent(out) :: answer     !< text that is printed
-    character(len=*), intent(in), optional :: first          !< argument of the first --set
-    character(len=*), intent(in), optional :: second         !< argument of the second one
+    character(len=*), intent(in) :: groups                 !< added to the data file
+    type(model_type), intent(out) :: model                 !< its model
+    character(len=:), allocatable, intent(out) :: answer   !< text that is printed
+    character(len=*), intent(in), optional :: first        !< argument of the first --set
+    character(len=*), intent(in), optional :: second       !< argument of the second one
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 
@@ -47,7 +53,8 @@ contains
     answer = printed(diagnostics)
   end subroutine read_with
 
-  subroutine numbers_are_set()
+  subroutine numbers_are_set(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(model_type) :: model
     character(len=:), allocatable :: answer
     real(wp) :: by_hand
@@ -80,7 +87,8 @@ contains
     crank_of = factors%before%p(1)
   end function crank_of
 
-  subroutine the_later_decides()
+  subroutine the_later_decides(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(model_type) :: model
     character(len=:), allocatable :: answer
 
@@ -100,42 +108,47 @@ contains
     call tester%is_true(index(answer, 'and none is left') > 0, 'a parameter that sets nothing is refused')
   end subroutine the_later_decides
 
-  subroutine wrong_parameters_are_refused()
-    call refused("sets='bodi(1).mass'", "f.nml:13:27: unknown group 'bodi'; did you mean 'body'?")
-    call refused("sets='pair(2).piont(1)'", "unknown name 'piont' in &pair; did you mean 'point'?")
-    call refused("sets='pair(9).point(1)'", 'this file has 4 groups &pair only')
-    call refused("sets='body(2).mass'", 'this file has 1 group &body only')
-    call refused("sets='pair.point(1)'", 'there are 4 groups &pair; say which one: pair(2).point')
-    call refused("sets='gravity.acceleration(2)'", 'there is no &gravity in this file')
-    call refused("sets='pair(2).point'", "'point' has 3 numbers; say which one: 'point(2)'")
-    call refused("sets='pair(2).point(4)'", "'point' has 3 numbers only")
-    call refused("sets='pair(2).kind'", "'kind' is a word, and a parameter is a real number")
-    call refused("sets='pair(2).coordinate'", "'coordinate' takes whole numbers, and a parameter is a real number")
-    call refused("sets='output.poses'", "there is no &output in this file")
-    call refused("sets='pair(2).pitch'", "'pitch' does not belong to this kind of &pair")
-    call refused("sets='pair(1).moving_point(1)'", "this &pair does not give 'moving_point'; write it")
-    call refused("sets='parameter.low'", 'not of &parameter')
-    call refused("sets='pair'", 'write the name of a number as group.name, or group(2).name(3)')
-    call refused("sets='pair(2)point(1)'", 'write the name of a number as group.name, or group(2).name(3)')
-    call refused("sets='pair(2).point(1:2)'", 'write the name of a number as group.name, or group(2).name(3)')
-    call refused("sets=''", 'write the name of a number')
-    call refused("sets='pair(2).point(1)','pair(2).point(2)'", "parameter 'a' sets 2 numbers; give its 'value'")
-    call refused("sets='pair(2).point(1)', factors=1,2", "'sets' names 1 numbers, and 'factors' has 2")
-    call refused("sets='pair(2).point(1)', factors=0", 'a factor of 0 takes the effect from the parameter')
-    call refused("sets='pair(2).point(1)', low=1", "a parameter has both 'low' and 'high', or neither")
-    call refused("sets='pair(2).point(1)', low=1, high=1", "'high' must be greater than 'low'")
-    call refused("sets='load.stiffness', value=-3", "parameter 'a' sets load.stiffness to -3, and 'stiffness' must be >=0")
-    call refused("sets='pair(2).point(1)', value=1e99, factors=1e9", 'which is too large or too small')
-    call refused("sets='pair(2).point(1)','pair( 2 ).point(1)', value=1", "this number is named twice")
-    call refused("sets='pair(2).point(1)' / &parameter name='b', sets='PAIR(2).Point(1)'", "parameter 'a' sets this number already")
-    call refused("sets='pair(2).point(1)' / &parameter name='a', sets='pair(2).point(2)'", "a second &parameter for name 'a'")
-    call refused("sets='pair(2).point(1)' / &parameter name='b c', sets='pair(2).point(2)'", "'name' must be of letters")
+  subroutine wrong_parameters_are_refused(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+
+    call refused(tester, "sets='bodi(1).mass'", "f.nml:13:27: unknown group 'bodi'; did you mean 'body'?")
+    call refused(tester, "sets='pair(2).piont(1)'", "unknown name 'piont' in &pair; did you mean 'point'?")
+    call refused(tester, "sets='pair(9).point(1)'", 'this file has 4 groups &pair only')
+    call refused(tester, "sets='body(2).mass'", 'this file has 1 group &body only')
+    call refused(tester, "sets='pair.point(1)'", 'there are 4 groups &pair; say which one: pair(2).point')
+    call refused(tester, "sets='gravity.acceleration(2)'", 'there is no &gravity in this file')
+    call refused(tester, "sets='pair(2).point'", "'point' has 3 numbers; say which one: 'point(2)'")
+    call refused(tester, "sets='pair(2).point(4)'", "'point' has 3 numbers only")
+    call refused(tester, "sets='pair(2).kind'", "'kind' is a word, and a parameter is a real number")
+    call refused(tester, "sets='pair(2).coordinate'", "'coordinate' takes whole numbers, and a parameter is a real number")
+    call refused(tester, "sets='output.poses'", "there is no &output in this file")
+    call refused(tester, "sets='pair(2).pitch'", "'pitch' does not belong to this kind of &pair")
+    call refused(tester, "sets='pair(1).moving_point(1)'", "this &pair does not give 'moving_point'; write it")
+    call refused(tester, "sets='parameter.low'", 'not of &parameter')
+    call refused(tester, "sets='pair'", 'write the name of a number as group.name, or group(2).name(3)')
+    call refused(tester, "sets='pair(2)point(1)'", 'write the name of a number as group.name, or group(2).name(3)')
+    call refused(tester, "sets='pair(2).point(1:2)'", 'write the name of a number as group.name, or group(2).name(3)')
+    call refused(tester, "sets=''", 'write the name of a number')
+    call refused(tester, "sets='pair(2).point(1)','pair(2).point(2)'", "parameter 'a' sets 2 numbers; give its 'value'")
+    call refused(tester, "sets='pair(2).point(1)', factors=1,2", "'sets' names 1 numbers, and 'factors' has 2")
+    call refused(tester, "sets='pair(2).point(1)', factors=0", 'a factor of 0 takes the effect from the parameter')
+    call refused(tester, "sets='pair(2).point(1)', low=1", "a parameter has both 'low' and 'high', or neither")
+    call refused(tester, "sets='pair(2).point(1)', low=1, high=1", "'high' must be greater than 'low'")
+    call refused(tester, "sets='load.stiffness', value=-3", "parameter 'a' sets load.stiffness to -3, and 'stiffness' must be >=0")
+    call refused(tester, "sets='pair(2).point(1)', value=1e99, factors=1e9", 'which is too large or too small')
+    call refused(tester, "sets='pair(2).point(1)','pair( 2 ).point(1)', value=1", "this number is named twice")
+    call refused(tester, "sets='pair(2).point(1)' / &parameter name='b', sets='PAIR(2).Point(1)'", &
+                 "parameter 'a' sets this number already")
+    call refused(tester, "sets='pair(2).point(1)' / &parameter name='a', sets='pair(2).point(2)'", &
+                 "a second &parameter for name 'a'")
+    call refused(tester, "sets='pair(2).point(1)' / &parameter name='b c', sets='pair(2).point(2)'", "'name' must be of letters")
   end subroutine wrong_parameters_are_refused
 
   !> Expect a message for a parameter.
-  subroutine refused(names, message)
-    character(len=*), intent(in) :: names     !< of the group &parameter, but its name
-    character(len=*), intent(in) :: message   !< a part of what is printed
+  subroutine refused(tester, names, message)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    character(len=*), intent(in) :: names        !< of the group &parameter, but its name
+    character(len=*), intent(in) :: message      !< a part of what is printed
     type(model_type) :: model
     character(len=:), allocatable :: answer
 
@@ -143,7 +156,8 @@ contains
     call tester%is_true(index(answer, message) > 0, names//' says: '//message//'; it said '//answer)
   end subroutine refused
 
-  subroutine models_at_other_values()
+  subroutine models_at_other_values(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
     type(varied_document_type) :: varied
@@ -165,4 +179,4 @@ contains
     call tester%is_true(.not. allocated(err), 'and the next values are taken')
     call tester%near(crank_of(model), 0.3_wp, 0.0_wp, 'with their crank')
   end subroutine models_at_other_values
-end program test_parameters
+end module test_parameters

@@ -1,5 +1,5 @@
 !> Namelist text to documents: values of every kind, names, subscripts, comments, places.
-program test_scanner
+module test_scanner
   use mech9_kinds, only: wp
   use mech9_source, only: source_from_text
   use mech9_numeral, only: numeral_type, read_numeral
@@ -11,64 +11,72 @@ program test_scanner
   use mech9_testing, only: tester_type
   use mech9_input_support, only: eol
   implicit none
-  type(tester_type) :: tester
-
-  call numerals()
-  call values_of_every_kind()
-  call repeats_and_nulls()
-  call names_and_subscripts()
-  call groups()
-  call places()
-  call tester%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('numerals')) call numerals(tester)
+    if (tester%runs('values_of_every_kind')) call values_of_every_kind(tester)
+    if (tester%runs('repeats_and_nulls')) call repeats_and_nulls(tester)
+    if (tester%runs('names_and_subscripts')) call names_and_subscripts(tester)
+    if (tester%runs('groups')) call groups(tester)
+    if (tester%runs('places')) call places(tester)
+  end subroutine run
+
   !> Written and expected numbers; the compiler's own constants are the oracle.
-  subroutine numerals()
+  subroutine numerals(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+
     ! more digits than a stack holds
-    call number_is('0.25'//repeat('0', 20000000), 0.25_wp, whole=.false.)
-    call number_is('12', 12.0_wp, .true.)
-    call number_is('-7', -7.0_wp, .true.)
-    call number_is('+0', 0.0_wp, .true.)
-    call number_is('1.5', 1.5_wp, .false.)
-    call number_is('.25', 0.25_wp, .false.)
-    call number_is('3.', 3.0_wp, .false.)
-    call number_is('1e3', 1000.0_wp, .false.)
-    call number_is('-1.25d-2', -0.0125_wp, .false.)
-    call number_is('2Q+2', 200.0_wp, .false.)
-    call number_is('0.1', 0.1_wp, .false.)
-    call number_is('1.7976931348623157e308', huge(1.0_wp), .false.)
-    call number_is('0.00017976931348623157E+312', huge(1.0_wp), .false.)
-    call number_is('2.2250738585072014e-308', tiny(1.0_wp), .false.)
-    call number_is('1e-999999999999', 0.0_wp, .false.)
-    call number_is('0e999', 0.0_wp, .false.)
-    call number_is('0.7173560908995228', 0.7173560908995228_wp, .false.)
-    call number_is(repeat('0', 5000)//'1.0', 1.0_wp, .false.)
-    call is_no_number('1e309', 'too large')
-    call is_no_number('1.7976931348623159e308', 'too large')
-    call is_no_number('17976931348623159'//repeat('0', 292), 'too large')
-    call is_no_number('-1e999', 'too large')
-    call is_no_number('nan', 'finite')
-    call is_no_number('NaN(3)', 'finite')
-    call is_no_number('+INF', 'finite')
-    call is_no_number('-infinity', 'finite')
-    call is_no_number('', 'not a number')
-    call is_no_number('-', 'not a number')
-    call is_no_number('.', 'not a number')
-    call is_no_number('e5', 'not a number')
-    call is_no_number('1e', 'not a number')
-    call is_no_number('1e+', 'not a number')
-    call is_no_number('1.2.3', 'not a number')
-    call is_no_number('1-2', 'not a number')
-    call is_no_number('0x10', 'not a number')
-    call is_no_number('12abc', 'not a number')
-    call is_no_number('inferior', 'not a number')
+    call number_is(tester, '0.25'//repeat('0', 20000000), 0.25_wp, whole=.false.)
+    call number_is(tester, '12', 12.0_wp, .true.)
+    call number_is(tester, '-7', -7.0_wp, .true.)
+    call number_is(tester, '+0', 0.0_wp, .true.)
+    call number_is(tester, '1.5', 1.5_wp, .false.)
+    call number_is(tester, '.25', 0.25_wp, .false.)
+    call number_is(tester, '3.', 3.0_wp, .false.)
+    call number_is(tester, '1e3', 1000.0_wp, .false.)
+    call number_is(tester, '-1.25d-2', -0.0125_wp, .false.)
+    call number_is(tester, '2Q+2', 200.0_wp, .false.)
+    call number_is(tester, '0.1', 0.1_wp, .false.)
+    call number_is(tester, '1.7976931348623157e308', huge(1.0_wp), .false.)
+    call number_is(tester, '0.00017976931348623157E+312', huge(1.0_wp), .false.)
+    call number_is(tester, '2.2250738585072014e-308', tiny(1.0_wp), .false.)
+    call number_is(tester, '1e-999999999999', 0.0_wp, .false.)
+    call number_is(tester, '0e999', 0.0_wp, .false.)
+    call number_is(tester, '0.7173560908995228', 0.7173560908995228_wp, .false.)
+    call number_is(tester, repeat('0', 5000)//'1.0', 1.0_wp, .false.)
+    call is_no_number(tester, '1e309', 'too large')
+    call is_no_number(tester, '1.7976931348623159e308', 'too large')
+    call is_no_number(tester, '17976931348623159'//repeat('0', 292), 'too large')
+    call is_no_number(tester, '-1e999', 'too large')
+    call is_no_number(tester, 'nan', 'finite')
+    call is_no_number(tester, 'NaN(3)', 'finite')
+    call is_no_number(tester, '+INF', 'finite')
+    call is_no_number(tester, '-infinity', 'finite')
+    call is_no_number(tester, '', 'not a number')
+    call is_no_number(tester, '-', 'not a number')
+    call is_no_number(tester, '.', 'not a number')
+    call is_no_number(tester, 'e5', 'not a number')
+    call is_no_number(tester, '1e', 'not a number')
+    call is_no_number(tester, '1e+', 'not a number')
+    call is_no_number(tester, '1.2.3', 'not a number')
+    call is_no_number(tester, '1-2', 'not a number')
+    call is_no_number(tester, '0x10', 'not a number')
+    call is_no_number(tester, '12abc', 'not a number')
+    call is_no_number(tester, 'inferior', 'not a number')
   end subroutine numerals
 
-  subroutine number_is(text, expected, whole)
-    character(len=*), intent(in) :: text   !< of the number
-    real(wp), intent(in) :: expected       !< its right value
-    logical, intent(in) :: whole           !< it is a whole number
+  subroutine number_is(tester, text, expected, whole)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    character(len=*), intent(in) :: text         !< of the number
+    real(wp), intent(in) :: expected             !< its right value
+    logical, intent(in) :: whole                 !< it is a whole number
     type(numeral_type) :: numeral
     character(len=30) :: shown
 
@@ -81,9 +89,10 @@ contains
     if (whole) call tester%is_true(numeral%whole == nint(expected), trim(shown)//' has its whole value')
   end subroutine number_is
 
-  subroutine is_no_number(text, reason)
-    character(len=*), intent(in) :: text     !< text that is no number
-    character(len=*), intent(in) :: reason   !< part of the message
+  subroutine is_no_number(tester, text, reason)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    character(len=*), intent(in) :: text         !< text that is no number
+    character(len=*), intent(in) :: reason       !< part of the message
     type(numeral_type) :: numeral
 
     call read_numeral(text, numeral)
@@ -102,7 +111,8 @@ contains
     errors = diagnostics%count
   end subroutine parse
 
-  subroutine values_of_every_kind()
+  subroutine values_of_every_kind(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(document_type) :: d
     integer :: errors
 
@@ -123,7 +133,8 @@ contains
     call tester%is_true(len(d%groups(1)%items(2)%values(1)%text) == 1, 'a text of one blank keeps it')
   end subroutine values_of_every_kind
 
-  subroutine repeats_and_nulls()
+  subroutine repeats_and_nulls(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(document_type) :: d
     integer :: errors
 
@@ -140,7 +151,8 @@ contains
     end associate
   end subroutine repeats_and_nulls
 
-  subroutine names_and_subscripts()
+  subroutine names_and_subscripts(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(document_type) :: d
     integer :: errors
 
@@ -161,7 +173,8 @@ contains
     call tester%is_true(errors >= 4, 'subscripts that are not numbers are refused')
   end subroutine names_and_subscripts
 
-  subroutine groups()
+  subroutine groups(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(document_type) :: d
     integer :: errors
 
@@ -177,7 +190,8 @@ contains
   end subroutine groups
 
   !> Lines and columns by counting in the text.
-  subroutine places()
+  subroutine places(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(document_type) :: d
     type(diagnostics_type) :: g
 
@@ -198,4 +212,4 @@ contains
     place = diagnostics%place(value%span)
     at = place%line == line .and. place%column == column
   end function at
-end program test_scanner
+end module test_scanner

@@ -1,5 +1,5 @@
 !> --set: values replaced, added, refused, each time seen in the mechanism that comes out.
-program test_setting
+module test_setting
   use mech9_kinds, only: wp
   use mech9_source, only: source_from_text
   use mech9_document, only: document_type
@@ -11,13 +11,18 @@ program test_setting
   use mech9_testing, only: tester_type
   use mech9_input_support, only: printed, slider_crank, eol
   implicit none
-  type(tester_type) :: tester
-
-  call what_is_set()
-  call what_is_refused()
-  call tester%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('what_is_set')) call what_is_set(tester)
+    if (tester%runs('what_is_refused')) call what_is_refused(tester)
+  end subroutine run
 
   subroutine set(setting, model, answer)
     character(len=*), intent(in) :: setting                !< argument of --set
@@ -32,7 +37,8 @@ contains
     answer = printed(diagnostics)
   end subroutine set
 
-  subroutine what_is_set()
+  subroutine what_is_set(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(model_type) :: m
     character(len=:), allocatable :: answer
 
@@ -61,34 +67,37 @@ contains
     call tester%is_true(index(answer, "--set: &point needs 'link'") == 1, 'a second &point is begun')
   end subroutine what_is_set
 
-  subroutine what_is_refused()
-    call refused('time.interval=7', "--set: unknown name 'interval' in &time; did you mean 'intervals'?"//eol// &
+  subroutine what_is_refused(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+
+    call refused(tester, 'time.interval=7', "--set: unknown name 'interval' in &time; did you mean 'intervals'?"//eol// &
                  'time.interval=7'//eol//'     ^^^^^^^^')
-    call refused('tmie.end=7', '--set: unknown group tmie; did you mean &time?')
-    call refused('time.intervals=many', "--set: 'intervals' takes whole numbers, and many is none"//eol// &
+    call refused(tester, 'tmie.end=7', '--set: unknown group tmie; did you mean &time?')
+    call refused(tester, 'time.intervals=many', "--set: 'intervals' takes whole numbers, and many is none"//eol// &
                  'time.intervals=many'//eol//'               ^^^^')
-    call refused('time.end=1e999', "--set: '1e999' is too large for a number")
-    call refused('intervals=7', '--set: write --set group.name=value')
-    call refused('time.intervals', '--set: write --set group.name=value')
-    call refused('', '--set: write --set group.name=value')
-    call refused('.=', '--set: write --set group.name=value')
-    call refused('time(1:2).end=1', '--set: write --set group.name=value')
-    call refused('time(', '--set: write --set group.name=value')
-    call refused('pair.kind=helical', '--set: there are 4 groups &pair; say which one: pair(2)')
-    call refused('pair(9).kind=helical', '--set: this file has 4 groups &pair only')
-    call refused('time.end=1 start=0', '--set: the setting ends before this; give one --set for each name')
-    call refused('time.end=1 /', '--set: the setting ends before this; give one --set for each name')
-    call refused('time.end=', "--set: a value is missing after this; an empty text is written ''"//eol// &
+    call refused(tester, 'time.end=1e999', "--set: '1e999' is too large for a number")
+    call refused(tester, 'intervals=7', '--set: write --set group.name=value')
+    call refused(tester, 'time.intervals', '--set: write --set group.name=value')
+    call refused(tester, '', '--set: write --set group.name=value')
+    call refused(tester, '.=', '--set: write --set group.name=value')
+    call refused(tester, 'time(1:2).end=1', '--set: write --set group.name=value')
+    call refused(tester, 'time(', '--set: write --set group.name=value')
+    call refused(tester, 'pair.kind=helical', '--set: there are 4 groups &pair; say which one: pair(2)')
+    call refused(tester, 'pair(9).kind=helical', '--set: this file has 4 groups &pair only')
+    call refused(tester, 'time.end=1 start=0', '--set: the setting ends before this; give one --set for each name')
+    call refused(tester, 'time.end=1 /', '--set: the setting ends before this; give one --set for each name')
+    call refused(tester, 'time.end=', "--set: a value is missing after this; an empty text is written ''"//eol// &
                  'time.end='//eol//'        ^')
-    call refused("output.table=''", '')
-    call refused('pair(1).axis=0,0,0', '--set: the axis of pair 1 is zero')
-    call refused('structure.cq=9', '--set: cq names coordinate 9')
+    call refused(tester, "output.table=''", '')
+    call refused(tester, 'pair(1).axis=0,0,0', '--set: the axis of pair 1 is zero')
+    call refused(tester, 'structure.cq=9', '--set: cq names coordinate 9')
   end subroutine what_is_refused
 
   !> Each message is the first one that is printed; an empty one means that all is well.
-  subroutine refused(setting, message)
-    character(len=*), intent(in) :: setting   !< argument of --set
-    character(len=*), intent(in) :: message   !< the right first message; empty: none
+  subroutine refused(tester, setting, message)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    character(len=*), intent(in) :: setting      !< argument of --set
+    character(len=*), intent(in) :: message      !< the right first message; empty: none
     type(model_type) :: m
     character(len=:), allocatable :: answer
 
@@ -100,4 +109,4 @@ contains
       if (index(answer, message) /= 1) print '(a)', answer
     end if
   end subroutine refused
-end program test_setting
+end module test_setting
