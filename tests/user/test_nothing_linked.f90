@@ -1,5 +1,5 @@
 !> No procedure of a user is linked: whoever asks for one is told so.
-program test_nothing_linked
+module test_nothing_linked
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_data
   use mech9_motion_view, only: motion_view_type
@@ -10,12 +10,17 @@ program test_nothing_linked
   use mech9_procedure_coupling, only: procedure_coupling_type, make_procedure_coupling
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call ask_for_procedures(test)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('ask_for_procedures')) call ask_for_procedures(test)
+  end subroutine run
 
   subroutine ask_for_procedures(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
@@ -54,4 +59,4 @@ contains
     call test%is_true(index(err%message, 'none is linked') > 0 .and. index(err%message, 'user_force') > 0, &
                       'the message names the procedure of the load and that none is linked')
   end subroutine ask_for_procedures
-end program test_nothing_linked
+end module test_nothing_linked

@@ -1,5 +1,5 @@
 !> Only the forms in plain real numbers are linked: they are found, and they are enough.
-program test_plain_values_linked
+module test_plain_values_linked
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_pair, only: pair_motion_type
@@ -7,12 +7,17 @@ program test_plain_values_linked
   use mech9_procedure_drive, only: procedure_drive_type, make_procedure_drive
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call use_procedures(test)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('use_procedures')) call use_procedures(test)
+  end subroutine run
 
   subroutine use_procedures(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
@@ -41,4 +46,4 @@ contains
     call test%near(dq, 2.0_wp*cos(1.0_wp), 1.0e-11_wp, 'the drive has its rate')
     call test%near(ddq, -4.0_wp*sin(1.0_wp), 1.0e-10_wp, 'the drive has its second derivative')
   end subroutine use_procedures
-end program test_plain_values_linked
+end module test_plain_values_linked

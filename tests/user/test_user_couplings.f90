@@ -1,21 +1,27 @@
 !> Couplings by user procedures: both forms against closed forms, up to the third derivative.
-program test_user_couplings
+module test_user_couplings
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_type, exit_data
   use mech9_random, only: random_type
   use mech9_procedure_coupling, only: procedure_coupling_type, make_procedure_coupling
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call closed_form()
-  call end_of_domain()
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('closed_form')) call closed_form(test)
+    if (test%runs('end_of_domain')) call end_of_domain(test)
+  end subroutine run
+
   !> Couplings in Taylor arithmetic and in plain values.
-  subroutine make_both(number, parameters, couplings)
+  subroutine make_both(test, number, parameters, couplings)
+    type(tester_type), intent(inout) :: test                     !< counts the checks
     integer, intent(in) :: number                                !< selects the function
     real(wp), intent(in) :: parameters(:)                        !< of the function
     type(procedure_coupling_type), intent(out) :: couplings(2)   !< in Taylor arithmetic, in plain values
@@ -29,7 +35,8 @@ contains
   end subroutine make_both
 
   !> A wave and its derivatives; the weight makes its slope where it starts, or one, the greatest derivative.
-  subroutine closed_form()
+  subroutine closed_form(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(procedure_coupling_type) :: couplings(2)
     type(error_type), allocatable :: err
@@ -43,7 +50,7 @@ contains
       q = 3.0_wp*random%symmetric()
       expected = [p(1)*q + p(2)*sin(p(3)*q), p(1) + p(2)*p(3)*cos(p(3)*q), -p(2)*p(3)**2*sin(p(3)*q), &
                   -p(2)*p(3)**3*cos(p(3)*q)]
-      call make_both(1, p, couplings)
+      call make_both(test, 1, p, couplings)
       do form = 1, 2
         call couplings(form)%find_curve(q, found(0:2), err)
         call test%no_error(err, 'the coupling has a value')
@@ -61,13 +68,14 @@ contains
   end subroutine closed_form
 
   !> A coordinate beyond the domain of the procedure.
-  subroutine end_of_domain()
+  subroutine end_of_domain(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(procedure_coupling_type) :: couplings(2)
     type(error_type), allocatable :: err
     real(wp) :: curve(0:2)
     integer :: form
 
-    call make_both(2, [real(wp) ::], couplings)
+    call make_both(test, 2, [real(wp) ::], couplings)
     do form = 1, 2
       couplings(form)%place = place_type(7, 1)
       call couplings(form)%find_curve(1.25_wp, curve, err)
@@ -77,4 +85,4 @@ contains
                         'the message names the coupling, the coordinate, the reason and the place')
     end do
   end subroutine end_of_domain
-end program test_user_couplings
+end module test_user_couplings

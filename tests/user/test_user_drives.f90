@@ -1,19 +1,24 @@
 !> Drives by user procedures: both forms against closed forms and against each other.
-program test_user_drives
+module test_user_drives
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_type, exit_data
   use mech9_random, only: random_type
   use mech9_procedure_drive, only: procedure_drive_type, make_procedure_drive
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call closed_form(test)
-  call forms_agree(test)
-  call end_of_domain(test)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('closed_form')) call closed_form(test)
+    if (test%runs('forms_agree')) call forms_agree(test)
+    if (test%runs('end_of_domain')) call end_of_domain(test)
+  end subroutine run
 
   subroutine make_both(test, coordinate, parameters, drives)
     type(tester_type), intent(inout) :: test               !< counts the checks
@@ -102,4 +107,4 @@ contains
                         'the message about the domain tells the reason and its place')
     end do
   end subroutine end_of_domain
-end program test_user_drives
+end module test_user_drives

@@ -2,7 +2,7 @@
 !>
 !> The promise to users: positions to 1e-12, first derivatives to 1e-11, second to 1e-10. Stencils of
 !> sixteenth order reach it: round-off by 8/h^2 is 2e-12 at the second step, h = 1/32, and 3e-11 at the third.
-program test_user_pairs
+module test_user_pairs
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, place_type, exit_data
   use mech9_random, only: random_type
@@ -16,23 +16,29 @@ program test_user_pairs
   use mech9_motion_check, only: check_derivatives, check_same_motion
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   real(wp), parameter :: promised(3) = [1.0e-12_wp, 1.0e-11_wp, 1.0e-10_wp]
   real(wp), parameter :: exact(3) = 2.0e-14_wp
-  type(tester_type) :: test
-
-  call as_built_in(test)
-  call forms_agree(test)
-  call end_of_domain(test)
-  call close_to_a_line(test)
-  call refused(test)
-  call what_they_say(test)
-  call test%finish()
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('as_built_in')) call as_built_in(test)
+    if (test%runs('forms_agree')) call forms_agree(test)
+    if (test%runs('end_of_domain')) call end_of_domain(test)
+    if (test%runs('close_to_a_line')) call close_to_a_line(test)
+    if (test%runs('refused')) call refused(test)
+    if (test%runs('what_they_say')) call what_they_say(test)
+  end subroutine run
+
   !> A pair in Taylor arithmetic, and the same by plain values.
   subroutine make_both(test, coordinate, parameters, exact_pair, plain_pair)
-    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(tester_type), intent(inout) :: test               !< counts the checks
     integer, intent(in) :: coordinate                      !< selects the pair
     real(wp), intent(in) :: parameters(:)                  !< of the pair
     type(procedure_pair_type), intent(out) :: exact_pair   !< in Taylor arithmetic
@@ -182,4 +188,4 @@ contains
     call test%is_true(plain_pair%user_calls() == stencil_size, 'plain values take a stencil of calls')
     call test%is_true(.not. exact_pair%angular, 'a user''s coordinate is not turned into degrees')
   end subroutine what_they_say
-end program test_user_pairs
+end module test_user_pairs
