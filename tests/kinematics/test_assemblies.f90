@@ -1,6 +1,6 @@
 !> Assembly from rough guesses, near and beyond the reach of the links, and the list of all assemblies,
 !> against closed forms and counts known otherwise.
-program test_assemblies
+module test_assemblies
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, exit_assembly
   use mech9_random, only: random_type
@@ -14,21 +14,27 @@ program test_assemblies
   use mech9_plan_checks, only: check_closed
   use mech9_testing, only: tester_type, message_of
   implicit none
-  type(tester_type) :: test
-  type(random_type) :: random
-  real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
+  private
+  public :: run
 
-  call four_bars_from_anywhere()
-  call four_bar_near_its_reach()
-  call slider_crank()
-  call platforms()
-  call six_revolutes()
-  call test%finish()
+  real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('four_bars_from_anywhere')) call four_bars_from_anywhere(test)
+    if (test%runs('four_bar_near_its_reach')) call four_bar_near_its_reach(test)
+    if (test%runs('slider_crank')) call slider_crank(test)
+    if (test%runs('platforms')) call platforms(test)
+    if (test%runs('six_revolutes')) call six_revolutes(test)
+  end subroutine run
+
   !> Any guess leads to one of the two positions of the rocker, where there are any; the list holds both.
-  subroutine four_bars_from_anywhere()
+  subroutine four_bars_from_anywhere(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
@@ -36,6 +42,7 @@ contains
     type(error_type), allocatable :: err
     real(wp) :: length(4), diagonal, rockers(2), guess(4)
     integer :: i, k, closed, open
+    type(random_type) :: random
 
     closed = 0
     open = 0
@@ -84,7 +91,8 @@ contains
 
   !> Coupler and rocker stretched: the two assemblies are one, and coordinates are known to the root of
   !> round-off only; but the chain closes. A millionth farther it does not, and stays open by at most that.
-  subroutine four_bar_near_its_reach()
+  subroutine four_bar_near_its_reach(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
@@ -110,7 +118,8 @@ contains
   end subroutine four_bar_near_its_reach
 
   !> Crank and rod: the slide is at r cos a -+ sqrt(l^2 - r^2 sin^2 a).
-  subroutine slider_crank()
+  subroutine slider_crank(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
@@ -139,9 +148,11 @@ contains
 
   !> A triangle on three legs that are turned by nothing: the number of its positions against a count
   !> along all its orientations.
-  subroutine platforms()
+  subroutine platforms(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp) :: base(2, 3), plate(2, 3), legs(3)
     integer :: i, k, most
+    type(random_type) :: random
 
     most = 0
     do i = 1, 12
@@ -150,16 +161,17 @@ contains
         plate(:, k) = 0.7_wp*[cos(2.1_wp*k), sin(2.1_wp*k)] + 0.2_wp*[random%symmetric(), random%symmetric()]
         legs(k) = 0.9_wp + 0.25_wp*random%symmetric()
       end do
-      call platform(base, plate, legs, most)
+      call platform(test, base, plate, legs, most)
     end do
     call test%is_true(most >= 4, 'some platforms have four positions or more')
   end subroutine platforms
 
-  subroutine platform(base, plate, legs, most)
-    real(wp), intent(in) :: base(2, 3)    !< (2,3) pivots in the frame [m]
-    real(wp), intent(in) :: plate(2, 3)   !< (2,3) joints in the platform [m]
-    real(wp), intent(in) :: legs(3)       !< their lengths [m]
-    integer, intent(inout) :: most        !< the greatest number of positions so far
+  subroutine platform(test, base, plate, legs, most)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), intent(in) :: base(2, 3)         !< (2,3) pivots in the frame [m]
+    real(wp), intent(in) :: plate(2, 3)        !< (2,3) joints in the platform [m]
+    real(wp), intent(in) :: legs(3)            !< their lengths [m]
+    integer, intent(inout) :: most             !< the greatest number of positions so far
     type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
@@ -226,7 +238,8 @@ contains
 
   !> Six revolutes in a loop, the arm of Manseur and Doty in the position that is reached in 16 ways, the most
   !> that any such arm has.
-  subroutine six_revolutes()
+  subroutine six_revolutes(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
@@ -268,4 +281,4 @@ contains
       r = 0.5_wp*matmul(r, 3.0_wp*reshape([1, 0, 0, 0, 1, 0, 0, 0, 1], [3, 3]) - matmul(transpose(r), r))
     end do
   end subroutine orthonormalize
-end program test_assemblies
+end module test_assemblies

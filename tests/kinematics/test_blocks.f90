@@ -1,6 +1,6 @@
 !> The smallest blocks of known mechanisms, and what any plan must hold. All of them are assembled where
 !> every coordinate is zero, and have general dimensions: pivots and axes at random places.
-program test_blocks
+module test_blocks
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_structure
   use mech9_random, only: random_type
@@ -15,54 +15,98 @@ program test_blocks
   use mech9_plan_checks, only: check_order, check_closed, check_smallest, block_sizes, rates_of
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-  type(model_type) :: model
-  type(plan_type) :: plan
-  type(state_type) :: state
-  type(error_type), allocatable :: err
-  type(random_type) :: random
-  real(wp), allocatable :: assembled(:)
-  integer :: k
-
-  ! pairs 4 to 7 are the first closed chain, a four-bar: driven in it, it goes first
-  call fig1(5, model)
-  call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-  assembled = state%q
-  do k = 1, 7
-    call fig1(k, model)
-    model%problem%initial%position = assembled
-    if (k < 4) call check('Fig. 1 driven in its second chain', [6])
-    if (k >= 4) call check('Fig. 1 driven in its first chain', [3, 3])
-  end do
-  ! the four-bar of pairs 4 to 7 is one only if it is driven itself
-  call all_drives('a group of the third class', class_three(), 3, [6, 6, 6, 0, 0, 0, 0])
-  call all_drives('a group of the fourth class', class_four(), 0, [6, 6, 6, 6, 6, 6, 6])
-  call all_drives('double butterfly', double_butterfly(), 0, [(9, k=1, 10)])
-  call all_drives('ten links', ten_links(), 0, [(12, k=1, 13)])
-  ! cranks of four-bars in a row: from wherever it is driven, one four-bar after the other
-  call all_drives('four-bars in a row', crank_row(4), 3, [(0, k=1, 13)])
-  ! tongs driven in their first crossing; driven elsewhere, what lies below can only be closed together,
-  ! because frames stand on frames
-  call home_mechanism(42, lazy_tongs(20), planar_axes(61, 0, random), [1], model)
-  call check('lazy tongs', [(3, k=1, 20)])
-  call home_mechanism(2402, lazy_tongs(1200), planar_axes(3601, 0, random), [3601], model)
-  call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
-  call test%has_error(err, exit_structure, 'a structure with too many coordinates that can only be solved for together is refused')
-  call stewart_platform(model)
-  call check('Stewart platform', [30])
-  call long_rows()
-  ! memory that a main program holds is never given back by itself, and a leak to the sanitizer
-  deallocate (assembled)
-  if (allocated(err)) deallocate (err)
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+    integer :: k
+
+    if (test%runs('fig1_in_two_blocks')) call fig1_in_two_blocks(test)
+    if (test%runs('class_three')) call all_drives(test, 'a group of the third class', class_three(), 3, [6, 6, 6, 0, 0, 0, 0])
+    if (test%runs('class_four')) call all_drives(test, 'a group of the fourth class', class_four(), 0, [6, 6, 6, 6, 6, 6, 6])
+    if (test%runs('double_butterfly')) call all_drives(test, 'double butterfly', double_butterfly(), 0, [(9, k=1, 10)])
+    if (test%runs('ten_links')) call all_drives(test, 'ten links', ten_links(), 0, [(12, k=1, 13)])
+    ! cranks of four-bars in a row: from wherever it is driven, one four-bar after the other
+    if (test%runs('crank_row')) call all_drives(test, 'four-bars in a row', crank_row(4), 3, [(0, k=1, 13)])
+    if (test%runs('tongs')) call tongs(test)
+    if (test%runs('too_many_at_once')) call too_many_at_once(test)
+    if (test%runs('platform')) call platform(test)
+    if (test%runs('long_rows')) call long_rows(test)
+  end subroutine run
+
+  !> Pairs 4 to 7 are the first closed chain, a four-bar: driven in it, it goes first.
+  subroutine fig1_in_two_blocks(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type) :: model
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: assembled(:)
+    integer :: k
+    type(random_type) :: random
+
+    call fig1(5, model)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
+    assembled = state%q
+    do k = 1, 7
+      call fig1(k, model)
+      model%problem%initial%position = assembled
+      if (k < 4) call check(test, random, model, 'Fig. 1 driven in its second chain', [6])
+      if (k >= 4) call check(test, random, model, 'Fig. 1 driven in its first chain', [3, 3])
+    end do
+  end subroutine fig1_in_two_blocks
+
+  !> Tongs driven in their first crossing. Driven elsewhere, what lies below can only be closed together, because frames stand on
+  !> frames.
+  subroutine tongs(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type) :: model
+    integer :: k
+    type(random_type) :: random
+
+    call home_mechanism(42, lazy_tongs(20), planar_axes(61, 0, random), [1], model)
+    call check(test, random, model, 'lazy tongs', [(3, k=1, 20)])
+  end subroutine tongs
+
+  !> Long tongs driven at their end.
+  subroutine too_many_at_once(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type) :: model
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(error_type), allocatable :: err
+    type(random_type) :: random
+
+    call home_mechanism(2402, lazy_tongs(1200), planar_axes(3601, 0, random), [3601], model)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
+    call test%has_error(err, exit_structure, &
+                        'a structure with too many coordinates that can only be solved for together is refused')
+  end subroutine too_many_at_once
+
+  subroutine platform(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type) :: model
+    type(random_type) :: random
+
+    call stewart_platform(model)
+    call check(test, random, model, 'Stewart platform', [30])
+  end subroutine platform
+
   !> Ten times as many four-bars take about ten times as long; quadratic work would take a hundred times.
-  subroutine long_rows()
+  subroutine long_rows(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     integer, parameter :: cells(2) = [1000, 10000]
+    type(model_type) :: model
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(error_type), allocatable :: err
     real(wp) :: before, after, seconds(2)
     integer :: i, driven
+    type(random_type) :: random
 
     do driven = 1, 3*cells(1) + 1, 3*cells(1)
       do i = 1, 2
@@ -82,30 +126,37 @@ contains
   end subroutine long_rows
 
   !> A planar mechanism driven at each of its coordinates. Unknowns of its only block; 0: blocks of three.
-  subroutine all_drives(name, links, three, unknowns)
-    character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure
-    integer, intent(in) :: links(:, :)     !< (2,M) reference and moving link of each pair
-    integer, intent(in) :: three           !< unknowns of each block where there are several
-    integer, intent(in) :: unknowns(:)     !< for each drive, those of its only block; 0: several blocks
+  subroutine all_drives(test, name, links, three, unknowns)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: name       !< of the mechanism, for the report of a failure
+    integer, intent(in) :: links(:, :)         !< (2,M) reference and moving link of each pair
+    integer, intent(in) :: three               !< unknowns of each block where there are several
+    integer, intent(in) :: unknowns(:)         !< for each drive, those of its only block; 0: several blocks
+    type(model_type) :: model
     type(axis_type) :: axes(size(links, 2))
     integer :: k, i
+    type(random_type) :: random
 
     do k = 1, size(links, 2)
       axes = planar_axes(size(links, 2), 0, random)
       call home_mechanism(maxval(links), links, axes, [k], model)
       if (unknowns(k) > 0) then
-        call check(name, [unknowns(k)])
+        call check(test, random, model, name, [unknowns(k)])
       else
-        call check(name, [(three, i=1, (size(links, 2) - 1)/3)])
+        call check(test, random, model, name, [(three, i=1, (size(links, 2) - 1)/3)])
       end if
-      call check_rates(name, links, axes, k)
+      call check_rates(test, model, name, links, axes, k)
     end do
   end subroutine all_drives
 
   !> Assembled, in the blocks expected, from the guess and from another one.
-  subroutine check(name, sizes)
-    character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure
-    integer, intent(in) :: sizes(:)        !< unknowns of the blocks
+  subroutine check(test, random, model, name, sizes)
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    type(model_type), intent(in) :: model        !< the mechanism
+    character(len=*), intent(in) :: name         !< its name, for the report of a failure
+    integer, intent(in) :: sizes(:)              !< unknowns of the blocks
+    type(plan_type) :: plan
     type(state_type) :: state
     type(error_type), allocatable :: err
     real(wp) :: start(size(model%mechanism%pairs))
@@ -132,11 +183,14 @@ contains
   end subroutine check
 
   !> Rates at home against those that the axes alone give.
-  subroutine check_rates(name, links, axes, driven)
-    character(len=*), intent(in) :: name     !< of the mechanism, for the report of a failure
-    integer, intent(in) :: links(:, :)       !< (2,M) reference and moving link of each pair
-    integer, intent(in) :: driven            !< number of the driven coordinate
-    type(axis_type), intent(in) :: axes(:)   !< of each pair in the home position
+  subroutine check_rates(test, model, name, links, axes, driven)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(in) :: model      !< the mechanism
+    character(len=*), intent(in) :: name       !< its name, for the report of a failure
+    integer, intent(in) :: links(:, :)         !< (2,M) reference and moving link of each pair
+    integer, intent(in) :: driven              !< number of the driven coordinate
+    type(axis_type), intent(in) :: axes(:)     !< of each pair in the home position
+    type(plan_type) :: plan
     type(state_type) :: state
     type(error_type), allocatable :: err
     real(wp), allocatable :: equations(:, :)
@@ -155,4 +209,4 @@ contains
     call test%near(maxval(abs(rates - expected))/maxval(abs(expected)), 0.0_wp, 1.0e-11_wp, &
                    name//': the rates are those of the whole system')
   end subroutine check_rates
-end program test_blocks
+end module test_blocks

@@ -3,7 +3,7 @@
 !> the branches come within a millionth of each other.
 !>
 !> Compares the program with itself in part: Fig. 1 with few and with many outputs; the other mechanisms have closed forms.
-program test_branch_certainty
+module test_branch_certainty
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -17,34 +17,63 @@ program test_branch_certainty
   use mech9_followed_motions, only: begin_motion, angle_between
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-  type(random_type) :: random
+  private
+  public :: run
+
   integer, parameter :: turns = 4
   !> Outputs; the first are two turns apart, and one.
   integer, parameter :: outputs(8) = [2, 4, 12, 16, 28, 120, 1204, 12000]
-  integer :: i
-
-  do i = 1, 40
-    call check_four_bar(random_crank(random, 0.3_wp*abs(random%symmetric())), 'a four-bar')
-  end do
-  do i = 1, 40
-    ! the excess of the two middle lengths over the shortest and the longest: branches come as near as its root
-    call check_four_bar(random_crank(random, 10.0_wp**(-0.2_wp*i - 1.0_wp)), 'a four-bar near its change-point')
-  end do
-  do i = 1, 20
-    call check_slider_crank(i)
-    call check_six_bar()
-  end do
-  call check_swinging_fig1()
-  call test%finish()
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('four_bars')) call four_bars(test)
+    if (test%runs('near_change_points')) call near_change_points(test)
+    if (test%runs('slider_cranks_and_six_bars')) call slider_cranks_and_six_bars(test)
+    if (test%runs('check_swinging_fig1')) call check_swinging_fig1(test)
+  end subroutine run
+
+  subroutine four_bars(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer :: i
+    type(random_type) :: random
+
+    do i = 1, 40
+      call check_four_bar(test, random_crank(random, 0.3_wp*abs(random%symmetric())), 'a four-bar')
+    end do
+  end subroutine four_bars
+
+  !> The excess of the two middle lengths over the shortest and the longest is small: branches come as near as its root.
+  subroutine near_change_points(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer :: i
+    type(random_type) :: random
+
+    do i = 1, 40
+      call check_four_bar(test, random_crank(random, 10.0_wp**(-0.2_wp*i - 1.0_wp)), 'a four-bar near its change-point')
+    end do
+  end subroutine near_change_points
+
+  subroutine slider_cranks_and_six_bars(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer :: i
+    type(random_type) :: random
+
+    do i = 1, 20
+      call check_slider_crank(test, random, i)
+      call check_six_bar(test, random)
+    end do
+  end subroutine slider_cranks_and_six_bars
+
   !> Both branches of a crank that turns fully: the angle of the rocker at every output by its triangle, and
   !> the number of its turns the same whatever the outputs.
-  subroutine check_four_bar(bar, name)
-    type(four_bar_type), intent(in) :: bar   !< its lengths
-    character(len=*), intent(in) :: name     !< of the mechanism, for the report of a failure
+  subroutine check_four_bar(test, bar, name)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(four_bar_type), intent(in) :: bar     !< its lengths
+    character(len=*), intent(in) :: name       !< of the mechanism, for the report of a failure
     type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
@@ -76,8 +105,10 @@ contains
   end subroutine check_four_bar
 
   !> x = r cos + - root of l^2 - (r sin - e)^2; the crank at the i-th comes nearer and nearer to what it can turn.
-  subroutine check_slider_crank(i)
-    integer, intent(in) :: i   !< number of the crank
+  subroutine check_slider_crank(test, random, i)
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    integer, intent(in) :: i                     !< number of the crank
     type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
@@ -108,7 +139,9 @@ contains
   end subroutine check_slider_crank
 
   !> A four-bar with a pair of links on its coupler: all four branches, by two intersections of circles.
-  subroutine check_six_bar()
+  subroutine check_six_bar(test, random)
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the numbers
     type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
@@ -147,7 +180,8 @@ contains
   end subroutine check_six_bar
 
   !> Two chains that are solved together, driven to and fro many times between two outputs.
-  subroutine check_swinging_fig1()
+  subroutine check_swinging_fig1(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
@@ -182,4 +216,4 @@ contains
       deallocate (model%problem%drives(1)%drive)
     end do
   end subroutine check_swinging_fig1
-end program test_branch_certainty
+end module test_branch_certainty

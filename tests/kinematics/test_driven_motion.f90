@@ -1,5 +1,5 @@
 !> Driven motion: closed to round-off, rates and accelerations exact, four-bar against its closed form.
-program test_driven_motion
+module test_driven_motion
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, exit_singular
   use mech9_model, only: model_type
@@ -10,28 +10,48 @@ program test_driven_motion
   use mech9_followed_motions, only: begin_motion
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-  type(model_type) :: model
-
-  call fig1(5, model)
-  call drive(model, 5, [0.5_wp, 6.0_wp])
-  call check_derivatives(model, 'Fig. 1')
-  call fig1(1, model)
-  call drive(model, 1, [-1.0_wp, 0.4_wp, -0.2_wp])
-  call check_derivatives(model, 'Fig. 1 driven at q1')
-  call general_loop(model)
-  call drive(model, 1, [0.1_wp, 0.4_wp, 0.3_wp])
-  call check_derivatives(model, 'general loop')
-  call check_four_bar()
-  call check_dead_point()
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('fig1')) call fig1_driven(test, 5, [0.5_wp, 6.0_wp], 'Fig. 1')
+    if (test%runs('fig1_at_q1')) call fig1_driven(test, 1, [-1.0_wp, 0.4_wp, -0.2_wp], 'Fig. 1 driven at q1')
+    if (test%runs('spatial_loop')) call spatial_loop(test)
+    if (test%runs('check_four_bar')) call check_four_bar(test)
+    if (test%runs('check_dead_point')) call check_dead_point(test)
+  end subroutine run
+
+  subroutine fig1_driven(test, driven, coefficients, name)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: driven              !< the driven coordinate
+    real(wp), intent(in) :: coefficients(:)    !< of its polynomial of time
+    character(len=*), intent(in) :: name       !< of the mechanism, for the report of a failure
+    type(model_type) :: model
+
+    call fig1(driven, model)
+    call drive(model, driven, coefficients)
+    call check_derivatives(test, model, name)
+  end subroutine fig1_driven
+
+  subroutine spatial_loop(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type) :: model
+
+    call general_loop(model)
+    call drive(model, 1, [0.1_wp, 0.4_wp, 0.3_wp])
+    call check_derivatives(test, model, 'general loop')
+  end subroutine spatial_loop
+
   !> Rates and accelerations against high-order differences of the positions around t = 0.
-  subroutine check_derivatives(model, name)
-    type(model_type), intent(in) :: model           !< the model
-    character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
+  subroutine check_derivatives(test, model, name)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(in) :: model      !< the model
+    character(len=*), intent(in) :: name       !< of the mechanism, for the report of a failure
     real(wp), parameter :: h = 2.0_wp**(-8)
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
@@ -60,7 +80,8 @@ contains
   end subroutine check_derivatives
 
   !> A crank-rocker over many turns, with few and with many outputs a turn, against its closed form.
-  subroutine check_four_bar()
+  subroutine check_four_bar(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp), parameter :: ground = 0.40_wp, crank = 0.15_wp, coupler = 0.35_wp, rocker = 0.30_wp
     type(model_type) :: model
     type(plan_type) :: plan
@@ -108,7 +129,8 @@ contains
   end function coupler_angle
 
   !> A crank that cannot turn fully stops just short of its dead point, on its branch.
-  subroutine check_dead_point()
+  subroutine check_dead_point(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
@@ -130,4 +152,4 @@ contains
     call test%near(driven%state%q(1), limit, 1.0e-9_wp, 'the motion stops at the dead point of the closed form')
     call test%is_true(driven%state%q(1) <= limit, 'the motion does not go beyond the dead point')
   end subroutine check_dead_point
-end program test_driven_motion
+end module test_driven_motion

@@ -1,26 +1,39 @@
 !> Matching of unknowns to chains, and strong components, on small random graphs against exhaustive search.
-program test_graphs
+module test_graphs
   use mech9_kinds, only: wp
   use mech9_random, only: random_type
   use mech9_chain_matching, only: loop_lists_type, match_chains
   use mech9_strong_components, only: graph_type, strong_components
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-  type(random_type) :: random
-  integer :: i
-
-  do i = 1, 400
-    call try_matching(1 + modulo(i, 8), 1 + modulo(5*i, 23))
-    call try_components(1 + modulo(i, 13))
-  end do
-  call test%finish()
+  private
+  public :: run
 
 contains
 
-  subroutine try_matching(n_chains, n_unknowns)
-    integer, intent(in) :: n_chains     !< closed chains
-    integer, intent(in) :: n_unknowns   !< unknown coordinates
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('random_graphs')) call random_graphs(test)
+  end subroutine run
+
+  subroutine random_graphs(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer :: i
+    type(random_type) :: random
+
+    do i = 1, 400
+      call try_matching(test, random, 1 + modulo(i, 8), 1 + modulo(5*i, 23))
+      call try_components(test, random, 1 + modulo(i, 13))
+    end do
+  end subroutine random_graphs
+
+  subroutine try_matching(test, random, n_chains, n_unknowns)
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    integer, intent(in) :: n_chains              !< closed chains
+    integer, intent(in) :: n_unknowns            !< unknown coordinates
     logical :: passes(n_chains, n_unknowns)
     integer :: offers(n_chains), owner(n_unknowns), c, u
     logical :: allowed
@@ -67,8 +80,10 @@ contains
     end do
   end function most_matched
 
-  subroutine try_components(n)
-    integer, intent(in) :: n   !< nodes
+  subroutine try_components(test, random, n)
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    integer, intent(in) :: n                     !< nodes
     logical :: leads(n, n), reaches(n, n)
     integer :: component(n), n_components, i, j, k
     type(graph_type) :: graph
@@ -105,4 +120,4 @@ contains
     end do
     call test%is_true(right, 'components are those of mutual reach, each after those to which it leads')
   end subroutine try_components
-end program test_graphs
+end module test_graphs

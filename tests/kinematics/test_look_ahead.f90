@@ -1,5 +1,5 @@
 !> The look-ahead and the crossing of branches, on four-bars whose singular positions are known in closed form.
-program test_look_ahead
+module test_look_ahead
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
   use mech9_model, only: model_type
@@ -16,23 +16,29 @@ program test_look_ahead
   use mech9_followed_motions, only: at_crossing
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-  type(model_type) :: model
-  type(plan_type) :: plan
-  type(branch_stepper_type) :: stepper
-
-  call check_dead_point()
-  call check_crossing()
-  call check_close_branches()
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('check_dead_point')) call check_dead_point(test)
+    if (test%runs('check_crossing')) call check_crossing(test)
+    if (test%runs('check_close_branches')) call check_close_branches(test)
+  end subroutine run
+
   !> Drive the crank of a four-bar by one rad per second, until it is near a singular position.
-  subroutine come_near(bar, start, t)
-    type(four_bar_type), intent(in) :: bar   !< lengths of the four-bar
-    real(wp), intent(in) :: start            !< angle of the crank at time 0 [rad]
-    real(wp), intent(in) :: t                !< a time beyond the singular position [s]
+  subroutine come_near(test, model, plan, stepper, bar, start, t)
+    type(tester_type), intent(inout) :: test            !< counts the checks
+    type(model_type), intent(out) :: model              !< a four-bar
+    type(plan_type), intent(out) :: plan                !< its plan
+    type(branch_stepper_type), intent(out) :: stepper   !< its motion, near the singular position
+    type(four_bar_type), intent(in) :: bar              !< lengths of the four-bar
+    real(wp), intent(in) :: start                       !< angle of the crank at time 0 [rad]
+    real(wp), intent(in) :: t                           !< a time beyond the singular position [s]
     type(driven_motion_type) :: driven
     type(state_type) :: assembled
     type(error_type), allocatable :: err
@@ -55,13 +61,17 @@ contains
   end subroutine come_near
 
   !> Coupler and rocker stretched out: the crank cannot go on.
-  subroutine check_dead_point()
+  subroutine check_dead_point(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(four_bar_type), parameter :: bar = four_bar_type(ground=1.0_wp, crank=0.75_wp, coupler=1.0_wp, rocker=0.4_wp)
     type(finding_type) :: finding
     real(wp) :: limit
+    type(model_type) :: model
+    type(plan_type) :: plan
+    type(branch_stepper_type) :: stepper
 
     limit = four_bar_limit(bar, stretched=.true.)
-    call come_near(bar, limit - 0.4_wp, 2.0_wp)
+    call come_near(test, model, plan, stepper, bar, limit - 0.4_wp, 2.0_wp)
     call look_ahead(model%problem%drives, plan, stepper, 1, 1.0_wp, finding)
     call test%is_true(finding%kind == dead_point .and. finding%block == 1, 'a dead point is found')
     ! the square-root law leaves terms of higher order in the distance of the last step, some 1e-11
@@ -69,7 +79,8 @@ contains
   end subroutine check_dead_point
 
   !> A parallelogram is flat at half a turn, where the branch of the antiparallelogram crosses.
-  subroutine check_crossing()
+  subroutine check_crossing(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(four_bar_type), parameter :: bar = four_bar_type(ground=1.0_wp, crank=0.5_wp, coupler=1.0_wp, rocker=0.5_wp)
     real(wp), parameter :: start = pi - 0.5_wp
     type(finding_type) :: finding
@@ -78,8 +89,11 @@ contains
     type(error_type), allocatable :: err
     real(wp) :: t
     integer :: i
+    type(model_type) :: model
+    type(plan_type) :: plan
+    type(branch_stepper_type) :: stepper
 
-    call come_near(bar, start, 2.0_wp)
+    call come_near(test, model, plan, stepper, bar, start, 2.0_wp)
     call look_ahead(model%problem%drives, plan, stepper, 1, 1.0_wp, finding)
     call test%is_true(finding%kind == branch_point, 'a crossing is found')
     ! the time is extrapolated from positions of the probe that lie within a small part of the distance
@@ -102,13 +116,17 @@ contains
   end subroutine check_crossing
 
   !> With a coupler that is a little longer the branches pass each other at a distance.
-  subroutine check_close_branches()
+  subroutine check_close_branches(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(four_bar_type), parameter :: bar = four_bar_type(ground=1.0_wp, crank=0.5_wp, coupler=1.00001_wp, rocker=0.5_wp)
     type(finding_type) :: finding
+    type(model_type) :: model
+    type(plan_type) :: plan
+    type(branch_stepper_type) :: stepper
 
-    call come_near(bar, pi - 0.5_wp, 2.0_wp)
+    call come_near(test, model, plan, stepper, bar, pi - 0.5_wp, 2.0_wp)
     call look_ahead(model%problem%drives, plan, stepper, 1, 1.0_wp, finding)
     call test%is_true(finding%kind == nothing_special, 'branches that only come close are no crossing')
     call test%is_true(finding%t > 0.5_wp, 'no crossing is found until the branches are apart again')
   end subroutine check_close_branches
-end program test_look_ahead
+end module test_look_ahead

@@ -1,5 +1,5 @@
 !> A position step, with velocities, accelerations and its row of results, allocates nothing.
-program test_no_allocation
+module test_no_allocation
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_model, only: model_type
@@ -13,24 +13,51 @@ program test_no_allocation
   use mech9_testing, only: tester_type
   use mech9_counted_memory, only: calls
   implicit none
-  type(tester_type) :: test
-  type(model_type) :: model
-
-  call fig1(5, model)
-  call drive(model, 5, [0.5_wp, 6.0_wp])
-  call count_calls('planar chains')
-  call fig1(1, model)
-  call drive(model, 1, [-1.0_wp, 0.1_wp])
-  call count_calls('chains solved together')
-  call general_loop(model)
-  call drive(model, 1, [0.0_wp, 0.1_wp])
-  call count_calls('a spatial chain')
-  call test%finish()
+  private
+  public :: run
 
 contains
 
-  subroutine count_calls(name)
-    character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('planar_chains')) call planar_chains(test)
+    if (test%runs('chains_together')) call chains_together(test)
+    if (test%runs('spatial_chain')) call spatial_chain(test)
+  end subroutine run
+
+  subroutine planar_chains(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type) :: model
+
+    call fig1(5, model)
+    call drive(model, 5, [0.5_wp, 6.0_wp])
+    call count_calls(test, model, 'planar chains')
+  end subroutine planar_chains
+
+  subroutine chains_together(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type) :: model
+
+    call fig1(1, model)
+    call drive(model, 1, [-1.0_wp, 0.1_wp])
+    call count_calls(test, model, 'chains solved together')
+  end subroutine chains_together
+
+  subroutine spatial_chain(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type) :: model
+
+    call general_loop(model)
+    call drive(model, 1, [0.0_wp, 0.1_wp])
+    call count_calls(test, model, 'a spatial chain')
+  end subroutine spatial_chain
+
+  subroutine count_calls(test, model, name)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(inout) :: model   !< the mechanism
+    character(len=*), intent(in) :: name       !< of the mechanism, for the report of a failure
     type(plan_type) :: plan
     type(state_type) :: state
     type(driven_motion_type) :: driven
@@ -57,4 +84,4 @@ contains
     call test%is_true(calls == before, name//': a hundred positions allocate nothing')
     call test%no_error(err, name//': the motion goes on')
   end subroutine count_calls
-end program test_no_allocation
+end module test_no_allocation

@@ -1,6 +1,6 @@
 !> Overconstrained mechanisms of known mobility: driven at each of their coordinates they are closed, move,
 !> and are planned in blocks that their chains taken alone allow.
-program test_overconstrained
+module test_overconstrained
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, exit_structure
   use mech9_pose, only: pose_type, compose, identity_pose
@@ -12,41 +12,81 @@ program test_overconstrained
   use mech9_plan_checks, only: check_order, check_closed, block_sizes
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
+  private
+  public :: run
+
   integer, parameter :: four(2, 4) = reshape([1, 2, 2, 3, 3, 4, 4, 1], [2, 4])
   integer, parameter :: six(2, 6) = reshape([1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 1], [2, 6])
   !> Two loops of four with links 1 and 2, and the pair between these, in common.
   integer, parameter :: two_fours(2, 7) = reshape([1, 2, 2, 3, 3, 4, 4, 1, 2, 5, 5, 6, 6, 1], [2, 7])
   !> Three legs of three pairs between links 1 and 2.
   integer, parameter :: three_legs(2, 9) = reshape([1, 3, 3, 4, 4, 2, 1, 5, 5, 6, 6, 2, 1, 7, 7, 8, 8, 2], [2, 9])
-  integer :: k
-  type(axis_type) :: first(4), second(4)
-
-  do k = 1, 4
-    call check('Bennett', 4, four, bennett(0.7_wp, 1.9_wp, 1.1_wp), k, [3])
-  end do
-  do k = 1, 6
-    call check('Bricard', 6, six, bricard(), k, [5])
-    call check('Sarrus', 6, six, [leg(0.0_wp), reversed(leg(0.5_wp*pi))], k, [5])
-  end do
-  ! whichever loop is driven goes first, though each has six dimensions to determine four coordinates with
-  first = bennett(0.7_wp, 1.9_wp, 1.1_wp)
-  second = bennett(0.5_wp, 1.2_wp, 0.8_wp)
-  do k = 1, 7
-    call check('two Bennett loops', 6, two_fours, [first, second(2:)], k, [3, 3])
-  end do
-  ! the third leg only follows
-  do k = 1, 9
-    call check('Sarrus with three legs', 8, three_legs, [leg(0.0_wp), leg(0.5_wp*pi), leg(0.8_wp*pi)], k)
-  end do
-  call fails('Bennett with two inputs', 4, four, bennett(0.7_wp, 1.9_wp, 1.1_wp), [1, 2])
-  call fails('two Bennett loops with two inputs', 6, two_fours, [first, second(2:)], [3, 6])
-  ! twists and lengths that do not fit: closed at home, it cannot move
-  first(3)%along = first(3)%along + [0.0_wp, 0.1_wp, 0.2_wp]
-  call fails('four revolutes at random', 4, four, first, [1])
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('single_loops')) call single_loops(test)
+    if (test%runs('two_bennett_loops')) call two_bennett_loops(test)
+    if (test%runs('three_legs_of_sarrus')) call three_legs_of_sarrus(test)
+    if (test%runs('wrong_inputs')) call wrong_inputs(test)
+    if (test%runs('locked')) call locked(test)
+  end subroutine run
+
+  subroutine single_loops(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer :: k
+
+    do k = 1, 4
+      call check(test, 'Bennett', 4, four, bennett(0.7_wp, 1.9_wp, 1.1_wp), k, [3])
+    end do
+    do k = 1, 6
+      call check(test, 'Bricard', 6, six, bricard(), k, [5])
+      call check(test, 'Sarrus', 6, six, [leg(0.0_wp), reversed(leg(0.5_wp*pi))], k, [5])
+    end do
+  end subroutine single_loops
+
+  !> Whichever loop is driven goes first, though each has six dimensions to determine four coordinates with.
+  subroutine two_bennett_loops(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(axis_type) :: first(4), second(4)
+    integer :: k
+
+    first = bennett(0.7_wp, 1.9_wp, 1.1_wp)
+    second = bennett(0.5_wp, 1.2_wp, 0.8_wp)
+    do k = 1, 7
+      call check(test, 'two Bennett loops', 6, two_fours, [first, second(2:)], k, [3, 3])
+    end do
+    call fails(test, 'two Bennett loops with two inputs', 6, two_fours, [first, second(2:)], [3, 6])
+  end subroutine two_bennett_loops
+
+  !> The third leg only follows.
+  subroutine three_legs_of_sarrus(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer :: k
+
+    do k = 1, 9
+      call check(test, 'Sarrus with three legs', 8, three_legs, [leg(0.0_wp), leg(0.5_wp*pi), leg(0.8_wp*pi)], k)
+    end do
+  end subroutine three_legs_of_sarrus
+
+  subroutine wrong_inputs(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+
+    call fails(test, 'Bennett with two inputs', 4, four, bennett(0.7_wp, 1.9_wp, 1.1_wp), [1, 2])
+  end subroutine wrong_inputs
+
+  !> Twists and lengths that do not fit: closed at home, it cannot move.
+  subroutine locked(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(axis_type) :: axes(4)
+
+    axes = bennett(0.7_wp, 1.9_wp, 1.1_wp)
+    axes(3)%along = axes(3)%along + [0.0_wp, 0.1_wp, 0.2_wp]
+    call fails(test, 'four revolutes at random', 4, four, axes, [1])
+  end subroutine locked
 
   !> Bennett's loop in a position given by the angle at its first pair: opposite links alike, lengths as the
   !> sines of their twists, and tan(t1/2) tan(t2/2) = sin((b + a)/2)/sin((b - a)/2).
@@ -118,7 +158,8 @@ contains
   end function reversed
 
   !> Mobility one: closed at home, and with the driven coordinate turned by a little.
-  subroutine check(name, n_links, links, axes, driven, sizes)
+  subroutine check(test, name, n_links, links, axes, driven, sizes)
+    type(tester_type), intent(inout) :: test    !< counts the checks
     character(len=*), intent(in) :: name        !< of the mechanism, for the report of a failure
     integer, intent(in) :: n_links              !< links, the frame included
     integer, intent(in) :: links(:, :)          !< (2,M) reference and moving link of each pair
@@ -148,15 +189,16 @@ contains
     if (size(found) == size(sizes)) call test%is_true(all(found == sizes), name//': the blocks have the right numbers of unknowns')
   end subroutine check
 
-  subroutine fails(name, n_links, links, axes, cq)
-    character(len=*), intent(in) :: name     !< of the mechanism, for the report of a failure
-    integer, intent(in) :: n_links           !< links, the frame included
-    integer, intent(in) :: links(:, :)       !< (2,M) reference and moving link of each pair
-    integer, intent(in) :: cq(:)             !< independent coordinates
-    type(axis_type), intent(in) :: axes(:)   !< of each pair in the home position
+  subroutine fails(test, name, n_links, links, axes, cq)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: name       !< of the mechanism, for the report of a failure
+    integer, intent(in) :: n_links             !< links, the frame included
+    integer, intent(in) :: links(:, :)         !< (2,M) reference and moving link of each pair
+    integer, intent(in) :: cq(:)               !< independent coordinates
+    type(axis_type), intent(in) :: axes(:)     !< of each pair in the home position
     type(error_type), allocatable :: err
 
     call plan_at_home(n_links, links, axes, cq, err)
     call test%has_error(err, exit_structure, name//': the mechanism is refused')
   end subroutine fails
-end program test_overconstrained
+end module test_overconstrained

@@ -1,36 +1,43 @@
 !> Predictions from past positions and rates: exact for polynomials up to the degree that so many of them determine.
-program test_past_motion
+module test_past_motion
   use mech9_kinds, only: wp
   use mech9_past_motion, only: past_motion_type, new_past_motion, clear_past, add_to_past, choose_formula, find_weights, &
     predict_from_past, acceleration_from_past
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   !> Sums of some ten terms of order one, times weights of some hundred where the times lie unevenly.
   real(wp), parameter :: round_off = 1.0e-12_wp
   real(wp), parameter :: even(5) = [0.0_wp, 0.1_wp, 0.2_wp, 0.3_wp, 0.4_wp]
   real(wp), parameter :: uneven(5) = [0.0_wp, 0.13_wp, 0.2_wp, 0.32_wp, 0.4_wp]
   real(wp), parameter :: clustered(5) = [0.0_wp, 0.1_wp, 0.1_wp + 1.0e-9_wp, 0.3_wp, 0.4_wp]
-  type(tester_type) :: test
-
-  call check_degree(even, .false., 0.5_wp, 5, 'five rates')
-  call check_degree(uneven, .false., 0.47_wp, 5, 'five rates at uneven times')
-  call check_degree(-uneven, .false., -0.52_wp, 5, 'five rates backwards')
-  call check_degree(even(:3), .false., 0.3_wp, 3, 'three rates')
-  call check_degree(even, .true., 0.5_wp, 7, 'positions and rates')
-  call check_degree(uneven, .true., 0.45_wp, 7, 'positions and rates at uneven times')
-  call check_degree(even(:2), .true., 0.2_wp, 3, 'two positions and rates')
-  ! of two times that nearly coincide the earlier ones are not used
-  call check_degree(clustered, .false., 0.5_wp, 3, 'clustered times')
-  call check_degree(clustered, .true., 0.5_wp, 5, 'clustered times, with positions')
-  ! far beyond the last step: by the mean slope of the rates
-  call check_degree([0.0_wp, 0.3_wp, 0.300001_wp], .true., 0.5_wp, 2, 'far beyond')
-  ! back over the turning point, from which only two times are kept
-  call check_degree([0.0_wp, 0.1_wp, 0.2_wp, 0.3_wp, 0.25_wp], .false., 0.2_wp, 2, 'turned back')
-  call check_even_steps()
-  call check_choice()
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('rates')) call check_degree(test, even, .false., 0.5_wp, 5, 'five rates')
+    if (test%runs('uneven_rates')) call check_degree(test, uneven, .false., 0.47_wp, 5, 'five rates at uneven times')
+    if (test%runs('backwards')) call check_degree(test, -uneven, .false., -0.52_wp, 5, 'five rates backwards')
+    if (test%runs('three_rates')) call check_degree(test, even(:3), .false., 0.3_wp, 3, 'three rates')
+    if (test%runs('positions')) call check_degree(test, even, .true., 0.5_wp, 7, 'positions and rates')
+    if (test%runs('uneven_positions')) call check_degree(test, uneven, .true., 0.45_wp, 7, 'positions and rates at uneven times')
+    if (test%runs('two_positions')) call check_degree(test, even(:2), .true., 0.2_wp, 3, 'two positions and rates')
+    ! of two times that nearly coincide the earlier ones are not used
+    if (test%runs('clustered_rates')) call check_degree(test, clustered, .false., 0.5_wp, 3, 'clustered times')
+    if (test%runs('clustered_positions')) call check_degree(test, clustered, .true., 0.5_wp, 5, 'clustered times, with positions')
+    ! far beyond the last step: by the mean slope of the rates
+    if (test%runs('far_beyond')) call check_degree(test, [0.0_wp, 0.3_wp, 0.300001_wp], .true., 0.5_wp, 2, 'far beyond')
+    ! back over the turning point, from which only two times are kept
+    if (test%runs('turned_back')) &
+      call check_degree(test, [0.0_wp, 0.1_wp, 0.2_wp, 0.3_wp, 0.25_wp], .false., 0.2_wp, 2, 'turned back')
+    if (test%runs('check_even_steps')) call check_even_steps(test)
+    if (test%runs('check_choice')) call check_choice(test)
+  end subroutine run
 
   !> A polynomial with all powers up to one.
   pure real(wp) function value(degree, t)
@@ -76,12 +83,13 @@ contains
   end subroutine take
 
   !> A prediction is exact for polynomials of a degree, and not for the next.
-  subroutine check_degree(times, with_positions, t, degree, why)
-    real(wp), intent(in) :: times(:)        !< times that are kept, in order [s]
-    logical, intent(in) :: with_positions   !< positions are used, not rates alone
-    real(wp), intent(in) :: t               !< of the prediction
-    integer, intent(in) :: degree           !< degree of a polynomial that is predicted exactly
-    character(len=*), intent(in) :: why     !< the statement that is checked, printed where it is wrong
+  subroutine check_degree(test, times, with_positions, t, degree, why)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), intent(in) :: times(:)           !< times that are kept, in order [s]
+    logical, intent(in) :: with_positions      !< positions are used, not rates alone
+    real(wp), intent(in) :: t                  !< of the prediction
+    integer, intent(in) :: degree              !< degree of a polynomial that is predicted exactly
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     type(past_motion_type) :: past
     real(wp) :: q(2)
     integer :: d, last
@@ -110,7 +118,8 @@ contains
   end subroutine check_degree
 
   !> Weights are shared by even steps, also where round-off makes them uneven; not by others.
-  subroutine check_even_steps()
+  subroutine check_even_steps(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(past_motion_type) :: past
     real(wp) :: t, q(2), h
     integer :: i
@@ -134,7 +143,8 @@ contains
   end subroutine check_even_steps
 
   !> Positions are used from a long step on that rates did not predict, until steps are half as long.
-  subroutine check_choice()
+  subroutine check_choice(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(past_motion_type) :: past
 
     past = new_past_motion(2)
@@ -147,4 +157,4 @@ contains
     call choose_formula(past, 0.04_wp, 1.0e-16_wp)
     call test%is_true(.not. past%with_positions, 'rates alone serve after a step half as long')
   end subroutine check_choice
-end program test_past_motion
+end module test_past_motion

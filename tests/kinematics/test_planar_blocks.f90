@@ -2,7 +2,7 @@
 !> any direction, on links that move or stand still.
 !>
 !> Compares the program with itself: planar and spatial arithmetic.
-program test_planar_blocks
+module test_planar_blocks
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_failure, only: failure_dead_point
@@ -19,6 +19,8 @@ program test_planar_blocks
   use mech9_mixed_mechanisms, only: mixed_axes, mixed_mechanism, mixed_planes, mixed_planar_blocks
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
 
   !> The motion of a mechanism.
   type :: motion_type
@@ -36,15 +38,19 @@ program test_planar_blocks
 
   !> Place of the point that is followed, in the system of its link [m].
   real(wp), parameter :: place(3) = [0.3_wp, -0.2_wp, 0.5_wp]
-  type(tester_type) :: test
-
-  call random_mechanisms()
-  call test%finish()
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('random_mechanisms')) call random_mechanisms(test)
+  end subroutine run
+
   !> Random mechanisms, each also turned as a whole.
-  subroutine random_mechanisms()
+  subroutine random_mechanisms(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     integer, parameter :: slides(5) = [0, 3, 4, 0, 5]
     type(random_type) :: random
     type(axis_type) :: axes(31)
@@ -58,9 +64,9 @@ contains
     do trial = 1, 40
       axes = mixed_axes(slides(modulo(trial, 5) + 1), random)
       call mixed_mechanism(axes, model)
-      call follow(model, .true., space)
+      call follow(test, model, .true., space)
       if (space%kind > 0 .and. space%kind /= failure_dead_point) cycle
-      call follow(model, .false., flat)
+      call follow(test, model, .false., flat)
       call test%is_true(flat%kind == space%kind, 'planes and space end alike')
       if (space%kind == failure_dead_point) then
         dead = dead + 1
@@ -75,47 +81,50 @@ contains
       compared = compared + 1
       ! round-off over the conditioning, to its square for accelerations, in blocks that follow each other
       tolerance = 1.0e-14_wp/space%conditioning**3
-      call compare(flat, space, tolerance, 'planes and space')
+      call compare(test, flat, space, tolerance, 'planes and space')
       turn = random_rotation(random)
       do k = 1, 31
         axes(k)%point = matmul(turn, axes(k)%point)
         axes(k)%along = matmul(turn, axes(k)%along)
       end do
       call mixed_mechanism(axes, model)
-      call follow(model, .false., turned)
+      call follow(test, model, .false., turned)
       call test%is_true(turned%planar_blocks == mixed_planar_blocks, 'planar blocks of the turned mechanism')
-      call near(turned%coordinates, flat%coordinates, tolerance, 'coordinates of the turned mechanism')
+      call near(test, turned%coordinates, flat%coordinates, tolerance, 'coordinates of the turned mechanism')
     end do
     call test%is_true(compared >= 12, 'some mechanisms are compared')
     call test%is_true(dead >= 8, 'some mechanisms reach a dead point')
   end subroutine random_mechanisms
 
   !> Compare all numbers of two motions.
-  subroutine compare(motion, expected, tolerance, why)
+  subroutine compare(test, motion, expected, tolerance, why)
+    type(tester_type), intent(inout) :: test    !< counts the checks
     type(motion_type), intent(in) :: motion     !< the motion
     type(motion_type), intent(in) :: expected   !< the right one
     real(wp), intent(in) :: tolerance           !< over the largest number of its sort
     character(len=*), intent(in) :: why         !< the statement that is checked, printed where it is wrong
 
-    call near(motion%coordinates, expected%coordinates, tolerance, why//': coordinates')
-    call near(motion%points, expected%points, tolerance, why//': points')
-    call near(motion%links, expected%links, tolerance, why//': links')
-    call near(motion%screws, expected%screws, tolerance, why//': screws')
-    call near(motion%requested, expected%requested, tolerance, why//': requested point')
+    call near(test, motion%coordinates, expected%coordinates, tolerance, why//': coordinates')
+    call near(test, motion%points, expected%points, tolerance, why//': points')
+    call near(test, motion%links, expected%links, tolerance, why//': links')
+    call near(test, motion%screws, expected%screws, tolerance, why//': screws')
+    call near(test, motion%requested, expected%requested, tolerance, why//': requested point')
     call test%near(motion%conditioning, expected%conditioning, 1.0e-10_wp, why//': conditioning')
   end subroutine compare
 
-  subroutine near(numbers, expected, tolerance, why)
-    real(wp), intent(in) :: numbers(:, :)    !< numbers that are checked
-    real(wp), intent(in) :: expected(:, :)   !< the right numbers
-    real(wp), intent(in) :: tolerance        !< over the largest number
-    character(len=*), intent(in) :: why      !< the statement that is checked, printed where it is wrong
+  subroutine near(test, numbers, expected, tolerance, why)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), intent(in) :: numbers(:, :)      !< numbers that are checked
+    real(wp), intent(in) :: expected(:, :)     !< the right numbers
+    real(wp), intent(in) :: tolerance          !< over the largest number
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
 
     call test%near(maxval(abs(numbers - expected))/max(1.0_wp, maxval(abs(expected))), 0.0_wp, tolerance, why)
   end subroutine near
 
   !> Follow the motion, and find all numbers at its end.
-  subroutine follow(model, in_space, motion)
+  subroutine follow(test, model, in_space, motion)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type), intent(in) :: model      !< the model
     logical, intent(in) :: in_space            !< in spatial arithmetic throughout
     type(motion_type), intent(out) :: motion   !< the motion
@@ -147,10 +156,10 @@ contains
 
   !> Follow the motion of single points, without the computations on which these do not depend.
   subroutine follow_points(model, plan, start, motion)
-    type(model_type), intent(in) :: model         !< the model
-    type(plan_type), intent(in) :: plan           !< its plan
-    type(state_type), intent(in) :: start         !< its start
-    type(motion_type), intent(inout) :: motion    !< gets the motion of the points
+    type(model_type), intent(in) :: model        !< the model
+    type(plan_type), intent(in) :: plan          !< its plan
+    type(state_type), intent(in) :: start        !< its start
+    type(motion_type), intent(inout) :: motion   !< gets the motion of the points
     integer, parameter :: links(6) = [7, 8, 11, 15, 22, 25]
     type(plan_type) :: lean
     type(state_type) :: state
@@ -178,11 +187,11 @@ contains
 
   !> Follow the motion to its end, or to a failure.
   subroutine go(model, plan, start, state, motion)
-    type(model_type), intent(in) :: model         !< the model
-    type(plan_type), intent(in) :: plan           !< its plan
-    type(state_type), intent(in) :: start         !< its start
-    type(state_type), intent(out) :: state        !< at the end
-    type(motion_type), intent(inout) :: motion    !< gets the conditioning, and a failure
+    type(model_type), intent(in) :: model        !< the model
+    type(plan_type), intent(in) :: plan          !< its plan
+    type(state_type), intent(in) :: start        !< its start
+    type(state_type), intent(out) :: state       !< at the end
+    type(motion_type), intent(inout) :: motion   !< gets the conditioning, and a failure
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
     integer :: i, b
@@ -203,4 +212,4 @@ contains
     end if
     state = driven%state
   end subroutine go
-end program test_planar_blocks
+end module test_planar_blocks

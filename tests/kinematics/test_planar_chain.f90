@@ -1,7 +1,7 @@
 !> A planar chain of three unknowns in arithmetic of its own, against that of any block.
 !>
 !> Compares the program with itself: the arithmetic of a planar chain and that of any block.
-program test_planar_chain
+module test_planar_chain
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -14,36 +14,55 @@ program test_planar_chain
   use mech9_planar_mechanisms, only: four_bar_type, random_crank, slider_crank, watt_six_bar
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-  type(random_type) :: random
-  type(model_type) :: model
-  type(four_bar_type) :: bar
-  integer :: trial
-
-  do trial = 1, 20
-    call slider_crank(0.3_wp + 0.1_wp*random%symmetric(), 0.9_wp, 0.1_wp*random%symmetric(), 3.0_wp*random%symmetric(), &
-                      merge(1, -1, mod(trial, 2) == 0), model)
-    call check_same_motion(model, 1, 'a slider-crank')
-    bar = random_crank(random, 0.3_wp)
-    call watt_six_bar(bar, [0.4_wp, 0.3_wp], [2.0_wp, 0.5_wp], [2.0_wp, 1.8_wp], random%symmetric(), 1, 1, model)
-    call check_same_motion(model, 2, 'a six-bar')
-    call swinging_guide(0.3_wp, 0.7_wp, 3.0_wp*random%symmetric(), model)
-    call check_same_motion(model, 1, 'a slide on a link that turns')
-  end do
-  call fig1(5, model)
-  call check_same_motion(model, 2, 'Fig. 1')
-  call fig1(1, model)
-  call check_same_motion(model, 0, 'Fig. 1 driven at q1: its chains need each other')
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('random_chains')) call random_chains(test)
+    if (test%runs('chains_of_fig1')) call chains_of_fig1(test)
+  end subroutine run
+
+  subroutine random_chains(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(random_type) :: random
+    type(model_type) :: model
+    type(four_bar_type) :: bar
+    integer :: trial
+
+    do trial = 1, 20
+      call slider_crank(0.3_wp + 0.1_wp*random%symmetric(), 0.9_wp, 0.1_wp*random%symmetric(), 3.0_wp*random%symmetric(), &
+                        merge(1, -1, mod(trial, 2) == 0), model)
+      call check_same_motion(test, random, model, 1, 'a slider-crank')
+      bar = random_crank(random, 0.3_wp)
+      call watt_six_bar(bar, [0.4_wp, 0.3_wp], [2.0_wp, 0.5_wp], [2.0_wp, 1.8_wp], random%symmetric(), 1, 1, model)
+      call check_same_motion(test, random, model, 2, 'a six-bar')
+      call swinging_guide(0.3_wp, 0.7_wp, 3.0_wp*random%symmetric(), model)
+      call check_same_motion(test, random, model, 1, 'a slide on a link that turns')
+    end do
+  end subroutine random_chains
+
+  subroutine chains_of_fig1(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(random_type) :: random
+    type(model_type) :: model
+
+    call fig1(5, model)
+    call check_same_motion(test, random, model, 2, 'Fig. 1')
+    call fig1(1, model)
+    call check_same_motion(test, random, model, 0, 'Fig. 1 driven at q1: its chains need each other')
+  end subroutine chains_of_fig1
+
   !> A block on the crank's pin slides along a guide that swings about a fixed pin.
   subroutine swinging_guide(crank, ground, angle, model)
-    real(wp), intent(in) :: crank                    !< lengths [m]
-    real(wp), intent(in) :: ground                   !< lengths [m]
-    real(wp), intent(in) :: angle                    !< of the crank [rad]
-    type(model_type), intent(out) :: model           !< the model
+    real(wp), intent(in) :: crank            !< lengths [m]
+    real(wp), intent(in) :: ground           !< lengths [m]
+    real(wp), intent(in) :: angle            !< of the crank [rad]
+    type(model_type), intent(out) :: model   !< the model
     real(wp), parameter :: x(3) = [1.0_wp, 0.0_wp, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
     integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 4, 3, 1, 4], [2, 4])
     real(wp) :: way(2), guide
@@ -59,10 +78,12 @@ contains
   end subroutine swinging_guide
 
   !> Rates and accelerations of coordinates and frames, at random ones of the independent coordinates.
-  subroutine check_same_motion(model, chains, name)
-    type(model_type), intent(in) :: model           !< the model
-    integer, intent(in) :: chains                   !< blocks that are such chains
-    character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
+  subroutine check_same_motion(test, random, model, chains, name)
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    type(model_type), intent(in) :: model        !< the model
+    integer, intent(in) :: chains                !< blocks that are such chains
+    character(len=*), intent(in) :: name         !< of the mechanism, for the report of a failure
     type(plan_type) :: plan
     type(state_type) :: state, other
     type(error_type), allocatable :: err
@@ -97,22 +118,23 @@ contains
       end associate
     end do
     call test%is_true(found == chains, name//': the chains of three equations are found')
-    call check_close(other%dq, state%dq, allowed, name//': the rates are equal')
-    call check_close(other%ddq, state%ddq, allowed, name//': the accelerations are equal')
-    call check_close(reshape(other%planar%velocity, [size(state%planar%velocity)]), &
+    call check_close(test, other%dq, state%dq, allowed, name//': the rates are equal')
+    call check_close(test, other%ddq, state%ddq, allowed, name//': the accelerations are equal')
+    call check_close(test, reshape(other%planar%velocity, [size(state%planar%velocity)]), &
                      reshape(state%planar%velocity, [size(state%planar%velocity)]), allowed, &
                      name//': the velocities of frames are equal')
-    call check_close(reshape(other%planar%acceleration, [size(state%planar%acceleration)]), &
+    call check_close(test, reshape(other%planar%acceleration, [size(state%planar%acceleration)]), &
                      reshape(state%planar%acceleration, [size(state%planar%acceleration)]), allowed, &
                      name//': the accelerations of frames are equal')
   end subroutine check_same_motion
 
-  subroutine check_close(values, expected, allowed, name)
-    real(wp), intent(in) :: values(:)      !< values that are checked
-    real(wp), intent(in) :: expected(:)    !< the right ones, as many
-    real(wp), intent(in) :: allowed        !< largest difference
-    character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure
+  subroutine check_close(test, values, expected, allowed, name)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), intent(in) :: values(:)          !< values that are checked
+    real(wp), intent(in) :: expected(:)        !< the right ones, as many
+    real(wp), intent(in) :: allowed            !< largest difference
+    character(len=*), intent(in) :: name       !< of the mechanism, for the report of a failure
 
     call test%near(maxval(abs(values - expected))/max(1.0_wp, maxval(abs(expected))), 0.0_wp, allowed, name)
   end subroutine check_close
-end program test_planar_chain
+end module test_planar_chain

@@ -1,7 +1,7 @@
 !> Platforms on several legs, whose Jacobians are sparse: their motion by fronts against that by full matrices.
 !>
 !> Compares the program with itself: the factorization by fronts and that of the full matrix.
-program test_platforms
+module test_platforms
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -17,37 +17,57 @@ program test_platforms
   use mech9_mechanism_families, only: axis_type, home_mechanism, stewart_platform
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-  type(random_type) :: random
-  type(model_type) :: model
-  integer :: trial, legs, exponent
-
-  call stewart_platform(model)
-  call check_same_motion(model, .true., 'the sample platform')
-  do trial = 1, 5
-    do legs = 3, 7
-      call random_platform(legs, 1.0_wp, model)
-      call check_same_motion(model, .true., 'a platform on legs at random')
-    end do
-    do exponent = 1, 4
-      call random_platform(6, 10.0_wp**(-exponent), model)
-      call check_same_motion(model, .true., 'a platform on nearly parallel legs')
-    end do
-    call lifting_table(4 + trial, model)
-    call check_same_motion(model, .false., 'a table on legs of parallel hinges, whose chains are closed one by one')
-    call planar_platform(5, model)
-    call check_same_motion(model, .false., 'a plane platform, whose six unknowns are a small full matrix')
-  end do
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('sample_platform')) call sample_platform(test)
+    if (test%runs('random_platforms')) call random_platforms(test)
+  end subroutine run
+
+  subroutine sample_platform(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type) :: model
+    type(random_type) :: random
+
+    call stewart_platform(model)
+    call check_same_motion(test, random, model, .true., 'the sample platform')
+  end subroutine sample_platform
+
+  subroutine random_platforms(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type) :: model
+    integer :: trial, legs, exponent
+    type(random_type) :: random
+
+    do trial = 1, 5
+      do legs = 3, 7
+        call random_platform(random, legs, 1.0_wp, model)
+        call check_same_motion(test, random, model, .true., 'a platform on legs at random')
+      end do
+      do exponent = 1, 4
+        call random_platform(random, 6, 10.0_wp**(-exponent), model)
+        call check_same_motion(test, random, model, .true., 'a platform on nearly parallel legs')
+      end do
+      call lifting_table(random, 4 + trial, model)
+      call check_same_motion(test, random, model, .false., 'a table on legs of parallel hinges, whose chains are closed one by one')
+      call planar_platform(random, 5, model)
+      call check_same_motion(test, random, model, .false., 'a plane platform, whose six unknowns are a small full matrix')
+    end do
+  end subroutine random_platforms
+
   !> A platform (link 2) on legs of six pairs with axes at random, the third of which slides. Six coordinates are given: the
   !> slides, and first turns of as many legs as are missing to six.
-  subroutine random_platform(legs, spread, model)
-    integer, intent(in) :: legs              !< number of legs
-    real(wp), intent(in) :: spread           !< of the directions of the slides
-    type(model_type), intent(out) :: model   !< the model
+  subroutine random_platform(random, legs, spread, model)
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    integer, intent(in) :: legs                  !< number of legs
+    real(wp), intent(in) :: spread               !< of the directions of the slides
+    type(model_type), intent(out) :: model       !< the model
     type(axis_type) :: axes(6*legs)
     integer :: links(2, 6*legs), leg, i, k, cq(6)
     real(wp) :: low(3)
@@ -71,9 +91,10 @@ contains
 
   !> A table (link 2) that three or more legs of three parallel hinges each let move in one direction only. The first hinge is
   !> given.
-  subroutine lifting_table(legs, model)
-    integer, intent(in) :: legs              !< number of legs
-    type(model_type), intent(out) :: model   !< the model
+  subroutine lifting_table(random, legs, model)
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    integer, intent(in) :: legs                  !< number of legs
+    type(model_type), intent(out) :: model       !< the model
     type(axis_type) :: axes(3*legs)
     integer :: links(2, 3*legs), leg, k
     real(wp) :: outwards(3), along(3), angle
@@ -96,9 +117,10 @@ contains
   end subroutine lifting_table
 
   !> A platform (link 2) in a plane on legs of three hinges; the first hinges of three legs are given.
-  subroutine planar_platform(legs, model)
-    integer, intent(in) :: legs              !< number of legs, at least 3
-    type(model_type), intent(out) :: model   !< the model
+  subroutine planar_platform(random, legs, model)
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    integer, intent(in) :: legs                  !< number of legs, at least 3
+    type(model_type), intent(out) :: model       !< the model
     type(axis_type) :: axes(3*legs)
     integer :: links(2, 3*legs), leg, k, i
 
@@ -125,10 +147,12 @@ contains
   end function sorted
 
   !> Rates, accelerations and measures of the block, at random ones of the independent coordinates.
-  subroutine check_same_motion(model, sparse, name)
-    type(model_type), intent(in) :: model      !< the model
-    logical, intent(in) :: sparse              !< fronts are to be used
-    character(len=*), intent(in) :: name       !< of the mechanism, for the report of a failure
+  subroutine check_same_motion(test, random, model, sparse, name)
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    type(model_type), intent(in) :: model        !< the model
+    logical, intent(in) :: sparse                !< fronts are to be used
+    character(len=*), intent(in) :: name         !< of the mechanism, for the report of a failure
     type(plan_type) :: plan
     type(state_type) :: state, other
     type(error_type), allocatable :: err
@@ -175,4 +199,4 @@ contains
     call test%is_true(maxval(abs(other%dq - state%dq)) <= allowed*maxval(abs(state%dq)), name//': the rates are equal')
     call test%is_true(maxval(abs(other%ddq - state%ddq)) <= allowed*maxval(abs(state%ddq)), name//': the accelerations are equal')
   end subroutine check_same_motion
-end program test_platforms
+end module test_platforms

@@ -1,5 +1,5 @@
 !> Assemblies count postures: which links only form joints, and the forty positions of Dietmaier's platform.
-program test_postures
+module test_postures
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_body, only: body_type
@@ -13,6 +13,9 @@ program test_postures
   use mech9_sample_mechanisms, only: new_mechanism, add_revolute, add_prismatic, frame, four_bar
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   real(wp), parameter :: x(3) = [1.0_wp, 0.0_wp, 0.0_wp], y(3) = [0.0_wp, 1.0_wp, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp]
   real(wp), parameter :: origin(3) = 0.0_wp, near = 1.0e-11_wp
   !> Centres of the joints on base and platform, and the lengths of the legs (Dietmaier in docs/bibliography.md).
@@ -23,15 +26,18 @@ program test_postures
     0.0_wp, 0.665885_wp, -0.353482_wp, 1.402538_wp, 0.478359_wp, 1.158742_wp, 0.107672_wp, -0.137087_wp, -0.235121_wp, &
     0.353913_wp], [3, 6])
   real(wp), parameter :: legs(6) = [1.0_wp, 0.645275_wp, 1.086284_wp, 1.503439_wp, 1.281933_wp, 0.771071_wp]
-  type(tester_type) :: test
-
-  call links_of_a_platform()
-  call links_of_chains()
-  call forty_postures()
-  call rods_with_points()
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('links_of_a_platform')) call links_of_a_platform(test)
+    if (test%runs('links_of_chains')) call links_of_chains(test)
+    if (test%runs('forty_postures')) call forty_postures(test)
+    if (test%runs('rods_with_points')) call rods_with_points(test)
+  end subroutine run
 
   !> The platform (link 2). Leg i has the links 5 i - 2 to 5 i + 2: one of a universal joint at the base, two parts that slide,
   !> and two of a ball joint at the platform.
@@ -58,7 +64,8 @@ contains
   end subroutine platform
 
   !> The roles of a platform's links, bare and with a point or a body on some of them.
-  subroutine links_of_a_platform()
+  subroutine links_of_a_platform(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type) :: model
     integer, parameter :: leg(5) = [joint_link, rod_link, rod_link, joint_link, joint_link]
     integer :: roles(32), i
@@ -82,7 +89,8 @@ contains
   end subroutine links_of_a_platform
 
   !> Links of planar and spherical chains have positions of their own.
-  subroutine links_of_chains()
+  subroutine links_of_chains(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     integer, parameter :: links(2, 4) = reshape([1, 2, 2, 3, 3, 4, 1, 4], [2, 4])
     type(model_type) :: model
     integer :: roles(4)
@@ -103,7 +111,8 @@ contains
   end subroutine links_of_chains
 
   !> Dietmaier's platform has forty positions, and each of them very many settings of its joints.
-  subroutine forty_postures()
+  subroutine forty_postures(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
@@ -146,7 +155,8 @@ contains
 
   !> A rod between a ball joint and a universal joint can be turned by half a turn. A point beside its line tells the two ways, and
   !> one on the line does not.
-  subroutine rods_with_points()
+  subroutine rods_with_points(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: state
@@ -200,4 +210,4 @@ contains
       model%mechanism%points(i)%position = origin
     end do
   end subroutine give_points
-end program test_postures
+end module test_postures

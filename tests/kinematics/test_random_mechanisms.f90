@@ -3,7 +3,7 @@
 !> away from it, and its rates are those that its axes give.
 !>
 !> Compares the program with itself in part: mechanisms in other units; rates are held against the axes.
-program test_random_mechanisms
+module test_random_mechanisms
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -16,38 +16,48 @@ program test_random_mechanisms
   use mech9_plan_checks, only: check_order, check_closed, check_smallest, rates_of
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-  type(random_type) :: random
-  integer :: i, n, largest
-
-  largest = 0
-  do i = 1, 60
-    n = 4 + modulo(7*i, 25)
-    call try('planar, revolutes', n, 1 + n/6, 1, 0)
-    call try('planar, some slide', n, 1 + n/6, 1, 4)
-    call try('spherical', n, 1 + n/6, 2, 0)
-    call try('spatial, revolutes', n + 8, 1 + n/12, 3, 0)
-    call try('spatial, some slide', n + 8, 1 + n/12, 3, 3)
-  end do
-  call try('large planar', 250, 60, 1, 5)
-  call try('large spatial', 300, 25, 3, 4)
-  print '(a,i0)', 'largest number of coordinates: ', largest
-  call test%finish()
+  private
+  public :: run
 
 contains
 
-  subroutine try(name, n_links, loops, family, slide_each)
-    character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure
-    integer, intent(in) :: n_links         !< links, the frame included
-    integer, intent(in) :: loops           !< closed chains
-    integer, intent(in) :: family          !< 1 planar, 2 spherical, 3 spatial
-    integer, intent(in) :: slide_each      !< of so many pairs one slides; 0: none
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('small_mechanisms')) call small_mechanisms(test)
+    if (test%runs('large_planar')) call try(test, 'large planar', 250, 60, 1, 5)
+    if (test%runs('large_spatial')) call try(test, 'large spatial', 300, 25, 3, 4)
+  end subroutine run
+
+  subroutine small_mechanisms(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer :: i, n
+
+    do i = 1, 60
+      n = 4 + modulo(7*i, 25)
+      call try(test, 'planar, revolutes', n, 1 + n/6, 1, 0)
+      call try(test, 'planar, some slide', n, 1 + n/6, 1, 4)
+      call try(test, 'spherical', n, 1 + n/6, 2, 0)
+      call try(test, 'spatial, revolutes', n + 8, 1 + n/12, 3, 0)
+      call try(test, 'spatial, some slide', n + 8, 1 + n/12, 3, 3)
+    end do
+  end subroutine small_mechanisms
+
+  subroutine try(test, name, n_links, loops, family, slide_each)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: name       !< of the mechanism, for the report of a failure
+    integer, intent(in) :: n_links             !< links, the frame included
+    integer, intent(in) :: loops               !< closed chains
+    integer, intent(in) :: family              !< 1 planar, 2 spherical, 3 spatial
+    integer, intent(in) :: slide_each          !< of so many pairs one slides; 0: none
     integer, allocatable :: links(:, :)
     type(axis_type), allocatable :: axes(:)
     real(wp), allocatable :: equations(:, :)
     logical, allocatable :: dependent(:)
     type(model_type) :: model
     integer :: k
+    type(random_type) :: random
 
     allocate (links, source=random_links(n_links, loops, random))
     if (family == 1) axes = planar_axes(size(links, 2), slide_each, random)
@@ -56,20 +66,21 @@ contains
     call loop_equations(n_links, links, axes, equations)
     allocate (dependent(size(axes)))
     call choose_dependent(equations, random, dependent)
-    largest = max(largest, size(axes))
     call home_mechanism(n_links, links, axes, pack([(k, k=1, size(axes))], .not. dependent), model)
-    call check(name, model, equations, dependent)
-    if (size(axes) < 60) call check_units(name, n_links, links, axes, model)
+    call check(test, random, name, model, equations, dependent)
+    if (size(axes) < 60) call check_units(test, random, name, n_links, links, axes, model)
   end subroutine try
 
   !> The same mechanism in other units of length, over seven orders of magnitude: the same blocks, and the
   !> same position to the last digits from the same guess.
-  subroutine check_units(name, n_links, links, axes, model)
-    character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
-    integer, intent(in) :: n_links                  !< links, the frame included
-    integer, intent(in) :: links(:, :)              !< (2,M) reference and moving link of each pair
-    type(axis_type), intent(in) :: axes(:)          !< of each pair in the home position
-    type(model_type), intent(in) :: model           !< mechanism that is given in other units
+  subroutine check_units(test, random, name, n_links, links, axes, model)
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    character(len=*), intent(in) :: name         !< of the mechanism, for the report of a failure
+    integer, intent(in) :: n_links               !< links, the frame included
+    integer, intent(in) :: links(:, :)           !< (2,M) reference and moving link of each pair
+    type(axis_type), intent(in) :: axes(:)       !< of each pair in the home position
+    type(model_type), intent(in) :: model        !< mechanism that is given in other units
     real(wp), parameter :: units(2) = [1.0e-4_wp, 1.0e3_wp]
     type(axis_type) :: scaled(size(axes))
     type(model_type) :: other
@@ -104,11 +115,13 @@ contains
     end do
   end subroutine check_units
 
-  subroutine check(name, model, equations, dependent)
-    character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
-    type(model_type), intent(in) :: model           !< the model
-    real(wp), intent(in) :: equations(:, :)         !< (6 loops,M) that the rates satisfy
-    logical, intent(in) :: dependent(:)             !< (M) coordinates that follow from the others
+  subroutine check(test, random, name, model, equations, dependent)
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    character(len=*), intent(in) :: name         !< of the mechanism, for the report of a failure
+    type(model_type), intent(in) :: model        !< the model
+    real(wp), intent(in) :: equations(:, :)      !< (6 loops,M) that the rates satisfy
+    logical, intent(in) :: dependent(:)          !< (M) coordinates that follow from the others
     type(plan_type) :: plan
     type(state_type) :: state
     type(error_type), allocatable :: err
@@ -144,4 +157,4 @@ contains
     start = 1.0e-3_wp/maxval(abs(expected))*expected
     call test%near(maxval(abs(state%q - start)), 0.0_wp, 5.0e-4_wp, name//': the position beside home is that of the rates')
   end subroutine check
-end program test_random_mechanisms
+end module test_random_mechanisms

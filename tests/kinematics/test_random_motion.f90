@@ -2,7 +2,7 @@
 !> and many give the same motion, and the same end where there is one.
 !>
 !> Compares the program with itself: motions with few and with many outputs.
-program test_random_motion
+module test_random_motion
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_singular
   use mech9_random, only: random_type
@@ -16,28 +16,45 @@ program test_random_motion
   use mech9_home_motions, only: loop_equations, choose_dependent
   use mech9_testing, only: tester_type, message_of
   implicit none
-  type(tester_type) :: test
-  type(random_type) :: random
-  integer :: i, ends, goes_on
-
-  ends = 0
-  goes_on = 0
-  do i = 1, 100
-    call try('planar', 4 + modulo(3*i, 9), 1 + modulo(i, 3), 1)
-    call try('spherical', 4 + modulo(3*i, 5), 1 + modulo(i, 2), 2)
-    call try('spatial', 7 + modulo(3*i, 9), 1 + modulo(i, 2), 3)
-  end do
-  print '(i0,a,i0,a)', goes_on, ' motions to their end, ', ends, ' up to a singular position'
-  call test%is_true(ends > 10 .and. goes_on > 10, 'motions that end and motions that go on are both among them')
-  call test%finish()
+  private
+  public :: run
 
 contains
 
-  subroutine try(name, n_links, loops, family)
-    character(len=*), intent(in) :: name   !< of the mechanism, for the report of a failure
-    integer, intent(in) :: n_links         !< links, the frame included
-    integer, intent(in) :: loops           !< closed chains
-    integer, intent(in) :: family          !< of the axes
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('random_mechanisms')) call random_mechanisms(test)
+  end subroutine run
+
+  subroutine random_mechanisms(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer :: i
+    type(random_type) :: random
+    integer :: ends
+    integer :: goes_on
+
+    ends = 0
+    goes_on = 0
+    do i = 1, 100
+      call try(test, random, ends, goes_on, 'planar', 4 + modulo(3*i, 9), 1 + modulo(i, 3), 1)
+      call try(test, random, ends, goes_on, 'spherical', 4 + modulo(3*i, 5), 1 + modulo(i, 2), 2)
+      call try(test, random, ends, goes_on, 'spatial', 7 + modulo(3*i, 9), 1 + modulo(i, 2), 3)
+    end do
+    print '(i0,a,i0,a)', goes_on, ' motions to their end, ', ends, ' up to a singular position'
+    call test%is_true(ends > 10 .and. goes_on > 10, 'motions that end and motions that go on are both among them')
+  end subroutine random_mechanisms
+
+  subroutine try(test, random, ends, goes_on, name, n_links, loops, family)
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    integer, intent(inout) :: ends               !< motions that end at singular positions
+    integer, intent(inout) :: goes_on            !< motions to their end
+    character(len=*), intent(in) :: name         !< of the mechanism, for the report of a failure
+    integer, intent(in) :: n_links               !< links, the frame included
+    integer, intent(in) :: loops                 !< closed chains
+    integer, intent(in) :: family                !< of the axes
     integer, allocatable :: links(:, :)
     type(axis_type), allocatable :: axes(:)
     real(wp), allocatable :: equations(:, :)
@@ -54,13 +71,17 @@ contains
     call choose_dependent(equations, random, dependent)
     if (all(dependent)) return
     call home_mechanism(n_links, links, axes, pack([(k, k=1, size(axes))], .not. dependent), model)
-    call compare(name, model)
+    call compare(test, random, ends, goes_on, name, model)
   end subroutine try
 
   !> Swing all independent coordinates.
-  subroutine compare(name, model)
-    character(len=*), intent(in) :: name               !< of the mechanism, for the report of a failure
-    type(model_type), intent(inout) :: model           !< the model
+  subroutine compare(test, random, ends, goes_on, name, model)
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the numbers
+    integer, intent(inout) :: ends               !< motions that end at singular positions
+    integer, intent(inout) :: goes_on            !< motions to their end
+    character(len=*), intent(in) :: name         !< of the mechanism, for the report of a failure
+    type(model_type), intent(inout) :: model     !< the model
     type(plan_type) :: plan
     type(state_type) :: start
     type(driven_motion_type) :: few, many
@@ -115,4 +136,4 @@ contains
       call advance(model%problem%drives, plan, driven, 5.0_wp*j/outputs, err)
     end do
   end subroutine follow
-end program test_random_motion
+end module test_random_motion

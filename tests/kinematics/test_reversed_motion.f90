@@ -1,5 +1,5 @@
 !> A pair seen from its moving link: the inverse pose, and its derivatives against differences.
-program test_reversed_motion
+module test_reversed_motion
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -12,19 +12,32 @@ program test_reversed_motion
   use mech9_motion_check, only: motion_from_poses, poses_around, check_same_motion
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   !> Differences at this step leave round-off times 2/h and 8/h^2; truncation is 1e-30.
   real(wp), parameter :: h = 1.0_wp/32.0_wp
-  type(tester_type) :: test
-  type(random_type) :: random
-  integer :: trial
-
-  do trial = 1, 30
-    call reversed_screw(test, random)
-    call reversed_general(test, random)
-  end do
-  call test%finish()
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('random_pairs')) call random_pairs(test)
+  end subroutine run
+
+  !> Pairs at random.
+  subroutine random_pairs(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(random_type) :: random
+    integer :: trial
+
+    do trial = 1, 30
+      call reversed_screw(test, random)
+      call reversed_general(test, random)
+    end do
+  end subroutine random_pairs
 
   !> A helical pair, which states its own derivatives.
   subroutine reversed_screw(test, random)
@@ -118,4 +131,4 @@ contains
     motion%v = d - sin(x)*e
     motion%v_rate = -cos(x)*e
   end subroutine general_motion
-end program test_reversed_motion
+end module test_reversed_motion

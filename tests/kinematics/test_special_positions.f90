@@ -1,6 +1,6 @@
 !> Dead points, found to 1e-9 and better, and positions where branches cross, which are passed on the branch
 !> with continuous velocities: everything against closed forms.
-program test_special_positions
+module test_special_positions
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, exit_singular
   use mech9_random, only: random_type
@@ -13,34 +13,54 @@ program test_special_positions
   use mech9_followed_motions, only: begin_motion, angle_between, at_crossing
   use mech9_testing, only: tester_type, message_of
   implicit none
-  type(tester_type) :: test
-  type(random_type) :: random
+  private
+  public :: run
+
   !> Outputs over one and a half turns: few; some of them exactly at special positions; many.
   integer, parameter :: outputs(5) = [1, 6, 36, 100, 3000]
-  integer :: i
-
-  do i = 1, 20
-    call check_dead_point(0.3_wp*abs(random%symmetric()) + 0.01_wp)
-    call check_dead_point(10.0_wp**(-0.35_wp*i - 1.0_wp))
-    call check_slider_dead_point()
-  end do
-  do i = 1, size(outputs)
-    call check_parallelogram(outputs(i), 0.31_wp)
-    call check_parallelogram(outputs(i), 0.5_wp*pi)
-    call check_antiparallelogram(outputs(i))
-    call check_kite(outputs(i))
-    call check_equal_arms(outputs(i), 0.25_wp*pi)
-    call check_touched_dead_point(outputs(i))
-    call check_two_at_once(outputs(i))
-  end do
-  call test%finish()
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('dead_points')) call dead_points(test)
+    if (test%runs('crossings')) call crossings(test)
+  end subroutine run
+
+  subroutine dead_points(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer :: i
+    type(random_type) :: random
+
+    do i = 1, 20
+      call check_dead_point(test, 0.3_wp*abs(random%symmetric()) + 0.01_wp)
+      call check_dead_point(test, 10.0_wp**(-0.35_wp*i - 1.0_wp))
+      call check_slider_dead_point(test, random)
+    end do
+  end subroutine dead_points
+
+  subroutine crossings(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer :: i
+
+    do i = 1, size(outputs)
+      call check_parallelogram(test, outputs(i), 0.31_wp)
+      call check_parallelogram(test, outputs(i), 0.5_wp*pi)
+      call check_antiparallelogram(test, outputs(i))
+      call check_kite(test, outputs(i))
+      call check_equal_arms(test, outputs(i), 0.25_wp*pi)
+      call check_touched_dead_point(test, outputs(i))
+      call check_two_at_once(test, outputs(i))
+    end do
+  end subroutine crossings
+
   !> A crank that cannot turn fully because the longest and the shortest link are too long by `excess`
   !> together: it stops on both sides where coupler and rocker are in line.
-  subroutine check_dead_point(excess)
-    real(wp), intent(in) :: excess   !< sum of ground and rocker less that of coupler and crank [m]
+  subroutine check_dead_point(test, excess)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), intent(in) :: excess             !< sum of ground and rocker less that of coupler and crank [m]
     type(four_bar_type) :: bar
     type(model_type) :: model
     real(wp) :: limit
@@ -55,16 +75,18 @@ contains
         call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, &
                       four_bar_guess(bar, 0.5_wp*limit, branch), model)
         call drive(model, 1, [0.5_wp*limit, direction*2.0_wp])
-        if (direction > 0) call find_end(model, limit, direction, 'a four-bar')
+        if (direction > 0) call find_end(test, model, limit, direction, 'a four-bar')
         ! the other way: through zero to the same limit on the other side, unless the links fold before it
         if (direction < 0 .and. bar%ground - bar%crank > abs(bar%coupler - bar%rocker)) &
-          call find_end(model, -limit, direction, 'a four-bar, backwards')
+          call find_end(test, model, -limit, direction, 'a four-bar, backwards')
       end do
     end do
   end subroutine check_dead_point
 
   !> A crank longer than what the coupler reaches: sin = (l + e)/r.
-  subroutine check_slider_dead_point()
+  subroutine check_slider_dead_point(test, random)
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    type(random_type), intent(inout) :: random   !< source of the numbers
     type(model_type) :: model
     real(wp) :: crank, coupler, offset
     integer :: branch
@@ -75,16 +97,17 @@ contains
     do branch = -1, 1, 2
       call slider_crank(crank, coupler, offset, 0.1_wp, branch, model)
       call drive(model, 1, [0.1_wp, 0.4_wp, 0.3_wp])
-      call find_end(model, asin((coupler + offset)/crank), 1, 'a slider-crank')
+      call find_end(test, model, asin((coupler + offset)/crank), 1, 'a slider-crank')
     end do
   end subroutine check_slider_dead_point
 
   !> Run to the dead point with few and with many outputs.
-  subroutine find_end(model, limit, direction, name)
-    type(model_type), intent(in) :: model           !< the model
-    real(wp), intent(in) :: limit                   !< the crank at the dead point [rad]
-    integer, intent(in) :: direction                !< +1 or -1: of the crank
-    character(len=*), intent(in) :: name            !< of the mechanism, for the report of a failure
+  subroutine find_end(test, model, limit, direction, name)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(in) :: model      !< the model
+    real(wp), intent(in) :: limit              !< the crank at the dead point [rad]
+    integer, intent(in) :: direction           !< +1 or -1: of the crank
+    character(len=*), intent(in) :: name       !< of the mechanism, for the report of a failure
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -112,13 +135,14 @@ contains
 
   !> Turn the crank by one and a half turns and compare coordinates 2 to 4, their rates and accelerations
   !> with multiples of the crank's: coupler against crank, rocker against coupler, rocker.
-  subroutine check_proportional(model, n, start, expected, factors, name)
-    type(model_type), intent(inout) :: model           !< the model
-    integer, intent(in) :: n                           !< outputs
-    real(wp), intent(in) :: start                      !< of the crank
-    real(wp), intent(in) :: expected(2:4)              !< at the crank's angle zero
-    real(wp), intent(in) :: factors(2:4)               !< of coordinates 2 to 4 over the crank
-    character(len=*), intent(in) :: name               !< of the mechanism, for the report of a failure
+  subroutine check_proportional(test, model, n, start, expected, factors, name)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(inout) :: model   !< the model
+    integer, intent(in) :: n                   !< outputs
+    real(wp), intent(in) :: start              !< of the crank
+    real(wp), intent(in) :: expected(2:4)      !< at the crank's angle zero
+    real(wp), intent(in) :: factors(2:4)       !< of coordinates 2 to 4 over the crank
+    character(len=*), intent(in) :: name       !< of the mechanism, for the report of a failure
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -144,19 +168,21 @@ contains
   end subroutine check_proportional
 
   !> The rocker turns with the crank, the coupler stays parallel to the ground, also through the flat positions.
-  subroutine check_parallelogram(n, start)
-    integer, intent(in) :: n        !< outputs
-    real(wp), intent(in) :: start   !< angle of the crank at the start [rad]
+  subroutine check_parallelogram(test, n, start)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: n                   !< outputs
+    real(wp), intent(in) :: start              !< angle of the crank at the start [rad]
     type(model_type) :: model
 
     call four_bar(1.0_wp, 0.4_wp, 1.0_wp, 0.4_wp, [start, -start, start, start], model)
-    call check_proportional(model, n, start, [0.0_wp, 0.0_wp, 0.0_wp], [-1.0_wp, 1.0_wp, 1.0_wp], 'a parallelogram')
+    call check_proportional(test, model, n, start, [0.0_wp, 0.0_wp, 0.0_wp], [-1.0_wp, 1.0_wp, 1.0_wp], 'a parallelogram')
   end subroutine check_parallelogram
 
   !> The same links crossed: the tangents of half the angles of crank and rocker have a fixed product, hence
   !> the rate below.
-  subroutine check_antiparallelogram(n)
-    integer, intent(in) :: n   !< outputs
+  subroutine check_antiparallelogram(test, n)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: n                   !< outputs
     real(wp), parameter :: ground = 1.0_wp, crank = 0.4_wp, start = 0.5_wp*pi
     type(four_bar_type) :: bar
     type(model_type) :: model
@@ -188,8 +214,9 @@ contains
 
   !> Crank and ground alike, coupler and rocker alike: where the crank lies on the ground its pin is in the
   !> pivot of the rocker, which could then turn by itself; the kite passes.
-  subroutine check_kite(n)
-    integer, intent(in) :: n   !< outputs
+  subroutine check_kite(test, n)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: n                   !< outputs
     real(wp), parameter :: long = 1.0_wp, short = 0.7_wp
     type(four_bar_type) :: bar
     type(model_type) :: model
@@ -219,9 +246,10 @@ contains
   end subroutine check_kite
 
   !> Crank and coupler alike: x = 2 r cos q1 goes through zero, where the crank could turn without the slider.
-  subroutine check_equal_arms(n, start)
-    integer, intent(in) :: n        !< outputs
-    real(wp), intent(in) :: start   !< angle of the crank at the start [rad]
+  subroutine check_equal_arms(test, n, start)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: n                   !< outputs
+    real(wp), intent(in) :: start              !< angle of the crank at the start [rad]
     real(wp), parameter :: arm = 0.6_wp
     type(model_type) :: model
     type(plan_type) :: plan
@@ -249,8 +277,9 @@ contains
 
   !> A drive that comes to rest just at the dead point and turns back: the mechanism swings through to its
   !> other branch with continuous velocity.
-  subroutine check_touched_dead_point(n)
-    integer, intent(in) :: n   !< outputs
+  subroutine check_touched_dead_point(test, n)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: n                   !< outputs
     type(four_bar_type) :: bar
     type(model_type) :: model
     type(plan_type) :: plan
@@ -284,8 +313,9 @@ contains
   end subroutine check_touched_dead_point
 
   !> A parallelogram, and a second one on its coupler: both are flat at once.
-  subroutine check_two_at_once(n)
-    integer, intent(in) :: n   !< outputs
+  subroutine check_two_at_once(test, n)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: n                   !< outputs
     real(wp), parameter :: start = 0.8_wp, crank = 0.4_wp
     type(four_bar_type) :: bar
     type(model_type) :: model
@@ -314,4 +344,4 @@ contains
     end do
     call test%no_error(err, 'two parallelograms go on')
   end subroutine check_two_at_once
-end program test_special_positions
+end module test_special_positions

@@ -1,6 +1,6 @@
 !> Starts in positions where branches cross: where only one way leads on it is taken, with rates and
 !> accelerations by their limits; where two do they are named; at a dead point there is none.
-program test_special_start
+module test_special_start
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, exit_singular
   use mech9_model, only: model_type
@@ -11,24 +11,36 @@ program test_special_start
   use mech9_followed_motions, only: begin_motion, at_crossing
   use mech9_testing, only: tester_type, message_of
   implicit none
-  type(tester_type) :: test
-  integer :: n
-
-  do n = 1, 4
-    call kite(10**(n - 1), 1.0_wp)
-    call kite(10**(n - 1), -30.0_wp)
-  end do
-  call two_ways()
-  call dead_start()
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('kites')) call kites(test)
+    if (test%runs('two_ways')) call two_ways(test)
+    if (test%runs('dead_start')) call dead_start(test)
+  end subroutine run
+
+  subroutine kites(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer :: n
+
+    do n = 1, 4
+      call kite(test, 10**(n - 1), 1.0_wp)
+      call kite(test, 10**(n - 1), -30.0_wp)
+    end do
+  end subroutine kites
+
   !> A kite whose crank lies on the ground: coupler and rocker could turn together, but only one motion takes
   !> the crank along. q4 = q1/2 + 90 degrees - acos(short sin(q1/2)/long).
-  subroutine kite(n, speed)
-    integer, intent(in) :: n        !< outputs
-    real(wp), intent(in) :: speed   !< of the crank [rad/s]
+  subroutine kite(test, n, speed)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: n                   !< outputs
+    real(wp), intent(in) :: speed              !< of the crank [rad/s]
     real(wp), parameter :: long = 1.0_wp, short = 0.7_wp
     type(model_type) :: model
     type(plan_type) :: plan
@@ -60,7 +72,8 @@ contains
 
   !> A flat parallelogram: as parallelogram dq4 = dq1, crossed dq4 = -dq1 (ground + crank)/(ground - crank).
   !> Equal arms at a right angle: the slider moves by -2 r dq1, or not at all.
-  subroutine two_ways()
+  subroutine two_ways(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type) :: model
     type(plan_type) :: plan
     type(driven_motion_type) :: driven
@@ -69,16 +82,17 @@ contains
     call four_bar(1.0_wp, 0.6_wp, 1.0_wp, 0.6_wp, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], model)
     call drive(model, 1, [0.0_wp, 1.0_wp])
     call begin_motion(test, model, 0.0_wp, plan, driven, err)
-    call refused(err, 'dq4 = 1 ', 'dq4 = -4 ')
+    call refused(test, err, 'dq4 = 1 ', 'dq4 = -4 ')
     call slider_crank(0.3_wp, 0.3_wp, 0.0_wp, 0.5_wp*pi, 1, model)
     model%problem%initial%position(4) = 0.0_wp
     call drive(model, 1, [0.5_wp*pi, 2.0_wp])
     call begin_motion(test, model, 0.0_wp, plan, driven, err)
-    call refused(err, 'dq4 = -1.2 ', 'dq4 = 0 ')
+    call refused(test, err, 'dq4 = -1.2 ', 'dq4 = 0 ')
   end subroutine two_ways
 
   !> The message tells of both rates.
-  subroutine refused(err, first, second)
+  subroutine refused(test, err, first, second)
+    type(tester_type), intent(inout) :: test           !< counts the checks
     type(error_type), allocatable, intent(in) :: err   !< the failure
     character(len=*), intent(in) :: first              !< words of the first rate
     character(len=*), intent(in) :: second             !< words of the second rate
@@ -96,7 +110,8 @@ contains
     if (index(text, first) == 0 .or. index(text, second) == 0) print '(a)', text
   end subroutine refused
 
-  subroutine dead_start()
+  subroutine dead_start(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(four_bar_type) :: bar
     type(model_type) :: model
     type(plan_type) :: plan
@@ -113,4 +128,4 @@ contains
     if (allocated(err)) call test%is_true(index(message_of(err), 'dead point') > 0, &
                                           'the message about a start at a dead point says so')
   end subroutine dead_start
-end program test_special_start
+end module test_special_start
