@@ -1,25 +1,31 @@
 !> The method that goes over from an explicit method to an implicit one where equations are stiff, and back.
-program test_automatic_method
+module test_automatic_method
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
   use mech9_integrator, only: integrator_type, integration_statistics_type
   use mech9_testing, only: tester_type
   use mech9_integration_problems, only: orbit_type, orbit_start, stiff_type, fading_type, integrate
   implicit none
-  type(tester_type) :: test
-
-  call check_not_stiff()
-  call check_stiff(1.0e-6_wp)
-  call check_stiff(1.0e-10_wp)
-  call check_there_and_back()
-  call check_inside_steps()
-  call check_restart()
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('check_not_stiff')) call check_not_stiff(test)
+    if (test%runs('check_stiff_loose')) call check_stiff(test, 1.0e-6_wp)
+    if (test%runs('check_stiff_tight')) call check_stiff(test, 1.0e-10_wp)
+    if (test%runs('check_there_and_back')) call check_there_and_back(test)
+    if (test%runs('check_inside_steps')) call check_inside_steps(test)
+    if (test%runs('check_restart')) call check_restart(test)
+  end subroutine run
+
   !> Equations that are not stiff get the steps of the explicit method, to the last bit.
-  subroutine check_not_stiff()
+  subroutine check_not_stiff(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(orbit_type), target :: orbit
     type(integration_statistics_type) :: explicit, by_turns
     type(error_type), allocatable :: err
@@ -41,8 +47,9 @@ contains
   end subroutine check_not_stiff
 
   !> Stiff equations cost little more than by the implicit method alone, and are as accurate.
-  subroutine check_stiff(tolerance)
-    real(wp), intent(in) :: tolerance   !< relative and absolute
+  subroutine check_stiff(test, tolerance)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), intent(in) :: tolerance          !< relative and absolute
     type(stiff_type), target :: stiff
     type(integration_statistics_type) :: implicit, by_turns
     type(error_type), allocatable :: err
@@ -63,7 +70,8 @@ contains
   end subroutine check_stiff
 
   !> The explicit method goes on where the stiffness fades, the implicit one where it comes back.
-  subroutine check_there_and_back()
+  subroutine check_there_and_back(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(fading_type), target :: fading
     type(integration_statistics_type) :: explicit, implicit, by_turns
     type(error_type), allocatable :: err
@@ -86,7 +94,8 @@ contains
   end subroutine check_there_and_back
 
   !> Values within a step come from the method that made it, also after it was decided that the other one goes on.
-  subroutine check_inside_steps()
+  subroutine check_inside_steps(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(fading_type), target :: fading
     type(integrator_type) :: integrator
     type(error_type), allocatable :: err
@@ -115,7 +124,8 @@ contains
   end subroutine check_inside_steps
 
   !> A restart within a stiff part goes on there.
-  subroutine check_restart()
+  subroutine check_restart(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(stiff_type), target :: stiff
     type(integrator_type) :: integrator
     type(integration_statistics_type) :: counts
@@ -138,4 +148,4 @@ contains
     call test%is_true(counts%method_changes == 1, 'the implicit method goes on after a restart')
     call integrator%destroy()
   end subroutine check_restart
-end program test_automatic_method
+end module test_automatic_method

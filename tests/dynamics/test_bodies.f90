@@ -2,7 +2,7 @@
 !> count, and a coordinate that moves no mass is named. Closed forms of pendulums.
 !>
 !> Compares the program with itself in part: the same matter described in several ways; pendulums have closed forms.
-program test_bodies
+module test_bodies
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_data, exit_integrator
   use mech9_rotation, only: identity
@@ -23,19 +23,25 @@ program test_bodies
   use mech9_random_geometry, only: random_vector
   use mech9_testing, only: tester_type, message_of
   implicit none
-  real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
-  type(tester_type) :: test
+  private
+  public :: run
 
-  call test_point_masses(test)
-  call test_halves(test)
-  call test_massless(test)
-  call test_no_inertia(test)
-  call test_flywheel(test)
-  call test_double_pendulum(test)
-  call test_spring_without_length(test)
-  call test%finish()
+  real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('test_point_masses')) call test_point_masses(test)
+    if (test%runs('test_halves')) call test_halves(test)
+    if (test%runs('test_massless')) call test_massless(test)
+    if (test%runs('test_no_inertia')) call test_no_inertia(test)
+    if (test%runs('test_flywheel')) call test_flywheel(test)
+    if (test%runs('test_double_pendulum')) call test_double_pendulum(test)
+    if (test%runs('test_spring_without_length')) call test_spring_without_length(test)
+  end subroutine run
 
   !> Assemble and work out the motion for some rates of the independent coordinates.
   subroutine find(model, plan, dynamics, work, err)
@@ -73,10 +79,10 @@ contains
   !> Two mechanisms have the same equations. They are sums over the same matter in another order: some
   !> dozens of units of round-off of the largest number.
   subroutine check_same(test, first, second, why)
-    type(tester_type), intent(inout) :: test     !< counts the checks
-    type(model_type), intent(in) :: first        !< first mechanism
-    type(model_type), intent(in) :: second       !< second mechanism
-    character(len=*), intent(in) :: why          !< the statement that is checked, printed where it is wrong
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(in) :: first      !< first mechanism
+    type(model_type), intent(in) :: second     !< second mechanism
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
     type(lagrange_work_type) :: a, b
@@ -277,4 +283,4 @@ contains
     call find(model, plan, dynamics, work, err)
     call test%has_error(err, exit_integrator, 'a spring of free length 0.1 m that shrinks to nothing is refused')
   end subroutine test_spring_without_length
-end program test_bodies
+end module test_bodies

@@ -1,7 +1,7 @@
 !> A user's forces on links and coordinates inside closed clusters, and arms with parallelograms in series: accelerations by
 !> articulated bodies are those of Lagrange's equations (19), for some taken literally, and a user's procedure gives the
 !> accelerations of the built-in loads that it imitates, in the plane and in space.
-program test_cluster_loads
+module test_cluster_loads
   use mech9_kinds, only: wp
   use mech9_random, only: random_type
   use mech9_model, only: model_type
@@ -15,18 +15,23 @@ program test_cluster_loads
   use mech9_random_geometry, only: random_vector
   use mech9_testing, only: tester_type
   implicit none
-
-  type(tester_type) :: test
-
-  call random_structures()
-  call arm()
-  call arms_in_series()
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('random_structures')) call random_structures(test)
+    if (test%runs('arm')) call arm(test)
+    if (test%runs('arms_in_series')) call arms_in_series(test)
+  end subroutine run
+
   !> Structures of 2 to 7 pieces, with four calls of a user's procedure. Positions with a badly conditioned loop are left out.
-  subroutine random_structures()
+  subroutine random_structures(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(cluster_case_type) :: this
     type(model_type) :: twin
     type(random_type) :: random
@@ -53,8 +58,8 @@ contains
       call test%is_true(this%plan%planar%used .eqv. planar, 'forces in space leave a plane mechanism in planar arithmetic')
       call check_motion(test, this, 'a structure with a user''s forces')
       call check_memory(test, this)
-      call check_twin(this, twin, .false.)
-      if (planar) call check_twin(this, twin, .true.)
+      call check_twin(test, this, twin, .false.)
+      if (planar) call check_twin(test, this, twin, .true.)
       if (size(this%plan%independent) > 4 .or. this%conditioning < 0.1_wp .or. literal == 8) cycle
       call check_literally(test, this, twin, 'a structure with a user''s forces', by_differences)
       if (by_differences) literal = literal + 1
@@ -64,7 +69,8 @@ contains
   end subroutine random_structures
 
   !> The arm that stacks crates, at home and with other independent coordinates.
-  subroutine arm()
+  subroutine arm(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(cluster_case_type) :: this
     type(model_type) :: twin
     type(random_type) :: random
@@ -86,14 +92,15 @@ contains
       call test%is_true(found, 'the arm has a position')
       if (.not. found) return
       call check_motion(test, this, 'the arm')
-      call check_twin(this, twin, .false.)
+      call check_twin(test, this, twin, .false.)
       call check_literally(test, this, twin, 'the arm', compared)
       call test%is_true(compared, 'the arm moves around home')
     end do
   end subroutine arm
 
   !> Three arms: the second stands on the gripper of the first, the third on its triangle; an open link and a loop end each.
-  subroutine arms_in_series()
+  subroutine arms_in_series(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(cluster_case_type) :: this
     type(model_type) :: twin
     type(random_type) :: random
@@ -118,7 +125,7 @@ contains
     call test%is_true(found, 'arms in series have a position')
     if (.not. found) return
     call check_motion(test, this, 'arms in series')
-    call check_twin(this, twin, .false.)
+    call check_twin(test, this, twin, .false.)
   end subroutine arms_in_series
 
   !> A palletising arm on a link: a column, a lower and an upper arm, a crank and a rod that move the upper arm, and two parallelograms
@@ -177,7 +184,8 @@ contains
   end subroutine add_user_load
 
   !> Built-in loads give the accelerations of the user's procedure, up to the round-off of the equations.
-  subroutine check_twin(this, twin, in_space)
+  subroutine check_twin(test, this, twin, in_space)
+    type(tester_type), intent(inout) :: test      !< counts the checks
     type(cluster_case_type), intent(in) :: this   !< with the accelerations by the user's procedure
     type(model_type), intent(in) :: twin          !< the same mechanism with built-in loads
     logical, intent(in) :: in_space               !< spatial arithmetic for the built-in loads
@@ -192,4 +200,4 @@ contains
     call test%near(maxval(abs(other%work%accelerations - this%work%accelerations))/maxval(abs(this%work%accelerations)), &
                    0.0_wp, 1.0e-11_wp, 'a user''s procedure gives the accelerations of built-in loads')
   end subroutine check_twin
-end program test_cluster_loads
+end module test_cluster_loads

@@ -2,7 +2,7 @@
 !> in space, with all kinds of loads and links without mass, accelerations are those of Lagrange's equations (19), which for some
 !> are taken literally; planar and spatial arithmetic agree; a coordinate without inertia is named as by the coefficients; an
 !> evaluation allocates nothing.
-program test_clusters
+module test_clusters
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_data
   use mech9_random, only: random_type
@@ -12,19 +12,24 @@ program test_clusters
   use mech9_mixed_structures, only: structure_type, random_structure, add_open_link, add_loop, add_ladder, finished
   use mech9_testing, only: tester_type
   implicit none
-
-  type(tester_type) :: test
-
-  call random_structures()
-  call series()
-  call one_cluster()
-  call without_inertia()
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('random_structures')) call random_structures(test)
+    if (test%runs('series')) call series(test)
+    if (test%runs('one_cluster')) call one_cluster(test)
+    if (test%runs('without_inertia')) call without_inertia(test)
+  end subroutine run
+
   !> Structures of 2 to 7 pieces. Positions with a badly conditioned loop are left out.
-  subroutine random_structures()
+  subroutine random_structures(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(cluster_case_type) :: flat, space
     type(random_type) :: random
     type(structure_type) :: structure
@@ -63,7 +68,8 @@ contains
   end subroutine random_structures
 
   !> Twenty modules of an open link and a four-bar in series, then a ladder, in the plane and in space.
-  subroutine series()
+  subroutine series(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(cluster_case_type) :: this
     type(random_type) :: random
     type(structure_type) :: structure
@@ -88,7 +94,8 @@ contains
   end subroutine series
 
   !> One closed cluster on link 1 has its accelerations from the coefficients; two have them by articulated bodies.
-  subroutine one_cluster()
+  subroutine one_cluster(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(cluster_case_type) :: this
     type(random_type) :: random
     type(structure_type) :: structure
@@ -109,7 +116,8 @@ contains
   end subroutine one_cluster
 
   !> A four-bar without mass at the tip of an open link: its coordinate is named.
-  subroutine without_inertia()
+  subroutine without_inertia(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(cluster_case_type) :: this
     type(random_type) :: random
     type(structure_type) :: structure
@@ -135,4 +143,4 @@ contains
     call test%is_true(all(err%failure%coordinates == this%plan%independent(failed_at)), &
                       'the error names the coordinate of the singular coefficients')
   end subroutine without_inertia
-end program test_clusters
+end module test_clusters

@@ -1,5 +1,5 @@
 !> Other independent coordinates: which failures mean that they cannot serve, and which are something else.
-program test_coordinate_choice
+module test_coordinate_choice
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_data, exit_singular
   use mech9_partition, only: partition_type
@@ -13,29 +13,36 @@ program test_coordinate_choice
   use mech9_sample_mechanisms, only: four_bar
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-  logical :: broken = .false.
-
-  call choose([.false., .true., .false., .false.], 0, 'another coordinate serves')
-  call choose([.true., .true., .false., .false.], exit_singular, 'two of one degree of freedom cannot serve')
-  broken = .true.
-  call choose([.false., .true., .false., .false.], exit_data, 'a pair without a value is no matter of the choice')
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('another_serves')) call choose(test, [.false., .true., .false., .false.], .false., 0, 'another coordinate serves')
+    if (test%runs('two_cannot_serve')) &
+      call choose(test, [.true., .true., .false., .false.], .false., exit_singular, 'two of one degree of freedom cannot serve')
+    if (test%runs('broken_pair')) &
+      call choose(test, [.false., .true., .false., .false.], .true., exit_data, 'a pair without a value is no matter of the choice')
+  end subroutine run
+
   !> A crank and a rocker.
   subroutine new_four_bar(model)
-    type(model_type), intent(out) :: model       !< the model
+    type(model_type), intent(out) :: model   !< the model
 
     call four_bar(0.4_wp, 0.15_wp, 0.35_wp, 0.3_wp, [0.0_wp, 1.0_wp, 1.0_wp, 1.7_wp], model)
   end subroutine new_four_bar
 
   !> Take other independent coordinates at the start of the unbroken four-bar.
-  subroutine choose(independent, code, why)
-    logical, intent(in) :: independent(:)   !< (M)
-    integer, intent(in) :: code             !< of the failure; 0: none
-    character(len=*), intent(in) :: why     !< the statement that is checked, printed where it is wrong
+  subroutine choose(test, independent, broken, code, why)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    logical, intent(in) :: independent(:)      !< (M)
+    logical, intent(in) :: broken              !< a pair has no value from then on
+    integer, intent(in) :: code                !< of the failure; 0: none
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     type(model_type) :: whole
     type(partition_type) :: partition
     type(plan_type) :: plan, other_plan
@@ -78,4 +85,4 @@ contains
     plan%steps(plan%step_of(3))%is_screw = .false.
     plan%planar%used = .false.
   end subroutine break_pair
-end program test_coordinate_choice
+end module test_coordinate_choice

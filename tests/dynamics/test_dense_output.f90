@@ -1,6 +1,6 @@
 !> The motion between the ends of steps: where the polynomial is as good as the ends, where it is not, and what tells
 !> another branch. Closed form: a slide on a spring swings as q = cos t.
-program test_dense_output
+module test_dense_output
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_singular
   use mech9_model, only: model_type
@@ -15,20 +15,27 @@ program test_dense_output
   use mech9_loaded_mechanisms, only: without_loads, add_body, add_load
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   real(wp), parameter :: z(3) = [0.0_wp, 0.0_wp, 1.0_wp], origin(3) = 0.0_wp
   real(wp), parameter :: inertia(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
-  type(tester_type) :: test
-
-  call swinging()
-  call branches()
-  call trust()
-  call expectations()
-  call test%finish()
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('swinging')) call swinging(test)
+    if (test%runs('branches')) call branches(test)
+    if (test%runs('trust')) call trust(test)
+    if (test%runs('expectations')) call expectations(test)
+  end subroutine run
+
   !> One slide of 1 kg on a spring of 1 N/m.
-  subroutine swing(system)
+  subroutine swing(test, system)
+    type(tester_type), intent(inout) :: test            !< counts the checks
     type(motion_system_type), intent(inout) :: system   !< begun at its start
     type(model_type), pointer :: model
     type(coordinate_load_type) :: load
@@ -42,11 +49,12 @@ contains
     load%stiffness = 1.0_wp
     call add_load(model, load)
     model%problem%initial%position = 1.0_wp
-    call begin(model, 0.0_wp, system)
+    call begin(test, model, 0.0_wp, system)
   end subroutine swing
 
   !> A crank-rocker with a heavy crank, assembled at the guess.
-  subroutine rocker(guess, system)
+  subroutine rocker(test, guess, system)
+    type(tester_type), intent(inout) :: test            !< counts the checks
     real(wp), intent(in) :: guess(4)                    !< of the coordinates [rad]
     type(motion_system_type), intent(inout) :: system   !< begun at its start
     type(model_type), pointer :: model
@@ -55,11 +63,12 @@ contains
     call four_bar(0.4_wp, 0.15_wp, 0.35_wp, 0.3_wp, guess, model)
     call without_loads(model)
     call add_body(model, 2, 1.0_wp, origin, inertia)
-    call begin(model, 2.0_wp, system)
+    call begin(test, model, 2.0_wp, system)
   end subroutine rocker
 
   !> The system of a mechanism at its start.
-  subroutine begin(model, rate, system)
+  subroutine begin(test, model, rate, system)
+    type(tester_type), intent(inout) :: test            !< counts the checks
     type(model_type), intent(in), target :: model       !< the system refers to it
     real(wp), intent(in) :: rate                        !< of the independent coordinate [rad/s, m/s]
     type(motion_system_type), intent(inout) :: system   !< begun at its start
@@ -79,7 +88,8 @@ contains
   end subroutine begin
 
   !> The end of a step of the swing at time t.
-  subroutine add_end(system, dense_output, t)
+  subroutine add_end(test, system, dense_output, t)
+    type(tester_type), intent(inout) :: test                 !< counts the checks
     type(motion_system_type), intent(inout) :: system        !< moved to this end
     type(dense_output_type), intent(inout) :: dense_output   !< takes the end
     real(wp), intent(in) :: t                                !< time of the end [s]
@@ -93,7 +103,8 @@ contains
   end subroutine add_end
 
   !> Compare what is found at time t with the closed form.
-  subroutine check_swing(system, dense_output, t, expected, why)
+  subroutine check_swing(test, system, dense_output, t, expected, why)
+    type(tester_type), intent(inout) :: test                 !< counts the checks
     type(motion_system_type), intent(inout) :: system        !< closes the chains at time t
     type(dense_output_type), intent(inout) :: dense_output   !< the dense output that is checked
     real(wp), intent(in) :: t                                !< [s]
@@ -112,63 +123,65 @@ contains
   end subroutine check_swing
 
   !> Steps one after the other, a new beginning, and points inside a long step.
-  subroutine swinging()
+  subroutine swinging(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(motion_system_type) :: system
     type(dense_output_type) :: dense_output
     real(wp) :: t, y(2)
     integer :: i
 
-    call swing(system)
+    call swing(test, system)
     call dense_output%begin()
-    call add_end(system, dense_output, 0.0_wp)
-    call check_swing(system, dense_output, 0.0_wp, .false., 'one end alone is not enough')
+    call add_end(test, system, dense_output, 0.0_wp)
+    call check_swing(test, system, dense_output, 0.0_wp, .false., 'one end alone is not enough')
     do i = 1, 9
-      call add_end(system, dense_output, 0.1_wp*i)
+      call add_end(test, system, dense_output, 0.1_wp*i)
       ! only some steps are looked into: the values known for earlier steps are not those of this one
-      if (mod(i, 4) == 0) call check_swing(system, dense_output, 0.1_wp*i - 0.03_wp, .true., &
+      if (mod(i, 4) == 0) call check_swing(test, system, dense_output, 0.1_wp*i - 0.03_wp, .true., &
           'the swing is found within a short step')
     end do
     call dense_output%start_of_step(t, y)
     call test%near(t, 0.8_wp, 1.0e-15_wp, 'the time at which the step began is known')
     call test%near(y(1), cos(0.8_wp), 1.0e-15_wp, 'the position in which the step began is known')
     call dense_output%begin()
-    call add_end(system, dense_output, 0.9_wp)
-    call check_swing(system, dense_output, 0.9_wp, .false., 'a new beginning knows no steps before it')
+    call add_end(test, system, dense_output, 0.9_wp)
+    call check_swing(test, system, dense_output, 0.9_wp, .false., 'a new beginning knows no steps before it')
     ! in 1.8 s a polynomial through its ends is right to some thousandths only
-    call add_end(system, dense_output, 2.7_wp)
-    call check_swing(system, dense_output, 1.5_wp, .false., 'the swing is not found within a long step')
+    call add_end(test, system, dense_output, 2.7_wp)
+    call check_swing(test, system, dense_output, 1.5_wp, .false., 'the swing is not found within a long step')
     do i = 1, 3
       t = 0.9_wp + 0.45_wp*i
       call dense_output%insert(t, [cos(t), -sin(t)])
       call test%is_true(dense_output%count_inserted() == i, 'points within the long step are counted')
     end do
-    call check_swing(system, dense_output, 1.5_wp, .true., 'the swing is found within a long step with points inside')
+    call check_swing(test, system, dense_output, 1.5_wp, .true., 'the swing is found within a long step with points inside')
     call dense_output%insert(2.0_wp, [9.0_wp, 9.0_wp])
     call test%is_true(dense_output%count_inserted() == 3, 'no more points are taken than there is room for')
-    call add_end(system, dense_output, 2.8_wp)
+    call add_end(test, system, dense_output, 2.8_wp)
     call test%is_true(dense_output%count_inserted() == 0, 'the next step has no points inside')
-    call check_swing(system, dense_output, 2.75_wp, .true., 'the swing is found within a short step after a long one')
+    call check_swing(test, system, dense_output, 2.75_wp, .true., 'the swing is found within a short step after a long one')
     do i = 1, 3
       t = 2.8_wp + 0.1_wp*i
-      call add_end(system, dense_output, t)
+      call add_end(test, system, dense_output, t)
     end do
-    call add_end(system, dense_output, 4.9_wp)
+    call add_end(test, system, dense_output, 4.9_wp)
     do i = 1, 3
       t = 3.1_wp + 0.45_wp*i
       call dense_output%insert(t, [cos(t), -sin(t)])
     end do
-    call check_swing(system, dense_output, 3.9_wp, .true., 'the swing is found within another step with points inside')
+    call check_swing(test, system, dense_output, 3.9_wp, .true., 'the swing is found within another step with points inside')
     deallocate (system%model)
   end subroutine swinging
 
   !> Both branches of a crank-rocker have the same crank angles and Jacobians of opposite sign.
-  subroutine branches()
+  subroutine branches(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(motion_system_type) :: upper, lower
     type(dense_output_type) :: dense_output
     type(error_type), allocatable :: err
 
-    call rocker([0.3_wp, 1.0_wp, 0.8_wp, 2.0_wp], upper)
-    call rocker([0.3_wp, -1.6_wp, -0.8_wp, -2.4_wp], lower)
+    call rocker(test, [0.3_wp, 1.0_wp, 0.8_wp, 2.0_wp], upper)
+    call rocker(test, [0.3_wp, -1.6_wp, -0.8_wp, -2.4_wp], lower)
     call test%is_true(abs(upper%state%q(4) - lower%state%q(4)) > 0.5_wp, 'the four-bar has two branches')
     call dense_output%begin()
     call dense_output%add(upper, 0.0_wp, upper%vector())
@@ -185,13 +198,14 @@ contains
 
   !> The limit of the change that closing makes to a state of an integrator or a polynomial, and the nearness of a singular
   !> state at which it is refused.
-  subroutine trust()
+  subroutine trust(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(motion_system_type) :: system
     type(error_type), allocatable :: err
     real(wp), allocatable :: closed(:), y(:), ydot(:)
     logical :: ok
 
-    call rocker([0.3_wp, 1.0_wp, 0.8_wp, 2.0_wp], system)
+    call rocker(test, [0.3_wp, 1.0_wp, 0.8_wp, 2.0_wp], system)
     closed = system%vector()
     allocate (y, source=closed)
     allocate (ydot(size(y)))
@@ -220,7 +234,8 @@ contains
   end subroutine trust
 
   !> Straight lines through what was found at two times; at one time the value there.
-  subroutine expectations()
+  subroutine expectations(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(expectation_type) :: expectation
     real(wp) :: b(2), ddq(1)
 
@@ -242,4 +257,4 @@ contains
     call test%near(maxval(abs([b - [2.0_wp, 0.0_wp], ddq - 10.0_wp])), 0.0_wp, 1.0e-14_wp, &
                    'an expectation from three times is a line through the last two')
   end subroutine expectations
-end program test_dense_output
+end module test_dense_output

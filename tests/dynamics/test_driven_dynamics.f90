@@ -1,7 +1,7 @@
 !> Driven coordinates beside free ones: on random trees of open links, loops and ladders, in the plane and in space, the free
 !> accelerations are those of a_ff ddq_f = Q_f - h_f - a_fd ddq_d with the coefficients of the mechanism without drives, which for
 !> some are those of equation (19) taken literally; driven accelerations are those of the drives; an evaluation allocates nothing.
-program test_driven_dynamics
+module test_driven_dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -14,17 +14,22 @@ program test_driven_dynamics
   use mech9_testing, only: tester_type
   use mech9_counted_memory, only: calls
   implicit none
-
-  type(tester_type) :: test
-
-  call random_structures()
-  call one_cluster()
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('random_structures')) call random_structures(test)
+    if (test%runs('one_cluster')) call one_cluster(test)
+  end subroutine run
+
   !> Structures of 2 to 7 pieces, in each of which some independent coordinates are driven.
-  subroutine random_structures()
+  subroutine random_structures(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(cluster_case_type) :: free
     type(random_type) :: random
     type(structure_type) :: structure
@@ -40,14 +45,15 @@ contains
       call prepare(free, mod(trial, 4) == 0, found)
       if (.not. found .or. free%conditioning < 0.02_wp) cycle
       compared = compared + 1
-      call compare(free, random, mod(trial, 4) == 0, 'a structure', literal)
+      call compare(test, free, random, mod(trial, 4) == 0, 'a structure', literal)
     end do
     call test%is_true(compared > 60, 'most of the random positions are regular')
     call test%is_true(literal == 12, 'twelve positions are compared with the literal equations')
   end subroutine random_structures
 
   !> A ladder on link 1 has its accelerations from the coefficients.
-  subroutine one_cluster()
+  subroutine one_cluster(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(cluster_case_type) :: free
     type(random_type) :: random
     type(structure_type) :: structure
@@ -62,18 +68,19 @@ contains
       call prepare(free, trial > 5, found)
       if (.not. found) cycle
       call test%is_true(.not. free%dynamics%articulated, 'a ladder on link 1 is one cluster')
-      call compare(free, random, trial > 5, 'a ladder', literal)
+      call compare(test, free, random, trial > 5, 'a ladder', literal)
     end do
   end subroutine one_cluster
 
   !> Drive some of the independent coordinates, and compare with the equations of the mechanism without drives. Sums over all
   !> links along a chain lose some hundreds of units of round-off; literal equations lose 1e-9 of the largest number.
-  subroutine compare(free, random, in_space, why, literal)
-    type(cluster_case_type), intent(inout) :: free       !< without drives, with its equations
-    type(random_type), intent(inout) :: random   !< source of the random numbers
-    logical, intent(in) :: in_space              !< spatial arithmetic
-    character(len=*), intent(in) :: why          !< the statement that is checked, printed where it is wrong
-    integer, intent(inout) :: literal            !< number of comparisons with literal equations so far
+  subroutine compare(test, free, random, in_space, why, literal)
+    type(tester_type), intent(inout) :: test         !< counts the checks
+    type(cluster_case_type), intent(inout) :: free   !< without drives, with its equations
+    type(random_type), intent(inout) :: random       !< source of the random numbers
+    logical, intent(in) :: in_space                  !< spatial arithmetic
+    character(len=*), intent(in) :: why              !< the statement that is checked, printed where it is wrong
+    integer, intent(inout) :: literal                !< number of comparisons with literal equations so far
     type(cluster_case_type) :: driven
     type(literal_type) :: equations
     type(error_type), allocatable :: err
@@ -94,7 +101,7 @@ contains
     call find_motion(driven%model%mechanism, driven%plan, driven%dynamics, driven%state, driven%work, err)
     call test%no_error(err, why//': the motion is found')
     if (allocated(err)) return
-    call check_memory(driven)
+    call check_memory(test, driven)
     call complete_accelerations(driven%plan, driven%dynamics, driven%work, driven%state)
     call test%is_true(all(abs(driven%state%ddq - given) <= 0.0_wp .or. .not. driven%plan%driven), &
                       why//': driven accelerations are those of the drives')
@@ -102,25 +109,26 @@ contains
     do i = 1, n
       a(i, i + 1:) = a(i + 1:, i)
     end do
-    call check_equations(driven, a, free%work%forces, free%work%velocity_terms, 1.0e-13_wp/free%conditioning, why)
-    call check_chains(driven, free%conditioning, why)
+    call check_equations(test, driven, a, free%work%forces, free%work%velocity_terms, 1.0e-13_wp/free%conditioning, why)
+    call check_chains(test, driven, free%conditioning, why)
     if (n > 4 .or. free%conditioning < 0.1_wp .or. literal >= 12) return
     call literal_equations(free%model, free%plan, free%state, equations, err)
     ! the neighbouring positions may be out of reach
     if (allocated(err)) return
     literal = literal + 1
-    call check_equations(driven, equations%coefficients, equations%forces, equations%velocity_terms, 1.0e-8_wp, &
+    call check_equations(test, driven, equations%coefficients, equations%forces, equations%velocity_terms, 1.0e-8_wp, &
                          why//', by literal equations')
   end subroutine compare
 
   !> The equations of the free coordinates hold.
-  subroutine check_equations(driven, a, forces, velocity_terms, tolerance, why)
-    type(cluster_case_type), intent(in) :: driven         !< with all accelerations
-    real(wp), intent(in) :: a(:, :)               !< coefficients of motion [kg m^2, kg m, kg]
-    real(wp), intent(in) :: forces(:)             !< generalized forces [N m, N]
-    real(wp), intent(in) :: velocity_terms(:)     !< terms of the rates [N m, N]
-    real(wp), intent(in) :: tolerance             !< part of the largest terms
-    character(len=*), intent(in) :: why           !< the statement that is checked, printed where it is wrong
+  subroutine check_equations(test, driven, a, forces, velocity_terms, tolerance, why)
+    type(tester_type), intent(inout) :: test        !< counts the checks
+    type(cluster_case_type), intent(in) :: driven   !< with all accelerations
+    real(wp), intent(in) :: a(:, :)                 !< coefficients of motion [kg m^2, kg m, kg]
+    real(wp), intent(in) :: forces(:)               !< generalized forces [N m, N]
+    real(wp), intent(in) :: velocity_terms(:)       !< terms of the rates [N m, N]
+    real(wp), intent(in) :: tolerance               !< part of the largest terms
+    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
     real(wp), dimension(size(forces)) :: ddq, left, terms
 
     ddq = driven%state%ddq(driven%plan%independent)
@@ -131,10 +139,11 @@ contains
   end subroutine check_equations
 
   !> The accelerations keep the chains closed.
-  subroutine check_chains(driven, conditioning, why)
+  subroutine check_chains(test, driven, conditioning, why)
+    type(tester_type), intent(inout) :: test           !< counts the checks
     type(cluster_case_type), intent(inout) :: driven   !< with all accelerations
-    real(wp), intent(in) :: conditioning       !< of the worst block
-    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
+    real(wp), intent(in) :: conditioning               !< of the worst block
+    character(len=*), intent(in) :: why                !< the statement that is checked, printed where it is wrong
     real(wp), allocatable :: right(:)
     integer :: i
 
@@ -149,7 +158,8 @@ contains
   end subroutine check_chains
 
   !> Evaluations with drives allocate nothing.
-  subroutine check_memory(this)
+  subroutine check_memory(test, this)
+    type(tester_type), intent(inout) :: test         !< counts the checks
     type(cluster_case_type), intent(inout) :: this   !< mechanism, plans, state and equations
     type(error_type), allocatable :: err
     integer :: i, before
@@ -162,4 +172,4 @@ contains
     call test%is_true(calls == before, 'ten evaluations allocate nothing')
     call test%no_error(err, 'ten evaluations succeed')
   end subroutine check_memory
-end program test_driven_dynamics
+end module test_driven_dynamics

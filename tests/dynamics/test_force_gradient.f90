@@ -1,6 +1,6 @@
 !> The derivatives of required forces that go inward over a mechanism as rows, against the linearised equations of motion, which
 !> vary the whole motion outward.
-program test_force_gradient
+module test_force_gradient
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -19,20 +19,26 @@ program test_force_gradient
   use mech9_loaded_mechanisms, only: check_each_mechanism
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   !> Both ways solve with the factors of chains whose conditioning is some tenths, a dozen sums after one another.
   real(wp), parameter :: round_off = 1.0e-11_wp
-  type(tester_type) :: test
-
-  call check_each_mechanism(test, compare)
-  call test%finish()
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    call check_each_mechanism(test, compare)
+  end subroutine run
+
   !> Compare both ways in a motion with random rates.
   subroutine compare(test, model, why)
-    type(tester_type), intent(inout) :: test        !< counts the checks
-    type(model_type), intent(inout) :: model        !< the model
-    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(inout) :: model   !< the model
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
     type(lagrange_work_type) :: work
@@ -67,13 +73,13 @@ contains
 
   !> Compare one matrix with that of the linearised equations in space.
   subroutine compare_matrix(test, model, motion, free, by, found, why)
-    type(tester_type), intent(inout) :: test        !< counts the checks
-    type(model_type), intent(in) :: model           !< the model
-    type(state_type), intent(in) :: motion          !< its motion
-    integer, intent(in) :: free(:)                  !< the free coordinates
-    integer, intent(in) :: by                       !< by_position, by_rate or by_acceleration
-    real(wp), intent(in) :: found(:, :)             !< the derivatives
-    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(in) :: model      !< the model
+    type(state_type), intent(in) :: motion     !< its motion
+    integer, intent(in) :: free(:)             !< the free coordinates
+    integer, intent(in) :: by                  !< by_position, by_rate or by_acceleration
+    real(wp), intent(in) :: found(:, :)        !< the derivatives
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     type(plan_type) :: plan
     type(state_type) :: state
     type(linearisation_type) :: linearisation
@@ -95,4 +101,4 @@ contains
     end do
     call test%near(maxval(abs(found - expected)), 0.0_wp, round_off*max(maxval(abs(expected)), magnitude), why)
   end subroutine compare_matrix
-end program test_force_gradient
+end module test_force_gradient

@@ -1,5 +1,5 @@
 !> Methods of integration against closed forms: orders, tolerances, and each other.
-program test_integrator
+module test_integrator
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
   use mech9_ode_system, only: ode_system_type
@@ -9,21 +9,34 @@ program test_integrator
     swing_type, push_type, stiff_type, integrate
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-  integer :: i
+  private
+  public :: run
 
-  do i = 1, size(integration_methods)
+contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+    integer :: i
+
+    do i = 1, size(integration_methods)
+      if (test%runs(trim(integration_methods(i)%name))) call check_method(test, i)
+    end do
+    if (test%runs('check_agreement')) call check_agreement(test)
+    if (test%runs('check_stiff')) call check_stiff(test)
+  end subroutine run
+
+  !> Check one method.
+  subroutine check_method(test, i)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: i                   !< its number
+
     if (integration_methods(i)%family == runge_kutta) call check_order(test, i)
     call check_tolerances(test, i)
     call check_pendulum(test, i)
     call check_push(test, i)
     call check_late(test, i)
-  end do
-  call check_agreement(test)
-  call check_stiff(test)
-  call test%finish()
-
-contains
+  end subroutine check_method
 
   !> Equal steps, halved: on an orbit of eccentricity 0.5 the error falls by 2**order. The steps are so short
   !> that the next terms are some percent, and so long that the errors (1e-12 and more) stand out of round-off.
@@ -43,8 +56,8 @@ contains
         error(k) = 0.0_wp
         do t_end = 1, 6   ! at one place alone an error may pass through zero
           steps = nint(t_end/h)
-          call run(test, orbit, orbit_start(0.5_wp), real(t_end, wp), method, 1.0e6_wp, &
-                   orbit_at(0.5_wp, real(t_end, wp)), error_there, statistics, h)
+          call go(test, orbit, orbit_start(0.5_wp), real(t_end, wp), method, 1.0e6_wp, &
+                  orbit_at(0.5_wp, real(t_end, wp)), error_there, statistics, h)
           error(k) = error(k) + error_there
           call test%is_true(statistics%steps == steps, trim(m%name)//' makes equal steps when it must')
           ! all stages of all steps but those the last one gave, and a few evaluations at the start
@@ -113,13 +126,13 @@ contains
     integer :: k, least
 
     associate (m => integration_methods(method))
-      call run(test, orbit, orbit_start(0.5_wp), 2.0_wp*pi, method, 1.0e-4_wp, orbit_start(0.5_wp), first_error, &
-               statistics)
+      call go(test, orbit, orbit_start(0.5_wp), 2.0_wp*pi, method, 1.0e-4_wp, orbit_start(0.5_wp), first_error, &
+              statistics)
       last_error = first_error
       least = merge(10, 12, m%family == multistep)
       do k = 6, least, 2
-        call run(test, orbit, orbit_start(0.5_wp), 2.0_wp*pi, method, 10.0_wp**(-k), orbit_start(0.5_wp), error, &
-                 statistics)
+        call go(test, orbit, orbit_start(0.5_wp), 2.0_wp*pi, method, 10.0_wp**(-k), orbit_start(0.5_wp), error, &
+                statistics)
         call test%is_true(error < 0.3_wp*last_error, &
                           m%name//': a hundredth of the tolerance makes the error much smaller')
         last_error = error
@@ -138,8 +151,8 @@ contains
     type(integration_statistics_type) :: statistics
     real(wp) :: error
 
-    call run(test, pendulum, [2.0_wp, 0.0_wp], pendulum_quarter_period(2.0_wp), method, 1.0e-10_wp, &
-             [0.0_wp, -2.0_wp*sin(1.0_wp)], error, statistics)
+    call go(test, pendulum, [2.0_wp, 0.0_wp], pendulum_quarter_period(2.0_wp), method, 1.0e-10_wp, &
+            [0.0_wp, -2.0_wp*sin(1.0_wp)], error, statistics)
     ! some ten to some hundred steps, each with an error of the tolerance, which grow little on the way
     call test%is_true(error < 100.0e-10_wp, integration_methods(method)%name//': a quarter period of a pendulum is right')
   end subroutine check_pendulum
@@ -154,8 +167,8 @@ contains
     real(wp) :: error
 
     if (integration_methods(method)%name == 'fehlberg') return
-    call run(test, push, [0.0_wp, 0.0_wp], 3.0_wp, method, 1.0e-8_wp, &
-             [(1.0_wp - cos(60.0_wp))/400.0_wp, sin(60.0_wp)/20.0_wp], error, statistics)
+    call go(test, push, [0.0_wp, 0.0_wp], 3.0_wp, method, 1.0e-8_wp, &
+            [(1.0_wp - cos(60.0_wp))/400.0_wp, sin(60.0_wp)/20.0_wp], error, statistics)
     ! some hundred steps, each with an error of the tolerance
     call test%is_true(error < 1.0e-6_wp, integration_methods(method)%name//': a force of time alone is integrated')
   end subroutine check_push
@@ -196,8 +209,8 @@ contains
     bdf = findloc(integration_methods%name, 'bdf', 1)
     do i = 1, 2
       stiff%has_jacobian = i == 2
-      call run(test, stiff, [1.0_wp, 1.0_wp], 10.0_wp, bdf, 1.0e-8_wp, [cos(10.0_wp), cos(10.0_wp)], error, &
-               statistics(i))
+      call go(test, stiff, [1.0_wp, 1.0_wp], 10.0_wp, bdf, 1.0e-8_wp, [cos(10.0_wp), cos(10.0_wp)], error, &
+              statistics(i))
       call test%is_true(error < 1.0e-7_wp, 'a stiff equation is solved by backward differences')
       call test%is_true(statistics(i)%steps < 2000, 'a stiff equation does not hold backward differences up')
     end do
@@ -207,7 +220,7 @@ contains
   end subroutine check_stiff
 
   !> The largest error at the end of an integration.
-  subroutine run(test, system, start, t_end, method, tolerance, expected, error, statistics, equal_step)
+  subroutine go(test, system, start, t_end, method, tolerance, expected, error, statistics, equal_step)
     type(tester_type), intent(inout) :: test                       !< counts the checks
     class(ode_system_type), intent(inout), target :: system        !< system that is integrated
     real(wp), intent(in) :: start(:)                               !< vector at the start
@@ -225,5 +238,5 @@ contains
     call integrate(system, integration_methods(method)%name, tolerance, t_end, y, statistics, err, equal_step)
     call test%no_error(err, 'an equation is integrated by '//integration_methods(method)%name)
     error = maxval(abs(y - expected))
-  end subroutine run
-end program test_integrator
+  end subroutine go
+end module test_integrator

@@ -1,5 +1,5 @@
 !> Integrations that cannot go on: what is tried, and what is said.
-program test_integrator_failures
+module test_integrator_failures
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_internal, exit_data, exit_singular, exit_integrator
   use mech9_integration_methods, only: integration_method_type, integration_methods, method_index, runge_kutta, no_table
@@ -11,22 +11,35 @@ program test_integrator_failures
     orbit_start, integrate
   use mech9_testing, only: tester_type, message_of
   implicit none
-  type(tester_type) :: test
-  integer :: i
-
-  do i = 1, size(integration_methods)
-    call check_explosion(test, trim(integration_methods(i)%name))
-    call check_obstacles(test, trim(integration_methods(i)%name))
-    call check_start(test, trim(integration_methods(i)%name))
-    call check_refused_settling(test, trim(integration_methods(i)%name))
-    call check_many_steps(test, trim(integration_methods(i)%name))
-    call check_accuracy(test, trim(integration_methods(i)%name))
-  end do
-  call check_settings(test)
-  call check_tables(test)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+    integer :: i
+
+    do i = 1, size(integration_methods)
+      if (test%runs(trim(integration_methods(i)%name))) call check_method(test, trim(integration_methods(i)%name))
+    end do
+    if (test%runs('check_settings')) call check_settings(test)
+    if (test%runs('check_tables')) call check_tables(test)
+  end subroutine run
+
+  !> Check one method.
+  subroutine check_method(test, name)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: name       !< of the method
+
+    call check_explosion(test, name)
+    call check_obstacles(test, name)
+    call check_start(test, name)
+    call check_refused_settling(test, name)
+    call check_many_steps(test, name)
+    call check_accuracy(test, name)
+  end subroutine check_method
 
   !> y' = y**2 is infinite at t = 1, and there it ends.
   subroutine check_explosion(test, method)
@@ -249,4 +262,4 @@ contains
       call test%is_true(found(i), why//': "'//trim(words(i))//'" in "'//message_of(err)//'"')
     end do
   end subroutine check_words
-end program test_integrator_failures
+end module test_integrator_failures

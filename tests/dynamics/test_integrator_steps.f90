@@ -1,7 +1,7 @@
 !> Steps of an integration: stops met exactly, settling and corrections, restarts, limits, no memory per step.
 !>
 !> Compares the program with itself in part: integrations alone and side by side; orbits have closed forms.
-program test_integrator_steps
+module test_integrator_steps
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_integration_methods, only: integration_methods
@@ -11,27 +11,41 @@ program test_integrator_steps
   use mech9_testing, only: tester_type
   use mech9_counted_memory, only: calls
   implicit none
-  type(tester_type) :: test
-  integer :: i
-
-  do i = 1, size(integration_methods)
-    call check_stops(test, trim(integration_methods(i)%name))
-    call check_inside_steps(test, trim(integration_methods(i)%name))
-    call check_short_rest(test, trim(integration_methods(i)%name))
-    call check_turning_back(test, trim(integration_methods(i)%name))
-    call check_settling(test, i)
-    call check_corrections(test, i)
-    call check_restart(test, trim(integration_methods(i)%name))
-    call check_limits(test, trim(integration_methods(i)%name))
-    call check_memory(test, trim(integration_methods(i)%name))
-  end do
-  call check_first_choice(test, 'dormand-prince', 4)
-  call check_first_choice(test, 'verner', 5)
-  call check_first_choice(test, 'prince-dormand', 7)
-  call check_side_by_side(test)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+    integer :: i
+
+    do i = 1, size(integration_methods)
+      if (test%runs(trim(integration_methods(i)%name))) call check_method(test, i, trim(integration_methods(i)%name))
+    end do
+    if (test%runs('first_choice_dormand-prince')) call check_first_choice(test, 'dormand-prince', 4)
+    if (test%runs('first_choice_verner')) call check_first_choice(test, 'verner', 5)
+    if (test%runs('first_choice_prince-dormand')) call check_first_choice(test, 'prince-dormand', 7)
+    if (test%runs('check_side_by_side')) call check_side_by_side(test)
+  end subroutine run
+
+  !> Check one method.
+  subroutine check_method(test, i, name)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: i                   !< number of the method
+    character(len=*), intent(in) :: name       !< its name
+
+    call check_stops(test, name)
+    call check_inside_steps(test, name)
+    call check_short_rest(test, name)
+    call check_turning_back(test, name)
+    call check_settling(test, i)
+    call check_corrections(test, i)
+    call check_restart(test, name)
+    call check_limits(test, name)
+    call check_memory(test, name)
+  end subroutine check_method
 
   !> Stops at numbers that are no sums of steps are met to the last bit, forward and backward; on the way
   !> no step passes one. The solution is as good as without them.
@@ -405,4 +419,4 @@ contains
       call integrators(i)%destroy()
     end do
   end subroutine check_side_by_side
-end program test_integrator_steps
+end module test_integrator_steps

@@ -1,6 +1,6 @@
 !> Plans in other independent coordinates: those that take the properties of unchanged loops from the plan before are the plans that
 !> are made whole, on random trees of open links and loops, in the plane and in space.
-program test_known_loops
+module test_known_loops
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -14,15 +14,21 @@ program test_known_loops
   use mech9_mixed_structures, only: structure_type, random_structure, exchange_some, finished
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call random_changes()
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('random_changes')) call random_changes(test)
+  end subroutine run
+
   !> Structures of 2 to 7 pieces. In each, some blocks exchange an independent coordinate for one of their unknowns.
-  subroutine random_changes()
+  subroutine random_changes(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(structure_type) :: structure
     type(model_type) :: model
@@ -40,7 +46,7 @@ contains
       call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
       if (allocated(err)) cycle
       do changes = 1, 3
-        call compare_change(random, model, plan, state, compared, taken, alike)
+        call compare_change(test, random, model, plan, state, compared, taken, alike)
       end do
     end do
     call test%is_true(compared > 60, 'most of the random changes of coordinates lead to a plan')
@@ -50,7 +56,8 @@ contains
   end subroutine random_changes
 
   !> Exchange coordinates at random, and compare the plan that takes known loops with one that takes only the size.
-  subroutine compare_change(random, model, plan, state, compared, taken, alike)
+  subroutine compare_change(test, random, model, plan, state, compared, taken, alike)
+    type(tester_type), intent(inout) :: test     !< counts the checks
     type(random_type), intent(inout) :: random   !< source of the random numbers
     type(model_type), intent(in) :: model        !< the mechanism
     type(plan_type), intent(in) :: plan          !< its plan
@@ -76,7 +83,7 @@ contains
     call test%is_true(allocated(err) .eqv. allocated(shared_err), 'known loops do not decide whether coordinates can serve')
     if (allocated(err) .or. allocated(shared_err)) return
     compared = compared + 1
-    call compare_plans(whole, shared)
+    call compare_plans(test, whole, shared)
     ! both are closed to round-off from the same position
     call test%near(maxval(abs(shared_state%q - whole_state%q)/plan%unit_of), 0.0_wp, 1.0e-11_wp, &
                    'both plans are assembled in the same position')
@@ -87,9 +94,10 @@ contains
   end subroutine compare_change
 
   !> Two plans have the same steps, blocks and closures, and their equations span the same spaces.
-  subroutine compare_plans(a, b)
-    type(plan_type), intent(in) :: a   !< the plan made whole
-    type(plan_type), intent(in) :: b   !< the plan with known loops
+  subroutine compare_plans(test, a, b)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(plan_type), intent(in) :: a           !< the plan made whole
+    type(plan_type), intent(in) :: b           !< the plan with known loops
     integer :: c
 
     call test%is_true(all(a%steps%coordinate == b%steps%coordinate) .and. all(a%steps%parent == b%steps%parent) .and. &
@@ -117,4 +125,4 @@ contains
 
     p = matmul(closure%rows(:, :closure%rank), transpose(closure%rows(:, :closure%rank)))
   end function projector
-end program test_known_loops
+end module test_known_loops

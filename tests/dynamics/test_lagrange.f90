@@ -1,6 +1,6 @@
 !> Coefficients of motion, velocity terms and generalized forces against (21), (19) and (25) taken
 !> literally, on open, planar, spatial and multi-chain mechanisms with all kinds of loads.
-program test_lagrange
+module test_lagrange
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_model, only: model_type
@@ -16,20 +16,25 @@ program test_lagrange
   use mech9_loaded_mechanisms, only: check_each_mechanism
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call check_each_mechanism(test, compare)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    call check_each_mechanism(test, compare)
+  end subroutine run
 
   !> Differences of closed positions lose 2/h = 128 units of round-off, those of their differences the
   !> square of that, 16,000 units, both times the conditioning of the chains, some hundreds: 1e-11 and
   !> 1e-9 of the largest number are left.
   subroutine compare(test, model, why)
-    type(tester_type), intent(inout) :: test        !< counts the checks
-    type(model_type), intent(inout) :: model        !< the model
-    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(inout) :: model   !< the model
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     type(plan_type) :: plan
     type(state_type) :: state
     type(dynamics_plan_type) :: dynamics
@@ -76,4 +81,4 @@ contains
     call test%is_true(scale > 1.0e-3_wp, why//': there is something to compare')
     call test%near(maxval(abs(numbers - expected))/scale, 0.0_wp, tolerance, why)
   end subroutine check_numbers
-end program test_lagrange
+end module test_lagrange

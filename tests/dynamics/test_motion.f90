@@ -1,6 +1,6 @@
 !> The motion as a whole: accelerations of all coordinates against differences over time, potential
 !> energy against the forces that come from it, power against the change of energy.
-program test_motion
+module test_motion
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_differentiation, only: half_width, derivatives_from_stencil
@@ -21,17 +21,22 @@ program test_motion
   use mech9_loaded_mechanisms, only: check_each_mechanism
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call check_each_mechanism(test, check_all)
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    call check_each_mechanism(test, check_all)
+  end subroutine run
+
   subroutine check_all(test, model, why)
-    type(tester_type), intent(inout) :: test        !< counts the checks
-    type(model_type), intent(inout) :: model        !< the model
-    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(inout) :: model   !< the model
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     type(model_type) :: conservative
 
     call check_over_time(test, model, why)
@@ -42,7 +47,7 @@ contains
 
   !> Leave the loads that have a potential energy, without their dissipation.
   subroutine keep_conservative(model)
-    type(model_type), intent(inout) :: model       !< the model
+    type(model_type), intent(inout) :: model   !< the model
     type(load_slot_type), allocatable :: kept(:)
     integer :: i, n
 
@@ -92,9 +97,9 @@ contains
   !> Move the independent coordinates by q + dq t + ddq t^2/2 about the start: the differences over time of all
   !> closed coordinates are their rates and accelerations, that of the kinetic energy is the power of all forces.
   subroutine check_over_time(test, model, why)
-    type(tester_type), intent(inout) :: test        !< counts the checks
-    type(model_type), intent(in) :: model           !< the model
-    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(in) :: model      !< the model
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     !> The accelerations, some hundreds, bend the path within a tenth of a second.
     real(wp), parameter :: h = 1.0_wp/512.0_wp
     type(plan_type) :: plan
@@ -143,9 +148,9 @@ contains
 
   !> Q_p = -dV/dq_p where all loads have a potential energy.
   subroutine check_potential(test, model, why)
-    type(tester_type), intent(inout) :: test        !< counts the checks
-    type(model_type), intent(in) :: model           !< the model
-    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(in) :: model      !< the model
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     real(wp), parameter :: h = 1.0_wp/128.0_wp
     type(plan_type) :: plan
     type(dynamics_plan_type) :: dynamics
@@ -176,4 +181,4 @@ contains
       call test%near(work%forces(p), -slope, 1.0e-9_wp, why//': the forces are slopes of the potential energy')
     end do
   end subroutine check_potential
-end program test_motion
+end module test_motion

@@ -3,7 +3,7 @@
 !>
 !> Compares the program with itself: articulated bodies and Lagrange's equations, which `test_lagrange` holds against the formulas
 !> of the paper.
-program test_open_chains
+module test_open_chains
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_data
   use mech9_rotation, only: identity
@@ -20,19 +20,24 @@ program test_open_chains
   use mech9_random_geometry, only: random_vector, random_unit
   use mech9_testing, only: tester_type, message_of
   implicit none
-
-  type(tester_type) :: test
-
-  call random_trees()
-  call long_chain()
-  call without_inertia()
-  call closed_chains()
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('random_trees')) call random_trees(test)
+    if (test%runs('long_chain')) call long_chain(test)
+    if (test%runs('without_inertia')) call without_inertia(test)
+    if (test%runs('closed_chains')) call closed_chains(test)
+  end subroutine run
+
   !> Trees of 2 to 13 steps; on every second one some links have no mass, but never the last of a branch.
-  subroutine random_trees()
+  subroutine random_trees(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(cluster_case_type) :: tree
     type(random_type) :: random
     integer, allocatable :: links(:, :)
@@ -45,7 +50,7 @@ contains
       call random_tree(random, m, planar, links, tree%model)
       call load_everything(random, tree%model)
       if (mod(trial, 2) == 0) call lighten(random, links, merge(1, 4, planar), tree%model)
-      call check_articulated(tree, 'a tree')
+      call check_articulated(test, tree, 'a tree')
       call test%is_true(tree%plan%planar%used .or. .not. planar, 'a tree in the plane takes planar arithmetic')
     end do
   end subroutine random_trees
@@ -83,10 +88,10 @@ contains
   end subroutine random_tree
 
   subroutine add_random_pair(random, k, links, model)
-    type(random_type), intent(inout) :: random         !< source of the random numbers
-    integer, intent(in) :: k                           !< its coordinate
-    integer, intent(in) :: links(2)                    !< reference and moving link
-    type(model_type), intent(inout) :: model           !< the model
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    integer, intent(in) :: k                     !< its coordinate
+    integer, intent(in) :: links(2)              !< reference and moving link
+    type(model_type), intent(inout) :: model     !< the model
     type(screw_pair_type) :: helix
     type(curved_pair_type) :: curved
     type(pose_type) :: here, there
@@ -111,10 +116,10 @@ contains
   end subroutine add_random_pair
 
   subroutine add_planar_pair(random, k, links, model)
-    type(random_type), intent(inout) :: random         !< source of the random numbers
-    integer, intent(in) :: k                           !< its coordinate
-    integer, intent(in) :: links(2)                    !< reference and moving link
-    type(model_type), intent(inout) :: model           !< the model
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    integer, intent(in) :: k                     !< its coordinate
+    integer, intent(in) :: links(2)              !< reference and moving link
+    type(model_type), intent(inout) :: model     !< the model
     type(pose_type) :: here, there
     real(wp) :: along(3)
     logical :: slides
@@ -143,10 +148,10 @@ contains
   !> Some links that carry another one lose their mass; a body at the end of them all resists six steps in
   !> general, in the plane three, but only two of them slides.
   subroutine lighten(random, links, most, model)
-    type(random_type), intent(inout) :: random         !< source of the random numbers
-    integer, intent(in) :: links(:, :)                 !< (2,M) reference and moving link of each pair
-    integer, intent(in) :: most                        !< links
-    type(model_type), intent(inout) :: model           !< the model
+    type(random_type), intent(inout) :: random   !< source of the random numbers
+    integer, intent(in) :: links(:, :)           !< (2,M) reference and moving link of each pair
+    integer, intent(in) :: most                  !< links
+    type(model_type), intent(inout) :: model     !< the model
     integer :: i, light, toss
 
     light = 0
@@ -162,7 +167,8 @@ contains
   end subroutine lighten
 
   !> The mechanism moves by articulated bodies, whose accelerations satisfy Lagrange's equations.
-  subroutine check_articulated(this, why)
+  subroutine check_articulated(test, this, why)
+    type(tester_type), intent(inout) :: test         !< counts the checks
     type(cluster_case_type), intent(inout) :: this   !< with the model
     character(len=*), intent(in) :: why              !< the mechanism, printed where something is wrong
     logical :: found
@@ -176,7 +182,8 @@ contains
   end subroutine check_articulated
 
   !> Sixty links of 1 m in a row, turning about x and y by turns.
-  subroutine long_chain()
+  subroutine long_chain(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     integer, parameter :: m = 60
     real(wp), parameter :: top(3) = [0.0_wp, 0.0_wp, 1.0_wp], foot(3) = 0.0_wp
     real(wp) :: axis(3)
@@ -192,12 +199,13 @@ contains
       call add_body(chain%model, k + 1, 1.0_wp, 0.5_wp*top, 0.08_wp*identity)
       chain%model%problem%initial%position(k) = 0.3_wp*sin(real(k, wp))
     end do
-    call check_articulated(chain, 'sixty links')
+    call check_articulated(test, chain, 'sixty links')
   end subroutine long_chain
 
   !> The error is that of the coefficients: mass that is missing at the end, and mass that turns about
   !> two axes in one line, of which the second is left no inertia but round-off.
-  subroutine without_inertia()
+  subroutine without_inertia(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(cluster_case_type) :: chain
     type(random_type) :: random
     real(wp) :: point(3), axis(3)
@@ -217,11 +225,12 @@ contains
       call add_body(chain%model, massive, 1.0_wp + 0.5_wp*random%symmetric(), random_vector(random), 0.3_wp*identity)
       call prepare(chain, .false., found)
       call test%is_true(found, 'a chain without inertia has a plan')
-      call check_refusal(chain)
+      call check_refusal(test, chain)
     end do
   end subroutine without_inertia
 
-  subroutine check_refusal(this)
+  subroutine check_refusal(test, this)
+    type(tester_type), intent(inout) :: test         !< counts the checks
     type(cluster_case_type), intent(inout) :: this   !< mechanism, plans, state and equations
     type(error_type), allocatable :: err, none
     integer :: failed_at
@@ -240,7 +249,8 @@ contains
   end subroutine check_refusal
 
   !> One closed cluster on link 1, in the plane or in space, needs its coefficients in any case.
-  subroutine closed_chains()
+  subroutine closed_chains(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(cluster_case_type) :: closed
     logical :: found
 
@@ -252,4 +262,4 @@ contains
     call prepare(closed, .false., found)
     call test%is_true(found .and. .not. closed%dynamics%articulated, 'articulated bodies are not taken for a spatial loop')
   end subroutine closed_chains
-end program test_open_chains
+end module test_open_chains

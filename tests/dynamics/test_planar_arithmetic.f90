@@ -2,7 +2,7 @@
 !> all pairs of a mechanism have one plane, and only there. Planar blocks of spatial mechanisms give what these give in space.
 !>
 !> Compares the program with itself: planar and spatial arithmetic.
-program test_planar_arithmetic
+module test_planar_arithmetic
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -24,6 +24,8 @@ program test_planar_arithmetic
   use mech9_testing, only: tester_type
   use mech9_frame_motion, only: point_motion
   implicit none
+  private
+  public :: run
 
   !> All that an evaluation of the motion gives.
   type :: result_type
@@ -35,30 +37,34 @@ program test_planar_arithmetic
     real(wp) :: energies(2) = 0.0_wp
   end type result_type
 
-  type(tester_type) :: test
-
-  call known_mechanisms()
-  call any_plane()
-  call no_plane()
-  call planar_blocks()
-  call test%finish()
-
 contains
 
-  subroutine known_mechanisms()
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('known_mechanisms')) call known_mechanisms(test)
+    if (test%runs('any_plane')) call any_plane(test)
+    if (test%runs('no_plane')) call no_plane(test)
+    if (test%runs('planar_blocks')) call planar_blocks(test)
+  end subroutine run
+
+  subroutine known_mechanisms(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type) :: model
 
     call loaded_fig1(5, model)
-    call compare(model, .true., 'two chains one after the other')
+    call compare(test, model, .true., 'two chains one after the other')
     call loaded_fig1(1, model)
-    call compare(model, .true., 'two chains together')
+    call compare(test, model, .true., 'two chains together')
     call five_bar(model)
-    call compare(model, .true., 'two freedoms')
+    call compare(test, model, .true., 'two freedoms')
   end subroutine known_mechanisms
 
   !> Two loops with sliding pairs and an open end, driven by turning and by sliding, and a loop on a turning link; in the
   !> plane z = 0 and turned into any other, the links at different heights, a pair given either way round.
-  subroutine any_plane()
+  subroutine any_plane(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     integer, parameter :: links(2, 8) = reshape([1, 2, 2, 3, 3, 4, 4, 1, 3, 5, 6, 5, 6, 1, 5, 7], [2, 8])
     integer, parameter :: on_link_2(2, 5) = reshape([1, 2, 2, 3, 3, 4, 4, 5, 5, 2], [2, 5])
     type(model_type) :: model
@@ -83,45 +89,47 @@ contains
       end do
       call home_mechanism(7, links, axes, [1, 8], model)
       call load_everything(random, model)
-      call compare(model, .true., 'any plane')
+      call compare(test, model, .true., 'any plane')
       call home_mechanism(7, links, axes, [2, 8], model)
       call load_everything(random, model)
-      call compare(model, .true., merge('any plane, driven by a slide', 'any plane, driven by a hinge', &
+      call compare(test, model, .true., merge('any plane, driven by a slide', 'any plane, driven by a hinge', &
                                             axes(2)%slides))
       call home_mechanism(5, on_link_2, axes(:5), [1, 2], model)
       call load_everything(random, model)
-      call compare(model, .true., 'a loop on a turning link')
+      call compare(test, model, .true., 'a loop on a turning link')
     end do
   end subroutine any_plane
 
   !> Axes that have no plane in common, by as little as may be meant.
-  subroutine no_plane()
+  subroutine no_plane(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type) :: model
     type(random_type) :: random
     type(axis_type) :: axes(3)
 
     call open_chain(model)
-    call compare(model, .false., 'a spatial chain')
+    call compare(test, model, .false., 'a spatial chain')
     axes = planar_axes(3, 3, random)
     call home_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), axes, [1, 2, 3], model)
     call load_everything(random, model)
-    call compare(model, .true., 'an open planar chain')
+    call compare(test, model, .true., 'an open planar chain')
     axes(2)%along(1) = 1.0e-9_wp
     call home_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), axes, [1, 2, 3], model)
     call load_everything(random, model)
-    call compare(model, .false., 'an axis that is not quite along the normal')
+    call compare(test, model, .false., 'an axis that is not quite along the normal')
     axes(2)%along(1) = 0.0_wp
     axes(3)%along = [1.0_wp, 0.0_wp, 1.0e-9_wp]
     call home_mechanism(4, reshape([1, 2, 2, 3, 3, 4], [2, 3]), axes, [1, 2, 3], model)
     call load_everything(random, model)
-    call compare(model, .false., 'a way that is not quite across the normal')
+    call compare(test, model, .false., 'a way that is not quite across the normal')
     call general_loop(model)
     call load_everything(random, model)
-    call compare(model, .false., 'a spatial loop')
+    call compare(test, model, .false., 'a spatial loop')
   end subroutine no_plane
 
   !> Planar loops in several planes, joined by hinges across these planes.
-  subroutine planar_blocks()
+  subroutine planar_blocks(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type) :: model
     type(random_type) :: random
     type(result_type) :: result
@@ -132,10 +140,10 @@ contains
       call mixed_mechanism(mixed_axes(modulo(trial, 3) + 3, random), model)
       call load_everything(random, model)
       call add_point(model)
-      call evaluate(model, .true., 'planar blocks', result)
+      call evaluate(test, model, .true., 'planar blocks', result)
       ! near a singular position round-off decides
       if (result%conditioning < 0.03_wp) cycle
-      call compare(model, .false., 'planar blocks')
+      call compare(test, model, .false., 'planar blocks')
       compared = compared + 1
     end do
     call test%is_true(compared >= 5, 'some mechanisms with planar blocks are compared')
@@ -152,39 +160,41 @@ contains
 
   !> Both arithmetics on one mechanism. Each number is a sum of some dozens of terms, and what is solved for
   !> is known to round-off over the conditioning of the chains, accelerations to that once more.
-  subroutine compare(model, is_planar, why)
-    type(model_type), intent(inout) :: model           !< the model
-    logical, intent(in) :: is_planar                   !< it must have planar arithmetic
-    character(len=*), intent(in) :: why                !< the statement that is checked, printed where it is wrong
+  subroutine compare(test, model, is_planar, why)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(inout) :: model   !< the model
+    logical, intent(in) :: is_planar           !< it must have planar arithmetic
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     type(result_type) :: flat, space
     real(wp) :: tolerance
 
     call add_point(model)
-    call evaluate(model, .false., why, flat)
-    call evaluate(model, .true., why, space)
+    call evaluate(test, model, .false., why, flat)
+    call evaluate(test, model, .true., why, space)
     call test%is_true((flat%planar .eqv. is_planar) .and. .not. space%planar, why//': planar mechanisms alone are found planar')
     call test%near(flat%conditioning, space%conditioning, 1.0e-12_wp, why//': the conditioning is equal')
     tolerance = 1.0e-14_wp/space%conditioning
     call test%is_true(tolerance < 1.0e-12_wp, why//': the positions are well conditioned')
-    call check(flat%q, space%q, tolerance, why//': the positions are equal')
-    call check(flat%dq, space%dq, tolerance, why//': the rates are equal')
+    call check(test, flat%q, space%q, tolerance, why//': the positions are equal')
+    call check(test, flat%dq, space%dq, tolerance, why//': the rates are equal')
     tolerance = 10.0_wp*tolerance
-    call check(flat%ddq, space%ddq, tolerance, why//': the accelerations are equal')
-    call check(reshape(flat%points, [9]), reshape(space%points, [9]), tolerance, &
+    call check(test, flat%ddq, space%ddq, tolerance, why//': the accelerations are equal')
+    call check(test, reshape(flat%points, [9]), reshape(space%points, [9]), tolerance, &
                why//': the point has equal position, velocity and acceleration')
-    call check(reshape(flat%coefficients, [size(flat%coefficients)]), &
+    call check(test, reshape(flat%coefficients, [size(flat%coefficients)]), &
                reshape(space%coefficients, [size(space%coefficients)]), tolerance, why//': the coefficients of motion are equal')
-    call check(flat%velocity_terms, space%velocity_terms, tolerance, why//': the velocity terms are equal')
-    call check(flat%forces, space%forces, tolerance, why//': the generalized forces are equal')
-    call check(flat%energies, space%energies, tolerance, why//': the energies are equal')
+    call check(test, flat%velocity_terms, space%velocity_terms, tolerance, why//': the velocity terms are equal')
+    call check(test, flat%forces, space%forces, tolerance, why//': the generalized forces are equal')
+    call check(test, flat%energies, space%energies, tolerance, why//': the energies are equal')
   end subroutine compare
 
   !> The motion of a mechanism at its start, with some rates.
-  subroutine evaluate(model, in_space, why, result)
-    type(model_type), intent(in) :: model           !< the model
-    logical, intent(in) :: in_space                 !< in spatial arithmetic even where planar arithmetic would do
-    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
-    type(result_type), intent(out) :: result        !< all numbers of its motion
+  subroutine evaluate(test, model, in_space, why, result)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(in) :: model      !< the model
+    logical, intent(in) :: in_space            !< in spatial arithmetic even where planar arithmetic would do
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
+    type(result_type), intent(out) :: result   !< all numbers of its motion
     type(plan_type) :: plan
     type(state_type) :: state
     type(dynamics_plan_type) :: dynamics
@@ -223,12 +233,13 @@ contains
     result%energies = [kinetic_energy(model%mechanism, plan, state), potential_energy(model%mechanism, plan, state, work%view)]
   end subroutine evaluate
 
-  subroutine check(numbers, expected, tolerance, why)
-    real(wp), intent(in) :: numbers(:)    !< numbers that are checked
-    real(wp), intent(in) :: expected(:)   !< the right numbers, as many
-    real(wp), intent(in) :: tolerance     !< over the largest number
-    character(len=*), intent(in) :: why   !< the statement that is checked, printed where it is wrong
+  subroutine check(test, numbers, expected, tolerance, why)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), intent(in) :: numbers(:)         !< numbers that are checked
+    real(wp), intent(in) :: expected(:)        !< the right numbers, as many
+    real(wp), intent(in) :: tolerance          !< over the largest number
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
 
     call test%near(maxval(abs(numbers - expected))/max(1.0_wp, maxval(abs(expected))), 0.0_wp, tolerance, why)
   end subroutine check
-end program test_planar_arithmetic
+end module test_planar_arithmetic

@@ -2,7 +2,7 @@
 !> the beginning, and blocks that do not change are not planned anew. So do plans of dynamics.
 !>
 !> Compares the program with itself: plans made from the plan before and plans made from the beginning.
-program test_replanning
+module test_replanning
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -21,19 +21,26 @@ program test_replanning
   use mech9_mixed_structures, only: structure_type, random_structure, add_ladder, exchange_some, finished
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   !> Beside a position with a worse conditioned block, round-off would decide the comparison.
   real(wp), parameter :: regular = 0.02_wp
-  type(tester_type) :: test
-
-  call random_changes()
-  call rows_of_windows()
-  call test%finish()
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('random_changes')) call random_changes(test)
+    if (test%runs('rows_of_windows')) call rows_of_windows(test)
+  end subroutine run
+
   !> Structures of 2 to 7 pieces. In each, some blocks exchange an independent coordinate for one of their unknowns; then the
   !> change is taken back.
-  subroutine random_changes()
+  subroutine random_changes(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(structure_type) :: structure
     type(model_type) :: model
@@ -54,13 +61,13 @@ contains
       if (allocated(err)) cycle
       associate (chosen => independent(:plan%n_coordinates))
         call exchange_some(random, plan, chosen)
-        call compare_change(model, plan, state, chosen, other, other_state, found, same, kept)
+        call compare_change(test, model, plan, state, chosen, other, other_state, found, same, kept)
         served = served + merge(1, 0, found)
         unserved = unserved + merge(0, 1, found)
         if (.not. found) cycle
         chosen = .false.
         chosen(plan%independent) = .true.
-        call compare_change(model, other, other_state, chosen, plan, state, found, same, kept)
+        call compare_change(test, model, other, other_state, chosen, plan, state, found, same, kept)
         call test%is_true(found, 'a change of coordinates can be taken back')
       end associate
     end do
@@ -70,16 +77,17 @@ contains
   end subroutine random_changes
 
   !> Compare a plan that is made from the plan before with one that is made from the beginning.
-  subroutine compare_change(model, plan, state, independent, other, other_state, found, same, kept)
-    type(model_type), intent(in) :: model             !< the mechanism
-    type(plan_type), intent(in) :: plan               !< its plan
-    type(state_type), intent(in) :: state             !< its closed position
-    logical, intent(in) :: independent(:)             !< (M) the other choice
-    type(plan_type), intent(out) :: other             !< the plan in these coordinates
-    type(state_type), intent(out) :: other_state      !< the same position
-    logical, intent(out) :: found                     !< the other coordinates serve
-    integer, intent(inout) :: same                    !< number of blocks that stay as they are
-    integer, intent(inout) :: kept                    !< number of blocks of which the plan of dynamics keeps the lists
+  subroutine compare_change(test, model, plan, state, independent, other, other_state, found, same, kept)
+    type(tester_type), intent(inout) :: test       !< counts the checks
+    type(model_type), intent(in) :: model          !< the mechanism
+    type(plan_type), intent(in) :: plan            !< its plan
+    type(state_type), intent(in) :: state          !< its closed position
+    logical, intent(in) :: independent(:)          !< (M) the other choice
+    type(plan_type), intent(out) :: other          !< the plan in these coordinates
+    type(state_type), intent(out) :: other_state   !< the same position
+    logical, intent(out) :: found                  !< the other coordinates serve
+    integer, intent(inout) :: same                 !< number of blocks that stay as they are
+    integer, intent(inout) :: kept                 !< number of blocks of which the plan of dynamics keeps the lists
     type(plan_type) :: whole
     type(state_type) :: whole_state
     type(partition_type) :: partition
@@ -123,13 +131,13 @@ contains
 
   !> The accelerations of all coordinates at a position, for given rates of the independent ones.
   subroutine find_accelerations(model, plan, dynamics, position, rates, accelerations, conditioning)
-    type(model_type), intent(in) :: model          !< the mechanism
-    type(plan_type), intent(in) :: plan            !< its plan
+    type(model_type), intent(in) :: model              !< the mechanism
+    type(plan_type), intent(in) :: plan                !< its plan
     type(dynamics_plan_type), intent(in) :: dynamics   !< its plan of dynamics
-    type(state_type), intent(in) :: position       !< closed, with frames in place
-    real(wp), intent(in) :: rates(:)               !< (M) those of the independent coordinates count [rad/s, m/s]
-    real(wp), intent(out) :: accelerations(:)      !< (M) [rad/s^2, m/s^2]
-    real(wp), intent(out) :: conditioning          !< of the worst block
+    type(state_type), intent(in) :: position           !< closed, with frames in place
+    real(wp), intent(in) :: rates(:)                   !< (M) those of the independent coordinates count [rad/s, m/s]
+    real(wp), intent(out) :: accelerations(:)          !< (M) [rad/s^2, m/s^2]
+    real(wp), intent(out) :: conditioning              !< of the worst block
     type(lagrange_work_type) :: work
     type(state_type) :: state
     type(error_type), allocatable :: err
@@ -148,7 +156,8 @@ contains
 
   !> In a row of windows, the first upright exchanges its place with a coordinate of the first window: that window is planned anew,
   !> the others stay as they are, whatever their number. A block that is worse conditioned than is wanted makes the change one in vain.
-  subroutine rows_of_windows()
+  subroutine rows_of_windows(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     integer, parameter :: numbers(3) = [3, 10, 40]
     type(random_type) :: random
     type(structure_type) :: structure
@@ -188,4 +197,4 @@ contains
       call test%is_true(replanning%in_vain, 'a window that stays as it is, worse than wanted, makes the change one in vain')
     end do
   end subroutine rows_of_windows
-end program test_replanning
+end module test_replanning

@@ -1,6 +1,6 @@
 !> The forces that a motion requires, and their derivatives by positions, rates and accelerations of the independent coordinates:
 !> the forces against Lagrange's equations, the derivatives against differences of Lagrange's equations at closed positions.
-program test_variations
+module test_variations
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -20,19 +20,24 @@ program test_variations
   use mech9_unknown_load, only: unknown_load_type
   use mech9_testing, only: tester_type
   implicit none
-  type(tester_type) :: test
-
-  call check_each_mechanism(test, compare)
-  call test%finish()
+  private
+  public :: run
 
 contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    call check_each_mechanism(test, compare)
+  end subroutine run
 
   !> Differences of sixteenth order over steps of 1/64 lose 2/h = 128 units of round-off times the conditioning of the chains,
   !> some hundreds, and the velocity terms that they differentiate as much again: 1e-9 of the largest number is left.
   subroutine compare(test, model, why)
-    type(tester_type), intent(inout) :: test        !< counts the checks
-    type(model_type), intent(inout) :: model        !< the model; gets a load whose formula is not known
-    character(len=*), intent(in) :: why             !< the statement that is checked, printed where it is wrong
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(inout) :: model   !< the model; gets a load whose formula is not known
+    character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     type(plan_type) :: plan
     type(state_type) :: state, moved
     type(linearisation_type) :: linearisation
@@ -62,7 +67,7 @@ contains
     do by = by_position, by_acceleration
       call find_matrix(model%mechanism, plan, moved, by, plan%independent, linearisation, matrix, magnitude, err)
       call test%no_error(err, why//': the derivatives are found')
-      call differences(model, plan, state, by, expected)
+      call differences(test, model, plan, state, by, expected)
       call test%is_true(maxval(abs(expected)) > 1.0e-3_wp, why//': there is something to compare')
       call test%is_true(magnitude > 0.1_wp*maxval(abs(expected)), why//': the magnitude of the terms is no less than their sum')
       call test%near(maxval(abs(matrix - expected))/maxval(abs(expected)), 0.0_wp, 1.0e-9_wp, &
@@ -95,12 +100,13 @@ contains
   end function lagrange
 
   !> Derivatives of these forces by differences, in the units of the plan.
-  subroutine differences(model, plan, state, by, matrix)
-    type(model_type), intent(in) :: model    !< the model
-    type(plan_type), intent(in) :: plan      !< its plan
-    type(state_type), intent(in) :: state    !< closed, with independent rates and accelerations
-    integer, intent(in) :: by                !< order of the derivative in time that is the parameter
-    real(wp), intent(out) :: matrix(:, :)    !< a column for each independent coordinate
+  subroutine differences(test, model, plan, state, by, matrix)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(in) :: model      !< the model
+    type(plan_type), intent(in) :: plan        !< its plan
+    type(state_type), intent(in) :: state      !< closed, with independent rates and accelerations
+    integer, intent(in) :: by                  !< order of the derivative in time that is the parameter
+    real(wp), intent(out) :: matrix(:, :)      !< a column for each independent coordinate
     real(wp), parameter :: h = 1.0_wp/64.0_wp
     type(state_type) :: moved
     type(error_type), allocatable :: err
@@ -128,4 +134,4 @@ contains
       end do
     end do
   end subroutine differences
-end program test_variations
+end module test_variations
