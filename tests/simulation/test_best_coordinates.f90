@@ -3,7 +3,7 @@
 !>
 !> Every choice is tried, by singular values of a Jacobian that is put together here from the screws of the steps. The rates of a
 !> four-bar have a closed form.
-program test_best_coordinates
+module test_best_coordinates
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_lapack, only: dgesvd
@@ -21,34 +21,62 @@ program test_best_coordinates
   use mech9_literal_lagrange, only: close_chains
   use mech9_testing, only: tester_type
   implicit none
+  private
+  public :: run
+
   !> The rows of a screw (w, v) that count in the plane z = 0, and in space.
   integer, parameter :: in_plane(3) = [3, 4, 5], in_space(6) = [1, 2, 3, 4, 5, 6]
   !> Its crank swings: coupler and rocker can be stretched out and folded.
   type(four_bar_type), parameter :: bar = four_bar_type(ground=1.0_wp, crank=0.75_wp, coupler=1.0_wp, rocker=0.4_wp)
-  type(tester_type) :: test
-  type(model_type) :: model
-
-  call check_four_bar()
-  call check_five_bar()
-  call check_two_four_bars()
-  call loaded_fig1(1, model)
-  call check_towards_limit(model, in_plane, 'Fig. 1 at the end of the range of coordinate 1')
-  call general_loop(model)
-  call check_towards_limit(model, in_space, 'a spatial loop at the end of the range of coordinate 1')
-  call two_loops([1, 5], model)
-  call check_towards_limit(model, in_space, 'two spatial loops with common links')
-  call test%finish()
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('check_four_bar')) call check_four_bar(test)
+    if (test%runs('check_five_bar')) call check_five_bar(test)
+    if (test%runs('check_two_four_bars')) call check_two_four_bars(test)
+    if (test%runs('check_fig1')) call check_fig1(test)
+    if (test%runs('check_general_loop')) call check_general_loop(test)
+    if (test%runs('check_two_loops')) call check_two_loops(test)
+  end subroutine run
+
+  subroutine check_fig1(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type) :: model
+
+    call loaded_fig1(1, model)
+    call check_towards_limit(test, model, in_plane, 'Fig. 1 at the end of the range of coordinate 1')
+  end subroutine check_fig1
+
+  subroutine check_general_loop(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type) :: model
+
+    call general_loop(model)
+    call check_towards_limit(test, model, in_space, 'a spatial loop at the end of the range of coordinate 1')
+  end subroutine check_general_loop
+
+  subroutine check_two_loops(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type) :: model
+
+    call two_loops([1, 5], model)
+    call check_towards_limit(test, model, in_space, 'two spatial loops with common links')
+  end subroutine check_two_loops
+
   !> A four-bar whose crank is at a distance from a dead point, down to round-off of its angle.
-  subroutine check_four_bar()
+  subroutine check_four_bar(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(plan_type) :: plan
     type(state_type) :: state
     type(error_type), allocatable :: err
     real(wp) :: limit, rates(4)
     logical :: independent(4)
     integer :: i, branch
+    type(model_type) :: model
 
     limit = four_bar_limit(bar, stretched=.true.)
     call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, limit - 0.3_wp, 1), model)
@@ -58,7 +86,7 @@ contains
       do branch = -1, 1, 2
         state%q = four_bar_guess(bar, limit - 10.0_wp**(-i), branch)
         call place_all(plan, state, err)
-        call check_choice(plan, state, in_plane, 'a four-bar near its dead point', independent)
+        call check_choice(test, plan, state, in_plane, 'a four-bar near its dead point', independent)
         if (i > 4) call test%is_true(.not. independent(1), 'a crank at its dead point does not stay independent')
         ! the entries of R11^-1 R12 are at most 2^(m-1) = 4, and are the rates per unit rate of the independent coordinate
         rates = four_bar_rates(state%q)
@@ -81,7 +109,8 @@ contains
 
   !> A five-bar with two degrees of freedom, whose links 3 and 4 are stretched out but for a small angle: by its cranks it is
   !> singular then.
-  subroutine check_five_bar()
+  subroutine check_five_bar(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(plan_type) :: plan
     type(state_type) :: state
     type(error_type), allocatable :: err
@@ -89,6 +118,7 @@ contains
     real(wp), parameter :: pivot(2) = [1.0_wp, 0.0_wp]
     logical :: independent(5)
     integer :: i
+    type(model_type) :: model
 
     call five_bar(model)
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
@@ -100,7 +130,7 @@ contains
       angles = [2.5_wp, direction(pin - first), direction(pin - last), direction(last - pivot)]
       state%q = [angles(1), angles(2:4) - angles(1:3), angles(4)]
       call place_all(plan, state, err)
-      call check_choice(plan, state, in_plane, 'a five-bar whose couplers are nearly stretched out', independent)
+      call check_choice(test, plan, state, in_plane, 'a five-bar whose couplers are nearly stretched out', independent)
       if (i > 4) call test%is_true(.not. (independent(1) .and. independent(5)), 'both cranks do not stay independent')
     end do
   end subroutine check_five_bar
@@ -113,21 +143,23 @@ contains
   end function direction
 
   !> Two four-bars on one frame, near dead points of both cranks: one stretched out, one folded.
-  subroutine check_two_four_bars()
+  subroutine check_two_four_bars(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp), parameter :: near = 1.0e-8_wp
     type(plan_type) :: plan
     type(state_type) :: state
     type(error_type), allocatable :: err
     logical :: independent(8)
+    type(model_type) :: model
 
-    call new_two_four_bars(.true., plan, state)
+    call new_two_four_bars(test, model, .true., plan, state)
     state%q(:4) = four_bar_guess(bar, four_bar_limit(bar, stretched=.true.) - near, 1)
     state%q(5:) = four_bar_guess(bar, four_bar_limit(bar, stretched=.false.) + near, 1)
     call place_all(plan, state, err)
-    call check_choice(plan, state, in_plane, 'two four-bars near dead points', independent)
+    call check_choice(test, plan, state, in_plane, 'two four-bars near dead points', independent)
     call test%is_true(count(independent(2:4)) == 1 .and. count(independent(6:)) == 1, 'each four-bar gets another coordinate')
 
-    call new_two_four_bars(.false., plan, state)
+    call new_two_four_bars(test, model, .false., plan, state)
     call test%is_true(size(plan%blocks) == 1, 'a four-bar that is not requested is left out of the plan')
     state%q(:4) = four_bar_guess(bar, four_bar_limit(bar, stretched=.true.) - near, 1)
     call place_all(plan, state, err)
@@ -137,10 +169,12 @@ contains
   end subroutine check_two_four_bars
 
   !> Two four-bars on one frame; coordinates 1 to 4 and 5 to 8.
-  subroutine new_two_four_bars(both, plan, state)
-    logical, intent(in) :: both              !< the motion of both is requested; only of the first if false
-    type(plan_type), intent(out) :: plan     !< their plan
-    type(state_type), intent(out) :: state   !< a position
+  subroutine new_two_four_bars(test, model, both, plan, state)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(inout) :: model   !< the mechanism
+    logical, intent(in) :: both                !< the motion of both is requested; only of the first if false
+    type(plan_type), intent(out) :: plan       !< their plan
+    type(state_type), intent(out) :: state     !< a position
     integer, parameter :: links(2, 8) = reshape([1, 2, 2, 3, 3, 4, 1, 4, 1, 5, 5, 6, 6, 7, 1, 7], [2, 8])
     real(wp), parameter :: at(4) = [0.0_wp, bar%crank, bar%coupler, bar%ground]
     real(wp), parameter :: moving_at(4) = [0.0_wp, 0.0_wp, bar%rocker, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp]
@@ -163,10 +197,11 @@ contains
   end subroutine new_two_four_bars
 
   !> Move the first independent coordinate until the chains close no longer, with steps that are halved there; the others stand.
-  subroutine check_towards_limit(model, rows, why)
-    type(model_type), intent(in) :: model           !< the model
-    integer, intent(in) :: rows(:)                  !< the rows of a screw that count
-    character(len=*), intent(in) :: why             !< the place, printed where a check fails
+  subroutine check_towards_limit(test, model, rows, why)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), intent(in) :: model      !< the model
+    integer, intent(in) :: rows(:)             !< the rows of a screw that count
+    character(len=*), intent(in) :: why        !< the place, printed where a check fails
     type(plan_type) :: plan
     type(state_type) :: state, trial
     type(error_type), allocatable :: err
@@ -189,7 +224,7 @@ contains
         cycle
       end if
       state = trial
-      call check_choice(plan, state, rows, why, independent)
+      call check_choice(test, plan, state, rows, why, independent)
     end do
     ! by its own coordinates the last position breaks the bound, so that the check could have failed
     a = closures_jacobian(plan, state, rows)
@@ -198,12 +233,13 @@ contains
   end subroutine check_towards_limit
 
   !> Compare what is chosen with all other choices of as many coordinates.
-  subroutine check_choice(plan, state, rows, why, independent)
-    type(plan_type), intent(in) :: plan      !< the plan of the mechanism
-    type(state_type), intent(in) :: state    !< a closed position
-    integer, intent(in) :: rows(:)           !< the rows of a screw that count
-    character(len=*), intent(in) :: why      !< the place, printed where a check fails
-    logical, intent(out) :: independent(:)   !< (M) what is chosen
+  subroutine check_choice(test, plan, state, rows, why, independent)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(plan_type), intent(in) :: plan        !< the plan of the mechanism
+    type(state_type), intent(in) :: state      !< a closed position
+    integer, intent(in) :: rows(:)             !< the rows of a screw that count
+    character(len=*), intent(in) :: why        !< the place, printed where a check fails
+    logical, intent(out) :: independent(:)     !< (M) what is chosen
     real(wp), allocatable :: a(:, :)
     logical :: candidate(size(independent))
     real(wp) :: best
@@ -269,4 +305,4 @@ contains
     call dgesvd('A', 'A', m, m, columns, m, values, u, m, vt, m, work, size(work), info)
     least = merge(values(m), -1.0_wp, info == 0)
   end function least_singular
-end program test_best_coordinates
+end module test_best_coordinates

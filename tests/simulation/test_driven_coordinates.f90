@@ -1,5 +1,5 @@
 !> Drives that are not smooth, beside a free coordinate: a jump of the position ends the motion with its time and its coordinate.
-program test_driven_coordinates
+module test_driven_coordinates
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_singular
   use mech9_failure, only: failure_drive_jumps
@@ -15,7 +15,9 @@ program test_driven_coordinates
   use mech9_testing, only: tester_type
   use simulation_doubles, only: jumping_drive_type
   implicit none
-  type(tester_type) :: test
+  private
+  public :: run
+
   !> A pendulum on a slide, and on the driven crank of a four-bar.
   character(len=*), parameter :: loads = '&gravity acceleration=0,-9.81,0 / &time end=2 / '
   character(len=*), parameter :: on_slide = '&structure cq=1,2 / '// &
@@ -30,17 +32,22 @@ program test_driven_coordinates
     '&pair coordinate=5, links=2,5, kind=''revolute'', axis=0,0,1, point=0.3,0,0 / &initial coordinate=5, position=0.3 / '// &
     '&drive coordinate=1, kind=''polynomial'', coefficients=0 / &body link=5, mass=1, centre=0.3,-0.5,0 / '//loads
 
-  call check_jump(on_slide, 0.5_wp)
-  call check_jump(on_crank, 0.5_wp)
-  call check_jump(on_crank, -0.1_wp)
-  call test%finish()
-
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('on_slide')) call check_jump(test, on_slide, 0.5_wp)
+    if (test%runs('on_crank')) call check_jump(test, on_crank, 0.5_wp)
+    if (test%runs('on_crank_backward')) call check_jump(test, on_crank, -0.1_wp)
+  end subroutine run
+
   !> The motion with a drive that jumps at 1 s.
-  subroutine check_jump(text, height)
-    character(len=*), intent(in) :: text   !< data file with a drive of coordinate 1
-    real(wp), intent(in) :: height         !< of the jump [rad, m]
+  subroutine check_jump(test, text, height)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: text       !< data file with a drive of coordinate 1
+    real(wp), intent(in) :: height             !< of the jump [rad, m]
     type(diagnostics_type) :: diagnostics
     type(document_type) :: document
     type(model_type), target :: model
@@ -73,4 +80,4 @@ contains
     end if
     call simulation%close()
   end subroutine check_jump
-end program test_driven_coordinates
+end module test_driven_coordinates

@@ -1,6 +1,6 @@
 !> The dynamics of closed chains allocates no memory in an evaluation of the rates of change, and none when it closes the chains
 !> after a step.
-program test_evaluation_memory
+module test_evaluation_memory
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_model, only: model_type
@@ -12,27 +12,53 @@ program test_evaluation_memory
   use mech9_testing, only: tester_type
   use mech9_counted_memory, only: calls
   implicit none
-  type(tester_type) :: test
-  type(model_type), target :: model
-
-  call loaded_fig1(5, model)
-  call count_calls(model, 2, 'planar chains, one after the other')
-  call loaded_fig1(1, model)
-  call count_calls(model, 1, 'planar chains that are solved together')
-  call five_bar(model)
-  call count_calls(model, 1, 'a planar chain of two degrees of freedom')
-  call loaded_loop(model)
-  call count_calls(model, 1, 'a spatial chain')
-  call two_loops([1, 5], model)
-  call count_calls(model, 2, 'spatial chains, one after the other, and an open branch')
-  call two_loops([1, 9], model)
-  call count_calls(model, 1, 'spatial chains that are solved together')
-  call test%finish()
+  private
+  public :: run
 
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('planar_chains')) call planar_chains(test)
+    if (test%runs('five_bars')) call five_bars(test)
+    if (test%runs('spatial_chains')) call spatial_chains(test)
+  end subroutine run
+
+  subroutine planar_chains(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), target :: model
+
+    call loaded_fig1(5, model)
+    call count_calls(test, model, 2, 'planar chains, one after the other')
+    call loaded_fig1(1, model)
+    call count_calls(test, model, 1, 'planar chains that are solved together')
+  end subroutine planar_chains
+
+  subroutine five_bars(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), target :: model
+
+    call five_bar(model)
+    call count_calls(test, model, 1, 'a planar chain of two degrees of freedom')
+  end subroutine five_bars
+
+  subroutine spatial_chains(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(model_type), target :: model
+
+    call loaded_loop(model)
+    call count_calls(test, model, 1, 'a spatial chain')
+    call two_loops([1, 5], model)
+    call count_calls(test, model, 2, 'spatial chains, one after the other, and an open branch')
+    call two_loops([1, 9], model)
+    call count_calls(test, model, 1, 'spatial chains that are solved together')
+  end subroutine spatial_chains
+
   !> Small steps by Euler's method, as good as any here, each with two evaluations and the closing of the chains.
-  subroutine count_calls(model, blocks, why)
+  subroutine count_calls(test, model, blocks, why)
+    type(tester_type), intent(inout) :: test        !< counts the checks
     type(model_type), intent(in), target :: model   !< with closed chains, bodies and loads of all kinds
     integer, intent(in) :: blocks                   !< number of its blocks with closed chains
     character(len=*), intent(in) :: why             !< its name, printed where a check fails
@@ -90,4 +116,4 @@ contains
     if (allocated(err)) return
     call system%present(err)
   end subroutine step_on
-end program test_evaluation_memory
+end module test_evaluation_memory

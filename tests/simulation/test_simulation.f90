@@ -2,7 +2,7 @@
 !> refuses times behind it and open chains.
 !>
 !> Compares the program with itself: a motion in one go, in pieces and after an interruption.
-program test_simulation
+module test_simulation
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, exit_usage, exit_data, exit_singular, exit_integrator, exit_interrupted
   use mech9_failure, only: failure_lost_inertia, failure_no_inertia
@@ -24,7 +24,9 @@ program test_simulation
   use mech9_testing, only: tester_type
   use simulation_doubles, only: countdown_type, open_chains_type
   implicit none
-  type(tester_type) :: test
+  private
+  public :: run
+
   !> A parallelogram would be special; this four-bar's crank turns fully.
   character(len=*), parameter :: pairs = &
     '&pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 / '// &
@@ -45,27 +47,32 @@ program test_simulation
     '&initial coordinate=2, position=-1.64 / &initial coordinate=3, position=-1.53 / '// &
     '&initial coordinate=4, position=-1.07, velocity=2 / '
 
-  ! positions are closed to 1e-15 over a conditioning of 0.1, and rates are 5 rad/s
-  call check_pieces(driven, .true., 1e-12_wp)
-  ! 2 s are some 200 steps; each errs by 1e-10, and errors grow as the motion's own differences do
-  call check_pieces(free, .false., 1e-7_wp)
-  call check_pieces(by_rocker, .false., 1e-7_wp)
-  call check_interruption(driven, .true., 1)
-  call check_interruption(free, .false., 1)
-  call check_interruption(free, .false., 7)
-  call check_statistics()
-  call check_order_of_times(driven, .true.)
-  call check_order_of_times(free, .false.)
-  call check_open_chains()
-  call check_accuracy()
-  call check_interrupted_accuracy()
-  call check_lost_inertia()
-  call test%finish()
-
 contains
 
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    ! positions are closed to 1e-15 over a conditioning of 0.1, and rates are 5 rad/s
+    if (test%runs('pieces_driven')) call check_pieces(test, driven, .true., 1e-12_wp)
+    ! 2 s are some 200 steps; each errs by 1e-10, and errors grow as the motion's own differences do
+    if (test%runs('pieces_free')) call check_pieces(test, free, .false., 1e-7_wp)
+    if (test%runs('pieces_by_rocker')) call check_pieces(test, by_rocker, .false., 1e-7_wp)
+    if (test%runs('interruption_driven')) call check_interruption(test, driven, .true., 1)
+    if (test%runs('interruption_free')) call check_interruption(test, free, .false., 1)
+    if (test%runs('interruption_later')) call check_interruption(test, free, .false., 7)
+    if (test%runs('check_statistics')) call check_statistics(test)
+    if (test%runs('order_of_times_driven')) call check_order_of_times(test, driven, .true.)
+    if (test%runs('order_of_times_free')) call check_order_of_times(test, free, .false.)
+    if (test%runs('check_open_chains')) call check_open_chains(test)
+    if (test%runs('check_accuracy')) call check_accuracy(test)
+    if (test%runs('check_interrupted_accuracy')) call check_interrupted_accuracy(test)
+    if (test%runs('check_lost_inertia')) call check_lost_inertia(test)
+  end subroutine run
+
   !> A simulation of a text in the form of a data file, not started.
-  subroutine new_simulation(text, is_driven, simulation)
+  subroutine new_simulation(test, text, is_driven, simulation)
+    type(tester_type), intent(inout) :: test                         !< counts the checks
     character(len=*), intent(in) :: text                             !< groups of the data file
     logical, intent(in) :: is_driven                                 !< all independent coordinates are driven
     class(simulation_type), allocatable, intent(out) :: simulation   !< not started
@@ -77,7 +84,7 @@ contains
     type(error_type), allocatable :: err
 
     allocate (model)
-    call read(text, is_driven, model)
+    call read(test, text, is_driven, model)
     if (is_driven) then
       allocate (of_drives)
       call assemble_driven(model, plan, assembled, err)
@@ -100,10 +107,11 @@ contains
     deallocate (simulation%model)
   end subroutine end_simulation
 
-  subroutine read(text, is_driven, model)
-    character(len=*), intent(in) :: text             !< text of a data file
-    logical, intent(in) :: is_driven                 !< all independent coordinates are driven
-    type(model_type), intent(out) :: model           !< mechanism that it describes
+  subroutine read(test, text, is_driven, model)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: text       !< text of a data file
+    logical, intent(in) :: is_driven           !< all independent coordinates are driven
+    type(model_type), intent(out) :: model     !< mechanism that it describes
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 
@@ -124,16 +132,17 @@ contains
   end function numbers
 
   !> The motion at its end by one call, and by many.
-  subroutine check_pieces(text, is_driven, tolerance)
-    character(len=*), intent(in) :: text   !< text of a data file
-    logical, intent(in) :: is_driven       !< all independent coordinates are driven
-    real(wp), intent(in) :: tolerance      !< of coordinates [rad] and rates [rad/s]
+  subroutine check_pieces(test, text, is_driven, tolerance)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: text       !< text of a data file
+    logical, intent(in) :: is_driven           !< all independent coordinates are driven
+    real(wp), intent(in) :: tolerance          !< of coordinates [rad] and rates [rad/s]
     class(simulation_type), allocatable :: whole, pieces
     type(error_type), allocatable :: err
     integer :: i
 
-    call new_simulation(text, is_driven, whole)
-    call new_simulation(text, is_driven, pieces)
+    call new_simulation(test, text, is_driven, whole)
+    call new_simulation(test, text, is_driven, pieces)
     call whole%start(err)
     call whole%advance(2.0_wp, err)
     call test%no_error(err, 'the motion succeeds in one go')
@@ -151,18 +160,19 @@ contains
   end subroutine check_pieces
 
   !> A motion that is interrupted at the given question stops there with its code; asked again it goes on to the same end.
-  subroutine check_interruption(text, is_driven, question)
-    character(len=*), intent(in) :: text   !< text of a data file
-    logical, intent(in) :: is_driven       !< all independent coordinates are driven
-    integer, intent(in) :: question        !< after the one of the start
+  subroutine check_interruption(test, text, is_driven, question)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: text       !< text of a data file
+    logical, intent(in) :: is_driven           !< all independent coordinates are driven
+    integer, intent(in) :: question            !< after the one of the start
     class(simulation_type), allocatable :: whole, interrupted
     type(error_type), allocatable :: err
     integer, target :: left
 
-    call new_simulation(text, is_driven, whole)
+    call new_simulation(test, text, is_driven, whole)
     call whole%start(err)
     call whole%advance(1.0_wp, err)
-    call new_simulation(text, is_driven, interrupted)
+    call new_simulation(test, text, is_driven, interrupted)
     left = 1 + question
     call interrupted%start(err, countdown_type(left))
     call test%no_error(err, 'the motion starts')
@@ -177,7 +187,7 @@ contains
     call test%is_true(maxval(abs(numbers(whole) - numbers(interrupted))) <= 1e-12_wp, &
                       'an interrupted motion goes on to the same position')
     call end_simulation(interrupted)
-    call new_simulation(text, is_driven, interrupted)
+    call new_simulation(test, text, is_driven, interrupted)
     left = 1
     call interrupted%start(err, countdown_type(left))
     call test%has_error(err, exit_interrupted, 'the start can be interrupted')
@@ -186,14 +196,15 @@ contains
   end subroutine check_interruption
 
   !> Counts grow with every advance, across changes of coordinates too, and begin at nothing.
-  subroutine check_statistics()
+  subroutine check_statistics(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     class(simulation_type), allocatable :: simulation
     type(simulation_statistics_type) :: now, before
     type(error_type), allocatable :: err
     logical :: grow
     integer :: i
 
-    call new_simulation(by_rocker, .false., simulation)
+    call new_simulation(test, by_rocker, .false., simulation)
     now = simulation%statistics()
     call test%is_true(now%positions == 0 .and. now%steps == 0 .and. now%evaluations == 0, 'nothing was done before the start')
     call simulation%start(err)
@@ -217,14 +228,15 @@ contains
   end subroutine check_statistics
 
   !> No motion without a start, and none back.
-  subroutine check_order_of_times(text, is_driven)
-    character(len=*), intent(in) :: text   !< text of a data file
-    logical, intent(in) :: is_driven       !< all independent coordinates are driven
+  subroutine check_order_of_times(test, text, is_driven)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: text       !< text of a data file
+    logical, intent(in) :: is_driven           !< all independent coordinates are driven
     class(simulation_type), allocatable :: simulation
     type(error_type), allocatable :: err
     real(wp), allocatable :: there(:)
 
-    call new_simulation(text, is_driven, simulation)
+    call new_simulation(test, text, is_driven, simulation)
     call simulation%advance(0.5_wp, err)
     call test%has_error(err, exit_usage, 'a motion that was not started is refused')
     call simulation%start(err)
@@ -237,14 +249,15 @@ contains
   end subroutine check_order_of_times
 
   !> A simulation fails at a position whose chains are open by more than 1e-9 of the size, and does not show it.
-  subroutine check_open_chains()
+  subroutine check_open_chains(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(open_chains_type) :: simulation
     type(model_type), target :: model
     type(plan_type) :: plan
     type(state_type) :: assembled
     type(error_type), allocatable :: err
 
-    call read(driven, .true., model)
+    call read(test, driven, .true., model)
     call assemble_driven(model, plan, assembled, err)
     call new_driven_simulation(model, plan, assembled, simulation%driven_simulation_type)
     simulation%gap = 0.9e-9_wp*plan%length
@@ -257,7 +270,8 @@ contains
 
   !> The tolerances for an accuracy, and errors that are those of the run with them; where a position has no error that is
   !> known, the motion ends.
-  subroutine check_accuracy()
+  subroutine check_accuracy(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type), target :: model
     type(free_simulation_type), target :: simulation
     type(plan_type) :: plan
@@ -266,7 +280,7 @@ contains
     type(error_type), allocatable :: err
     integer :: i
 
-    call read(loaded//'&solver accuracy=1e-7 / ', .false., model)
+    call read(test, loaded//'&solver accuracy=1e-7 / ', .false., model)
     call assemble_free(model, plan, assembled, err)
     call find_accuracy(model, plan, assembled, errors, err)
     call test%no_error(err, 'an accuracy that is asked for is reached')
@@ -293,7 +307,8 @@ contains
   end subroutine check_accuracy
 
   !> The runs for an accuracy stop where the user interrupts.
-  subroutine check_interrupted_accuracy()
+  subroutine check_interrupted_accuracy(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(model_type), target :: model
     type(plan_type) :: plan
     type(state_type) :: assembled
@@ -302,7 +317,7 @@ contains
     type(error_type), allocatable :: err
     integer, target :: left
 
-    call read(loaded//'&solver accuracy=1e-7 / ', .false., model)
+    call read(test, loaded//'&solver accuracy=1e-7 / ', .false., model)
     call assemble_free(model, plan, assembled, err)
     left = 150
     countdown%left => left
@@ -314,7 +329,8 @@ contains
   !> Two bars with one mass, at the end of the second one: stretched, both turn it alike, and the matrix of the coefficients of
   !> motion, (4, 2; 2, 1) kg m^2, is singular without any round-off. A trial of an integration there fails so that a smaller step
   !> is tried; a system made there has data that are at fault.
-  subroutine check_lost_inertia()
+  subroutine check_lost_inertia(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     character(len=*), parameter :: bars = '&structure cq=1, 2 / &pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 / '// &
       '&pair coordinate=2, links=2,3, kind=''revolute'', axis=0,0,1, point=1,0,0, moving_point=0,0,0 / '// &
       '&initial coordinate=1, position=0 / &initial coordinate=2, position=1 / &body link=3, mass=1, centre=1,0,0 / &time end=1 /'
@@ -325,25 +341,26 @@ contains
     type(error_type), allocatable :: err
     real(wp) :: rate(4)
 
-    call read(bars, .false., model)
+    call read(test, bars, .false., model)
     call assemble_free(model, plan, start, err)
     system%plan = plan
     system%state = start
     if (.not. allocated(err)) call set_motion_system(model, model%problem%partition, system, err)
     call test%no_error(err, 'two bars with one mass have inertia where they are not stretched')
     call system%rate(0.1_wp, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], rate, err)
-    call check_failure(err, exit_integrator, failure_lost_inertia, 'a trial step to the stretched position')
+    call check_failure(test, err, exit_integrator, failure_lost_inertia, 'a trial step to the stretched position')
     if (allocated(err)) call test%is_true(is_recoverable(err), 'a smaller step is tried after a loss of inertia')
     model%problem%initial%position = 0.0_wp
     call assemble_free(model, plan, start, err)
     stretched%plan = plan
     stretched%state = start
     if (.not. allocated(err)) call set_motion_system(model, model%problem%partition, stretched, err)
-    call check_failure(err, exit_data, failure_no_inertia, 'a start in the stretched position')
+    call check_failure(test, err, exit_data, failure_no_inertia, 'a start in the stretched position')
   end subroutine check_lost_inertia
 
   !> Check the code and the kind of a failure about the second coordinate.
-  subroutine check_failure(err, code, kind, name)
+  subroutine check_failure(test, err, code, kind, name)
+    type(tester_type), intent(inout) :: test           !< counts the checks
     type(error_type), allocatable, intent(in) :: err   !< the failure
     integer, intent(in) :: code                        !< expected exit code
     integer, intent(in) :: kind                        !< expected kind
@@ -357,4 +374,4 @@ contains
     call test%is_true(err%failure%kind == kind, name//' fails by its cause')
     call test%is_true(all(err%failure%coordinates == 2), name//' fails by the second coordinate')
   end subroutine check_failure
-end program test_simulation
+end module test_simulation
