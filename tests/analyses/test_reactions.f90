@@ -1,7 +1,7 @@
 !> Inverse dynamics on random mechanisms of open links, closed chains, ladders and planar chains that stand on moving links, with
 !> all kinds of loads: at any accelerations, the forces that the independent coordinates need are those of Lagrange's equations,
 !> a ddq + h - Q, which come about without the forces in the pairs; and the pairs of each link balance it.
-program test_reactions
+module test_reactions
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -24,46 +24,54 @@ program test_reactions
   use mech9_testing, only: tester_type
   use mech9_counted_memory, only: calls
   implicit none
-
-  type(tester_type) :: test
-  integer :: determined   !< clusters that equilibrium determines
-
-  determined = 0
-  call known_mechanisms()
-  call random_mechanisms()
-  call test%is_true(determined > 30, 'equilibrium determines many clusters')
-  call test%finish()
+  private
+  public :: run
 
 contains
 
-  subroutine known_mechanisms()
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('known_mechanisms')) call known_mechanisms(test)
+    if (test%runs('random_mechanisms')) call random_mechanisms(test)
+  end subroutine run
+
+  subroutine known_mechanisms(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(model_type) :: model
+    integer :: determined   ! clusters that equilibrium determines
 
+    determined = 0
     call open_chain(model)
-    call check(random, model, 'an open chain')
+    call check(test, determined, random, model, 'an open chain')
     call five_bar(model)
-    call check(random, model, 'a five-bar')
+    call check(test, determined, random, model, 'a five-bar')
     call loaded_fig1(5, model)
-    call check(random, model, 'Fig. 1')
+    call check(test, determined, random, model, 'Fig. 1')
     call loaded_loop(model)
-    call check(random, model, 'a spatial loop with all kinds of pairs')
+    call check(test, determined, random, model, 'a spatial loop with all kinds of pairs')
   end subroutine known_mechanisms
 
-  subroutine random_mechanisms()
+  subroutine random_mechanisms(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
     type(structure_type) :: structure
     type(model_type) :: model
     integer :: trial
+    integer :: determined   ! clusters that equilibrium determines
 
+    determined = 0
     do trial = 1, 60
       call random_structure(random, mod(trial, 2) == 0, 2 + below(random, 5), structure)
       call finished(random, structure, model)
-      call check(random, model, 'a random mechanism')
+      call check(test, determined, random, model, 'a random mechanism')
       if (.not. structure%planar) cycle
       call lay_flat(model)
-      call check(random, model, 'a flat mechanism')
+      call check(test, determined, random, model, 'a flat mechanism')
     end do
+    call test%is_true(determined > 30, 'equilibrium determines many clusters')
   end subroutine random_mechanisms
 
   !> Leave nothing that acts across the x-y plane: bodies in the plane, gravity along it, and loads on coordinates only.
@@ -89,7 +97,9 @@ contains
   end subroutine lay_flat
 
   !> Compare at random rates and accelerations.
-  subroutine check(random, model, why)
+  subroutine check(test, determined, random, model, why)
+    type(tester_type), intent(inout) :: test     !< counts the checks
+    integer, intent(inout) :: determined         !< clusters that equilibrium determines
     type(random_type), intent(inout) :: random   !< source of the random numbers
     type(model_type), intent(in) :: model        !< the mechanism
     character(len=*), intent(in) :: why          !< its name
@@ -140,8 +150,8 @@ contains
     scale = max(maxval(abs(needed)), maxval(abs(reactions%force)), maxval(abs(reactions%moment)))
     call test%near(maxval(abs(reactions%needed(plan%independent) - needed))/scale, 0.0_wp, 1.0e-13_wp/conditioning**2, &
                    why//': independent coordinates need a ddq + h - Q')
-    call check_balance(model, plan, reaction_plan, state, reactions, scale, why)
-    if (conditioning > 1.0e-3_wp) call check_cost(plan, reaction_plan, reactions, why)
+    call check_balance(test, model, plan, reaction_plan, state, reactions, scale, why)
+    if (conditioning > 1.0e-3_wp) call check_cost(test, determined, plan, reaction_plan, reactions, why)
     call find_unique(plan, reaction_plan, state, unique)
     call test%is_true(all(unique%pairs(:, pack([(i, i=1, plan%n_coordinates)], reaction_plan%alone(plan%step_of)))), &
                       why//': all components of open chains are unique')
@@ -153,7 +163,9 @@ contains
 
   !> The balance of all links of a cluster at once, whose cost is a multiple of that of the motion, is not solved where the
   !> transposed equations of the motion serve: its matrices are still zero.
-  subroutine check_cost(plan, reaction_plan, reactions, why)
+  subroutine check_cost(test, determined, plan, reaction_plan, reactions, why)
+    type(tester_type), intent(inout) :: test                !< counts the checks
+    integer, intent(inout) :: determined                    !< clusters that equilibrium determines
     type(plan_type), intent(in) :: plan                     !< the plan of the mechanism
     type(reaction_plan_type), intent(in) :: reaction_plan   !< its plan of inverse dynamics
     type(reactions_type), intent(in) :: reactions           !< the forces
@@ -172,7 +184,8 @@ contains
   end subroutine check_cost
 
   !> Each link but link 1 receives from its pairs what it requires.
-  subroutine check_balance(model, plan, reaction_plan, state, reactions, scale, why)
+  subroutine check_balance(test, model, plan, reaction_plan, state, reactions, scale, why)
+    type(tester_type), intent(inout) :: test                !< counts the checks
     type(model_type), intent(in) :: model                   !< the mechanism
     type(plan_type), intent(in) :: plan                     !< its plan
     type(reaction_plan_type), intent(in) :: reaction_plan   !< its plan of inverse dynamics
@@ -199,4 +212,4 @@ contains
                    why//': the links are in balance')
     call test%is_true(size(model%mechanism%bodies) > 0, why//': there are masses')
   end subroutine check_balance
-end program test_reactions
+end module test_reactions
