@@ -1,32 +1,40 @@
 !> Different mechanisms run side by side: the same numbers, bit by bit, from 1, 2 and 8 OpenMP threads.
 !>
 !> Compares the program with itself: runs alone and runs side by side.
-program test_threads
+module test_threads
   use mech9_text, only: to_text
   use mech9_testing, only: tester_type
   use many_runs, only: run_type, list_runs, carry_out, same
   implicit none
-  call run_tests()
+  private
+  public :: run
+
+  integer, parameter :: threads(*) = [1, 2, 8]
+
 contains
 
-  subroutine run_tests()
-    type(tester_type) :: tester
+  !> Run the cases of this suite.
+  subroutine run(tester)
+    type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
+
+    if (tester%runs('one_two_eight')) call one_two_eight(tester)
+  end subroutine run
+
+  !> The runs of one, two and eight threads.
+  subroutine one_two_eight(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
     type(run_type), allocatable :: alone(:)
-    integer, parameter :: threads(*) = [1, 2, 8]
-    character(len=1000) :: folder
     integer :: i
 
-    call get_command_argument(1, folder)
-    call list_runs(trim(folder), 48, alone)
+    call list_runs(tester%tree//'/tests', 48, alone)
     do i = 1, size(alone)
       call carry_out(alone(i))
       call tester%is_true(alone(i)%done, alone(i)%file//' runs')
     end do
     do i = 1, size(threads)
-      call test_side_by_side(tester, trim(folder), alone, threads(i))
+      call test_side_by_side(tester, tester%tree//'/tests', alone, threads(i))
     end do
-    call tester%finish()
-  end subroutine run_tests
+  end subroutine one_two_eight
 
   subroutine test_side_by_side(tester, folder, alone, threads)
     type(tester_type), intent(inout) :: tester   !< counts the checks
@@ -47,4 +55,4 @@ contains
                           to_text(threads)//' threads give the numbers of one: '//runs(i)%file)
     end do
   end subroutine test_side_by_side
-end program test_threads
+end module test_threads
