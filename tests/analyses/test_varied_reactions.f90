@@ -1,0 +1,207 @@
+!> Derivatives of the wrenches of all pairs by all parameters, against differences of mechanisms with other parameters that have the
+!> same motion of their independent coordinates; a pendulum in closed form.
+module test_varied_reactions
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_differentiation, only: half_width, derivatives_from_stencil
+  use mech9_source, only: source_from_text
+  use mech9_document, only: document_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_parser, only: parse_document
+  use mech9_reader, only: read_model
+  use mech9_varied_document, only: varied_document_type, new_varied_document
+  use mech9_model, only: model_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_linearisation, only: linearisation_type, new_linearisation, find_forces
+  use mech9_varied_motion, only: varied_motion_type, new_varied_motion, find_varied_motion
+  use mech9_varied_forces, only: varied_forces_type, new_varied_forces, find_varied_forces
+  use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
+  use mech9_reactions, only: reactions_type, new_reactions, find_reactions
+  use mech9_varied_reactions, only: varied_reactions_type, new_varied_reactions, find_varied_reactions
+  use mech9_testing, only: tester_type
+  implicit none
+  private
+  public :: run
+
+  character(len=*), parameter :: pendulum = '&structure cq=1 / &pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 / '// &
+    '&body link=2, mass=2, centre=0,-0.8,0, inertia=0,0,0.3,0,0,0 / &gravity acceleration=0,-9.81,0 / '// &
+    '&load kind=''coordinate'', coordinate=1, stiffness=5, damping=3 / &initial coordinate=1, position=0.6 / '// &
+    '&parameter name=''mass'', sets=''body(1).mass'' / &parameter name=''inertia'', sets=''body(1).inertia(3)'' / '// &
+    '&parameter name=''centre'', sets=''body(1).centre(2)'' / &parameter name=''stiffness'', sets=''load(1).stiffness'' / '// &
+    '&parameter name=''damping'', sets=''load(1).damping'' / &parameter name=''gravity'', sets=''gravity.acceleration(2)'' / '
+  character(len=*), parameter :: four_bar = '&structure cq=1 / '// &
+    '&pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 / '// &
+    '&pair coordinate=2, links=2,3, kind=''revolute'', axis=0,0,1, point=0.4,0,0, moving_point=0,0,0 / '// &
+    '&pair coordinate=3, links=3,4, kind=''revolute'', axis=0,0,1, point=1.9,0,0, moving_point=1.6,0,0 / '// &
+    '&pair coordinate=4, links=1,4, kind=''revolute'', axis=0,0,1, point=2,0.1,0, moving_point=0,0,0 / '// &
+    '&initial coordinate=1, position=0.8 / &initial coordinate=2, position=0.3 / &initial coordinate=3, position=1 / '// &
+    '&initial coordinate=4, position=1.7 / &gravity acceleration=0,-9.81,0 / &point name=''P'', link=3, position=0.5,0.3,0 / '// &
+    '&body link=3, mass=2, centre=0.9,0.2,0, inertia=0,0,0.3,0,0,0 / &body link=4, mass=1, centre=0.7,0,0 / '// &
+    '&load kind=''spring'', links=1,3, position=0,1,0, second_position=0.5,0,0, stiffness=40, free_length=0.3, damping=2 / '// &
+    '&parameter name=''crank'', sets=''pair(2).point(1)'' / &parameter name=''height'', sets=''pair(4).point(2)'' / '// &
+    '&parameter name=''centre'', sets=''body(1).centre(1)'' / &parameter name=''length'', sets=''load(1).free_length'' / '// &
+    '&parameter name=''place'', sets=''point(1).position(2)'' / &parameter name=''end'', sets=''load(1).position(1)'' / '
+  character(len=*), parameter :: screw = '&structure cq=1 / '// &
+    '&pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1, moving_point=0,0,0 / '// &
+    '&pair coordinates=2,3, links=2,3, kind=''universal'', axis=0,0,1, moving_axis=0,1,0, point=0.2,0.15,0, '// &
+    'moving_point=0,0,0 / '// &
+    '&pair coordinates=4,5,6, links=3,4, kind=''spherical'', point=1.1,0,0, moving_point=0,0,0.6 / '// &
+    '&pair coordinate=7, links=1,4, kind=''helical'', axis=0.1,1,0, point=1,0,0, moving_point=0,0,0, pitch=0.3 / '// &
+    '&gravity acceleration=1,-9,3 / &point name=''P'', link=4, position=0.5,0.3,0.1 / &initial coordinate=1, position=0.4 / '// &
+    '&body link=2, mass=2, centre=0.2,0.1,0.1, inertia=0.2,0.25,0.3,0.02,0.01,0.03 / '// &
+    '&body link=4, mass=1, centre=0.1,0.2,0.3, inertia=0.3,0.2,0.25,0.01,0.02,0.03 / '// &
+    '&load kind=''force'', link=4, position=0.1,0.5,0, force=3,1,2, frame=''link'' / '// &
+    '&parameter name=''rod'', sets=''pair(3).point(1)'' / &parameter name=''tilt'', sets=''pair(4).axis(1)'' / '// &
+    '&parameter name=''pitch'', sets=''pair(4).pitch'' / &parameter name=''force'', sets=''load(1).force(2)'' / '
+
+contains
+
+  !> Run the cases of this suite.
+  subroutine run(test)
+    type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
+
+    if (test%runs('closed_form')) call closed_form(test)
+    if (test%runs('pendulum')) call compare(test, pendulum, 'pendulum')
+    if (test%runs('four_bar')) call compare(test, four_bar, 'four-bar')
+    if (test%runs('screw')) call compare(test, screw, 'crank, rod and screw')
+  end subroutine run
+
+  !> The model of a text as a function of its parameters.
+  subroutine read_varied(test, text, varied, model)
+    type(tester_type), intent(inout) :: test              !< counts the checks
+    character(len=*), intent(in) :: text                  !< of a data file
+    type(varied_document_type), intent(out) :: varied     !< its model as a function of its parameters
+    type(model_type), intent(out) :: model                !< the model of the values in the text
+    type(document_type) :: document
+    type(diagnostics_type) :: diagnostics
+
+    call parse_document(source_from_text('test.nml', text), document, diagnostics)
+    call read_model(document, .false., model, diagnostics)
+    call test%is_true(.not. diagnostics%failed(), 'there is a model')
+    call new_varied_document(document, diagnostics%sources, .false., varied)
+  end subroutine read_varied
+
+  !> The wrenches of a mechanism whose first coordinate has a rate of 1.3 and an acceleration of -0.7: forces, then moments of all pairs.
+  subroutine find_numbers(model, start, numbers, state, plan, err)
+    type(model_type), intent(in) :: model                   !< the mechanism
+    real(wp), intent(in) :: start(:)                        !< (M) coordinates, from guesses to closed ones [rad, m]
+    real(wp), allocatable, intent(out) :: numbers(:)        !< the numbers
+    type(state_type), intent(out) :: state                  !< the motion
+    type(plan_type), intent(out) :: plan                    !< the plan, in space
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(linearisation_type) :: linearisation
+    type(reaction_plan_type) :: reaction_plan
+    type(reactions_type) :: reactions
+
+    call make_plan(model%mechanism, model%problem%partition, start, plan, state, err, in_space=.true.)
+    if (allocated(err)) return
+    state%dq(1) = 1.3_wp
+    state%ddq(1) = -0.7_wp
+    call new_linearisation(model%mechanism, plan, linearisation)
+    call find_forces(model%mechanism, plan, state, linearisation, err)
+    if (allocated(err)) return
+    call make_reaction_plan(model%mechanism, plan, reaction_plan)
+    reactions = new_reactions(plan, reaction_plan)
+    call find_reactions(model%mechanism, plan, reaction_plan, state, reactions, err)
+    numbers = [reshape(reactions%force, [3*plan%n_coordinates]), reshape(reactions%moment, [3*plan%n_coordinates])]
+  end subroutine find_numbers
+
+  !> The derivatives of these numbers.
+  subroutine find_changes(test, varied, model, state, plan, changes)
+    type(tester_type), intent(inout) :: test               !< counts the checks
+    type(varied_document_type), intent(inout) :: varied    !< the model as a function of its parameters
+    type(model_type), intent(in) :: model                  !< the present model
+    type(state_type), intent(in) :: state                  !< the motion
+    type(plan_type), intent(in) :: plan                    !< the plan
+    real(wp), allocatable, intent(out) :: changes(:, :)    !< (P,numbers)
+    type(varied_motion_type) :: motion
+    type(varied_forces_type) :: forces
+    type(varied_reactions_type) :: reactions
+    type(error_type), allocatable :: err
+
+    call new_varied_motion(varied, model, plan, motion, err)
+    if (.not. allocated(err)) call find_varied_motion(model, state, motion, err)
+    call test%no_error(err, 'there are derivatives of the motion')
+    if (allocated(err)) return
+    call new_varied_forces(model, motion, forces, with_links=.true.)
+    call find_varied_forces(model, motion, forces, err)
+    if (.not. allocated(err)) call new_varied_reactions(model, motion, reactions, err)
+    if (.not. allocated(err)) call find_varied_reactions(model, motion, forces%links, reactions, err)
+    call test%no_error(err, 'there are derivatives of wrenches')
+    associate (n => size(model%parameters), m => 3*plan%n_coordinates)
+      allocate (changes(n, 2*m))
+      changes(:, :m) = reshape(reactions%force, [n, m])
+      changes(:, m + 1:) = reshape(reactions%moment, [n, m])
+    end associate
+  end subroutine find_changes
+
+  !> Compare all derivatives with differences.
+  subroutine compare(test, text, name)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), intent(in) :: text       !< of a data file
+    character(len=*), intent(in) :: name       !< of the mechanism, for the report of a failure
+    real(wp), parameter :: h = 1.0_wp/1024.0_wp
+    type(varied_document_type), target :: varied
+    type(model_type) :: model, other
+    type(state_type) :: state, beside
+    type(plan_type) :: plan, other_plan
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: changes(:, :), numbers(:), values(:, :), x(:)
+    real(wp) :: slope, curvature, error
+    integer :: p, k, i
+
+    call read_varied(test, text, varied, model)
+    call find_numbers(model, model%problem%initial%position, numbers, state, plan, err)
+    call test%no_error(err, name//': there is a motion')
+    if (allocated(err)) return
+    call find_changes(test, varied, model, state, plan, changes)
+    allocate (values(size(numbers), -half_width:half_width))
+    do p = 1, size(model%parameters)
+      do k = -half_width, half_width
+        x = model%parameters%value
+        x(p) = x(p) + k*h
+        call varied%at(x, other, err)
+        if (.not. allocated(err)) call find_numbers(other, state%q, numbers, beside, other_plan, err)
+        call test%no_error(err, name//': there is a motion nearby')
+        if (allocated(err)) return
+        values(:, k) = numbers
+      end do
+      do i = 1, size(numbers)
+        call derivatives_from_stencil(values(i, :), h, slope, curvature, error)
+        ! round-off of forces up to some ten, some 1e-14 over a conditioning of a tenth, times 2/h
+        call test%near(changes(p, i), slope, 1.0e-9_wp, name//': derivatives by '//trim(model%parameters(p)%name))
+      end do
+    end do
+  end subroutine compare
+
+  !> The pin of a pendulum carries m (g + d^2/dt^2 (l sin q, -l cos q)) and the torque (m l^2 + J) ddq + m g l sin q.
+  subroutine closed_form(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), parameter :: q = 0.6_wp, dq = 1.3_wp, ddq = -0.7_wp, m = 2.0_wp, l = 0.8_wp, g = 9.81_wp
+    type(varied_document_type), target :: varied
+    type(model_type) :: model
+    type(state_type) :: state
+    type(plan_type) :: plan
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: changes(:, :), numbers(:)
+    real(wp) :: a(2), expected(6, 3)
+
+    call read_varied(test, pendulum, varied, model)
+    call find_numbers(model, model%problem%initial%position, numbers, state, plan, err)
+    call test%no_error(err, 'there is a motion')
+    call find_changes(test, varied, model, state, plan, changes)
+    ! acceleration of the mass over the length
+    a = [ddq*cos(q) - dq**2*sin(q), ddq*sin(q) + dq**2*cos(q)]
+    call test%near(maxval(abs(numbers([1, 2, 6]) - [m*l*a(1), m*(g + l*a(2)), (m*l**2 + 0.3_wp)*ddq + m*g*l*sin(q)])), 0.0_wp, &
+                   1.0e-13_wp, 'force and torque of the pin')
+    ! by mass, inertia, centre (-l), stiffness, damping and gravity (-g)
+    expected(:, 1) = [l*a(1), 0.0_wp, -m*a(1), 0.0_wp, 0.0_wp, 0.0_wp]
+    expected(:, 2) = [g + l*a(2), 0.0_wp, -m*a(2), 0.0_wp, 0.0_wp, -m]
+    expected(:, 3) = [l**2*ddq + g*l*sin(q), ddq, -2.0_wp*m*l*ddq - m*g*sin(q), 0.0_wp, 0.0_wp, -m*l*sin(q)]
+    ! sums of a few products of numbers up to ten
+    call test%near(maxval(abs(changes(:, [1, 2, 6]) - expected)), 0.0_wp, 1.0e-12_wp, 'their derivatives')
+    call test%near(maxval(abs(changes(:, [3, 4, 5]))), 0.0_wp, 1.0e-12_wp, 'nothing acts across the plane')
+  end subroutine closed_form
+end module test_varied_reactions
