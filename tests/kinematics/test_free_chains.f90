@@ -138,7 +138,7 @@ contains
     end do
   end subroutine motions_of_five_bar
 
-  !> Where the crank is held, nothing moves.
+  !> Nothing moves while the crank is held.
   subroutine held_coordinate(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     type(plan_type) :: plan

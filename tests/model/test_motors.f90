@@ -143,7 +143,7 @@ contains
     type(tester_type), intent(inout) :: test            !< counts the checks
     class(motor_type), intent(in) :: motor              !< the motor
     type(motor_motion_type), intent(in) :: motion       !< of its coordinate
-    type(motor_action_type), intent(in) :: action       !< what it does there
+    type(motor_action_type), intent(in) :: action       !< of the motor there
     type(motor_motion_type) :: moved
     type(motor_action_type) :: beside
     type(error_type), allocatable :: err

@@ -82,7 +82,7 @@ contains
     end do
   end subroutine cofactors
 
-  !> Where columns depend on each other, the least pivot is zero and the inverse is not set.
+  !> The least pivot of dependent columns is zero, and their inverse is not set.
   subroutine dependent_columns(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     real(wp) :: inverse(3, 3), pivots(3)

@@ -1,5 +1,5 @@
-!> What a simulation needs at single moments: coefficients of motion and impulses of drives in closed form, gimbal lock, the intervals
-!> between joints of laws, and the guard of closed chains.
+!> Computations of simulations at single moments: coefficients of motion and impulses of drives in closed form, gimbal lock, the
+!> intervals between joints of laws, and the guard of closed chains.
 module test_moments
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_singular
