@@ -3,7 +3,7 @@ module mech9_block_motion
   use mech9_kinds, only: wp
   use mech9_tolerances, only: round_off_of_rates, singular_conditioning
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_failure, only: failure_singular_block
+  use mech9_dynamics_failures, only: failure_singular_block
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type

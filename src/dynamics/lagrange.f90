@@ -16,7 +16,7 @@
 module mech9_lagrange
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_failure, only: failure_no_inertia
+  use mech9_dynamics_failures, only: failure_no_inertia
   use mech9_tolerances, only: negligible_inertia
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_driven_equations, only: hold

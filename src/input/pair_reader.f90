@@ -2,7 +2,7 @@
 module mech9_pair_reader
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_failure, only: failure_sharp_curve
+  use mech9_curve_failures, only: failure_sharp_curve
   use mech9_text, only: to_text
   use mech9_pose, only: pose_type, default_zero
   use mech9_quintic_spline, only: fewest_points

@@ -2,7 +2,7 @@
 module mech9_robot_start
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_structure
-  use mech9_failure, only: failure_wrong_choice
+  use mech9_assembly_failures, only: failure_wrong_choice
   use mech9_explanation, only: explain
   use mech9_partition, only: partition_type, new_partition
   use mech9_mechanism, only: mechanism_type

@@ -2,7 +2,7 @@
 module mech9_spline
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_failure, only: failure_few_points, failure_points_order, failure_no_spline
+  use mech9_spline_failures, only: failure_few_points, failure_points_order, failure_no_spline
   use mech9_lapack, only: dgtsv
   implicit none
   private

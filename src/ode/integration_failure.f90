@@ -2,9 +2,10 @@
 module mech9_integration_failure
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_internal, exit_data, exit_integrator
-  use mech9_failure, only: failure_unknown_method, failure_tolerance_count, failure_relative_tolerance, &
+  use mech9_failure, only: failure_off_curve, failure_off_table
+  use mech9_ode_failures, only: failure_unknown_method, failure_tolerance_count, failure_relative_tolerance, &
     failure_absolute_tolerance, failure_inaccurate_step, failure_unsolved_step, failure_accurate_step, &
-    failure_step_memory, failure_step_settings, failure_short_step, failure_off_curve, failure_off_table
+    failure_step_memory, failure_step_settings, failure_short_step
   use mech9_integration_methods, only: method_index
   use mech9_stepper, only: evaluation_failed, too_inaccurate, not_convergent, too_accurate, out_of_memory
   use mech9_sundials_system, only: system_box_type

@@ -2,7 +2,7 @@
 module mech9_integrator
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, exit_integrator
-  use mech9_failure, only: failure_many_steps
+  use mech9_ode_failures, only: failure_many_steps
   use mech9_ode_system, only: ode_system_type
   use mech9_integration_methods, only: integration_methods, tolerance_share, runge_kutta, automatic
   use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed

@@ -2,7 +2,7 @@
 module mech9_ode_system
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_internal, exit_singular, exit_integrator
-  use mech9_failure, only: failure_no_jacobian
+  use mech9_ode_failures, only: failure_no_jacobian
   implicit none
   private
   public :: ode_system_type, is_recoverable

@@ -4,7 +4,7 @@ module mech9_sundials_system
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, exit_integrator
-  use mech9_failure, only: failure_infinite_rate, failure_infinite_jacobian
+  use mech9_ode_failures, only: failure_infinite_rate, failure_infinite_jacobian
   use mech9_ode_system, only: ode_system_type, is_recoverable
   use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, SUNMatrix
   use fsunmatrix_dense_mod, only: FSUNDenseMatrix_Data

@@ -4,7 +4,7 @@ module mech9_equilibrium_task
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_interrupted
   use mech9_text, only: to_text
-  use mech9_failure, only: failure_no_inertia
+  use mech9_dynamics_failures, only: failure_no_inertia
   use mech9_json, only: json_type
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type

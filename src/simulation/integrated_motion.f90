@@ -4,7 +4,7 @@ module mech9_integrated_motion
   use mech9_kinds, only: wp, long
   use mech9_tolerances, only: doubtful_conditioning, worthwhile_improvement, third_derivative_step
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_failure, only: failure_angles_sensitivity
+  use mech9_simulation_failures, only: failure_angles_sensitivity
   use mech9_variable_model, only: variable_model_type
   use mech9_partition, only: partition_type
   use mech9_block_solver, only: work_count_type, work_of

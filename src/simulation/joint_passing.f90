@@ -9,7 +9,7 @@ module mech9_joint_passing
   use mech9_kinds, only: wp
   use mech9_tolerances, only: round_off_of_jumps
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_failure, only: failure_jump_sensitivity
+  use mech9_simulation_failures, only: failure_jump_sensitivity
   use mech9_state, only: state_type
   use mech9_lagrange, only: find_equations, complete_accelerations
   use mech9_frame_motion, only: place_all

@@ -7,8 +7,10 @@ module mech9_motion_system
   use mech9_kinds, only: wp, long
   use mech9_tolerances, only: trusted_between_steps, trusted_closing
   use mech9_error, only: error_type, raise, exit_singular, exit_integrator
-  use mech9_failure, only: failure_singular_step, failure_unclosed_step, failure_drive_jumps, failure_no_inertia, &
-    failure_lost_inertia, failure_infinite_rate
+  use mech9_ode_failures, only: failure_infinite_rate
+  use mech9_dynamics_failures, only: failure_no_inertia
+  use mech9_force_gradient_failures, only: failure_lost_inertia
+  use mech9_simulation_failures, only: failure_singular_step, failure_unclosed_step, failure_drive_jumps
   use mech9_law, only: drive_slot_type
   use mech9_partition, only: partition_type
   use mech9_motor, only: motor_action_type

@@ -2,7 +2,7 @@
 module mech9_simulation
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, raise, exit_usage, exit_integrator, exit_interrupted
-  use mech9_failure, only: failure_not_started, failure_backwards, failure_interrupted, failure_accuracy
+  use mech9_simulation_failures, only: failure_not_started, failure_backwards, failure_interrupted, failure_accuracy
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type

@@ -11,8 +11,9 @@ module mech9_stopped_motion
   use mech9_kinds, only: wp
   use mech9_tolerances, only: locked, locked_together, doubtful_conditioning
   use mech9_error, only: error_type, raise, exit_singular, exit_integrator
-  use mech9_failure, only: failure_gimbal_lock, failure_no_inertia, failure_infinite_rate, failure_singular_block, &
-    failure_singular_start_block, failure_driven_dead_point
+  use mech9_ode_failures, only: failure_infinite_rate
+  use mech9_dynamics_failures, only: failure_no_inertia, failure_singular_block
+  use mech9_simulation_failures, only: failure_gimbal_lock, failure_singular_start_block, failure_driven_dead_point
   use mech9_masks, only: numbers_of
   use mech9_lapack, only: dgesvd
   use mech9_model, only: model_type
@@ -83,7 +84,7 @@ contains
   !> Whether a failure is of a kind.
   pure logical function is_of_kind(failure, kind)
     type(error_type), intent(in) :: failure   !< the failure
-    integer, intent(in) :: kind               !< one of the constants of mech9_failure
+    integer, intent(in) :: kind               !< one of the failure_ constants
 
     is_of_kind = .false.
     if (allocated(failure%failure)) is_of_kind = failure%failure%kind == kind

@@ -7,7 +7,8 @@
 module mech9_space_curve
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data, exit_singular
-  use mech9_failure, only: failure_sharp_curve, failure_off_curve
+  use mech9_failure, only: failure_off_curve
+  use mech9_curve_failures, only: failure_sharp_curve
   use mech9_rotation, only: cross, unit, combine, about_axis
   use mech9_quintic_spline, only: quintic_spline_type, build_quintic
   implicit none

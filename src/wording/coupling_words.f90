@@ -1,7 +1,8 @@
 !> Sentences about couplings that cannot be fulfilled.
 module mech9_coupling_words
   use mech9_text, only: to_text
-  use mech9_failure, only: failure_type, failure_open_coupling, failure_off_table
+  use mech9_failure, only: failure_type, failure_off_table
+  use mech9_assembly_failures, only: failure_open_coupling
   use mech9_block_names, only: chain_names, names_with_lines
   implicit none
   private

@@ -7,17 +7,25 @@ module mech9_explanation
   use mech9_error, only: error_type
   use mech9_text, only: to_text, some_of
   use mech9_counted, only: counted
-  use mech9_failure, only: failure_type, failure_wrong_choice, failure_undetermined_coordinates, failure_open_chain, &
-    failure_nearly_closed_chain, failure_locked_chain, failure_nearly_moving_chain, failure_large_block, &
-    failure_undetermined_block, failure_contradictory_inputs, failure_start_at_dead_point, failure_start_on_branches, &
-    failure_start_unclear, failure_start_locked, failure_start_not_left, failure_escape, failure_dead_point, &
-    failure_lost_branch, failure_singular_block, failure_singular_start_block, failure_no_inertia, failure_singular_step, &
-    failure_unclosed_step, failure_other_branch, failure_infinite_rate, failure_infinite_jacobian, failure_few_points, &
-    failure_points_order, failure_no_spline, failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, &
-    failure_chain_off_plane, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
+  use mech9_failure, only: failure_type, failure_off_curve
+  use mech9_spline_failures, only: failure_few_points, failure_points_order, failure_no_spline
+  use mech9_curve_failures, only: failure_sharp_curve
+  use mech9_assembly_failures, only: failure_wrong_choice, failure_undetermined_coordinates, failure_open_chain, &
+    failure_nearly_closed_chain, failure_locked_chain, failure_nearly_moving_chain
+  use mech9_planning_failures, only: failure_large_block, failure_undetermined_block, failure_contradictory_inputs, &
+    failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, failure_chain_off_plane, &
+    failure_no_fixed_axis, failure_coupled
+  use mech9_tracking_failures, only: failure_start_at_dead_point, failure_start_on_branches, failure_start_unclear, &
+    failure_start_locked, failure_start_not_left, failure_escape, failure_dead_point, failure_lost_branch
+  use mech9_ode_failures, only: failure_infinite_rate, failure_infinite_jacobian
+  use mech9_dynamics_failures, only: failure_singular_block, failure_no_inertia
+  use mech9_force_gradient_failures, only: failure_lost_inertia
+  use mech9_simulation_failures, only: failure_singular_start_block, failure_singular_step, failure_unclosed_step, &
+    failure_other_branch, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
     failure_interrupted, failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
-    failure_driven_dead_point, failure_unbalanced, failure_no_equilibrium, failure_lost_inertia, failure_sharp_curve, &
-    failure_interrupted_starts, failure_off_curve, failure_no_fixed_axis, failure_coupled, failure_lost_link
+    failure_driven_dead_point, failure_lost_link
+  use mech9_reaction_failures, only: failure_unbalanced
+  use mech9_equilibrium_failures, only: failure_no_equilibrium, failure_interrupted_starts
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_coupling_words, only: explain_coupling
   use mech9_choice_words, only: explain_choice, longest_list

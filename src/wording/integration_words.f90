@@ -2,10 +2,10 @@
 module mech9_integration_words
   use mech9_kinds, only: wp
   use mech9_text, only: to_text, nearest_name
-  use mech9_failure, only: failure_type, integration_stop_type, failure_unknown_method, failure_no_jacobian, &
-    failure_tolerance_count, failure_relative_tolerance, failure_absolute_tolerance, failure_many_steps, &
-    failure_inaccurate_step, failure_unsolved_step, failure_accurate_step, failure_step_memory, failure_step_settings, &
-    failure_short_step
+  use mech9_failure, only: failure_type, integration_stop_type
+  use mech9_ode_failures, only: failure_unknown_method, failure_no_jacobian, failure_tolerance_count, &
+    failure_relative_tolerance, failure_absolute_tolerance, failure_many_steps, failure_inaccurate_step, &
+    failure_unsolved_step, failure_accurate_step, failure_step_memory, failure_step_settings, failure_short_step
   use mech9_integration_methods, only: integration_methods
   implicit none
   private

@@ -1,8 +1,12 @@
 !> Sentences about derivatives by parameters that do not exist.
 module mech9_sensitivity_words
   use mech9_text, only: to_text
-  use mech9_failure, only: failure_type, failure_no_neighbours, failure_unknown_derivative, failure_singular_sensitivity, &
-    failure_opening_parameter, failure_jump_sensitivity, failure_angles_sensitivity, failure_shared_force, failure_jumping_force
+  use mech9_failure, only: failure_type
+  use mech9_sensitivity_failures, only: failure_no_neighbours, failure_unknown_derivative, &
+    failure_singular_sensitivity, failure_opening_parameter
+  use mech9_force_gradient_failures, only: failure_jumping_force
+  use mech9_simulation_failures, only: failure_jump_sensitivity, failure_angles_sensitivity
+  use mech9_reaction_failures, only: failure_shared_force
   use mech9_block_names, only: chain_names
   implicit none
   private

@@ -5,7 +5,7 @@
 module test_planar_blocks
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_failure, only: failure_dead_point
+  use mech9_tracking_failures, only: failure_dead_point
   use mech9_random, only: random_type
   use mech9_random_geometry, only: random_rotation
   use mech9_model, only: model_type

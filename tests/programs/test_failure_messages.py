@@ -1,7 +1,7 @@
 """Failures of numerics reach the user as sentences, with their exit codes; none leaves the programs as a bare kind.
 
-Each kind of failure of src/base/failure.f90 is provoked here by a data file, or it is named in UNREACHABLE with the reason why
-no data file leads to it; tests/wording/test_explanation.f90 then has its sentence.
+Each kind of failure is provoked here by a data file, or it is named in UNREACHABLE with the reason why no data file leads to
+it; tests/wording/test_explanation.f90 then has its sentence.
 
 The closed forms behind the numbers are those of four-bars: a chain of three bars in one line is at its dead point.
 """
@@ -11,6 +11,7 @@ import re
 
 import pytest
 
+from failures import kinds
 from mech9_cases import TREE, run, text_of
 
 DONE, DATA, STRUCTURE, ASSEMBLY, SINGULAR, INTEGRATOR = 0, 3, 4, 5, 6, 7
@@ -489,8 +490,8 @@ def test_wild_steps(checks, tmp_path, build, mech9d):
 
 def test_each_kind_is_provoked_once_or_cannot_be():
     """A kind that no data file leads to has a reason."""
-    kinds = re.findall(r'^  integer, parameter :: failure_(\w+) = \d+', text_of(os.path.join(TREE, 'src', 'base', 'failure.f90')), re.M)
-    assert sorted(['singular_step', *(case[0] for case in DRIVEN + FREE), *UNREACHABLE]) == sorted(kinds)
+    names = [name[len('failure_'):] for name, _, _ in kinds()]
+    assert sorted(['singular_step', *(case[0] for case in DRIVEN + FREE), *UNREACHABLE]) == sorted(names)
 
 
 @pytest.mark.parametrize('kind', UNREACHABLE)

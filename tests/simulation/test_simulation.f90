@@ -5,7 +5,8 @@
 module test_simulation
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, exit_usage, exit_data, exit_singular, exit_integrator, exit_interrupted
-  use mech9_failure, only: failure_lost_inertia, failure_no_inertia
+  use mech9_dynamics_failures, only: failure_no_inertia
+  use mech9_force_gradient_failures, only: failure_lost_inertia
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type

@@ -3,15 +3,25 @@ module test_explanation
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, add_place, place_type, exit_data, exit_integrator, exit_interrupted, exit_singular, &
     exit_structure, exit_usage
-  use mech9_failure, only: failure_type, last_failure, failure_wrong_choice, failure_large_block, failure_locked_chain, &
-    failure_nearly_moving_chain, failure_undetermined_coordinates, failure_undetermined_block, failure_contradictory_inputs, &
-    failure_start_on_branches, failure_start_unclear, failure_start_locked, failure_start_not_left, failure_escape, &
-    failure_dead_point, failure_lost_branch, failure_singular_block, failure_singular_start_block, failure_other_branch, &
-    failure_no_jacobian, failure_step_memory, failure_step_settings, failure_no_inertia, failure_lost_inertia, &
-    failure_interrupted_starts, failure_sharp_curve, failure_unknown_method, &
-    failure_relative_tolerance, failure_absolute_tolerance, failure_tolerance_count, failure_infinite_rate, &
-    failure_infinite_jacobian, failure_few_points, failure_points_order, failure_not_started, failure_backwards, &
-    failure_interrupted, failure_lost_angles, failure_drive_jumps, failure_open_coupling
+  use mech9_failure, only: failure_type, last_shared_failure
+  use mech9_spline_failures, only: last_spline_failure, failure_few_points, failure_points_order
+  use mech9_curve_failures, only: last_curve_failure, failure_sharp_curve
+  use mech9_assembly_failures, only: last_assembly_failure, failure_wrong_choice, failure_locked_chain, &
+    failure_nearly_moving_chain, failure_undetermined_coordinates, failure_open_coupling
+  use mech9_planning_failures, only: last_planning_failure, failure_large_block, failure_undetermined_block, &
+    failure_contradictory_inputs
+  use mech9_tracking_failures, only: last_tracking_failure, failure_start_on_branches, failure_start_unclear, &
+    failure_start_locked, failure_start_not_left, failure_escape, failure_dead_point, failure_lost_branch
+  use mech9_ode_failures, only: last_ode_failure, failure_no_jacobian, failure_step_memory, failure_step_settings, &
+    failure_unknown_method, failure_relative_tolerance, failure_absolute_tolerance, failure_tolerance_count, &
+    failure_infinite_rate, failure_infinite_jacobian
+  use mech9_dynamics_failures, only: last_dynamics_failure, failure_singular_block, failure_no_inertia
+  use mech9_sensitivity_failures, only: last_sensitivity_failure
+  use mech9_force_gradient_failures, only: last_force_gradient_failure, failure_lost_inertia
+  use mech9_simulation_failures, only: last_simulation_failure, failure_singular_start_block, failure_other_branch, &
+    failure_not_started, failure_backwards, failure_interrupted, failure_lost_angles, failure_drive_jumps
+  use mech9_reaction_failures, only: last_reaction_failure
+  use mech9_equilibrium_failures, only: last_equilibrium_failure, failure_interrupted_starts
   use mech9_integration_methods, only: integration_methods
   use mech9_explanation, only: explain
   use mech9_testing, only: tester_type, message_of
@@ -40,26 +50,41 @@ contains
   subroutine each_kind(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     type(error_type), allocatable :: err
-    character(len=:), allocatable :: fallback, sentence
-    integer :: kind
+    character(len=:), allocatable :: fallback
+    !> The last kind of each module of kinds, whose numbers begin behind a multiple of 100.
+    integer, parameter :: lasts(*) = [last_shared_failure, last_spline_failure, last_curve_failure, last_assembly_failure, &
+      last_planning_failure, last_tracking_failure, last_ode_failure, last_dynamics_failure, last_sensitivity_failure, &
+      last_force_gradient_failure, last_simulation_failure, last_reaction_failure, last_equilibrium_failure]
+    integer :: i, kind
 
-    do kind = 1, last_failure
-      call raise(err, exit_structure, kind)
-      call fill(err%failure)
+    do i = 1, size(lasts)
+      do kind = lasts(i) - modulo(lasts(i), 100) + 1, lasts(i)
+        call check_kind(kind)
+      end do
+      call raise(err, exit_structure, lasts(i) + 1)
       fallback = err%message
       call explain(err)
-      sentence = err%message
-      call test%is_true(sentence /= fallback .and. len(sentence) > 10, fallback//' has a sentence: '//sentence)
-      call test%is_true(.not. allocated(err%failure), fallback//' is explained once')
-      call explain(err)
-      call test%is_true(err%message == sentence, fallback//' stays explained')
-      call test%is_true(err%code == exit_structure, fallback//' keeps its code')
+      call test%is_true(err%message == fallback, 'an unknown kind keeps the message that names it')
     end do
-    call raise(err, exit_structure, last_failure + 1)
+  end subroutine each_kind
+
+  !> A kind has one sentence, and its error keeps its code.
+  subroutine check_kind(kind)
+    integer, intent(in) :: kind   !< one of the failure_ constants
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: fallback, sentence
+
+    call raise(err, exit_structure, kind)
+    call fill(err%failure)
     fallback = err%message
     call explain(err)
-    call test%is_true(err%message == fallback, 'an unknown kind keeps the message that names it')
-  end subroutine each_kind
+    sentence = err%message
+    call test%is_true(sentence /= fallback .and. len(sentence) > 10, fallback//' has a sentence: '//sentence)
+    call test%is_true(.not. allocated(err%failure), fallback//' is explained once')
+    call explain(err)
+    call test%is_true(err%message == sentence, fallback//' stays explained')
+    call test%is_true(err%code == exit_structure, fallback//' keeps its code')
+  end subroutine check_kind
 
   !> All numbers that any kind may need.
   subroutine fill(failure)

@@ -10,7 +10,7 @@ module mech9_equilibria
   use mech9_assemblies, only: close_from
   use mech9_posture, only: posture_type, new_posture
   use mech9_frame_motion, only: place_all
-  use mech9_failure, only: failure_interrupted_starts
+  use mech9_equilibrium_failures, only: failure_interrupted_starts
   use mech9_simulation, only: interruption_type
   use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, is_balanced, copy_resting
   use mech9_same_position, only: is_same_position, same_position

@@ -7,7 +7,7 @@
 module mech9_equilibrium_search
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_assembly
-  use mech9_failure, only: failure_no_equilibrium
+  use mech9_equilibrium_failures, only: failure_no_equilibrium
   use mech9_lapack, only: dsyev
   use mech9_singular_values, only: decompose
   use mech9_mechanism, only: mechanism_type

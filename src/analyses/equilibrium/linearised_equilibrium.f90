@@ -3,7 +3,8 @@ module mech9_linearised_equilibrium
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data, exit_singular
-  use mech9_failure, only: failure_no_inertia, failure_gimbal_lock
+  use mech9_dynamics_failures, only: failure_no_inertia
+  use mech9_simulation_failures, only: failure_gimbal_lock
   use mech9_lapack, only: dsyev
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_tolerances, only: negligible_inertia

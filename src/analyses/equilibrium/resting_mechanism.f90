@@ -4,7 +4,7 @@ module mech9_resting_mechanism
   use mech9_kinds, only: wp
   use mech9_tolerances, only: doubtful_conditioning, worthwhile_improvement, singular_conditioning
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_failure, only: failure_singular_start_block
+  use mech9_simulation_failures, only: failure_singular_start_block
   use mech9_mechanism, only: mechanism_type
   use mech9_partition, only: partition_type, free_coordinate, driven_coordinate
   use mech9_law, only: drive_slot_type

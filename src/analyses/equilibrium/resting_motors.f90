@@ -6,7 +6,7 @@
 module mech9_resting_motors
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_assembly
-  use mech9_failure, only: failure_no_equilibrium
+  use mech9_equilibrium_failures, only: failure_no_equilibrium
   use mech9_mechanism, only: mechanism_type
   use mech9_motor, only: motor_type, motor_action_type
   use mech9_pid_motor, only: pid_motor_type

@@ -6,7 +6,8 @@
 module mech9_varied_reactions
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data, exit_singular
-  use mech9_failure, only: failure_singular_sensitivity, failure_shared_force
+  use mech9_sensitivity_failures, only: failure_singular_sensitivity
+  use mech9_reaction_failures, only: failure_shared_force
   use mech9_tolerances, only: rank_tolerance_for
   use mech9_random, only: random_type
   use mech9_rotation, only: cross

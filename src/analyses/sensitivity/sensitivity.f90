@@ -12,7 +12,7 @@ module mech9_sensitivity
   use mech9_kinds, only: wp
   use mech9_batch_products, only: batch_size
   use mech9_error, only: error_type, raise, exit_data, exit_singular
-  use mech9_failure, only: failure_singular_sensitivity, failure_opening_parameter
+  use mech9_sensitivity_failures, only: failure_singular_sensitivity, failure_opening_parameter
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type, block_type

@@ -8,7 +8,7 @@ module mech9_tangent
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_failure, only: failure_no_neighbours, failure_unknown_derivative
+  use mech9_sensitivity_failures, only: failure_no_neighbours, failure_unknown_derivative
   use mech9_rotation, only: cross
   use mech9_pose, only: pose_type
   use mech9_parameter, only: parameter_type

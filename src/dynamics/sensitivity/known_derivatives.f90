@@ -2,7 +2,7 @@
 module mech9_known_derivatives
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_failure, only: failure_jumping_force
+  use mech9_force_gradient_failures, only: failure_jumping_force
   use mech9_law, only: law_type, from_inside
   use mech9_model, only: model_type
   use mech9_tangent, only: tangent_type

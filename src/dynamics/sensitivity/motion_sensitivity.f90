@@ -6,7 +6,7 @@
 module mech9_motion_sensitivity
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_integrator
-  use mech9_failure, only: failure_lost_inertia
+  use mech9_force_gradient_failures, only: failure_lost_inertia
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type

@@ -3,7 +3,7 @@ module mech9_diagnosis
   use mech9_kinds, only: wp
   use mech9_tolerances, only: apparent_motion, least_rate, returned_to_start
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly
-  use mech9_failure, only: failure_wrong_choice, failure_undetermined_coordinates, failure_open_chain, &
+  use mech9_assembly_failures, only: failure_wrong_choice, failure_undetermined_coordinates, failure_open_chain, &
     failure_nearly_closed_chain, failure_locked_chain, failure_nearly_moving_chain, failure_open_coupling
   use mech9_masks, only: numbers_of
   use mech9_random, only: random_type

@@ -3,7 +3,7 @@
 module mech9_planar_layout
   use mech9_kinds, only: wp
   use mech9_tolerances, only: planar_round_off
-  use mech9_failure, only: failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, &
+  use mech9_planning_failures, only: failure_chain_dimensions, failure_nothing_turns, failure_pair_off_plane, &
     failure_no_fixed_axis, failure_chain_off_plane, failure_coupled
   use mech9_rotation, only: identity
   use mech9_pose, only: pose_type, pose_from_axis, default_zero

@@ -3,7 +3,7 @@ module mech9_driven_motion
   use mech9_kinds, only: wp, long
   use mech9_tolerances, only: just_short_of_end, singular_conditioning, doubtful_margin
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_failure, only: failure_start_at_dead_point, failure_start_on_branches, failure_start_unclear, &
+  use mech9_tracking_failures, only: failure_start_at_dead_point, failure_start_on_branches, failure_start_unclear, &
     failure_start_locked, failure_start_not_left, failure_escape, failure_dead_point, failure_lost_branch
   use mech9_three_turns, only: three_turns_type
   use mech9_law, only: drive_slot_type

@@ -6,8 +6,10 @@ module test_sentences
   use mech9_choice_words, only: explain_choice
   use mech9_compound_joint, only: compound_joint_type
   use mech9_coupling_words, only: explain_coupling
-  use mech9_failure, only: failure_type, integration_stop_type, failure_wrong_choice, failure_off_table, failure_open_coupling, &
-    failure_many_steps, failure_relative_tolerance, failure_unknown_method, failure_singular_sensitivity, failure_open_chain
+  use mech9_failure, only: failure_type, integration_stop_type, failure_off_table
+  use mech9_assembly_failures, only: failure_wrong_choice, failure_open_coupling, failure_open_chain
+  use mech9_ode_failures, only: failure_many_steps, failure_relative_tolerance, failure_unknown_method
+  use mech9_sensitivity_failures, only: failure_singular_sensitivity
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
   use mech9_joint_words, only: joint_name, pair_name, link_name
   use mech9_model, only: model_type

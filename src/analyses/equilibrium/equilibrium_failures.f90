@@ -1,0 +1,13 @@
+!> Failures of the search for positions of equilibrium.
+module mech9_equilibrium_failures
+  implicit none
+  private
+  public :: failure_no_equilibrium, failure_interrupted_starts, last_equilibrium_failure
+
+  !> No position of equilibrium was found: coordinates (the free ones), values (free coordinate; the force that is left on
+  !> it [N m, N], the coordinate where the search ended).
+  integer, parameter :: failure_no_equilibrium = 1201
+  !> The user interrupted a search for equilibria: number (of random starts so far), limit (number of all).
+  integer, parameter :: failure_interrupted_starts = 1202
+  integer, parameter :: last_equilibrium_failure = failure_interrupted_starts
+end module mech9_equilibrium_failures

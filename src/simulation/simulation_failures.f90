@@ -1,0 +1,47 @@
+!> Failures of motions in time: requests that cannot be met, and motions that cannot go on.
+module mech9_simulation_failures
+  implicit none
+  private
+  public :: failure_not_started, failure_backwards, failure_interrupted, failure_accuracy, failure_open_position, &
+    failure_lost_link, failure_no_initial_position, failure_singular_start_block, failure_singular_step, &
+    failure_unclosed_step, failure_other_branch, failure_drive_jumps, failure_driven_dead_point, failure_gimbal_lock, &
+    failure_lost_angles, failure_jump_sensitivity, failure_angles_sensitivity, last_simulation_failure
+
+  !> A motion is to advance before its start.
+  integer, parameter :: failure_not_started = 1001
+  !> A motion is to go back: t (where it stands), t_stop (where it is to go).
+  integer, parameter :: failure_backwards = 1002
+  !> The user interrupted a motion: t (that comes next).
+  integer, parameter :: failure_interrupted = 1003
+  !> A motion cannot be as accurate as was asked for: t (of the first position that is not), deviation (estimated error
+  !> there), tolerance (allowed error).
+  integer, parameter :: failure_accuracy = 1004
+  !> The chains of a position are open by more than is allowed: t, gap, tolerance (allowed [m]), size.
+  integer, parameter :: failure_open_position = 1005
+  !> The chains of a position are open by much against a short link, whose motion is lost in the round-off of the largest
+  !> lengths: t, gap, tolerance (allowed [m]), size, link, distance (between the pairs of the link).
+  integer, parameter :: failure_lost_link = 1006
+  !> An independent coordinate of a free motion has no initial position: coordinates.
+  integer, parameter :: failure_no_initial_position = 1007
+  !> The same as failure_singular_block, at the start.
+  integer, parameter :: failure_singular_start_block = 1008
+  !> A position inside a step is too near to a singular one for the independent coordinates.
+  integer, parameter :: failure_singular_step = 1009
+  !> A block cannot be closed after a step: chains, t.
+  integer, parameter :: failure_unclosed_step = 1010
+  !> A coordinate would jump with other independent coordinates: coordinates.
+  integer, parameter :: failure_other_branch = 1011
+  !> A drive is elsewhere than its rates lead: coordinates (the driven one), t.
+  integer, parameter :: failure_drive_jumps = 1012
+  !> The same as failure_dead_point in a motion with free coordinates; others and values are those of driven coordinates.
+  integer, parameter :: failure_driven_dead_point = 1013
+  !> The rates of some coordinates no longer determine a motion of the links: coordinates, t.
+  integer, parameter :: failure_gimbal_lock = 1014
+  !> The angles of a ball joint could not be followed through gimbal lock: coordinates, t.
+  integer, parameter :: failure_lost_angles = 1015
+  !> Rates jump at a joint of laws whose time a parameter sets: name, t.
+  integer, parameter :: failure_jump_sensitivity = 1016
+  !> Other angles are integrated in place of those of the data file, whose derivatives are not known: t.
+  integer, parameter :: failure_angles_sensitivity = 1017
+  integer, parameter :: last_simulation_failure = failure_angles_sensitivity
+end module mech9_simulation_failures
