@@ -1,7 +1,7 @@
 !> The last guard of a run: no row whose closed chains are open is ever recorded.
 module mech9_closure_guard
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: largest_closure, hidden_part
+  use mech9_simulation_tolerances, only: largest_closure, hidden_part
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_simulation_failures, only: failure_open_position, failure_lost_link
   use mech9_plan, only: plan_type

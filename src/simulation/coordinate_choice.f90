@@ -5,7 +5,7 @@
 !> is treated as by QR of all its closures.
 module mech9_coordinate_choice
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: worthwhile_improvement
+  use mech9_simulation_tolerances, only: worthwhile_improvement
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly, exit_singular
   use mech9_simulation_failures, only: failure_other_branch
   use mech9_lapack, only: dgeqp3

@@ -2,7 +2,7 @@
 !> ones come to a singular position.
 module mech9_free_simulation
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: doubtful_conditioning, refused_conditioning, regular_conditioning
+  use mech9_simulation_tolerances, only: doubtful_conditioning, refused_conditioning, regular_conditioning
   use mech9_error, only: error_type, raise, add_place, exit_data, exit_singular, exit_integrator
   use mech9_simulation_failures, only: failure_no_initial_position, failure_lost_angles
   use mech9_partition, only: free_coordinate

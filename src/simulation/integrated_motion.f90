@@ -2,7 +2,7 @@
 !> change to other coordinates.
 module mech9_integrated_motion
   use mech9_kinds, only: wp, long
-  use mech9_tolerances, only: doubtful_conditioning, worthwhile_improvement, third_derivative_step
+  use mech9_simulation_tolerances, only: doubtful_conditioning, worthwhile_improvement, third_derivative_step
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_simulation_failures, only: failure_angles_sensitivity
   use mech9_variable_model, only: variable_model_type

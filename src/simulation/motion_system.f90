@@ -5,7 +5,7 @@
 !> accepted step: half the cost of closing them in every evaluation, at the same error (docs/design-decisions.md).
 module mech9_motion_system
   use mech9_kinds, only: wp, long
-  use mech9_tolerances, only: trusted_between_steps, trusted_closing
+  use mech9_simulation_tolerances, only: trusted_between_steps, trusted_closing
   use mech9_error, only: error_type, raise, exit_singular, exit_integrator
   use mech9_ode_failures, only: failure_infinite_rate
   use mech9_dynamics_failures, only: failure_no_inertia

@@ -9,7 +9,7 @@
 !> start.
 module mech9_stopped_motion
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: locked, locked_together, doubtful_conditioning
+  use mech9_simulation_tolerances, only: locked, locked_together, doubtful_conditioning
   use mech9_error, only: error_type, raise, exit_singular, exit_integrator
   use mech9_ode_failures, only: failure_infinite_rate
   use mech9_dynamics_failures, only: failure_no_inertia, failure_singular_block

@@ -2,7 +2,8 @@
 !> its position, their stiffness, and motions to other positions on the same branch.
 module mech9_resting_mechanism
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: doubtful_conditioning, worthwhile_improvement, singular_conditioning
+  use mech9_tolerances, only: singular_conditioning
+  use mech9_simulation_tolerances, only: doubtful_conditioning, worthwhile_improvement
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_simulation_failures, only: failure_singular_start_block
   use mech9_mechanism, only: mechanism_type

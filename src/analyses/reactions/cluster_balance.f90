@@ -17,7 +17,7 @@
 !> the joint counts once. All turns of such a joint are about lines through this point, so that the moments about them stay the same.
 module mech9_cluster_balance
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: balanced
+  use mech9_reaction_tolerances, only: balanced
   use mech9_rotation, only: cross
   use mech9_block_cholesky, only: block_cholesky_type, new_block_cholesky, clearly_positive
   use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type

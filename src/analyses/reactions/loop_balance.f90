@@ -7,7 +7,7 @@
 !> equations correct it.
 module mech9_loop_balance
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: balanced, regular_balance
+  use mech9_reaction_tolerances, only: balanced, regular_balance
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_block_equations, only: constraint_wrench

@@ -4,7 +4,8 @@
 !> about the normal at the origin of the frame that the step reaches, and the force in the plane's axes.
 module mech9_planar_wrenches
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: balanced, regular_balance, planar_round_off
+  use mech9_tolerances, only: planar_round_off
+  use mech9_reaction_tolerances, only: balanced, regular_balance
   use mech9_rotation, only: cross
   use mech9_plan, only: plan_type
   use mech9_planar_plan, only: planar_step_type

@@ -8,7 +8,8 @@ module mech9_reactions
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_reaction_failures, only: failure_unbalanced
-  use mech9_tolerances, only: rank_tolerance_for, balanced, balanced_singular, planar_round_off
+  use mech9_tolerances, only: rank_tolerance_for, planar_round_off
+  use mech9_reaction_tolerances, only: balanced, balanced_singular
   use mech9_block_cholesky, only: clearly_positive
   use mech9_rotation, only: cross, turn_back
   use mech9_structure, only: structure_type

@@ -5,7 +5,8 @@
 module mech9_singular_cluster
   use mech9_kinds, only: wp
   use mech9_lapack, only: dgesvd
-  use mech9_tolerances, only: balanced_singular, least_rate
+  use mech9_tolerances, only: least_rate
+  use mech9_reaction_tolerances, only: balanced_singular
   use mech9_reaction_plan, only: joined_cluster_type
   use mech9_cluster_balance, only: cluster_balance_type
   implicit none

@@ -8,7 +8,7 @@
 module mech9_varied_cluster
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: equal_lengths
+  use mech9_reaction_tolerances, only: equal_lengths
   use mech9_rotation, only: cross
   use mech9_link_requirements, only: link_requirements_type
   use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type

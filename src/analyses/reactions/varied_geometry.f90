@@ -1,7 +1,7 @@
 !> The changes of the points and screws of the pairs with all parameters, in one position.
 module mech9_varied_geometry
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: equal_lengths
+  use mech9_reaction_tolerances, only: equal_lengths
   use mech9_rotation, only: turn, cross
   use mech9_twists, only: shift_at
   use mech9_varied_motion, only: varied_motion_type, link_twists

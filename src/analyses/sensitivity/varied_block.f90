@@ -2,7 +2,8 @@
 module mech9_varied_block
   use mech9_kinds, only: wp, long
   use mech9_batch_products, only: batch_size
-  use mech9_tolerances, only: singular_conditioning, opened_by_parameter, round_off_of_opening, inexact_dimensions
+  use mech9_tolerances, only: singular_conditioning, inexact_dimensions
+  use mech9_sensitivity_tolerances, only: opened_by_parameter, round_off_of_opening
   use mech9_least_squares, only: least_squares_type, nearly_dependent
   use mech9_cofactors, only: invert_several
   use mech9_several_inverses, only: most_rows, find_pivot_order, invert_in_order, bound_conditioning

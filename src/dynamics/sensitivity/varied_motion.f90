@@ -4,7 +4,8 @@
 !> get the twists by which they move with a parameter, and closed chains may have any independent coordinates.
 module mech9_varied_motion
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: singular_conditioning, opened_by_parameter, round_off_of_opening, inexact_dimensions
+  use mech9_tolerances, only: singular_conditioning, inexact_dimensions
+  use mech9_sensitivity_tolerances, only: opened_by_parameter, round_off_of_opening
   use mech9_error, only: error_type, raise, exit_data, exit_singular
   use mech9_sensitivity_failures, only: failure_singular_sensitivity, failure_opening_parameter
   use mech9_rotation, only: turn, cross

@@ -5,7 +5,8 @@
 !> same in every run.
 module mech9_assembly
   use mech9_kinds, only: wp, pi
-  use mech9_tolerances, only: allowed_gap, closed_singular, closed_to_round_off, newton_radius, regular_correction
+  use mech9_tolerances, only: closed_to_round_off
+  use mech9_assembly_tolerances, only: allowed_gap, closed_singular, newton_radius, regular_correction
   use mech9_error, only: error_type
   use mech9_least_squares, only: least_squares_type
   use mech9_front_plan, only: front_plan_type

@@ -1,7 +1,8 @@
 !> The diagnosis of a choice of independent coordinates that cannot serve, with choices that can.
 module mech9_diagnosis
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: apparent_motion, least_rate, returned_to_start
+  use mech9_tolerances, only: least_rate
+  use mech9_assembly_tolerances, only: apparent_motion, returned_to_start
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly
   use mech9_assembly_failures, only: failure_wrong_choice, failure_undetermined_coordinates, failure_open_chain, &
     failure_nearly_closed_chain, failure_locked_chain, failure_nearly_moving_chain, failure_open_coupling

@@ -9,8 +9,9 @@
 !> changes of the constant poses of the loop's steps enter the closures like motions of six more pairs in each step.
 module mech9_finite_motion
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: closed_after_motion, deciding_conditioning, finite_movement, first_displacement, &
-    first_order_gap, ineffective_dimensions, settled_unknowns, small_gap, small_part, unexplained_gap
+  use mech9_assembly_tolerances, only: closed_after_motion, deciding_conditioning, finite_movement, &
+    first_displacement, first_order_gap, ineffective_dimensions, settled_unknowns, small_gap, small_part, &
+    unexplained_gap
   use mech9_error, only: error_type
   use mech9_lapack, only: dgesvd
   use mech9_random, only: random_type

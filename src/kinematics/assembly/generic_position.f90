@@ -1,7 +1,7 @@
 !> A generic position: a closed position away from the start, at which ranks are judged if the start is, or may be, singular.
 module mech9_generic_position
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: least_movement
+  use mech9_assembly_tolerances, only: least_movement
   use mech9_error, only: error_type
   use mech9_random, only: random_type
   use mech9_plan, only: plan_type, block_type, within_range

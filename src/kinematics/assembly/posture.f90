@@ -5,7 +5,8 @@
 !> count, not the turn about their own line. A link that shall count gets a point.
 module mech9_posture
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: screw_tolerance, same_assembly
+  use mech9_tolerances, only: screw_tolerance
+  use mech9_assembly_tolerances, only: same_assembly
   use mech9_mechanism, only: mechanism_type
   use mech9_pair_axes, only: pair_axes_type, pair_axes, sliding
   use mech9_plan, only: plan_type

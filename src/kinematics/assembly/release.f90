@@ -4,7 +4,7 @@
 !> there, and the given values may be reached from there by a motion.
 module mech9_release
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: least_part_of_carrying
+  use mech9_assembly_tolerances, only: least_part_of_carrying
   use mech9_error, only: error_type
   use mech9_plan, only: plan_type, block_type, without_periods
   use mech9_state, only: state_type

@@ -7,7 +7,7 @@
 !> held.
 module mech9_held_rods
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: lesser_share, lesser_share_near
+  use mech9_planning_tolerances, only: lesser_share, lesser_share_near
   use mech9_rotation, only: cross, unit
   use mech9_idle_rods, only: idle_rod_type, find_idle_rods
   use mech9_partition, only: partition_type, free_coordinate, dependent_coordinate

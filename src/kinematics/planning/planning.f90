@@ -5,7 +5,8 @@
 !> determine them is joined with the next ones until it does.
 module mech9_planning
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: contradicting_rates, inexact_dimensions, rank_tolerance_for
+  use mech9_tolerances, only: inexact_dimensions, rank_tolerance_for
+  use mech9_planning_tolerances, only: contradicting_rates
   use mech9_error, only: error_type, raise, exit_structure
   use mech9_planning_failures, only: failure_large_block, failure_undetermined_block, failure_contradictory_inputs
   use mech9_partition, only: partition_type

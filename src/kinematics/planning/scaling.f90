@@ -1,7 +1,8 @@
 !> The scaling of a mechanism: its size, which is the unit of length, its origin, and the units of its coordinates.
 module mech9_scaling
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: negligible_distance, one_point
+  use mech9_tolerances, only: negligible_distance
+  use mech9_planning_tolerances, only: one_point
   use mech9_pose, only: pose_type, inverse, transformed
   use mech9_pair, only: screw_factors_type, pair_guide_type
   use mech9_mechanism, only: mechanism_type

@@ -6,7 +6,8 @@
 !> equations determine.
 module mech9_branch_crossing
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: near_singular, shorter_crossing, trusted_crossing, trusted_crossing_rates
+  use mech9_tolerances, only: near_singular
+  use mech9_tracking_tolerances, only: shorter_crossing, trusted_crossing, trusted_crossing_rates
   use mech9_error, only: error_type
   use mech9_hermite, only: hermite_type, build_hermite
   use mech9_law, only: drive_slot_type

@@ -6,8 +6,9 @@
 !> docs/bibliography.md). The correction is measured by the least pivot, which tells how far away other branches are.
 module mech9_branch_stepping
   use mech9_kinds, only: wp, long
-  use mech9_tolerances, only: creeping_move, creeping_step, least_step, longest_drive, longest_move, small_correction, &
-    trusted_contraction, trusted_correction, trusted_rate_change, unchanged_factors, unchanged_prediction
+  use mech9_tolerances, only: longest_drive, longest_move, trusted_correction, trusted_rate_change, unchanged_factors
+  use mech9_tracking_tolerances, only: creeping_move, creeping_step, least_step, small_correction, &
+    trusted_contraction, unchanged_prediction
   use mech9_error, only: error_type
   use mech9_masks, only: numbers_of
   use mech9_law, only: drive_slot_type

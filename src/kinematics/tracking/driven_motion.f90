@@ -1,7 +1,8 @@
 !> A driven motion from output to output, through singular positions or up to its end.
 module mech9_driven_motion
   use mech9_kinds, only: wp, long
-  use mech9_tolerances, only: just_short_of_end, singular_conditioning, doubtful_margin
+  use mech9_tolerances, only: singular_conditioning
+  use mech9_tracking_tolerances, only: just_short_of_end, doubtful_margin
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_tracking_failures, only: failure_start_at_dead_point, failure_start_on_branches, failure_start_unclear, &
     failure_start_locked, failure_start_not_left, failure_escape, failure_dead_point, failure_lost_branch

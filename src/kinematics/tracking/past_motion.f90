@@ -6,7 +6,7 @@
 !> times leave a smaller correction.
 module mech9_past_motion
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: least_spacing, longest_prediction, same_spacing, worth_positions
+  use mech9_tracking_tolerances, only: least_spacing, longest_prediction, same_spacing, worth_positions
   implicit none
   private
   public :: past_motion_type, new_past_motion, clear_past, add_to_past, choose_formula, find_weights, predict_from_past, &

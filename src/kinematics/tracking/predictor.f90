@@ -2,7 +2,7 @@
 !> positions with their rates and accelerations (Hermite's) or, without accelerations, from the motion at the last few times.
 module mech9_predictor
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: longest_prediction, round_off_term
+  use mech9_tracking_tolerances, only: longest_prediction, round_off_term
   use mech9_plan, only: block_type
   use mech9_state, only: state_type
   use mech9_past_motion, only: past_motion_type, new_past_motion, clear_past, add_to_past, choose_formula, find_weights, &

@@ -4,7 +4,8 @@
 !> while a norm of J^-1 D is below 1. The norm of D over the least pivot of J is a cheap estimate of it.
 module mech9_singularity_monitor
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: harmless_change, near_singular, trusted_change, unbounded_excess
+  use mech9_tolerances, only: near_singular, trusted_change
+  use mech9_tracking_tolerances, only: harmless_change, unbounded_excess
   use mech9_balance, only: balance
   use mech9_matrix_norms, only: matrix_length
   use mech9_plan, only: plan_type, block_type

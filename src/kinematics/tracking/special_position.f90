@@ -7,8 +7,8 @@
 !> axes become parallel it grows as a power of 1/(T - t), and there is no position at T.
 module mech9_special_position
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: clear_pivot, crossing_growth, crossing_pivot, dead_growth, escape_law, escaped_slide, &
-    escaping_speed, far_slide, last_pivot, longest_growth, probe_move, stuck_pivot
+  use mech9_tracking_tolerances, only: clear_pivot, crossing_growth, crossing_pivot, dead_growth, escape_law, &
+    escaped_slide, escaping_speed, far_slide, last_pivot, longest_growth, probe_move, stuck_pivot
   use mech9_error, only: error_type
   use mech9_law, only: drive_slot_type
   use mech9_plan, only: plan_type, block_type

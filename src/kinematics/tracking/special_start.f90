@@ -5,7 +5,8 @@
 !> w . (J' x' + ...) = 0. Each of its real roots is a branch through the position (Allgower and Georg in docs/bibliography.md).
 module mech9_special_start
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: first_move, singular_conditioning, zero_rate
+  use mech9_tolerances, only: singular_conditioning
+  use mech9_tracking_tolerances, only: first_move, zero_rate
   use mech9_error, only: error_type
   use mech9_lapack, only: dgesvd
   use mech9_hermite, only: build_hermite

@@ -1,7 +1,7 @@
 !> Words on a motion that takes long to reach its next output.
 module mech9_standing_text
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: doubtful_conditioning
+  use mech9_simulation_tolerances, only: doubtful_conditioning
   use mech9_text, only: to_text
   use mech9_model, only: model_type
   use mech9_result_units, only: unit_of, unit_name
