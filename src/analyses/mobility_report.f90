@@ -44,8 +44,6 @@ module mech9_mobility_report
     !> (M, independent) rate of each coordinate per unit rate of each independent one, in their units
     real(wp), allocatable :: shares(:, :)
     type(idle_type), allocatable :: idle(:)   !< idle freedoms
-  contains
-    final :: free_mobility_report
   end type mobility_report_type
 
 contains
@@ -275,9 +273,4 @@ contains
     end do
     call orthonormal_basis(screws, rank_tolerance, basis, rank)
   end function rank_of_series
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_mobility_report(self)
-    type(mobility_report_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_mobility_report
 end module mech9_mobility_report

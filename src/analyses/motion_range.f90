@@ -24,8 +24,6 @@ module mech9_motion_range
     integer :: block = 0                        !< number of the block at its dead point
     integer :: turns = 0                        !< number of turns after which the start is reached again
     type(error_type), allocatable :: failure    !< reason why the motion cannot go on
-  contains
-    final :: free_end
   end type end_type
 
   !> The range of a coordinate.
@@ -34,8 +32,6 @@ module mech9_motion_range
     real(wp) :: start = 0.0_wp                  !< its value at the start [rad or m]
     type(end_type) :: lower                     !< end in the negative direction
     type(end_type) :: upper                     !< end in the positive direction
-  contains
-    final :: free_motion_range
   end type motion_range_type
 
   !> Number of turns in each direction that are tried.
@@ -139,14 +135,4 @@ contains
     end do
     has_come_round = .true.
   end function has_come_round
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_end(self)
-    type(end_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_end
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_motion_range(self)
-    type(motion_range_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_motion_range
 end module mech9_motion_range

@@ -24,7 +24,6 @@ module mech9_quantity_gradient
     real(wp), allocatable :: product(:)    !< integrals of value times derivative over time
     real(wp), allocatable :: largest(:)    !< largest magnitudes so far
   contains
-    final :: free_quantity_gradient
     procedure :: begin
     procedure :: add_piece
     procedure :: add_jump
@@ -121,9 +120,4 @@ contains
       gradient = self%at
     end select
   end subroutine result_of
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_quantity_gradient(self)
-    type(quantity_gradient_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_quantity_gradient
 end module mech9_quantity_gradient

@@ -43,7 +43,6 @@ module mech9_tracked_quantity
     real(wp), private :: y(0:2, most_outputs) = 0.0_wp    !< position, rate and acceleration at the kept outputs
     real(wp), allocatable, private :: dy(:, :, :)         !< (P,most_outputs,0:2) their derivatives by parameters
   contains
-    final :: free_tracked_quantity
     procedure :: follow_changes
     procedure :: changes_of
     procedure :: needs_piece
@@ -356,9 +355,4 @@ contains
 
     call self%gradient%result_of(self%take, self%sums, gradient)
   end subroutine find_gradient
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_tracked_quantity(self)
-    type(tracked_quantity_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_tracked_quantity
 end module mech9_tracked_quantity

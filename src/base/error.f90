@@ -36,8 +36,6 @@ module mech9_error
     type(place_type) :: place                             !< place in the data file; line 0 where none is known
     type(failure_type), allocatable :: failure            !< the failure as numbers, until its message is formed from them
     type(integration_stop_type), allocatable :: stopped   !< the integration that it ended, until the message tells so
-  contains
-    final :: free_error
   end type error_type
 
   !> Make a failure, from a message or as a kind with numbers.
@@ -89,9 +87,4 @@ contains
       if (err%place%line == 0) err%place = place
     end if
   end subroutine add_place
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_error(self)
-    type(error_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_error
 end module mech9_error

@@ -56,8 +56,6 @@ module mech9_failure
     real(wp) :: deviation = 0.0_wp              !< estimated error of a position [rad, m]
     real(wp) :: tolerance = 0.0_wp              !< as the user gave it, or an error that is allowed [m; of positions rad, m]
     real(wp) :: angle_unit = 1.0_wp             !< unit of angles in the data file [rad]
-  contains
-    final :: free_failure
   end type failure_type
 
   !> The integration that a failure of its system ended.
@@ -65,11 +63,4 @@ module mech9_failure
     real(wp) :: t = 0.0_wp                      !< end of the last accepted step [s]
     real(wp) :: t_failed = 0.0_wp               !< of the trial that failed [s]
   end type integration_stop_type
-
-contains
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_failure(self)
-    type(failure_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_failure
 end module mech9_failure

@@ -37,7 +37,6 @@ module mech9_conversation
     character(len=:), allocatable :: heading         !< heading that was shown last
     logical :: told(size(item_table)) = .false.      !< names that were explained already
   contains
-    final :: free_conversation
     procedure :: say
     procedure :: listen
     procedure :: keep
@@ -126,9 +125,4 @@ contains
     if (self%stem == '') self%stem = stem_of_title(self%interview%draft%value('mechanism', 1, 'title'))
     if (self%data_path == '') self%data_path = self%stem//'.nml'
   end subroutine name_files
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_conversation(self)
-    type(conversation_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_conversation
 end module mech9_conversation

@@ -34,7 +34,6 @@ module mech9_interview
     type(fault_type), allocatable :: faults(:)     !< errors of the structure
     character(len=:), allocatable :: dropped       !< names that the last answer made meaningless; empty: none
   contains
-    final :: free_interview
     procedure :: start
     procedure :: due
     procedure :: refresh
@@ -358,9 +357,4 @@ contains
     end do
     call self%refresh(text(:first - 1))
   end subroutine open_at
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_interview(self)
-    type(interview_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_interview
 end module mech9_interview

@@ -28,8 +28,6 @@ module mech9_articulated_bodies
     real(wp), allocatable :: mass(:)             !< (M) of the frame's bodies together [kg]
     real(wp), allocatable :: moment(:, :)        !< (3,M) mass times centre, in the frame [kg m]
     real(wp), allocatable :: inertia(:, :, :)    !< (3,3,M) about the frame's origin, in the frame [kg m^2]
-  contains
-    final :: free_articulated
   end type articulated_type
 
   !> Scratch of the passes, sized once, in fixed axes. A wrench is (torque about the frame's origin, force) [N m, N]; a
@@ -43,8 +41,6 @@ module mech9_articulated_bodies
     real(wp), allocatable :: rest(:)             !< (M) Q - S . wrench_0
     real(wp), allocatable :: amount(:, :)        !< (5,0:M) links beyond a step, as if rigid: mass, moment, sum of m r^2
     real(wp), allocatable :: motion(:, :)        !< (6,0:M) accelerations less those that rates alone give
-  contains
-    final :: free_articulated_work
   end type articulated_work_type
 
 contains
@@ -358,14 +354,4 @@ contains
       motion(4:6, s) = motion(4:6, parent(s)) + cross(motion(1:3, parent(s)), p(:, s) - p(:, parent(s)))
     end do
   end subroutine pass_outward
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_articulated(self)
-    type(articulated_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_articulated
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_articulated_work(self)
-    type(articulated_work_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_articulated_work
 end module mech9_articulated_bodies

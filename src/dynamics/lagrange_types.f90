@@ -78,8 +78,6 @@ module mech9_lagrange_types
     type(dynamics_slot_type), allocatable :: arithmetics(:)
     integer, allocatable :: arithmetic_of(:)           !< (blocks) number of the arithmetic in which a block moves
     logical, allocatable :: in_space(:)                !< (0:M) the frame is not in a plane only: the sweeps use its motion in space
-  contains
-    final :: free_dynamics_plan
   end type dynamics_plan_type
 
   !> Derivatives of a frame's angular velocity and of the velocity of its origin, in fixed axes, by the rate of an independent
@@ -114,8 +112,6 @@ module mech9_lagrange_types
     type(articulated_work_type) :: articulated       !< of articulated bodies in space
     type(planar_work_type) :: planar                 !< of articulated bodies in a plane
     type(cluster_work_type), allocatable :: clusters(:)   !< of each stage that is a closed cluster
-  contains
-    final :: free_lagrange_work
   end type lagrange_work_type
 
   abstract interface
@@ -221,16 +217,4 @@ module mech9_lagrange_types
       type(lagrange_work_type), intent(inout) :: work       !< with the columns of closed clusters; gets the results
     end subroutine tree_weigher
   end interface
-
-contains
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_dynamics_plan(self)
-    type(dynamics_plan_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_dynamics_plan
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_lagrange_work(self)
-    type(lagrange_work_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_lagrange_work
 end module mech9_lagrange_types

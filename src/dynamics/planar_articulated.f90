@@ -22,8 +22,6 @@ module mech9_planar_articulated
     real(wp), allocatable :: rest(:)             !< (M) Q - S . wrench_0
     real(wp), allocatable :: amount(:, :)        !< (4,0:M) links beyond a step, as if rigid: mass, moment, inertia
     real(wp), allocatable :: motion(:, :)        !< (3,0:M) accelerations less those that rates alone give
-  contains
-    final :: free_planar_work
   end type planar_work_type
 
 contains
@@ -240,9 +238,4 @@ contains
       motion(3, i) = motion(3, p) + motion(1, p)*(f(3, i) - f(3, p))
     end do
   end subroutine pass_outward
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_planar_work(self)
-    type(planar_work_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_planar_work
 end module mech9_planar_articulated

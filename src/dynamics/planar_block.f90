@@ -41,8 +41,6 @@ module mech9_planar_block
     real(wp), allocatable :: units(:)                    !< unit of each unknown [rad, m]
     integer, allocatable :: given(:)                     !< numbers of the independent coordinates
     real(wp), allocatable :: given_units(:)              !< their units [rad, m]
-  contains
-    final :: free_planar_block
   end type planar_block_type
 
 contains
@@ -269,9 +267,4 @@ contains
     end do
     call planar_accelerations(plan%planar, block%first_step, block%last_step, state%dq, state%ddq, state%planar)
   end subroutine move_with_drives
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_planar_block(self)
-    type(planar_block_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_planar_block
 end module mech9_planar_block

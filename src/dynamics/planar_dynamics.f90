@@ -30,7 +30,6 @@ module mech9_planar_dynamics
     type(planar_block_type), allocatable :: blocks(:)     !< loops of each block
     real(wp) :: gravity(2) = 0.0_wp                       !< in the plane's axes [m/s^2]
   contains
-    final :: free_planar_dynamics
     procedure :: make_work
     procedure :: factorize_block
     procedure :: move_regular_block
@@ -388,9 +387,4 @@ contains
       end do
     end associate
   end subroutine weigh_tree
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_planar_dynamics(self)
-    type(planar_dynamics_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_planar_dynamics
 end module mech9_planar_dynamics

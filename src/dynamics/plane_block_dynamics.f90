@@ -15,7 +15,6 @@ module mech9_plane_block_dynamics
   !> The arithmetic of blocks in planes that move. Sweeps over stages belong to the arithmetic of space.
   type, extends(planar_dynamics_type) :: plane_block_dynamics_type
   contains
-    final :: free_plane_block_dynamics
     procedure :: make_work
     procedure :: move_regular_block
     procedure :: spread_jacobian
@@ -120,9 +119,4 @@ contains
       end do
     end do
   end subroutine show_columns
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_plane_block_dynamics(self)
-    type(plane_block_dynamics_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_plane_block_dynamics
 end module mech9_plane_block_dynamics

@@ -22,7 +22,6 @@ module mech9_spatial_dynamics
   type, extends(dynamics_arithmetic_type) :: spatial_dynamics_type
     type(articulated_type) :: articulated        !< steps and bodies, where articulated bodies serve
   contains
-    final :: free_spatial_dynamics
     procedure :: make_work
     procedure :: factorize_block
     procedure :: move_regular_block
@@ -323,9 +322,4 @@ contains
       end do
     end associate
   end subroutine weigh_tree
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_spatial_dynamics(self)
-    type(spatial_dynamics_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_spatial_dynamics
 end module mech9_spatial_dynamics

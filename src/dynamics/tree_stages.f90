@@ -29,8 +29,6 @@ module mech9_tree_stages
     !> Frames of a cluster in a plane with nothing but bodies. These are not among `frames`.
     integer, allocatable :: flat(:)
     type(plane_body_type), allocatable :: bodies(:)   !< the bodies of these frames
-  contains
-    final :: free_stage
   end type stage_type
 
 contains
@@ -154,9 +152,4 @@ contains
       sorted(j + 1) = number
     end do
   end function sorted
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_stage(self)
-    type(stage_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_stage
 end module mech9_tree_stages

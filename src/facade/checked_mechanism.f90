@@ -17,7 +17,6 @@ module mech9_checked_mechanism
     type(document_type) :: document
     logical :: is_read = .false.      !< the document is without errors
   contains
-    final :: free_checked_mechanism
     procedure :: take
     procedure :: point_at
   end type checked_mechanism_type
@@ -116,9 +115,4 @@ contains
     end do
     call raise(err, diagnostics%code(), message)
   end subroutine fail_as
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_checked_mechanism(self)
-    type(checked_mechanism_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_checked_mechanism
 end module mech9_checked_mechanism

@@ -33,7 +33,6 @@ module mech9_motion
     type(reactions_type) :: reactions                       !< of the last position whose forces were asked for
     integer :: planned = -1                                 !< changes of coordinates until the plan was made; -1: never
   contains
-    final :: free_motion
     procedure :: start_kinematics
     procedure :: start_dynamics
     procedure :: advance
@@ -349,9 +348,4 @@ contains
     if (associated(self%model)) deallocate (self%model)
     self%planned = -1
   end subroutine close_motion
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_motion(self)
-    type(motion_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_motion
 end module mech9_motion

@@ -34,8 +34,6 @@ module mech9_structure_reader
     !> (2,M) links of each coordinate's pair; 0 where it has none, or where the first coordinate of its joint stands for it.
     integer, allocatable :: links(:, :)
     integer, allocatable :: group_of_pair(:)  !< (M) number of each coordinate's group &pair; 0 where it has none
-  contains
-    final :: free_source_data
   end type source_data_type
 
 contains
@@ -413,9 +411,4 @@ contains
       end if
     end associate
   end function span_of_finding
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_source_data(self)
-    type(source_data_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_source_data
 end module mech9_structure_reader

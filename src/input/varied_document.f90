@@ -29,7 +29,6 @@ module mech9_varied_document
     logical :: needs_drives = .false.                     !< every independent coordinate must be driven
     type(model_type), allocatable :: kept                 !< of the present document, without held rods; only where it is right
   contains
-    final :: free_varied_document
     procedure :: at
   end type varied_document_type
 
@@ -100,9 +99,4 @@ contains
     deallocate (self%kept)
     call self%diagnostics%clear()
   end subroutine read_all
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_varied_document(self)
-    type(varied_document_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_varied_document
 end module mech9_varied_document

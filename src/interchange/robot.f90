@@ -87,7 +87,6 @@ module mech9_robot
     integer :: n_notes = 0
     real(wp) :: gravity(3) = [0.0_wp, 0.0_wp, -9.81_wp]   !< in the axes of the frame [m/s^2]
   contains
-    final :: free_robot
     procedure :: begin
     procedure :: add_link
     procedure :: add_joint
@@ -293,9 +292,4 @@ contains
     call move_alloc(joints, self%joints)
     call move_alloc(points, self%points)
   end subroutine finish
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_robot(self)
-    type(robot_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_robot
 end module mech9_robot

@@ -28,7 +28,6 @@ module mech9_sdf_frames
     type(pose_type), allocatable :: poses(:)      !< in the frames of `parents`
     type(pose_type) :: model                      !< of the outermost model in the world
   contains
-    final :: free_sdf_frames
     procedure :: in_model
     procedure :: find_link
     procedure, private :: add
@@ -267,9 +266,4 @@ contains
     end select
     pose%p = numbers(:3)
   end subroutine own_pose
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_sdf_frames(self)
-    type(sdf_frames_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_sdf_frames
 end module mech9_sdf_frames

@@ -27,14 +27,5 @@ module mech9_mechanism
     integer :: n_motors = 0                         !< how many of the loads are motors
     real(wp) :: gravity(3) = 0.0_wp                 !< in the axes of link 1 [m/s^2]
     real(wp), allocatable :: parameters(:)                  !< numbers for the user's procedures
-  contains
-    final :: free_mechanism
   end type mechanism_type
-
-contains
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_mechanism(self)
-    type(mechanism_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_mechanism
 end module mech9_mechanism

@@ -14,14 +14,5 @@ module mech9_model
     type(problem_type) :: problem
     type(request_type) :: request
     type(parameter_type), allocatable :: parameters(:)   !< in the order of the data file
-  contains
-    final :: free_model
   end type model_type
-
-contains
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_model(self)
-    type(model_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_model
 end module mech9_model

@@ -21,7 +21,6 @@ module mech9_path_pair
     real(wp) :: scale = 1.0_wp       !< size of the curve, as a multiple of that in its file
     type(space_curve_type) :: curve  !< the curve in this size, in its axes
   contains
-    final :: free_path_pair
     procedure :: evaluate
     procedure :: as_screw
     procedure :: kind_name
@@ -173,9 +172,4 @@ contains
       guide%points(:, i + 1) = place%point
     end do
   end subroutine find_guide
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_path_pair(self)
-    type(path_pair_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_path_pair
 end module mech9_path_pair

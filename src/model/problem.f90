@@ -20,7 +20,6 @@ module mech9_problem
     type(drive_slot_type), allocatable :: drives(:)   !< in the order of the data file
     type(initial_type) :: initial
   contains
-    final :: free_problem
     procedure :: has_drive
   end type problem_type
 
@@ -39,9 +38,4 @@ contains
       end associate
     end do
   end function has_drive
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_problem(self)
-    type(problem_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_problem
 end module mech9_problem

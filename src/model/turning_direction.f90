@@ -21,7 +21,6 @@ module mech9_turning_direction
     logical, allocatable :: found(:)               !< (N) links that turn about `direction` only
     real(wp), allocatable :: direction(:, :)       !< (3,N) of length 1, in the axes of each link
   contains
-    final :: free_turning_search
     procedure :: turns_only_about
   end type turning_search_type
 
@@ -104,9 +103,4 @@ contains
       if (passes) direction(:, to) = sign(1.0_wp, along)*axes%axes(:, far)
     end if
   end subroutine cross_pair
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_turning_search(self)
-    type(turning_search_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_turning_search
 end module mech9_turning_direction

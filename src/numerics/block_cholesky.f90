@@ -25,7 +25,6 @@ module mech9_block_cholesky
     real(wp), allocatable :: whole(:, :)        !< (d,n) scratch
     real(wp) :: least_part = 1.0_wp             !< least pivot, as a part of the number on the diagonal that it was
   contains
-    final :: free_block_cholesky
     procedure :: clear
     procedure :: place_of
     procedure :: find_blocks
@@ -394,9 +393,4 @@ contains
       sorted(j) = numbers(i)
     end do
   end subroutine sort
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_block_cholesky(self)
-    type(block_cholesky_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_block_cholesky
 end module mech9_block_cholesky

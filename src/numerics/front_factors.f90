@@ -36,7 +36,6 @@ module mech9_front_factors
     real(wp), allocatable :: product(:)         !< scratch: product of the coupling and the covariance of these columns
     real(wp), allocatable :: of_others(:)       !< scratch: the covariance of the other columns of one front
   contains
-    final :: free_front_factors
     procedure :: factorize
     procedure :: find_distances
     procedure :: distance
@@ -286,9 +285,4 @@ contains
       end associate
     end do
   end subroutine substitute_transposed
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_front_factors(self)
-    type(front_factors_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_front_factors
 end module mech9_front_factors

@@ -69,8 +69,6 @@ module mech9_front_plan
     type(list_type), allocatable :: classes(:)   !< (groups) classes that occur in each group
     type(list_type), allocatable :: groups(:)    !< (classes) groups in which each class occurs; none after its elimination
     type(list_type), allocatable :: members(:)   !< (classes) columns of each class
-  contains
-    final :: free_graph
   end type graph_type
 
 contains
@@ -405,9 +403,4 @@ contains
 
     all_in = all(is_in(numbers, list))
   end function all_in
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_graph(self)
-    type(graph_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_graph
 end module mech9_front_plan

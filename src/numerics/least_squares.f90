@@ -46,7 +46,6 @@ module mech9_least_squares
     real(wp), allocatable, private :: norms(:)
     real(wp), allocatable, private :: work(:)
   contains
-    final :: free_least_squares
     procedure :: create
     procedure :: factorize
     procedure :: solve
@@ -404,9 +403,4 @@ contains
       end do
     end do
   end function determinant_sign
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_least_squares(self)
-    type(least_squares_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_least_squares
 end module mech9_least_squares

@@ -35,7 +35,6 @@ module mech9_sundials_system
     logical :: has_settled = .false.                    !< the step has just settled, and SUNDIALS evaluates the rate there next
     real(c_double), pointer :: last_rate(:) => null()   !< the rate of the last stage, in SUNDIALS' memory
   contains
-    final :: free_system_box
     procedure :: settle
     procedure :: has_cause
     procedure :: watch
@@ -207,9 +206,4 @@ contains
     if (.not. box%broken) box%refusals = box%refusals + 1
     answer = merge(-1, 1, box%broken)
   end function answer_to
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_system_box(self)
-    type(system_box_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_system_box
 end module mech9_sundials_system

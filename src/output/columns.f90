@@ -45,7 +45,6 @@ module mech9_columns
     integer :: varied_poses = 0             !< how many derivatives by parameters stand after the poses: of origins and rotations
     integer :: unrecorded = 0               !< how many derivatives by parameters stand after the poses, for quantities alone
   contains
-    final :: free_columns
     procedure :: append
     procedure :: append_forces
     procedure :: forces
@@ -401,7 +400,7 @@ contains
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     type(state_type), intent(in) :: state          !< position and motion of the mechanism
-    real(wp), intent(inout), contiguous :: row(:)    !< numbers of one row, one for each column
+    real(wp), intent(inout) :: row(:)              !< numbers of one row, one for each column
     integer :: i, n, used
 
     n = size(self%coordinates)
@@ -439,9 +438,4 @@ contains
       columns(i) = values(coordinates(i))*factors(i)
     end do
   end subroutine take
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_columns(self)
-    type(columns_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_columns
 end module mech9_columns

@@ -38,7 +38,6 @@ module mech9_hdf5_file
     integer(hid_t), private :: make_groups = -1  !< property of links: missing groups of a path are made
     type(replacement_type), private :: replacement
   contains
-    final :: free_hdf5_file
     procedure :: create => create_file
     procedure :: flush => flush_file
     procedure :: close => close_file
@@ -414,9 +413,4 @@ contains
     end do
     call h5dclose_f(data_set, status)
   end subroutine attach_scales
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_hdf5_file(self)
-    type(hdf5_file_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_hdf5_file
 end module mech9_hdf5_file

@@ -30,7 +30,6 @@ module mech9_hdf5_quantity
                                                       !< the pieces would be short
     real(wp), allocatable, private :: buffer(:, :)    !< (columns, rows) numbers of rows that wait
   contains
-    final :: free_quantity
     procedure :: create_growing
     procedure :: create_fixed
     procedure :: open_fixed
@@ -302,9 +301,4 @@ contains
     if (self%data_set >= 0) call h5dclose_f(self%data_set, status)
     self%data_set = -1
   end subroutine close_quantity
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_quantity(self)
-    type(quantity_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_quantity
 end module mech9_hdf5_quantity

@@ -39,7 +39,6 @@ module mech9_hdf5_series
     logical :: fixed = .false.       !< the data sets have all their rows from the beginning
     integer(hsize_t) :: rows = 0     !< how many these are
   contains
-    final :: free_hdf5_series
     procedure :: start
     procedure :: start_fixed
     procedure :: add
@@ -295,9 +294,4 @@ contains
     end do
     self%count = 0
   end subroutine close_series
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_hdf5_series(self)
-    type(hdf5_series_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_hdf5_series
 end module mech9_hdf5_series

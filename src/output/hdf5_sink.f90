@@ -29,7 +29,6 @@ module mech9_hdf5_sink
     type(pacer_type), private :: pacer
     logical, private :: reported = .false.  !< whether the failure of the file was reported
   contains
-    final :: free_hdf5_sink
     procedure :: open => open_sink
     procedure :: write_rows
     procedure :: flush => flush_sink
@@ -159,9 +158,4 @@ contains
     self%reported = .true.
     err = self%file%failure
   end subroutine tell
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_hdf5_sink(self)
-    type(hdf5_sink_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_hdf5_sink
 end module mech9_hdf5_sink

@@ -17,7 +17,6 @@ module mech9_kept_rows
     integer :: stride = 1                                 !< one row of so many is kept
     integer :: seen = 0                                   !< how many rows were taken, with those not kept
   contains
-    final :: free_kept_rows
     procedure :: begin
     procedure :: take
     procedure :: column
@@ -74,9 +73,4 @@ contains
     number = 0
     meant = nearest_name(name, known)
   end subroutine column
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_kept_rows(self)
-    type(kept_rows_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_kept_rows
 end module mech9_kept_rows

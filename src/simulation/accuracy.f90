@@ -41,8 +41,6 @@ module mech9_accuracy
     real(wp), allocatable :: places(:, :)          !< (values, outputs) [rad, m]
     integer(long) :: evaluations = 0               !< of the accelerations
     type(error_type), allocatable :: failure       !< by which the run ended before the last output
-  contains
-    final :: free_course
   end type course_type
 
 contains
@@ -186,9 +184,4 @@ contains
       errors%failure = judged%failure
     end if
   end subroutine compare
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_course(self)
-    type(course_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_course
 end module mech9_accuracy

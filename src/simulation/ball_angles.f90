@@ -33,7 +33,6 @@ module mech9_ball_angles
     type(swing_type), allocatable, private :: swings(:)       !< (joints) motion at this time
     real(wp), private :: lock = 0.0_wp                !< distance from gimbal lock below which directions are not known [rad]
   contains
-    final :: free_ball_angles
     procedure :: begin
     procedure :: restart
     procedure :: in_use
@@ -400,9 +399,4 @@ contains
     end if
     coordinates = pack([(i, i=1, size(is_replaced))], is_replaced)
   end function replaced_coordinates
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_ball_angles(self)
-    type(ball_angles_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_ball_angles
 end module mech9_ball_angles

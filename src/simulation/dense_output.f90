@@ -42,7 +42,6 @@ module mech9_dense_output
     integer :: chosen(most) = 0                       !< places of the points of the polynomial, the nearest first
     type(hermite_type) :: polynomial                  !< all coordinates and states of motors over time
   contains
-    final :: free_dense_output
     procedure :: begin
     procedure :: add
     procedure :: insert
@@ -292,9 +291,4 @@ contains
       is_left(chosen(i)) = .false.
     end do
   end function points_next_to
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_dense_output(self)
-    type(dense_output_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_dense_output
 end module mech9_dense_output

@@ -31,7 +31,6 @@ module mech9_driven_simulation
     type(motion_view_type), allocatable, private :: view         !< of the present state, as loads see it
     type(driven_counts_type), private :: kept_work(batch_size)   !< of positions that wait for their derivatives
   contains
-    final :: free_driven_simulation
     procedure :: begin
     procedure :: go_to
     procedure :: present => present_state
@@ -185,9 +184,4 @@ contains
 
     call return_to_counts(self%kept_work(place), self%driven)
   end subroutine return_to_work
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_driven_simulation(self)
-    type(driven_simulation_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_driven_simulation
 end module mech9_driven_simulation

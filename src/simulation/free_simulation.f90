@@ -38,7 +38,6 @@ module mech9_free_simulation
     real(wp) :: end = 0.0_wp                      !< steps go to this time at most, unless a later one is asked for [s]
     logical, private :: steps_onto = .false.      !< no step may go beyond the time that is asked for
   contains
-    final :: free_free_simulation
     procedure :: begin
     procedure :: go_to
     procedure :: present
@@ -535,9 +534,4 @@ contains
     call self%motion%close()
     self%started = .false.
   end subroutine close_simulation
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_free_simulation(self)
-    type(free_simulation_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_free_simulation
 end module mech9_free_simulation

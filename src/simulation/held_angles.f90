@@ -23,7 +23,6 @@ module mech9_held_angles
     type(drive_slot_type), allocatable :: drives(:)   !< drives of the data file, and those that hold angles at present
     type(held_rod_type), allocatable :: rods(:)       !< rods that turn by themselves
   contains
-    final :: free_held_angles
     procedure :: begin
     procedure :: as_if_not_held
     procedure :: in_doubt
@@ -164,9 +163,4 @@ contains
       end do
     end do
   end subroutine hold_positions
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_held_angles(self)
-    type(held_angles_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_held_angles
 end module mech9_held_angles

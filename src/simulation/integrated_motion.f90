@@ -42,7 +42,6 @@ module mech9_integrated_motion
     type(integration_statistics_type), private :: before   !< of the integrators before the present one
     type(work_count_type), private :: work_before          !< for the blocks of the systems before the present one
   contains
-    final :: free_integrated_motion
     procedure :: begin
     procedure :: begin_sensitivity
     procedure :: change_coordinates
@@ -457,9 +456,4 @@ contains
     if (associated(self%system)) deallocate (self%system)
     self%system => null()
   end subroutine close_motion
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_integrated_motion(self)
-    type(integrated_motion_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_integrated_motion
 end module mech9_integrated_motion

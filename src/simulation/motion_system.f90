@@ -54,7 +54,6 @@ module mech9_motion_system
     type(smooth_interval_type) :: interval           !< in which the present steps lie
     type(motion_sensitivity_type), allocatable :: sensitivity   !< derivatives by parameters, where they are integrated, too
   contains
-    final :: free_motion_system
     procedure :: size_of_vector
     procedure :: size_of_motion
     procedure :: count_varied
@@ -417,9 +416,4 @@ contains
       found(b) = self%work%blocks(b)%equations%determinant_sign()
     end do
   end subroutine signs
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_motion_system(self)
-    type(motion_system_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_motion_system
 end module mech9_motion_system

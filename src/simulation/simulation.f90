@@ -56,8 +56,6 @@ module mech9_simulation
     type(error_type), allocatable :: failure  !< of one of these runs, which ended before the last output
     integer :: runs = 0                       !< how many they were
     integer(long) :: evaluations = 0          !< of the accelerations in these runs
-  contains
-    final :: free_estimated_errors
   end type estimated_errors_type
 
   !> Counts and largest numbers of a motion over its positions, up to one of them.
@@ -420,9 +418,4 @@ contains
 
     self%started = .false.
   end subroutine close_nothing
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_estimated_errors(self)
-    type(estimated_errors_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_estimated_errors
 end module mech9_simulation

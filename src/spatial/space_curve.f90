@@ -27,7 +27,6 @@ module mech9_space_curve
     real(wp), allocatable :: s(:)         !< (0:parts) arc length between the parts [m]
     real(wp), allocatable :: r(:, :, :)   !< (3,3,0:parts) frames between the parts
   contains
-    final :: free_space_curve
     procedure :: check_ends
     procedure :: locate
     procedure :: frame_at
@@ -340,9 +339,4 @@ contains
       end do
     end associate
   end function parameter_at
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_space_curve(self)
-    type(space_curve_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_space_curve
 end module mech9_space_curve

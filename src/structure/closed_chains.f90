@@ -42,7 +42,6 @@ module mech9_closed_chains
     integer, allocatable, private :: trail_pairs(:)    ! (N+1) its pairs
     integer, allocatable, private :: trail_next(:)     ! (N+1) place of the pair that tracing tries next at each link
   contains
-    final :: free_chain_search
     procedure :: start
     procedure :: make_known
     procedure :: next_closed_chain
@@ -352,9 +351,4 @@ contains
     other_end = graph%ends(1, pair)
     if (other_end == link) other_end = graph%ends(2, pair)
   end function other_end
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_chain_search(self)
-    type(chain_search_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_chain_search
 end module mech9_closed_chains

@@ -23,7 +23,6 @@ module mech9_link_graph
     !> dependent coordinates, then the number of all coordinates.
     integer(long), allocatable :: cost(:)
   contains
-    final :: free_link_graph
     procedure :: weigh
   end type link_graph_type
 
@@ -134,9 +133,4 @@ contains
       end if
     end do
   end subroutine find_bridges
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_link_graph(self)
-    type(link_graph_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_link_graph
 end module mech9_link_graph

@@ -42,8 +42,6 @@ module mech9_transformation
     type(priority_queue_type) :: parts       !< bridges from known links to closed chains, by cost, link, pair
     integer :: length = 0                    !< of the vectors so far
     type(structural_vectors_type) :: vectors
-  contains
-    final :: free_work
   end type work_type
 
 contains
@@ -289,9 +287,4 @@ contains
     work%vectors%rdw(work%length) = 1
     if (pair > 0) work%vectors%rdw(work%length) = merge(1, 0, work%graph%independent(pair))
   end subroutine append
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_work(self)
-    type(work_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_work
 end module mech9_transformation

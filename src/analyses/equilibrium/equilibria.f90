@@ -25,8 +25,6 @@ module mech9_equilibria
   type :: equilibrium_slot_type
     type(equilibrium_type), allocatable :: item
     real(wp), allocatable :: numbers(:)   !< of its posture
-  contains
-    final :: free_equilibrium_slot
   end type equilibrium_slot_type
 
   !> Random positions tried for each start, because chains do not close everywhere.
@@ -78,7 +76,7 @@ contains
     integer :: i, n
     logical :: reached
 
-    allocate (list(0), slots(n_starts + 1))
+    allocate (list(0), slots(16))
     n = 0
     posture = new_posture(mechanism, plan)
     call find_equilibrium(mechanism, partition, plan, assembled, found, failure)
@@ -213,8 +211,9 @@ contains
     type(mechanism_type), intent(in) :: mechanism                         !< the mechanism
     type(posture_type), intent(in) :: posture                             !< the quantities that make its posture
     type(equilibrium_type), intent(in) :: found                           !< the equilibrium
-    type(equilibrium_slot_type), intent(inout) :: slots(:)                !< equilibria found so far, with room for this one
+    type(equilibrium_slot_type), allocatable, intent(inout) :: slots(:)   !< equilibria found so far; it grows
     integer, intent(inout) :: n                                           !< their number
+    type(equilibrium_slot_type), allocatable :: longer(:)
     type(state_type) :: state
     real(wp), allocatable :: numbers(:)
     integer :: i
@@ -228,6 +227,14 @@ contains
         return
       end associate
     end do
+    if (n == size(slots)) then
+      allocate (longer(2*n))
+      do i = 1, n
+        call move_alloc(slots(i)%item, longer(i)%item)
+        call move_alloc(slots(i)%numbers, longer(i)%numbers)
+      end do
+      call move_alloc(longer, slots)
+    end if
     n = n + 1
     allocate (slots(n)%item)
     call copy_equilibrium(found, slots(n)%item)
@@ -238,7 +245,7 @@ contains
   !> Make the list of the equilibria that were found, sorted by their first coordinates, where these are the same by the second
   !> ones, and so on.
   subroutine take_sorted(slots, list)
-    type(equilibrium_slot_type), intent(in) :: slots(:)           !< the equilibria
+    type(equilibrium_slot_type), intent(inout) :: slots(:)        !< the equilibria; empty afterwards
     type(equilibrium_type), allocatable, intent(out) :: list(:)   !< the same, sorted
     integer :: order(size(slots)), i, j
 
@@ -254,6 +261,7 @@ contains
     allocate (list(size(slots)))
     do i = 1, size(slots)
       call copy_equilibrium(slots(order(i))%item, list(i))
+      deallocate (slots(order(i))%item)
     end do
   end subroutine take_sorted
 
@@ -270,9 +278,4 @@ contains
       return
     end do
   end function comes_before
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_equilibrium_slot(self)
-    type(equilibrium_slot_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_equilibrium_slot
 end module mech9_equilibria

@@ -33,8 +33,6 @@ module mech9_linearised_equilibrium
     integer :: without_inertia = 0
     type(motor_coupling_type) :: motors         !< with the states of motors, where there are motors
     integer :: found = 1                        !< number of starts that led to it
-  contains
-    final :: free_equilibrium
   end type equilibrium_type
 
   !> Conditioning at which the coordinates of the data file are taken again for the matrices.
@@ -229,9 +227,4 @@ contains
 
     to = from
   end subroutine copy_equilibrium
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_equilibrium(self)
-    type(equilibrium_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_equilibrium
 end module mech9_linearised_equilibrium

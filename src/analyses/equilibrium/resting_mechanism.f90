@@ -33,8 +33,6 @@ module mech9_resting_mechanism
     real(wp), allocatable :: forces(:)            !< (n) that keep the mechanism in its position; zero in equilibrium [J]
     real(wp), allocatable :: stiffness(:, :)      !< (n,n) their derivatives by the free coordinates [J]
     real(wp) :: stiffness_magnitude = 0.0_wp      !< sum of the magnitudes of the terms of the stiffness [J]
-  contains
-    final :: free_resting
   end type resting_type
 
   !> Forces below this part of the sum of all magnitudes are zero: round-off of some hundred terms times the conditioning of
@@ -266,9 +264,4 @@ contains
     if (allocated(err)) return
     if (conditioning_of(other) > least) call copy_resting(other, resting)
   end subroutine take_coordinates
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_resting(self)
-    type(resting_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_resting
 end module mech9_resting_mechanism

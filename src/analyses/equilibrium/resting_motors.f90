@@ -31,8 +31,6 @@ module mech9_resting_motors
     real(wp), allocatable :: rate_by_dq(:, :)       !< (s,n)
     real(wp), allocatable :: rate_by_state(:)       !< (s) each by its own state [1/s]
     real(wp), allocatable :: rate_by_input(:, :)    !< (s,v)
-  contains
-    final :: free_motor_coupling
   end type motor_coupling_type
 
 contains
@@ -218,9 +216,4 @@ contains
       end do
     end associate
   end subroutine find_slopes
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_motor_coupling(self)
-    type(motor_coupling_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_motor_coupling
 end module mech9_resting_motors

@@ -27,8 +27,6 @@ module mech9_planar_numbers
     real(wp), allocatable :: slopes(:, :)                   !< (numbers,varied) their derivatives
     real(wp), allocatable :: numbers(:)                     !< (numbers) those of the design that was placed last
     logical :: moves_drives = .false.                       !< a parameter changes drives
-  contains
-    final :: free_planar_design
   end type planar_design_type
 
 contains
@@ -62,9 +60,4 @@ contains
       k = k + numbers_of_point
     end do
   end subroutine place_numbers
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_planar_design(self)
-    type(planar_design_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_planar_design
 end module mech9_planar_numbers

@@ -24,8 +24,6 @@ module mech9_planar_run
     real(wp), allocatable :: dq(:, :)          !< (room,M) their rates [rad/s, m/s]
     real(wp), allocatable :: angle(:, :)       !< (room,M) angle by which each step turns [rad]
     real(wp), allocatable :: turn(:, :, :)     !< (room,2,M) its cosine and sine
-  contains
-    final :: free_planar_positions
   end type planar_positions_type
 
   !> The parts of a plan that the run of a planar design needs, and scratch.
@@ -44,8 +42,6 @@ module mech9_planar_run
     real(wp), allocatable :: pivot(:, :)             !< (room,loops) their least pivots
     real(wp), allocatable :: r(:, :), change(:, :), column(:, :), angle(:), work(:)   !< (room[,3]) scratch
     logical, allocatable :: splits(:)                !< (room) another position is needed after this one
-  contains
-    final :: free_planar_run
   end type planar_run_type
 
   !> Largest change of an angle that a correction may make [rad].
@@ -370,14 +366,4 @@ contains
       end do
     end associate
   end subroutine find_rates
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_planar_positions(self)
-    type(planar_positions_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_planar_positions
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_planar_run(self)
-    type(planar_run_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_planar_run
 end module mech9_planar_run

@@ -37,7 +37,6 @@ module mech9_cluster_balance
     real(wp), allocatable :: axis(:, :)           !< (6,pairs) of length 1
     real(wp), allocatable :: arm(:, :, :)         !< (3,2,pairs) from the places of moving and reference link, over the size
   contains
-    final :: free_cluster_balance
     procedure :: set_position
     procedure :: spread
     procedure :: find_motion
@@ -267,9 +266,4 @@ contains
       end do
     end do
   end subroutine find_lacking
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_cluster_balance(self)
-    type(cluster_balance_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_cluster_balance
 end module mech9_cluster_balance

@@ -31,8 +31,6 @@ module mech9_coupling_forces
     integer, private :: redundant = 0                          !< number of redundant equations of all blocks
     real(wp), allocatable, private :: required(:)              !< (M) forces that the coordinates require [N m, N]
     real(wp), allocatable, private :: together(:)              !< (M) forces of all couplings on the coordinates [N m, N]
-  contains
-    final :: free_coupling_forces
   end type coupling_forces_type
 
 contains
@@ -203,9 +201,4 @@ contains
                                                                      reactions%length)
     end do
   end subroutine require
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_coupling_forces(self)
-    type(coupling_forces_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_coupling_forces
 end module mech9_coupling_forces

@@ -20,8 +20,6 @@ module mech9_joint_geometry
     real(wp), allocatable :: point(:, :)   !< (3,M) origin of each pair's frame in its moving link [m]
     real(wp), allocatable :: axis(:, :)    !< (6,M) motion of the moving link at this point in the reference link, of length 1
     real(wp), allocatable :: length(:)     !< (M) of this motion per unit of the coordinate [m per unit]
-  contains
-    final :: free_joint_geometry
   end type joint_geometry_type
 
 contains
@@ -88,9 +86,4 @@ contains
       end if
     end associate
   end subroutine move_to_start
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_joint_geometry(self)
-    type(joint_geometry_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_joint_geometry
 end module mech9_joint_geometry

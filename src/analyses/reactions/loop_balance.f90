@@ -25,8 +25,6 @@ module mech9_loop_balance
     type(block_work_type), allocatable, private :: blocks(:)   !< (blocks of the plan) with the factors of their Jacobians
     real(wp), allocatable, private :: force(:, :)    !< (3,M) by steps [N]
     real(wp), allocatable, private :: moment(:, :)   !< (3,M) by steps [N m]
-  contains
-    final :: free_loop_balance
   end type loop_balance_type
 
 contains
@@ -228,9 +226,4 @@ contains
                   force(:, k), moment(:, k))
     end do
   end subroutine show_loops
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_loop_balance(self)
-    type(loop_balance_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_loop_balance
 end module mech9_loop_balance

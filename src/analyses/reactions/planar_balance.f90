@@ -22,7 +22,6 @@ module mech9_planar_balance
     real(wp), allocatable :: required(:, :)        !< (3,nodes) what the links require
     real(wp), allocatable, private :: lacking(:, :)   !< (3,nodes) scratch
   contains
-    final :: free_planar_balance
     procedure :: factorize
     procedure :: solve
   end type planar_balance_type
@@ -171,9 +170,4 @@ contains
       self%wrenches(:, i) = self%wrenches(:, i) + motion
     end do
   end subroutine spread_motion
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_planar_balance(self)
-    type(planar_balance_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_planar_balance
 end module mech9_planar_balance

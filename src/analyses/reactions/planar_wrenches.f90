@@ -25,8 +25,6 @@ module mech9_planar_wrenches
   type :: planar_wrenches_type
     type(block_work_type), allocatable, private :: blocks(:)   !< with the factors of their Jacobians
     real(wp), allocatable, private :: wrench(:, :)   !< (3,0:M) what the frame of a step requires from the frame before [N m, N]
-  contains
-    final :: free_planar_wrenches
   end type planar_wrenches_type
 
 contains
@@ -263,9 +261,4 @@ contains
       end associate
     end do
   end subroutine show_wrenches
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_planar_wrenches(self)
-    type(planar_wrenches_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_planar_wrenches
 end module mech9_planar_wrenches

@@ -60,8 +60,6 @@ module mech9_reaction_plan
     real(wp) :: height = 0.0_wp           !< of the pairs above frame 0, in a flat mechanism [m]
     real(wp) :: gravity(2) = 0.0_wp       !< acceleration of free fall in the plane's axes [m/s^2]
     type(planar_body_type), allocatable :: flat_bodies(:)   !< the moving bodies in the plane
-  contains
-    final :: free_reaction_plan
   end type reaction_plan_type
 
 contains
@@ -266,9 +264,4 @@ contains
     cluster%determined = regular .and. count(reactions%pairs(cluster%pairs)%dependent) == merge(3, 6, plan%planar%used)*loops &
                          .and. closures == loops
   end subroutine join_closures
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_reaction_plan(self)
-    type(reaction_plan_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_reaction_plan
 end module mech9_reaction_plan

@@ -55,8 +55,6 @@ module mech9_reactions
     real(wp), allocatable :: changes(:, :)        !< (6,M) scratch
     real(wp), allocatable :: required(:, :)       !< (6,N) scratch: scaled, of the links of one cluster
     real(wp), allocatable :: lacking(:, :)        !< (6,N) scratch: scaled, what they do not receive
-  contains
-    final :: free_reactions
   end type reactions_type
 
 contains
@@ -391,9 +389,4 @@ contains
       if (self%sum%any_generalized) self%needed(k) = self%needed(k) - self%sum%generalized(k)
     end do
   end subroutine find_needed
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_reactions(self)
-    type(reactions_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_reactions
 end module mech9_reactions

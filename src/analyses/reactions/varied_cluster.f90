@@ -27,7 +27,6 @@ module mech9_varied_cluster
     real(wp), private :: tolerance = 0.0_wp     !< of ranks
     type(singular_cluster_type), allocatable, private :: singular   !< allocated if the equations are singular
   contains
-    final :: free_equations
     procedure :: set_position
     procedure :: complete
     procedure :: remove_determined
@@ -361,9 +360,4 @@ contains
     least = equal_lengths*abs(longer)/reactions%length*maxval(abs(present%wrenches))
     where (abs(differences) > least) changes = ieee_value(1.0_wp, ieee_quiet_nan)
   end subroutine keep_common
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_equations(self)
-    type(equations_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_equations
 end module mech9_varied_cluster

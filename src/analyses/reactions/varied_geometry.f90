@@ -25,8 +25,6 @@ module mech9_varied_geometry
     real(wp), allocatable :: other_length(:)
     real(wp), allocatable, private :: ends(:, :)           !< (3,2M) origins of the pairs' frames in reference and moving links
     real(wp), allocatable, private :: end_change(:, :, :)  !< (P,3,2M) their derivatives
-  contains
-    final :: free_varied_geometry
   end type varied_geometry_type
 
 contains
@@ -196,9 +194,4 @@ contains
 
     link = reactions%pairs((number + 1)/2)%links(merge(1, 2, mod(number, 2) == 0))
   end function link_of
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_varied_geometry(self)
-    type(varied_geometry_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_varied_geometry
 end module mech9_varied_geometry

@@ -32,8 +32,6 @@ module mech9_varied_reactions
     type(joint_geometry_type), private :: geometry                     !< of the position
     type(varied_geometry_type), private :: varied                      !< its derivatives
     type(equations_type), allocatable, private :: equations(:)         !< of the clusters
-  contains
-    final :: free_varied_reactions
   end type varied_reactions_type
 
 contains
@@ -175,9 +173,4 @@ contains
       end associate
     end do
   end subroutine show_joints
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_varied_reactions(self)
-    type(varied_reactions_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_varied_reactions
 end module mech9_varied_reactions

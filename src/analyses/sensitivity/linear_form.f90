@@ -32,8 +32,6 @@ module mech9_linear_form
     real(wp), allocatable :: shares(:, :, :, :)        !< (batch,rows,0:2,slots) sums of twists with their signs
     logical, allocatable :: is_changed(:)              !< (P) the parameter changes some of the numbers
     logical, allocatable :: is_still(:)                !< (P) it changes them by what never changes itself
-  contains
-    final :: free_linear_form
   end type linear_form_type
 
 contains
@@ -272,9 +270,4 @@ contains
       end do
     end do
   end subroutine find_sizes
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_linear_form(self)
-    type(linear_form_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_linear_form
 end module mech9_linear_form

@@ -73,8 +73,6 @@ module mech9_sensitivity
     real(wp), private :: times(batch_size) = 0.0_wp            !< of the positions [s]
     type(planar_batch_type), private :: plane                  !< motion of the frames in the plane
     type(spatial_batch_type), private :: space                 !< motion of frames and steps in space
-  contains
-    final :: free_sensitivity
   end type sensitivity_type
 
   interface
@@ -361,9 +359,4 @@ contains
       end do
     end associate
   end subroutine vary_point
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_sensitivity(self)
-    type(sensitivity_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_sensitivity
 end module mech9_sensitivity

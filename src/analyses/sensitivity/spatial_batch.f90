@@ -18,8 +18,6 @@ module mech9_spatial_batch
     real(wp), allocatable :: step(:, :, :, :)            !< (batch,6,0:2,M) twist of each step per unit rate, with its derivatives in time
     real(wp), allocatable, private :: velocity(:, :, :)  !< (batch,6,0:M) of each frame as a twist [rad/s, m/s]
     real(wp), allocatable, private :: acceleration(:, :, :)   !< (batch,6,0:M) derivative of `velocity` in time
-  contains
-    final :: free_spatial_batch
   end type spatial_batch_type
 
 contains
@@ -232,9 +230,4 @@ contains
       second(i, 3) = alpha(i, 1)*a(i, 2) - alpha(i, 2)*a(i, 1) + w(i, 1)*first(i, 2) - w(i, 2)*first(i, 1)
     end do
   end subroutine turn_column
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_spatial_batch(self)
-    type(spatial_batch_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_spatial_batch
 end module mech9_spatial_batch

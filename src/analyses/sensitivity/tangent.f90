@@ -50,8 +50,6 @@ module mech9_tangent
     !> Round-off of the derivatives of poses: what two estimates differ by, and that of the differences [rad, parts of the mechanism's
     !> size].
     real(wp) :: round_off = 0.0_wp
-  contains
-    final :: free_tangent
   end type tangent_type
 
   integer, parameter :: half_width = 4
@@ -396,9 +394,4 @@ contains
     twist(1:3) = 0.5_wp*[spin(3, 2) - spin(2, 3), spin(1, 3) - spin(3, 1), spin(2, 1) - spin(1, 2)]
     twist(4:6) = change(10:12) - cross(twist(1:3), pose%p)
   end function twist_of
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_tangent(self)
-    type(tangent_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_tangent
 end module mech9_tangent

@@ -42,8 +42,6 @@ module mech9_varied_block
     real(wp), allocatable, private :: solver(:, :, :)
     real(wp), allocatable, private :: openings(:, :)   !< (batch,equations) by one parameter, and up to two columns of zeros
     real(wp), allocatable, private :: right(:), change(:)   !< (equations), (unknowns) scratch
-  contains
-    final :: free_varied_block
   end type varied_block_type
 
   !> Memory for the factors of several positions [bytes].
@@ -363,9 +361,4 @@ contains
       end do
     end subroutine judge
   end subroutine find_opened
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_varied_block(self)
-    type(varied_block_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_varied_block
 end module mech9_varied_block

@@ -16,7 +16,6 @@ module mech9_closed_changes
     real(wp), allocatable :: solution(:)    !< scratch: a solution
     real(wp), allocatable :: drives(:, :)   !< (P,M) of driven coordinates by the parameters at a given time [rad, m]
   contains
-    final :: free_closed_changes
     procedure :: delay
   end type closed_changes_type
 
@@ -86,9 +85,4 @@ contains
     delay = 0.0_wp
     if (abs(position%state%dq(coordinate)) > 0.0_wp) delay = -self%drives(:, coordinate)/position%state%dq(coordinate)
   end function delay
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_closed_changes(self)
-    type(closed_changes_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_closed_changes
 end module mech9_closed_changes

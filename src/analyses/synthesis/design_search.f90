@@ -33,8 +33,6 @@ module mech9_design_search
     type(design_type) :: design
     type(open_position_type) :: position
     real(wp) :: scale = 1.0_wp              !< size of the targets [m, rad]
-  contains
-    final :: free_search
   end type search_type
 
   integer, parameter :: most_assemblies = 8   !< assemblies that are tried from one start
@@ -217,9 +215,4 @@ contains
     end associate
     if (came) call search_closed(space, seen%exact, seen%limits, seen%scale, x, y(size(y, 1), seen%exact%free%target), q, found)
   end subroutine search_assembly
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_search(self)
-    type(search_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_search
 end module mech9_design_search

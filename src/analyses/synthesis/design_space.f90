@@ -39,7 +39,6 @@ module mech9_design_space
     integer :: drives_at = 0                        !< number of constants before those of the drives
     class(quantity_evaluator_type), allocatable :: evaluator   !< makes the runs from which quantities are taken
   contains
-    final :: free_design_space
     procedure :: moves_drives
   end type design_space_type
 
@@ -51,8 +50,6 @@ module mech9_design_space
     real(wp), allocatable :: places(:, :)          !< (3,points) of the points in their links [m]
     type(drive_slot_type), allocatable :: drives(:)
     type(tangent_type), allocatable :: tangents(:) !< (varied) derivatives of its numbers, where these have been found
-  contains
-    final :: free_design
   end type design_type
 
   !> Numbers are affine where they differ by no more than this part of their largest change from an affine function.
@@ -386,14 +383,4 @@ contains
       end associate
     end do
   end subroutine drive_changes
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_design(self)
-    type(design_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_design
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_design_space(self)
-    type(design_space_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_design_space
 end module mech9_design_space

@@ -59,7 +59,6 @@ module mech9_exact_fit
     logical :: heeds_interruption = .true.                  !< designs have no value after the user has interrupted
     logical :: was_cut = .false.                            !< a design had no value for this reason
   contains
-    final :: free_exact_fit
     procedure :: evaluate
     procedure :: has_derivatives
     procedure :: quantity_slopes
@@ -416,9 +415,4 @@ contains
       by_unknown(:, self%varied + j) = by_t*(self%end - self%start)*part_by_gap(self%free, i, j)
     end do
   end subroutine add_times
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_exact_fit(self)
-    type(exact_fit_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_exact_fit
 end module mech9_exact_fit

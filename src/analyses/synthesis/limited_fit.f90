@@ -18,7 +18,6 @@ module mech9_limited_fit
     real(wp) :: least = huge(1.0_wp)           !< the least value within all limits so far
     real(wp), allocatable :: q_best(:)         !< (M) the start of this design [rad, m]
   contains
-    final :: free_limited_fit
     procedure :: evaluate
     procedure :: is_stopped
   end type limited_fit_type
@@ -118,9 +117,4 @@ contains
     call self%fit%note_interruption()
     is_stopped = self%fit%was_cut
   end function is_stopped
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_limited_fit(self)
-    type(limited_fit_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_limited_fit
 end module mech9_limited_fit

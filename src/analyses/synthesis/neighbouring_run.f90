@@ -33,8 +33,6 @@ module mech9_neighbouring_run
     integer, allocatable :: target(:)      !< (room) their targets; 0: none
     real(wp), allocatable :: t(:)          !< (room) their times [s]
     real(wp), allocatable :: q(:, :)       !< (M,room) their coordinates [rad, m]
-  contains
-    final :: free_neighbouring_run
   end type neighbouring_run_type
 
   !> Largest change of a coordinate with the time of a target, in its unit.
@@ -269,9 +267,4 @@ contains
     end do
     of_t = matmul(of_t, transpose(axes))
   end subroutine turn_from_plane
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_neighbouring_run(self)
-    type(neighbouring_run_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_neighbouring_run
 end module mech9_neighbouring_run

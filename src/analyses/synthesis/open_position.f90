@@ -25,8 +25,6 @@ module mech9_open_position
     real(wp), allocatable :: by_q(:, :)      !< (equations,M) derivatives by the coordinates, each in its unit
     real(wp), allocatable :: by_x(:, :)      !< (equations,P) derivatives by the parameters
     real(wp), allocatable :: frames(:, :, :) !< (6,P,0:M) twists of the frames by the parameters
-  contains
-    final :: free_open_position
   end type open_position_type
 
 contains
@@ -297,9 +295,4 @@ contains
       turn_by_x(:, p) = position%frames(1:3, p, s)
     end do
   end subroutine frame_derivatives
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_open_position(self)
-    type(open_position_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_open_position
 end module mech9_open_position

@@ -26,8 +26,6 @@ module mech9_planar_slopes
     real(wp), allocatable :: by_x(:, :, :)            !< (n,M,P) derivatives of the coordinates by the parameters
     real(wp), allocatable :: jacobian(:, :, :), inverse(:, :, :), columns(:, :, :)   !< scratch
     real(wp), allocatable :: pivots(:, :), rows(:, :), change(:, :)                  !< scratch
-  contains
-    final :: free_planar_slopes
   end type planar_slopes_type
 
 contains
@@ -307,9 +305,4 @@ contains
       end if
     end subroutine add_motion
   end subroutine find_point_slopes
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_planar_slopes(self)
-    type(planar_slopes_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_planar_slopes
 end module mech9_planar_slopes

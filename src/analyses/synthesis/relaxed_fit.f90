@@ -28,7 +28,6 @@ module mech9_relaxed_fit
     real(wp) :: scale = 1.0_wp                              !< length by which differences are divided [m]
     real(wp) :: closing = 1.0_wp                            !< weight of the openings of chains
   contains
-    final :: free_relaxed_fit
     procedure :: evaluate
     procedure :: has_derivatives
   end type relaxed_fit_type
@@ -153,9 +152,4 @@ contains
       end associate
     end do
   end subroutine has_derivatives
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_relaxed_fit(self)
-    type(relaxed_fit_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_relaxed_fit
 end module mech9_relaxed_fit

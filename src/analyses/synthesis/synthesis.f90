@@ -36,7 +36,6 @@ module mech9_synthesis
     integer :: done = 0          !< number of starts that were made
     integer :: reached = 0       !< number of starts that led to a design that can move through the whole run
   contains
-    final :: free_synthesis
     procedure :: make_start
     procedure :: add
     procedure :: keep_verified
@@ -214,9 +213,4 @@ contains
     is_same = all(abs(a%x - b%x) <= same_place*(space%high - space%low)) .and. &
               abs(a%value - b%value) <= same_value*max(abs(a%value), abs(b%value)) + round_off
   end function is_same
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_synthesis(self)
-    type(synthesis_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_synthesis
 end module mech9_synthesis

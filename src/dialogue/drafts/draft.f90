@@ -27,7 +27,6 @@ module mech9_draft
     type(draft_group_type), allocatable :: groups(:)
     integer :: comments_left_out = 0               !< number of comments of the original data file that the draft does not hold
   contains
-    final :: free_draft
     procedure :: clear
     procedure :: find
     procedure :: find_entry
@@ -372,9 +371,4 @@ contains
       i = i + 1
     end do
   end function unquoted
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_draft(self)
-    type(draft_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_draft
 end module mech9_draft

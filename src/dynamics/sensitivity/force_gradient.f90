@@ -58,8 +58,6 @@ module mech9_force_gradient
     real(wp), allocatable, private :: link_rows(:, :, :)                  !< (d,0:2,0:M) those of the links alone
     type(load_gradient_type), private :: loads                            !< loads
     type(parameter_changes_type), private :: changes                      !< numbers that parameters change
-  contains
-    final :: free_force_gradient
   end type force_gradient_type
 
 contains
@@ -411,9 +409,4 @@ contains
     call by_couplings(model, self%plan, state, tangents, self%rates, self%held, self%rows, self%changes, by_parameters)
     call by_drives(model, self%plan, state, tangents, self%twists, self%d, self%rows, self%changes, by_parameters)
   end subroutine vary_numbers
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_force_gradient(self)
-    type(force_gradient_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_force_gradient
 end module mech9_force_gradient

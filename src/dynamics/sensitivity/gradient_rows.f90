@@ -24,8 +24,6 @@ module mech9_gradient_rows
     real(wp), allocatable :: couplings(:, :)      !< (0:2,closures) multipliers of the equations of couplings
     real(wp), allocatable, private :: right(:)    !< right-hand side for one block
     real(wp), allocatable, private :: values(:)   !< multipliers of its equations
-  contains
-    final :: free_gradient_rows
   end type gradient_rows_type
 
 contains
@@ -258,9 +256,4 @@ contains
       product = product + row(c)*twist(c)
     end do
   end function pairing
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_gradient_rows(self)
-    type(gradient_rows_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_gradient_rows
 end module mech9_gradient_rows

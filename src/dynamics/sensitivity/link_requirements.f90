@@ -23,8 +23,6 @@ module mech9_link_requirements
     real(wp), allocatable :: largest(:)
     real(wp), allocatable :: largest_changes(:, :) !< (P,M) the same of the derivatives
     real(wp), allocatable :: coupling(:, :)        !< (P,couplings) derivatives of the force of each on its second coordinate
-  contains
-    final :: free_link_requirements
   end type link_requirements_type
 
 contains
@@ -124,9 +122,4 @@ contains
       end do
     end associate
   end subroutine vary_own_numbers
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_link_requirements(self)
-    type(link_requirements_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_link_requirements
 end module mech9_link_requirements

@@ -47,8 +47,6 @@ module mech9_load_gradient
     type(force_sum_type), private :: sum, change                 !< sums of all loads; the change of one of them
     type(motion_change_type), private :: virtual                 !< a virtual motion as loads read it
     type(motion_change_type), private :: slopes                  !< derivatives of the power of the loads in this motion
-  contains
-    final :: free_load_gradient
   end type load_gradient_type
 
 contains
@@ -312,9 +310,4 @@ contains
       end associate
     end do
   end subroutine by_loads
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_load_gradient(self)
-    type(load_gradient_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_load_gradient
 end module mech9_load_gradient

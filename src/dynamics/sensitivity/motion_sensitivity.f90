@@ -30,7 +30,6 @@ module mech9_motion_sensitivity
     real(wp), allocatable :: motors(:, :, :)       !< (P,motors,0:1) of the motors' states and their derivatives in time
     real(wp), allocatable :: size_of(:)            !< (P) size that the derivatives by a parameter have at least, for tolerances
   contains
-    final :: free_motion_sensitivity
     procedure :: start
     procedure :: pack
     procedure :: pack_rates
@@ -259,9 +258,4 @@ contains
     end do
     self%motion%motor = self%motors(:, :, 0)
   end subroutine give
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_motion_sensitivity(self)
-    type(motion_sensitivity_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_motion_sensitivity
 end module mech9_motion_sensitivity

@@ -44,8 +44,6 @@ module mech9_parameter_changes
     integer, allocatable, private :: gravity(:)                    !< parameters that change gravity
     type(changed_law_type), allocatable, private :: couplings(:)   !< couplings, by their closures
     type(changed_law_type), allocatable, private :: drives(:)      !< drives
-  contains
-    final :: free_parameter_changes
   end type parameter_changes_type
 
 contains
@@ -262,9 +260,4 @@ contains
       end associate
     end do
   end subroutine by_drives
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_parameter_changes(self)
-    type(parameter_changes_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_parameter_changes
 end module mech9_parameter_changes

@@ -28,7 +28,6 @@ module mech9_planar_gradient
     real(wp), allocatable, private :: velocities(:, :)          !< (2,bodies) their velocities [m/s]
     real(wp), allocatable, private :: falls(:, :)               !< (2,bodies) their accelerations less gravity [m/s^2]
   contains
-    final :: free_planar_gradient
     procedure :: find_twists
     procedure :: find_wrenches
     procedure :: add_rows
@@ -246,9 +245,4 @@ contains
     wrench(2) = dot_product(whole(4:6), self%axes(:, 1))
     wrench(3) = dot_product(whole(4:6), self%axes(:, 2))
   end subroutine reduced_wrench
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_planar_gradient(self)
-    type(planar_gradient_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_planar_gradient
 end module mech9_planar_gradient

@@ -24,8 +24,6 @@ module mech9_varied_energy
     integer, allocatable, private :: loaded(:)   !< links whose motion the loads read
     type(motion_view_type), private :: view      !< the motion as loads read it
     type(motion_change_type), private :: change  !< its derivative by one parameter
-  contains
-    final :: free_varied_energy
   end type varied_energy_type
 
 contains
@@ -121,9 +119,4 @@ contains
       end do
     end do
   end subroutine add_springs
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_varied_energy(self)
-    type(varied_energy_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_varied_energy
 end module mech9_varied_energy

@@ -39,8 +39,6 @@ module mech9_varied_forces
     type(loop_wrench_type), allocatable, private :: chains(:)   !< (closures) forces of the closed chains
     real(wp), allocatable, private :: wrench(:, :)        !< (6,0:M) that each frame must be given, with all beyond it
     real(wp), allocatable, private :: wrenches(:, :, :)   !< (P,6,0:M) derivatives
-  contains
-    final :: free_varied_forces
   end type varied_forces_type
 
 contains
@@ -405,8 +403,4 @@ contains
     if (allocated(self%links)) call add_couplings(plan, motion%state, self%loops_held, self%links)
   end subroutine eliminate_changes
 
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_varied_forces(self)
-    type(varied_forces_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_varied_forces
 end module mech9_varied_forces

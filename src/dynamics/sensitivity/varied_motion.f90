@@ -49,8 +49,6 @@ module mech9_varied_motion
     type(block_work_type), allocatable :: blocks(:) !< factors of the closed chains
     type(varied_pair_type), allocatable :: pairs(:) !< of the user, by each parameter that changes their numbers
     integer, allocatable, private :: numbers(:)     !< (M+1) of all frames, from 0 on
-  contains
-    final :: free_varied_motion
   end type varied_motion_type
 
   !> Binomial coefficients of derivatives of a product: (part, order).
@@ -470,9 +468,4 @@ contains
       end do
     end associate
   end subroutine vary_point
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_varied_motion(self)
-    type(varied_motion_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_varied_motion
 end module mech9_varied_motion

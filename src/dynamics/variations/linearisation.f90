@@ -39,8 +39,6 @@ module mech9_linearisation
     type(variation_type) :: variation                    !< by the last parameter
     real(wp), allocatable :: forces(:)    !< (M) required along the independent coordinates; zero for others [N m, N]
     real(wp), allocatable :: change(:)    !< (M) their derivatives by the last parameter
-  contains
-    final :: free_linearisation
   end type linearisation_type
 
 contains
@@ -137,9 +135,4 @@ contains
       magnitude = max(magnitude, self%tree%magnitude_change)
     end do
   end subroutine find_matrix
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_linearisation(self)
-    type(linearisation_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_linearisation
 end module mech9_linearisation

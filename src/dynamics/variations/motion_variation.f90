@@ -23,8 +23,6 @@ module mech9_motion_variation
   type :: motion_variation_work_type
     type(block_work_type), allocatable :: blocks(:)   !< of each block
     type(third_derivatives_type) :: third             !< of the pairs without a fixed axis
-  contains
-    final :: free_motion_variation_work
   end type motion_variation_work_type
 
   integer, parameter :: position = 0       !< order of a derivative in time
@@ -220,9 +218,4 @@ contains
           - cross(variation%omega(:, g), slip) - cross(state%omega(:, g), slip_change)
     end select
   end subroutine find_opening
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_motion_variation_work(self)
-    type(motion_variation_work_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_motion_variation_work
 end module mech9_motion_variation

@@ -42,8 +42,6 @@ module mech9_tree_forces
     real(wp) :: magnitude_change = 0.0_wp          !< sum of the magnitudes of all derivatives [J per unit of the parameter]
     type(motion_change_type) :: change             !< derivative of the motion that loads read
     type(force_sum_type) :: load_change            !< derivatives of the loads
-  contains
-    final :: free_tree_forces
   end type tree_forces_type
 
 contains
@@ -412,9 +410,4 @@ contains
       end associate
     end do
   end subroutine sweep_changes
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_tree_forces(self)
-    type(tree_forces_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_tree_forces
 end module mech9_tree_forces

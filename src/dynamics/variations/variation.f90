@@ -21,7 +21,6 @@ module mech9_variation
     real(wp), allocatable :: alpha(:, :)    !< (3,0:M) of the angular acceleration [rad/s^2]
     real(wp), allocatable :: a(:, :)        !< (3,0:M) of the acceleration of the origin [m/s^2]
   contains
-    final :: free_variation
     procedure :: clear
   end type variation_type
 
@@ -48,9 +47,4 @@ contains
     self%dq = 0.0_wp
     self%ddq = 0.0_wp
   end subroutine clear
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_variation(self)
-    type(variation_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_variation
 end module mech9_variation

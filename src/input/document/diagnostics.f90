@@ -26,7 +26,6 @@ module mech9_diagnostics
     type(diagnostic_type), allocatable, private :: kept(:)
     integer, private :: kept_count = 0
   contains
-    final :: free_diagnostics
     procedure :: add
     procedure :: add_error
     procedure :: add_source
@@ -357,9 +356,4 @@ contains
     shown = printable_text(text)
     if (len(text) > longest) shown = printable_text(text(:len(shown) - len('...')))//'...'
   end function printable_beginning
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_diagnostics(self)
-    type(diagnostics_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_diagnostics
 end module mech9_diagnostics

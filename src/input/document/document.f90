@@ -49,15 +49,11 @@ module mech9_document
     type(span_type) :: span     !< place of the & and the name
     integer :: row = 0          !< row of group_table; 0 while unchecked or unknown
     logical :: sound = .false.  !< checked and without errors
-  contains
-    final :: free_group
   end type group_type
 
   type :: document_type
     type(source_type) :: source  !< the data file
     type(group_type), allocatable :: groups(:)
-  contains
-    final :: free_document
   end type document_type
 
 contains
@@ -157,14 +153,4 @@ contains
     end do
     call move_alloc(cut, groups)
   end subroutine trim_document
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_group(self)
-    type(group_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_group
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_document(self)
-    type(document_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_document
 end module mech9_document

@@ -19,8 +19,6 @@ module mech9_generic_position
     integer :: closed_to = 0               !< number of the last step of the blocks that are closed there
     integer :: trials = 0                  !< number of whole positions that were tried
     type(random_type) :: random            !< source of the changes of coordinates
-  contains
-    final :: free_generic_position
   end type generic_position_type
 
   !> Largest number of positions that are tried for all blocks together.
@@ -181,9 +179,4 @@ contains
     block%equations = sum(plan%closures(:last_closure)%rank)
     block%chains = plan%closures(:last_closure)%chain
   end function free_block
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_generic_position(self)
-    type(generic_position_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_generic_position
 end module mech9_generic_position

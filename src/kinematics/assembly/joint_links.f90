@@ -30,8 +30,6 @@ module mech9_joint_links
     logical, allocatable :: loaded(:)              !< (N) a load acts on the link, or a coupling on one of its pairs
     integer, allocatable :: joint_at(:)            !< (M) number of links of the joint to which the pair belongs; 0: none
     real(wp) :: tolerance = 0.0_wp                 !< distance of axes that meet [m]
-  contains
-    final :: free_view
   end type view_type
 
 contains
@@ -278,9 +276,4 @@ contains
 
     number_of_pairs = view%graph%first(link + 1) - view%graph%first(link)
   end function number_of_pairs
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_view(self)
-    type(view_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_view
 end module mech9_joint_links

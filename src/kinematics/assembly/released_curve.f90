@@ -38,7 +38,6 @@ module mech9_released_curve
     type(block_type), private :: block                !< all chains; all that move but the leader are unknowns
     type(block_work_type), private :: work            !< scratch of the block
   contains
-    final :: free_curve
     procedure :: advance
     procedure, private :: lead
     procedure, private :: find_tangent
@@ -178,9 +177,4 @@ contains
     passed = .not. allocated(err) .and. newton%converged .and. newton%correction <= longest_step
     if (passed) assembly = there%state
   end subroutine look_between
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_curve(self)
-    type(curve_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_curve
 end module mech9_released_curve

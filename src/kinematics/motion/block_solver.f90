@@ -37,8 +37,6 @@ module mech9_block_solver
     real(wp), allocatable :: change(:)         !< (unknowns) solution, in units of the coordinates
     logical :: factors_stay = .false.          !< the Jacobian is constant and has been factorized
     type(work_count_type) :: count             !< operations done for the block
-  contains
-    final :: free_block_work
   end type block_work_type
 
   !> The course of Newton's method.
@@ -332,9 +330,4 @@ contains
       values(places(i)) = values(places(i)) + change(i)*unit_of(places(i))
     end do
   end subroutine add_at
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_block_work(self)
-    type(block_work_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_block_work
 end module mech9_block_solver

@@ -150,8 +150,6 @@ module mech9_plan
     type(coupling_slot_type), allocatable :: couplings(:)   !< of the mechanism
     logical :: has_curves = .false.                 !< some of them are not linear
     type(planar_plan_type) :: planar                !< the plan in planar arithmetic, as far as that can be used
-  contains
-    final :: free_plan
   end type plan_type
 
   abstract interface
@@ -342,9 +340,4 @@ contains
       call plan%arithmetics(i)%kind%make_frames(plan%n_coordinates, state)
     end do
   end function new_state
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_plan(self)
-    type(plan_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_plan
 end module mech9_plan

@@ -57,14 +57,5 @@ module mech9_planar_plan
     !> (3,3,0:M) turns components in each frame of the plan into those in the planar frame of the same number.
     real(wp), allocatable :: to_planar(:, :, :)
     logical, allocatable :: shown(:)                   !< (0:M) the frame of a planar block is read in space, see mech9_planar_view
-  contains
-    final :: free_planar_plan
   end type planar_plan_type
-
-contains
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_planar_plan(self)
-    type(planar_plan_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_planar_plan
 end module mech9_planar_plan

@@ -14,8 +14,6 @@ module mech9_state
     real(wp), allocatable :: slide(:, :)          !< (2,M) velocity of the new origin per unit rate
     real(wp), allocatable :: velocity(:, :)       !< (3,0:M) [rad/s, m/s]
     real(wp), allocatable :: acceleration(:, :)   !< (3,0:M) [rad/s^2, m/s^2]
-  contains
-    final :: free_planar_motion
   end type planar_motion_type
 
   !> The state of motion. All vectors are in the axes of frame 0, positions from its origin. The last index is the number
@@ -45,19 +43,5 @@ module mech9_state
     real(wp), allocatable :: alpha(:, :)         !< (3,0:M) angular acceleration [rad/s^2]
     real(wp), allocatable :: a(:, :)             !< (3,0:M) acceleration of the origin [m/s^2]
     type(planar_motion_type) :: planar           !< of the frames, where the plan is planar
-  contains
-    final :: free_state
   end type state_type
-
-contains
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_planar_motion(self)
-    type(planar_motion_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_planar_motion
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_state(self)
-    type(state_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_state
 end module mech9_state

@@ -30,8 +30,6 @@ module mech9_branch_crossing
     type(hermite_type) :: polynomial             !< all coordinates over time
     type(branch_stepper_type) :: stepper_beyond  !< branch stepper at the last position
     logical :: ends = .false.                    !< the motion ends at the crossing: the drives have no value beyond it
-  contains
-    final :: free_branch_crossing
   end type branch_crossing_type
 
   !> Number of distances from the crossing that are tried.
@@ -298,9 +296,4 @@ contains
     work%right = -work%right
     call work%equations%solve(work%right, work%change, tolerance=near_singular*monitor%largest_pivot/work%equations%largest_pivot())
   end subroutine solve_where_determined
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_branch_crossing(self)
-    type(branch_crossing_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_branch_crossing
 end module mech9_branch_crossing

@@ -47,8 +47,6 @@ module mech9_branch_stepping
     integer(long) :: steps = 0                    !< number of accepted steps
     integer(long) :: halvings = 0                 !< number of refused steps
     integer(long) :: iterations = 0               !< number of iterations of Newton's method in all blocks
-  contains
-    final :: free_branch_stepper
   end type branch_stepper_type
 
 contains
@@ -353,9 +351,4 @@ contains
     stepper%state%ddq = stepper%predictor%ddq
     stepper%accelerations_found = .false.
   end subroutine restore_last_position
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_branch_stepper(self)
-    type(branch_stepper_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_branch_stepper
 end module mech9_branch_stepping

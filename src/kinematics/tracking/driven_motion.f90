@@ -49,8 +49,6 @@ module mech9_driven_motion
     type(held_rod_type), allocatable :: rods(:)   !< rods one of whose angles is held; may be missing
     logical :: stops_short = .false.              !< a motion that ends stops where its end is found, and does not go on up to it
     logical :: paused = .false.                   !< the motion waits for other angles of a ball joint, short of the time to go to
-  contains
-    final :: free_driven_motion
   end type driven_motion_type
 
 contains
@@ -369,9 +367,4 @@ contains
       end do
     end associate
   end subroutine fail_at_end
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_driven_motion(self)
-    type(driven_motion_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_driven_motion
 end module mech9_driven_motion

@@ -24,8 +24,6 @@ module mech9_predictor
     real(wp) :: before = 0.0_wp                 !< time between this position and the one accepted before it [s]
     real(wp), allocatable :: higher(:, :)       !< (M,3) factors of h^3, h^4, h^5 of the polynomial
     type(past_motion_type) :: past              !< motion at the last times, of steps without accelerations
-  contains
-    final :: free_predictor
   end type predictor_type
 
 contains
@@ -213,9 +211,4 @@ contains
       last_ddq(k) = ddq(k)
     end do
   end subroutine fit_polynomial
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_predictor(self)
-    type(predictor_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_predictor
 end module mech9_predictor

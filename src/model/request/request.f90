@@ -50,7 +50,6 @@ module mech9_request
     type(place_type) :: sensitivities_place      !< place of either request in the data file
     logical :: force_arrows = .false.            !< pictures show the forces in pairs as arrows
   contains
-    final :: free_output_settings
     procedure :: recorded
     procedure :: reacting
     procedure :: with_forces
@@ -84,8 +83,6 @@ module mech9_request
     type(limit_type), allocatable :: limits(:)          !< in the order of the data file; for --optimize
     type(optimum_type) :: optimum
     type(cam_request_type), allocatable :: cams(:)   !< in the order of the data file
-  contains
-    final :: free_request
   end type request_type
 
 contains
@@ -151,14 +148,4 @@ contains
       time = self%start + (self%end - self%start)*i/real(self%intervals, wp)
     end if
   end function time
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_output_settings(self)
-    type(output_settings_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_output_settings
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_request(self)
-    type(request_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_request
 end module mech9_request

@@ -20,8 +20,6 @@ module mech9_fit_script
     real(wp), allocatable :: curve(:, :)           !< (n,2) motion of the design; not used for differences
     real(wp), allocatable :: targets(:, :)         !< (m,4) places of the targets, and directions; the differences in column 2
     real(wp), allocatable :: reached(:, :)         !< (m,4) places of the design at the times of the targets, and directions
-  contains
-    final :: free_fit_panel
   end type fit_panel_type
 
   character, parameter :: line_end = achar(10)
@@ -161,9 +159,4 @@ contains
              ' using 1:2:(sprintf(''%.0f'', $5)) with labels offset character 1,0.5 font '',10'' tc rgb ''#404040'' notitle'
     text = text//line_end
   end function curves_of
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_fit_panel(self)
-    type(fit_panel_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_fit_panel
 end module mech9_fit_script

@@ -26,7 +26,6 @@ module mech9_plot
     type(plot_data_type) :: data
     logical :: is_open = .false.
   contains
-    final :: free_plot
     procedure :: open => open_plot
     procedure :: write_rows
     procedure :: close => close_plot
@@ -163,9 +162,4 @@ contains
     call plot%close(err)
     said = plot%words()
   end subroutine plot_columns
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_plot(self)
-    type(plot_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_plot
 end module mech9_plot

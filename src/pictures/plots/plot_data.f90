@@ -19,7 +19,6 @@ module mech9_plot_data
     integer :: stride = 1                                  !< one of so many rows is kept
     integer :: seen = 0                                    !< number of rows taken
   contains
-    final :: free_plot_data
     procedure :: take
     procedure :: place_of
     procedure :: extent
@@ -80,9 +79,4 @@ contains
     end do
     if (ends(1) > ends(2)) ends = 0.0_wp
   end function extent
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_plot_data(self)
-    type(plot_data_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_plot_data
 end module mech9_plot_data

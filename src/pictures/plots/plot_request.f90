@@ -21,8 +21,6 @@ module mech9_plot_request
     character(len=:), allocatable :: target     !< file of the picture; empty: to be chosen
     logical :: in_terminal = .false.
     type(curve_type), allocatable :: curves(:)
-  contains
-    final :: free_plot_request
   end type plot_request_type
 
   !> The largest number of curves that are drawn if no name is given: the number of colours.
@@ -205,9 +203,4 @@ contains
     end if
     call raise(err, exit_usage, "--plot: no column of the results is named '"//word//"'"//hint)
   end subroutine refuse_name
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_plot_request(self)
-    type(plot_request_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_plot_request
 end module mech9_plot_request

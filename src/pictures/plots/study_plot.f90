@@ -21,7 +21,6 @@ module mech9_study_plot
     type(string_type), allocatable, private :: units(:)
     type(study_request_type), private :: request
   contains
-    final :: free_study_plot
     procedure :: open => open_plot
     procedure :: draw
   end type study_plot_type
@@ -66,9 +65,4 @@ contains
                         name_of(self%picture), name_of(script_of_plot(self%picture))), self%said, self%is_lacking, err)
     end if
   end subroutine draw
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_study_plot(self)
-    type(study_plot_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_study_plot
 end module mech9_study_plot

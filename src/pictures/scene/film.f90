@@ -44,7 +44,6 @@ module mech9_film
     real(wp), allocatable, private :: latest(:, :, :)   !< (3,points,3) position, velocity, acceleration at the latest output
     real(wp), private :: latest_time = 0.0_wp
   contains
-    final :: free_film
     procedure :: take
     procedure :: position
     procedure :: direction
@@ -214,9 +213,4 @@ contains
 
     local = turn_back(self%r(:, :, link, frame), place - self%p(:, link, frame))
   end function local
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_film(self)
-    type(film_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_film
 end module mech9_film

@@ -20,7 +20,6 @@ module mech9_projection
     real(wp) :: middle(2) = 0.0_wp     !< place of the centre on the page [px]
     real(wp) :: symbol = 1.0_wp        !< scale of symbols: 1 at full size, less where there is little room
   contains
-    final :: free_projection
     procedure :: on_page
     procedure :: metres
   end type projection_type
@@ -217,9 +216,4 @@ contains
 
     metres = length*self%symbol/self%scale
   end function metres
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_projection(self)
-    type(projection_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_projection
 end module mech9_projection

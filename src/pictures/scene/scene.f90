@@ -45,7 +45,6 @@ module mech9_scene
     type(item_type), allocatable :: items(:)
     integer :: first_sorted = 1, last_sorted = 0
   contains
-    final :: free_scene
     procedure :: add_node
     procedure :: add_item
     procedure :: places_at
@@ -143,9 +142,4 @@ contains
       places(:, i) = film%position(frame, self%node_link(i), self%node_at(:, i))
     end do
   end function places_at
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_scene(self)
-    type(scene_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_scene
 end module mech9_scene

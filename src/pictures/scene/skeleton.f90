@@ -46,8 +46,6 @@ module mech9_skeleton
     type(link_graph_type) :: graph
     type(figure_type), allocatable :: figures(:)
     real(wp) :: size = 1.0_wp          !< size of the mechanism at the start: diagonal of its box [m]
-  contains
-    final :: free_skeleton
   end type skeleton_type
 
   !> A given point is moved if its distance along the axis from the nearest pair of its links exceeds two bounds. One
@@ -230,9 +228,4 @@ contains
     low = min(low, place)
     high = max(high, place)
   end subroutine enclose
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_skeleton(self)
-    type(skeleton_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_skeleton
 end module mech9_skeleton

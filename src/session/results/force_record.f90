@@ -21,7 +21,6 @@ module mech9_force_record
     type(reaction_plan_type), private :: plan
     integer, private :: events = -1          !< changes of coordinates of the simulation until the plan was made; -1: there is none
   contains
-    final :: free_force_record
     procedure :: begin
     procedure :: judge
     procedure :: find
@@ -90,9 +89,4 @@ contains
     end if
     call find_reactions(simulation%model%mechanism, plan, self%plan, state, self%reactions, err)
   end subroutine find
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_force_record(self)
-    type(force_record_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_force_record
 end module mech9_force_record

@@ -34,7 +34,6 @@ module mech9_picture_requests
     type(view_type), allocatable :: view      !< unless the best one is to be found
     logical :: with_masses = .false.          !< bodies count in this program
   contains
-    final :: free_picture_requests
     procedure :: any_wanted
     procedure :: save => save_pictures
     procedure :: save_start
@@ -180,9 +179,4 @@ contains
     kind = ending_of(path)
     if (kind == 'htm') kind = 'html'
   end function kind_of
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_picture_requests(self)
-    type(picture_requests_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_picture_requests
 end module mech9_picture_requests

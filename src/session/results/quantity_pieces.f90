@@ -25,7 +25,6 @@ module mech9_quantity_pieces
     real(wp), allocatable, private :: values(:, :)           !< (points_between,quantities) in this piece
     real(wp), allocatable, private :: changes(:, :, :)       !< (P,points_between,quantities) derivatives of these values
   contains
-    final :: free_quantity_pieces
     procedure :: begin
     procedure :: times_before
     procedure :: take_between
@@ -192,9 +191,4 @@ contains
       end do
     end associate
   end subroutine end_piece
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_quantity_pieces(self)
-    type(quantity_pieces_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_quantity_pieces
 end module mech9_quantity_pieces

@@ -28,7 +28,6 @@ module mech9_quantity_record
     type(columns_type), private :: columns
     type(quantity_pieces_type), private :: pieces            !< between outputs
   contains
-    final :: free_quantity_record
     procedure :: begin
     procedure :: begin_pieces
     procedure :: is_empty
@@ -331,9 +330,4 @@ contains
     end do
     call json%end_array()
   end subroutine to_json
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_quantity_record(self)
-    type(quantity_record_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_quantity_record
 end module mech9_quantity_record

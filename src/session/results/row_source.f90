@@ -44,7 +44,6 @@ module mech9_row_source
     integer, allocatable, private :: wanted(:)           !< columns whose derivatives are wanted at outputs
     integer, allocatable, private :: wanted_between(:)   !< columns whose derivatives quantities need between outputs
   contains
-    final :: free_row_source
     procedure :: begin_quantities
     procedure :: add_row
     procedure :: complete
@@ -323,7 +322,7 @@ contains
   !> Fill a row with the numbers of the present position.
   subroutine fill_row(self, row, err)
     class(row_source_type), intent(inout) :: self       !< the row source
-    real(wp), intent(inout), contiguous :: row(:)       !< (columns%width()) in the units of the results
+    real(wp), intent(inout) :: row(:)                   !< (columns%width()) in the units of the results
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plan_type), pointer :: plan, force_plan
     type(state_type), pointer :: state, force_state
@@ -392,9 +391,4 @@ contains
     is_wanted = interrupted()
     if (.not. is_wanted .and. associated(self%pause)) is_wanted = self%pause%due()
   end function is_wanted
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_row_source(self)
-    type(row_source_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_row_source
 end module mech9_row_source

@@ -30,7 +30,6 @@ module mech9_varied_record
     type(varied_energy_type), private :: energy       !< of the present state
     integer, private :: events = -1                   !< changes of coordinates of the simulation until room was made; -1: none was
   contains
-    final :: free_varied_record
     procedure :: begin
     procedure :: find
   end type varied_record_type
@@ -158,9 +157,4 @@ contains
     end do
     if (columns%couplings > 0) self%values(:, at + 1:at + columns%couplings) = self%forces%links%coupling
   end subroutine put_forces
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_varied_record(self)
-    type(varied_record_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_varied_record
 end module mech9_varied_record

@@ -25,7 +25,6 @@ module mech9_dakota_file
     integer, allocatable :: active(:)                 !< (responses) sum of 1 for the value, 2 for the gradient, 4 for the Hessian
     integer, allocatable :: by(:)                     !< numbers of the variables by which gradients are taken
   contains
-    final :: free_dakota_request
     procedure :: wants
   end type dakota_request_type
 
@@ -238,9 +237,4 @@ contains
     end do
     call replace_text(path, text, err)
   end subroutine write_dakota_results
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_dakota_request(self)
-    type(dakota_request_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_dakota_request
 end module mech9_dakota_file

@@ -23,8 +23,6 @@ module mech9_run_maker
     real(wp), allocatable :: rows(:, :)             !< (columns,outputs) where they are kept; NaN from a failure on
     integer :: exit_code = exit_done                !< with which a single run of these values ends
     type(error_type), allocatable :: failure        !< of a run that failed; not explained yet
-  contains
-    final :: free_made_run
   end type made_run_type
 
   type :: run_maker_type
@@ -37,7 +35,6 @@ module mech9_run_maker
     integer :: n_columns = 0                                     !< of the rows that are kept; 0: none are kept
     integer :: n_outputs = 0                                     !< rows of a run
   contains
-    final :: free_run_maker
     procedure :: begin
     procedure :: make
     procedure :: shape_of_rows
@@ -93,14 +90,4 @@ contains
     run%exit_code = run%failure%code
     run%quantities = ieee_value(1.0_wp, ieee_quiet_nan)
   end subroutine make
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_made_run(self)
-    type(made_run_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_made_run
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_run_maker(self)
-    type(run_maker_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_run_maker
 end module mech9_run_maker

@@ -27,7 +27,6 @@ module mech9_study_columns
     integer :: numbers = 0                      !< of a run; 0: the file has no columns
     integer :: runs = 0                         !< how many the file has
   contains
-    final :: free_study_columns
     procedure :: create
     procedure :: create_like
     procedure :: open => open_columns
@@ -215,9 +214,4 @@ contains
     if (self%are_there()) call self%series%close(file)
     self%numbers = 0
   end subroutine close_columns
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_study_columns(self)
-    type(study_columns_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_study_columns
 end module mech9_study_columns

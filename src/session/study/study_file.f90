@@ -38,7 +38,6 @@ module mech9_study_file
     integer, private :: block_first = 0                    !< place of the first one of these; 0: none were read
     logical, private :: reported = .false.                 !< whether the failure of the file was reported
   contains
-    final :: free_study_file
     procedure :: create
     procedure :: create_columns
     procedure :: copy_columns
@@ -308,9 +307,4 @@ contains
     self%reported = .true.
     err = self%file%failure
   end subroutine tell
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_study_file(self)
-    type(study_file_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_study_file
 end module mech9_study_file

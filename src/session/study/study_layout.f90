@@ -21,7 +21,6 @@ module mech9_study_layout
     type(string_type), allocatable :: meanings(:)        !< (quantities) a few words that describe each
     type(string_type), allocatable :: columns(:)         !< paths of the data sets over runs and time; none: the file has none
   contains
-    final :: free_study_layout
     procedure :: runs_of_part
   end type study_layout_type
 
@@ -104,9 +103,4 @@ contains
     if (size(layout%units) /= size(layout%quantities) .or. size(layout%meanings) /= size(layout%quantities)) &
       call file%fail('the units of its quantities make no sense')
   end subroutine read_layout
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_study_layout(self)
-    type(study_layout_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_study_layout
 end module mech9_study_layout

@@ -16,7 +16,6 @@ module mech9_study_plots
     private
     type(study_plot_type), allocatable :: plots(:)
   contains
-    final :: free_study_plots
     procedure :: open => open_plots
     procedure :: draw => draw_plots
   end type study_plots_type
@@ -72,9 +71,4 @@ contains
       end associate
     end do
   end subroutine draw_plots
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_study_plots(self)
-    type(study_plots_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_study_plots
 end module mech9_study_plots

@@ -28,7 +28,6 @@ module mech9_study_results
     type(study_file_type), private :: file          !< of HDF5
     real(wp), allocatable, private :: row(:)        !< of the table
   contains
-    final :: free_study_results
     procedure :: open => open_results
     procedure :: is_made
     procedure :: read_run
@@ -196,9 +195,4 @@ contains
     if (self%paths%table /= '' .and. self%paths%table /= standard_output_path) write (unit, '(2a)') 'table: ', self%paths%table
     if (self%paths%hdf5 /= '') write (unit, '(2a)') 'HDF5 file: ', self%paths%hdf5
   end subroutine print_paths
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_study_results(self)
-    type(study_results_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_study_results
 end module mech9_study_results

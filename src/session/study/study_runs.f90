@@ -42,7 +42,6 @@ module mech9_study_runs
     type(made_run_type), allocatable, private :: made(:)   !< runs that wait for their turn, each at its place in a ring
     logical, allocatable, private :: before(:)             !< such a run was made before, and is still to be read from the file
   contains
-    final :: free_study_runs
     procedure :: begin
     procedure :: hand_out
     procedure :: take
@@ -198,9 +197,4 @@ contains
     if (.not. allocated(self%stopped)) call move_alloc(at_close, self%stopped)
     if (allocated(self%stopped)) err = self%stopped
   end subroutine finish
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_study_runs(self)
-    type(study_runs_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_study_runs
 end module mech9_study_runs

@@ -23,7 +23,6 @@ module mech9_study_sums
     integer :: failed(most_codes) = 0                !< how many runs ended with each of them
     integer :: first_failed(most_codes) = 0          !< number of the first of these runs
   contains
-    final :: free_study_sums
     procedure :: begin
     procedure :: add
     procedure :: add_failure
@@ -147,9 +146,4 @@ contains
         error(i) = scale(sqrt(max(0.0_wp, (self%fourth(i)/n - variance**2)/n)/variance)/2.0_wp, self%power(i))
     end do
   end function error_of_deviation
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_study_sums(self)
-    type(study_sums_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_study_sums
 end module mech9_study_sums

@@ -20,7 +20,6 @@ module mech9_design_motion
     type(plan_type) :: plan          !< its plan
     type(state_type) :: start        !< assembled
   contains
-    final :: free_design_motion
     procedure :: visit
     procedure :: make_film
   end type design_motion_type
@@ -99,9 +98,4 @@ contains
       call film%take(shown%mechanism, plan, state, row)
     end do
   end subroutine make_film
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_design_motion(self)
-    type(design_motion_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_design_motion
 end module mech9_design_motion

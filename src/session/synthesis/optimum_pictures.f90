@@ -32,7 +32,6 @@ module mech9_optimum_pictures
     type(fit_request_type), allocatable :: plots(:)
     type(string_type), allocatable :: pictures(:)             !< (plots) file of each
   contains
-    final :: free_optimum_pictures
     procedure :: open => open_pictures
     procedure :: draw
     procedure, private :: draw_plots, draw_film
@@ -196,9 +195,4 @@ contains
       end associate
     end do
   end subroutine add_targets
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_optimum_pictures(self)
-    type(optimum_pictures_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_optimum_pictures
 end module mech9_optimum_pictures

@@ -16,8 +16,6 @@ module mech9_start_threads
   type :: searcher_type
     class(variable_model_type), allocatable :: variable
     type(design_space_type) :: space
-  contains
-    final :: free_searcher
   end type searcher_type
 
 contains
@@ -63,9 +61,4 @@ contains
       call synthesis%make_start(searcher%space, seed, number, found)
     end do
   end subroutine make_until_done
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_searcher(self)
-    type(searcher_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_searcher
 end module mech9_start_threads

@@ -28,7 +28,6 @@ module mech9_starts
     integer, private :: missing = 0                  !< how many were to be made at the beginning
     integer, private :: taken = 0                    !< how many of these are made
   contains
-    final :: free_starts
     procedure :: begin
     procedure :: hand_out
     procedure :: take
@@ -93,9 +92,4 @@ contains
       call raise(self%stopped, exit_interrupted, 'interrupted: '//to_text(synthesis%done)//' of '// &
                  counted(size(self%made), 'start')//' are made')
   end subroutine finish
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_starts(self)
-    type(starts_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_starts
 end module mech9_starts

@@ -41,7 +41,6 @@ module mech9_starts_file
     real(wp), allocatable, private :: row(:)      !< of a start
     logical, private :: reported = .false.        !< whether the failure of the file was reported
   contains
-    final :: free_starts_file
     procedure :: create
     procedure :: publish
     procedure :: is_open
@@ -297,9 +296,4 @@ contains
       end do
     end do
   end subroutine take_starts
-
-  !> Do nothing: with a final procedure the compiler frees the components by one call, which keeps the code of callers small.
-  elemental subroutine free_starts_file(self)
-    type(starts_file_type), intent(inout) :: self   !< a value that ends
-  end subroutine free_starts_file
 end module mech9_starts_file
