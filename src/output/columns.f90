@@ -400,7 +400,7 @@ contains
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     type(state_type), intent(in) :: state          !< position and motion of the mechanism
-    real(wp), intent(inout) :: row(:)              !< numbers of one row, one for each column
+    real(wp), intent(inout), contiguous :: row(:)    !< numbers of one row, one for each column
     integer :: i, n, used
 
     n = size(self%coordinates)

@@ -59,7 +59,7 @@ contains
 
     do i = 1, size(lasts)
       do kind = lasts(i) - modulo(lasts(i), 100) + 1, lasts(i)
-        call check_kind(kind)
+        call check_kind(test, kind)
       end do
       call raise(err, exit_structure, lasts(i) + 1)
       fallback = err%message
@@ -69,8 +69,9 @@ contains
   end subroutine each_kind
 
   !> A kind has one sentence, and its error keeps its code.
-  subroutine check_kind(kind)
-    integer, intent(in) :: kind   !< one of the failure_ constants
+  subroutine check_kind(test, kind)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, intent(in) :: kind                !< one of the failure_ constants
     type(error_type), allocatable :: err
     character(len=:), allocatable :: fallback, sentence
 

@@ -322,7 +322,7 @@ contains
   !> Fill a row with the numbers of the present position.
   subroutine fill_row(self, row, err)
     class(row_source_type), intent(inout) :: self       !< the row source
-    real(wp), intent(inout) :: row(:)                   !< (columns%width()) in the units of the results
+    real(wp), intent(inout), contiguous :: row(:)       !< (columns%width()) in the units of the results
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plan_type), pointer :: plan, force_plan
     type(state_type), pointer :: state, force_state
