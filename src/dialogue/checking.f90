@@ -43,6 +43,7 @@ contains
   subroutine judge_structure(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
 
+    type(fault_type), allocatable :: faults(:)
     character(len=:), allocatable :: otherwise
 
     associate (interview => conversation%interview)
@@ -53,8 +54,10 @@ contains
         call interview%step()
       else
         if (.not. conversation%shown) call conversation%say('The structure is not complete or not right yet:')
-        if (.not. conversation%shown) call show_faults(conversation, interview%faults)
-        call offer_correction(conversation, interview%faults, otherwise)
+        ! a correction makes other faults
+        allocate (faults, source=interview%faults)
+        if (.not. conversation%shown) call show_faults(conversation, faults)
+        call offer_correction(conversation, faults, otherwise)
       end if
     end associate
   end subroutine judge_structure

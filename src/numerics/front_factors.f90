@@ -79,8 +79,9 @@ contains
         call eliminate(front%rows, front%pivots, front%columns, self%values(front%value + 1:), &
                        self%scales(front%pivot + 1:), self%reciprocals(front%pivot + 1:), self%sign_of_det)
         if (front%parent == 0) cycle
-        associate (parent => plan%fronts(front%parent))
-          call pass_rows(front%rows, front%pivots, front%columns, self%values(front%value + 1:), &
+        ! the values of a parent stand behind those of its fronts
+        associate (parent => plan%fronts(front%parent), last => front%value + front%rows*front%columns)
+          call pass_rows(front%rows, front%pivots, front%columns, self%values(front%value + 1:last), &
                          plan%places(front%column + 1:), parent%rows, parent%columns, front%parent_row, &
                          self%values(parent%value + 1:))
         end associate

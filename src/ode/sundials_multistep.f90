@@ -162,7 +162,7 @@ contains
     logical :: settled
 
     if ((t_stop - self%t)*self%last_step < 0.0_wp) then
-      call self%restart(self%t, self%history, 0.0_wp, outcome)
+      call self%restart((self%t), self%history, 0.0_wp, outcome)
       if (outcome /= stepped) return
     end if
     flag = FCVodeSetStopTime(self%memory, t_stop)

@@ -193,7 +193,7 @@ contains
     type(c_ptr), allocatable, target :: starts(:)
 
     call lay_out(texts, letters, starts)
-    call self%put_values(name, self%text_type, self%text_type, extents, c_loc(starts), long_name)
+    call self%put_values(name, (self%text_type), (self%text_type), extents, c_loc(starts), long_name)
   end subroutine put_text_values
 
   subroutine put_real(self, name, value, long_name, unit)

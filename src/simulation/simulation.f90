@@ -184,8 +184,8 @@ contains
     self%direction = sign(1.0_wp, self%model%request%time%end - self%model%request%time%start)
     self%t = self%model%request%time%start
     call self%stop_if_interrupted(self%t, err)
-    if (.not. allocated(err)) call self%begin(self%t, err)
-    if (.not. allocated(err)) call arrive(self, self%t, err)
+    if (.not. allocated(err)) call self%begin((self%t), err)
+    if (.not. allocated(err)) call arrive(self, (self%t), err)
     if (.not. allocated(err)) self%started = .true.
   end subroutine start
 

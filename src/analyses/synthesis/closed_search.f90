@@ -164,7 +164,7 @@ contains
 
     settings%small = (1.0e-14_wp*scale)**2*size(fit%targets)
     settings%short = 1.0e-9_wp
-    call minimise_squares(fit, at, y, 0.0_wp*at, 0.0_wp*at + 1.0_wp, y, y, settings, outcome)
+    call minimise_squares(fit, at, y, 0.0_wp*at, 0.0_wp*at + 1.0_wp, (y), (y), settings, outcome)
     found = outcome%kind /= ended_without_value
   end subroutine make_squares_least
 

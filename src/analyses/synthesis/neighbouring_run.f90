@@ -202,7 +202,7 @@ contains
     n = near%recorded
     near%is_known = n > 1
     if (.not. near%is_known) return
-    call place_planar_design(space, design%x, near%design, design)
+    call place_planar_design(space, (design%x), near%design, design)
     call take_positions(near%design, near%t(:n), near%target(:n), near%q(:, :n), near%run, near%known)
     call sort_positions(sign(1.0_wp, near%t(n) - near%t(1)), near%known)
     call close_positions(near%design, design%drives, near%run, near%known, near%is_known)

@@ -172,7 +172,7 @@ contains
     type(draft_type), intent(inout) :: draft               !< groups and names with their values as text
     type(outline_type), intent(in) :: outline              !< facts known beside the draft
     character(len=:), allocatable, intent(out) :: dropped  !< names of what was taken away, with commas between; empty: nothing
-    character(len=:), allocatable :: name
+    character(len=:), allocatable :: name, entry_name
     integer :: i, j, k, place
 
     dropped = ''
@@ -180,9 +180,10 @@ contains
       name = draft%groups(i)%name
       place = draft%place_of(i)
       do j = size(draft%groups(i)%entries), 1, -1
-        if (.not. is_foreign(draft, i, draft%groups(i)%entries(j)%name)) cycle
-        call note(name//' '//draft%groups(i)%entries(j)%name, dropped)
-        call draft%take_away(name, place, draft%groups(i)%entries(j)%name)
+        entry_name = draft%groups(i)%entries(j)%name
+        if (.not. is_foreign(draft, i, entry_name)) cycle
+        call note(name//' '//entry_name, dropped)
+        call draft%take_away(name, place, entry_name)
       end do
       if (.not. outline%structure_known) cycle
       k = draft%number(name, place, 'coordinate')
