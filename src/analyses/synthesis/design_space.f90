@@ -4,7 +4,7 @@
 !> functions of the parameters, as lengths are, they follow without the readers of the data file.
 module mech9_design_space
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
+  use mech9_error, only: error_type, raise, exit_structure
   use mech9_pose, only: pose_type
   use mech9_law, only: drive_slot_type
   use mech9_polynomial_law, only: polynomial_law_type
@@ -20,7 +20,7 @@ module mech9_design_space
   implicit none
   private
   public :: design_space_type, design_type, new_design_space, new_design, place_design, place_drives, find_tangents, &
-    drive_changes, fix_design_space, all_values
+    drive_changes, fix_design_space, all_values, probe, probes
 
   !> The data that all designs share. A copy needs a model as a function of its own.
   type :: design_space_type
@@ -31,6 +31,7 @@ module mech9_design_space
     real(wp), allocatable :: low(:)                 !< least value of each
     real(wp), allocatable :: high(:)                !< largest value of each
     real(wp), allocatable :: values(:)              !< values of all parameters in the data file
+    logical :: in_plane = .false.                   !< all designs move in one plane, see judge_plane
     logical :: is_affine = .false.                  !< all numbers are affine functions of the parameters, and are set without readers
     logical, allocatable :: is_constant(:)          !< (varied) the derivatives by this parameter are constant
     real(wp), allocatable :: constants(:)           !< numbers of the model, in the order of mech9_mechanism_constants
@@ -83,6 +84,7 @@ contains
       if (allocated(err)) return
     end do
     call judge_affinity(space)
+    space%in_plane = plan%planar%used
   end subroutine new_design_space
 
   !> Prepare one design alone: the one of its model, with its plan.
@@ -94,6 +96,7 @@ contains
                       + 3*size(space%model%mechanism%points)
     allocate (space%slopes(size(space%constants), size(space%varied)), source=0.0_wp)
     space%is_affine = .true.
+    space%in_plane = space%plan%planar%used
   end subroutine fix_design_space
 
   !> Find out whether the numbers of the model are affine functions of the parameters, and their slopes.
@@ -232,7 +235,7 @@ contains
     design%in_space%blocks%arithmetic = 1
     design%in_space%blocks%is_shown = .false.
     call set_in_space(design%in_space)
-    if (.not. space%plan%planar%used) design%plan = design%in_space
+    if (.not. space%in_plane) design%plan = design%in_space
     design%drives = space%model%problem%drives
     allocate (design%places(3, size(space%model%mechanism%points)))
     do i = 1, size(space%model%mechanism%points)
@@ -241,7 +244,8 @@ contains
     design%tangents = space%tangents
   end subroutine new_design
 
-  !> Give a design the values of its parameters. Fails where there is no model with these values.
+  !> Give a design the values of its parameters. Fails where there is no model with these values, and where the design leaves the plane
+  !> in which all designs move.
   subroutine place_design(space, x, design, err)
     type(design_space_type), intent(inout) :: space       !< the designs
     real(wp), intent(in) :: x(:)                          !< values of the varied parameters
@@ -262,7 +266,7 @@ contains
       design%drives = model%problem%drives
       call place_curves(model, design)
     end if
-    call place_constants(row, design)
+    call place_constants(row, space%in_plane, design, err)
   end subroutine place_design
 
   !> Give the drives of a design their numbers, which are affine functions of the parameters. Only polynomials change with them.
@@ -307,10 +311,12 @@ contains
     end associate
   end subroutine place_curves
 
-  !> Set the numbers of a design's plans and points.
-  pure subroutine place_constants(row, design)
-    real(wp), intent(in) :: row(:)              !< the numbers, in the order of mech9_mechanism_constants
-    type(design_type), intent(inout) :: design  !< gets them
+  !> Set the numbers of a design's plans and points. Fails where the design leaves its plane.
+  subroutine place_constants(row, in_plane, design, err)
+    real(wp), intent(in) :: row(:)                      !< the numbers, in the order of mech9_mechanism_constants
+    logical, intent(in) :: in_plane                     !< the design moves in its plane
+    type(design_type), intent(inout) :: design          !< gets them
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it leaves the plane
     integer :: s, k, c, at, i
 
     associate (plan => design%in_space)
@@ -336,9 +342,10 @@ contains
       design%plan%closures = plan%closures
       design%plan%link_in_frame = plan%link_in_frame
     end associate
-    if (.not. design%plan%planar%used) return
+    if (.not. in_plane) return
     call lay_out_in_plane(design%plan)
     call set_in_plane(design%plan)
+    if (.not. design%plan%planar%used) call raise(err, exit_structure, design%plan%planar%why_not%kind)
   end subroutine place_constants
 
   !> A pose from its numbers.

@@ -1,18 +1,46 @@
-!> The planar designs of a synthesis: their numbers in planar arithmetic, found from their plans, and their drives.
+!> The planar designs of a synthesis: whether all designs move in one plane, their numbers in planar arithmetic, found from their
+!> plans, and their drives.
 module mech9_planar_design
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_pose, only: transformed
   use mech9_planar_numbers, only: planar_design_type, numbers_of_point, place_numbers
-  use mech9_design_space, only: design_space_type, design_type, place_design, place_drives
+  use mech9_design_space, only: design_space_type, design_type, new_design, place_design, place_drives, probe, probes
   implicit none
   private
-  public :: new_planar_design, place_planar_design
+  public :: judge_plane, new_planar_design, place_planar_design
 
   !> Numbers are affine where they differ by no more than this part of the largest one from an affine function.
   real(wp), parameter :: affine = 1.0e-12_wp
 
 contains
+
+  !> Find out whether parameters move a planar mechanism out of its plane: all designs then move in space.
+  subroutine judge_plane(space)
+    type(design_space_type), intent(inout) :: space   !< gets `in_plane`
+    type(design_type) :: design
+    type(error_type), allocatable :: err
+    real(wp) :: x(size(space%varied))
+    integer :: i
+
+    ! designs that leave the plane at all leave it everywhere but on a set without volume
+    if (.not. space%in_plane) return
+    call new_design(space, design)
+    do i = 1, 2*size(x) + probes
+      if (i <= 2*size(x)) then
+        x = space%values(space%varied)
+        x((i + 1)/2) = merge(space%low((i + 1)/2), space%high((i + 1)/2), mod(i, 2) == 1)
+      else
+        x = probe(space, i - 2*size(x))
+      end if
+      call place_design(space, x, design, err)
+      if (.not. allocated(err)) cycle
+      ! a place without a model does not tell
+      if (design%plan%planar%used) cycle
+      space%in_plane = .false.
+      return
+    end do
+  end subroutine judge_plane
 
   !> Prepare the numbers of designs; `used` is false where they are not planar or not affine.
   subroutine new_planar_design(space, design, planar)

@@ -17,6 +17,7 @@ module mech9_synthesis
   use mech9_free_times, only: choose_pivots, gaps_of
   use mech9_closed_search, only: found_design_type
   use mech9_targets, only: target_type, gather_targets
+  use mech9_planar_design, only: judge_plane
   use mech9_design_search, only: search_type, new_search, search_from
   implicit none
   private
@@ -61,6 +62,7 @@ contains
 
     call new_design_space(variable, model, plan, synthesis%space, err)
     if (allocated(err)) return
+    call judge_plane(synthesis%space)
     call gather_targets(model, synthesis%targets)
     allocate (synthesis%optima(0))
   end subroutine new_synthesis

@@ -74,11 +74,12 @@ contains
     plan%planar = planar
   end subroutine lay_out_in_plane
 
-  !> Keep why there is no plane; the caller adds the numbers that the kind names.
+  !> Keep why there is no plane; the caller adds the numbers that the kind names. Nothing is left of an earlier layout.
   pure subroutine refuse(kind, planar)
     integer, intent(in) :: kind                           !< of failure
     type(planar_plan_type), intent(inout) :: planar       !< gets `why_not`
 
+    planar = planar_plan_type()
     allocate (planar%why_not)
     planar%why_not%kind = kind
   end subroutine refuse
