@@ -96,6 +96,7 @@ contains
     if (status < 0) then
       self%id = -1
       call raise(err, exit_file, "cannot open '"//path//"' for writing: "//last_reason())
+      call self%replacement%abandon()
     end if
     call h5pclose_f(access, status)
     if (allocated(err)) return
@@ -119,13 +120,14 @@ contains
     link_properties = self%make_groups
   end function link_properties
 
-  !> Keep the first failure, which a negative status of a call tells.
+  !> Keep the first failure, which a negative status of a call tells. A file that has no name yet will not be whole, and is removed.
   subroutine check(self, status)
     class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
     integer, intent(in) :: status                 !< answer of a call of HDF5; negative: it failed
 
     if (status >= 0 .or. allocated(self%failure)) return
     call raise(self%failure, exit_file, "cannot write to '"//self%path//"': "//last_reason())
+    call self%replacement%abandon()
   end subroutine check
 
   !> Keep a failure that is not one of a call, unless there was one before.

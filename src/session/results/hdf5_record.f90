@@ -21,13 +21,17 @@ module mech9_hdf5_record
 contains
 
   !> Write the origin of the results, with all data that are needed to compute them again.
-  subroutine write_provenance(file, program_name, options, model, data_text)
+  subroutine write_provenance(file, program_name, options, model, data_text, created)
     type(hdf5_file_type), intent(inout) :: file      !< the open file
     character(len=*), intent(in) :: program_name     !< mech9k or mech9d
     type(command_line_type), intent(in) :: options   !< the command line
     type(model_type), intent(in) :: model        !< the model
     character(len=*), intent(in) :: data_text        !< of the data file, as it is
+    character(len=*), intent(in), optional :: created   !< time when the run began; the present time unless it is given
+    character(len=:), allocatable :: began
 
+    began = present_time()
+    if (present(created)) began = created
     call file%add_attribute('/', 'title', model%mechanism%title)
     call file%add_attribute('/', 'source', program_name//' '//version)
     call file%put('provenance/program', program_name, 'program that wrote this file')
@@ -35,7 +39,7 @@ contains
     call file%put('provenance/revision', revision, 'git revision of its sources; empty where unknown')
     call file%put('provenance/compiler', compiler(), 'compiler that built it')
     call file%put('provenance/libraries', libraries(), 'libraries that it stands on')
-    call file%put('provenance/created', present_time(), 'when the run began')
+    call file%put('provenance/created', began, 'when the run began')
     call file%put('provenance/command_line', program_name//' '//options%line, 'command line of the run')
     call file%put('provenance/data_file', options%file, 'name of the data file')
     call file%put('provenance/data', data_text, 'text of the data file')

@@ -13,6 +13,7 @@ module mech9_optimum_results
   use mech9_table, only: table_type
   use mech9_text_file, only: replace_text
   use mech9_written_files, only: result_paths_type, find_result_paths, standard_output_path
+  use mech9_hdf5_reading, only: read_text
   use mech9_hdf5_record, only: write_provenance
   use mech9_study_definition, only: define_study
   use mech9_synthesis, only: synthesis_type
@@ -38,8 +39,8 @@ contains
     type(starts_type), intent(inout) :: starts              !< gets room, and the open file
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(result_paths_type) :: paths
+    type(error_type), allocatable :: at_close
     character(len=:), allocatable :: definition
-    integer :: i
 
     allocate (starts%made(model%request%optimum%starts))
     call find_result_paths(options, model%request%output, paths)
@@ -47,14 +48,51 @@ contains
     call define_study(program_name, document, definition, err)
     if (.not. allocated(err) .and. options%has('continue')) &
       call read_starts(paths%hdf5, model, synthesis, definition, starts%made, err)
-    if (.not. allocated(err)) call starts%file%create(paths%hdf5, model, synthesis, definition, err)
+    if (.not. allocated(err)) call starts%file%create(paths%hdf5, model, synthesis, definition, .false., err)
     if (allocated(err)) return
     call write_provenance(starts%file%file, program_name, options, model, document%source%text)
+    call write_made(starts)
+    call starts%file%publish(err)
+    if (.not. allocated(err)) return
+    call starts%file%close(at_close)
+  end subroutine open_starts
+
+  !> Write all starts that are made.
+  subroutine write_made(starts)
+    type(starts_type), intent(inout) :: starts   !< with the open file
+    integer :: i
+
     do i = 1, size(starts%made)
       if (allocated(starts%made(i)%found)) call starts%file%write_start(i, starts%made(i)%found)
     end do
+  end subroutine write_made
+
+  !> Write the file anew, with the designs, and close it. Where that fails, as on a full disk, the file stays as it is, with all starts,
+  !> and the search can be continued.
+  subroutine write_whole_file(program_name, options, document, model, synthesis, starts, err)
+    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(document_type), intent(in) :: document             !< the data file
+    type(model_type), intent(in) :: model                   !< the model
+    type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
+    type(starts_type), intent(inout) :: starts              !< with the open file, which is closed
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(error_type), allocatable :: at_close
+    character(len=:), allocatable :: path, created, definition
+
+    path = starts%file%file%path
+    call read_text(starts%file%file, 'provenance/created', created)
+    call starts%file%close(err)
+    if (.not. allocated(err)) call define_study(program_name, document, definition, err)
+    if (.not. allocated(err)) call starts%file%create(path, model, synthesis, definition, .true., err)
+    if (allocated(err)) return
+    call write_provenance(starts%file%file, program_name, options, model, document%source%text, created)
+    call write_made(starts)
+    call write_optima(starts%file%file, model, synthesis)
     call starts%file%publish(err)
-  end subroutine open_starts
+    call starts%file%close(at_close)
+    if (.not. allocated(err)) call move_alloc(at_close, err)
+  end subroutine write_whole_file
 
   !> The path of the table; '-' is standard output; empty: no table.
   function table_of(options, model) result(path)
@@ -84,8 +122,7 @@ contains
     call tell(err, 'table', path)
     path = ''
     if (starts%file%is_open()) path = starts%file%file%path
-    if (path /= '') call write_optima(starts%file%file, model, synthesis)
-    call starts%file%close(err)
+    if (path /= '') call write_whole_file(program_name, options, document, model, synthesis, starts, err)
     call tell(err, 'HDF5 file', path)
     if (.not. options%has('out') .or. size(synthesis%optima) == 0) return
     call text_of_best(program_name, document, model, synthesis, text)

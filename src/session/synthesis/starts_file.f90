@@ -80,12 +80,13 @@ contains
   end function layout_of
 
   !> Create the file with all its places. It gets its name with `publish`; a file of that name stays until then.
-  subroutine create(self, path, model, synthesis, definition, err)
+  subroutine create(self, path, model, synthesis, definition, at_end, err)
     class(starts_file_type), intent(out) :: self        !< the file
     character(len=*), intent(in) :: path                !< of the file
     type(model_type), intent(in) :: model               !< the model
     type(synthesis_type), intent(in) :: synthesis       !< prepared
     character(len=*), intent(in) :: definition          !< text that determines the search but for the number of starts
+    logical, intent(in) :: at_end                       !< the search is over
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     self%layout = layout_of(synthesis)
@@ -96,7 +97,7 @@ contains
     call self%series%create(self%file)
     call write_scales(self%file, model, self%layout)
     call self%series%attach(self%file)
-    call fill_rows(self%series, self%file, size(self%row), model%request%optimum%starts, not_made)
+    call fill_rows(self%series, self%file, size(self%row), model%request%optimum%starts, not_made, at_end)
     call self%file%put('optimum/definition', definition, 'text that determines the search but for the number of starts')
     call self%file%put('optimum/digest', digest_of(definition), 'cyclic redundancy check of the definition')
     call self%file%put('optimum/seed', model%request%optimum%seed, 'seed of the starts')
