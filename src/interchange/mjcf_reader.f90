@@ -76,8 +76,11 @@ contains
     type(robot_type), intent(inout) :: robot             !< gets links, joints and masses
     type(error_type), allocatable, intent(inout) :: err  !< the failure
     type(pose_type) :: pose
+    logical :: from_geoms
     integer :: e, own
 
+    from_geoms = settings%from_geoms
+    if (.not. from_geoms) from_geoms = .not. settings%never_from_geoms .and. tree%child(element, 'inertial') == 0
     e = tree%first_child(element)
     do while (e > 0 .and. .not. allocated(err))
       own = class
@@ -96,8 +99,7 @@ contains
         pose = compose(frame, pose)
         if (tree%has(e, 'name') .and. .not. allocated(err)) call robot%add_point(tree%attribute(e, 'name'), link, pose%p)
       case ('geom')
-        if (link > 1 .and. .not. settings%never_from_geoms .and. (settings%from_geoms .or. tree%child(element, 'inertial') == 0)) &
-          call add_geom(tree, e, settings, own, frame, robot, robot%links(link), err)
+        if (link > 1 .and. from_geoms) call add_geom(tree, e, settings, own, frame, robot, robot%links(link), err)
       case ('inertial')
         if (link > 1 .and. .not. settings%from_geoms) call read_inertial(tree, e, settings, robot%links(link), err)
       case ('joint', 'freejoint')

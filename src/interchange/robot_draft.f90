@@ -2,6 +2,7 @@
 module mech9_robot_draft
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
+  use mech9_name_table, only: name_table_type
   use mech9_printable, only: printable, with_escapes
   use mech9_pose, only: default_zero
   use mech9_rotation, only: unit
@@ -193,27 +194,32 @@ contains
     type(series_type), intent(in) :: series   !< its pairs
     type(draft_type), intent(inout) :: draft  !< the data file
     integer, intent(inout) :: n               !< number of its groups
-    integer :: i, first
+    type(name_table_type) :: taken, tails
+    logical :: bears(size(robot%links))
+    integer :: i
 
-    first = n + 1
+    bears = .false.
     do i = 1, robot%n_points
+      bears(robot%points(i)%link) = .true.
       if (robot%points(i)%link > 1) &
-        call add_point(robot%points(i)%name, series%number_of(robot%points(i)%link), robot%points(i)%position, first, draft, n)
+        call add_point(robot%points(i)%name, series%number_of(robot%points(i)%link), robot%points(i)%position, taken, tails, &
+                       draft, n)
     end do
     do i = 2, size(robot%links)
-      if (any(robot%points(:robot%n_points)%link == i)) cycle
+      if (bears(i)) cycle
       if (count(series%pairs%freedoms > 0 .and. (series%pairs%links(1) == series%number_of(i) .or. &
                                                  series%pairs%links(2) == series%number_of(i))) > 1) cycle
-      call add_point(robot%links(i)%name, series%number_of(i), [0.0_wp, 0.0_wp, 0.0_wp], first, draft, n)
+      call add_point(robot%links(i)%name, series%number_of(i), [0.0_wp, 0.0_wp, 0.0_wp], taken, tails, draft, n)
     end do
   end subroutine add_points
 
   !> Add the group of a point, whose name is made of letters that names may have, and different from those before.
-  subroutine add_point(name, link, position, first, draft, n)
+  subroutine add_point(name, link, position, taken, tails, draft, n)
     character(len=*), intent(in) :: name      !< name in the robot
     integer, intent(in) :: link               !< number of the link
     real(wp), intent(in) :: position(3)       !< in the frame of the link [m]
-    integer, intent(in) :: first              !< number of the first group of a point
+    type(name_table_type), intent(inout) :: taken   !< names of points so far
+    type(name_table_type), intent(inout) :: tails   !< by names, the last number that stands behind one
     type(draft_type), intent(inout) :: draft  !< the data file
     integer, intent(inout) :: n               !< number of its groups
     character(len=:), allocatable :: plain, free
@@ -225,27 +231,17 @@ contains
     end do
     if (plain == '') plain = 'point'
     free = plain
-    tail = 1
-    do while (is_taken(free))
+    tail = max(1, tails%find(plain))
+    do while (taken%find(free) > 0)
       tail = tail + 1
       free = plain//'_'//to_text(tail)
     end do
+    call taken%add(free, 1)
+    call tails%set(plain, tail)
     call begin_group(draft, n, 'point', '')
     call add(draft%groups(n), 'name', "'"//free//"'")
     call add(draft%groups(n), 'link', to_text(link))
     call add(draft%groups(n), 'position', numbers_text(position))
-  contains
-    !> Whether a point has a name already.
-    pure logical function is_taken(word)
-      character(len=*), intent(in) :: word  !< the name
-      integer :: k
-
-      is_taken = .true.
-      do k = first, n
-        if (draft%groups(k)%entries(1)%text == "'"//word//"'") return
-      end do
-      is_taken = .false.
-    end function is_taken
   end subroutine add_point
 
   !> Add the groups of bodies, but for the frame, whose mass has no effect.

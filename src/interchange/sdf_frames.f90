@@ -6,6 +6,7 @@ module mech9_sdf_frames
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type
+  use mech9_name_table, only: name_table_type
   use mech9_pose, only: pose_type, compose, inverse
   use mech9_xml_tree, only: xml_tree_type
   use mech9_xml_values, only: numbers_in, is_true
@@ -27,6 +28,7 @@ module mech9_sdf_frames
     type(string_type), allocatable :: holders(:)  !< names of the frames or links to which they are attached; empty: none
     type(pose_type), allocatable :: poses(:)      !< in the frames of `parents`
     type(pose_type) :: model                      !< of the outermost model in the world
+    type(name_table_type), private :: numbers     !< of the frames by their names
   contains
     procedure :: in_model
     procedure :: find_link
@@ -160,6 +162,8 @@ contains
     n = n + 1
     self%count = n
     self%names(n)%text = name
+    ! of two frames of one name the later one counts
+    call self%numbers%set(name, n)
     self%parents(n)%text = parent
     self%holders(n)%text = holder
     if (element == 0) return
@@ -173,9 +177,7 @@ contains
     class(sdf_frames_type), intent(in) :: self  !< the frames
     character(len=*), intent(in) :: name        !< with the names of the models around it
 
-    do number = self%count, 1, -1
-      if (self%names(number)%text == name) return
-    end do
+    number = self%numbers%find(name)
   end function find
 
   !> The pose of a frame in the outermost model.

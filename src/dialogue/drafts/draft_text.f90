@@ -19,6 +19,7 @@ module mech9_draft_text
     integer, allocatable :: first(:)       !< first byte of each range
     integer, allocatable :: last(:)
     integer :: count = 0                   !< number of ranges in use
+    integer, private :: used = 0           !< bytes of the text in use, while it is written
   end type draft_text_type
 
 contains
@@ -36,27 +37,44 @@ contains
       n = n + size(draft%groups(i)%entries)
     end do
     allocate (written%group(n), written%entry(n), written%first(n), written%last(n))
-    written%text = draft%head
+    allocate (character(len=len(draft%head) + 4096) :: written%text)
+    call append(written, draft%head)
     before = ''
     do i = 1, size(draft%groups)
-      if (draft%groups(i)%name /= before) call begin_kind(draft%groups(i), written%text)
+      if (draft%groups(i)%name /= before) call begin_kind(draft%groups(i), written)
       before = draft%groups(i)%name
-      written%text = written%text//draft%groups(i)%comment
+      call append(written, draft%groups(i)%comment)
       call write_group(draft%groups(i), i, written)
     end do
-    if (remark /= '') written%text = written%text//line_end//remark//line_end
+    if (remark /= '') call append(written, line_end//remark//line_end)
+    written%text = written%text(:written%used)
   end subroutine write_draft
 
   !> A blank line is appended, and a comment on the groups of this name unless the group has a comment of its own.
-  pure subroutine begin_kind(group, text)
-    type(draft_group_type), intent(in) :: group           !< the group
-    character(len=:), allocatable, intent(inout) :: text  !< text to which the heading is appended
+  pure subroutine begin_kind(group, written)
+    type(draft_group_type), intent(in) :: group      !< the group
+    type(draft_text_type), intent(inout) :: written  !< text to which the heading is appended
     integer :: row
 
-    if (text /= '') text = text//line_end
+    if (written%used > 0) call append(written, line_end)
     row = find_group_row(group%name)
-    if (group%comment == '' .and. row > 0) text = text//'! '//trim(group_table(row)%help)//line_end
+    if (group%comment == '' .and. row > 0) call append(written, '! '//trim(group_table(row)%help)//line_end)
   end subroutine begin_kind
+
+  !> Append a piece to the text, which gets room for twice as much where it has none.
+  pure subroutine append(written, piece)
+    type(draft_text_type), intent(inout) :: written  !< the text
+    character(len=*), intent(in) :: piece            !< the piece
+    character(len=:), allocatable :: longer
+
+    if (written%used + len(piece) > len(written%text)) then
+      allocate (character(len=2*(written%used + len(piece))) :: longer)
+      longer(:written%used) = written%text(:written%used)
+      call move_alloc(longer, written%text)
+    end if
+    written%text(written%used + 1:written%used + len(piece)) = piece
+    written%used = written%used + len(piece)
+  end subroutine append
 
   !> A group is appended to the text, and the ranges of bytes are noted.
   pure subroutine write_group(group, number, written)
@@ -78,19 +96,19 @@ contains
       parts(i)%text = group%entries(i)%name//equals//group%entries(i)%text
     end do
     whole = written%count + 1
-    call note(written, number, 0, len(written%text) + 1)
-    written%text = written%text//'&'//group%name
+    call note(written, number, 0, written%used + 1)
+    call append(written, '&'//group%name)
     do i = 1, size(parts)
-      if (i > 1 .and. separator == ' ') written%text = written%text//','
-      written%text = written%text//separator
-      call note(written, number, i, len(written%text) + 1)
-      written%text = written%text//parts(i)%text
-      written%last(written%count) = len(written%text)
+      if (i > 1 .and. separator == ' ') call append(written, ',')
+      call append(written, separator)
+      call note(written, number, i, written%used + 1)
+      call append(written, parts(i)%text)
+      written%last(written%count) = written%used
     end do
     if (separator /= ' ') separator = line_end
-    written%text = written%text//separator//'/'
-    written%last(whole) = len(written%text)
-    written%text = written%text//line_end
+    call append(written, separator//'/')
+    written%last(whole) = written%used
+    call append(written, line_end)
   end subroutine write_group
 
   !> Whether a group holds rows of a matrix, which are easier to read one below the other.

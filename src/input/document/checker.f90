@@ -4,6 +4,7 @@
 module mech9_checker
   use mech9_text, only: to_text, lower, nearest_name
   use mech9_counted, only: counted
+  use mech9_name_table, only: name_table_type
   use mech9_source, only: span_type
   use mech9_grammar, only: group_table, item_table, find_group_row, rows_of_group, names_of_groups, names_in_group
   use mech9_item_rows, only: find_item_rows, item_row_for_kind, takes_kind
@@ -16,7 +17,6 @@ module mech9_checker
   private
   public :: check_document
 
-  integer, parameter :: most_keys = 6     !< of one group
   integer, parameter :: kind_length = 36  !< length of the longest kind of a group with its law
 
 contains
@@ -289,66 +289,38 @@ contains
     character(len=*), intent(in) :: key                   !< name of the key
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(value_type), allocatable :: values(:)
-    integer, allocatable :: numbers(:), owners(:)
-    integer :: i, j, k, n, found
+    type(name_table_type) :: owners
+    integer :: i, k, owner, found
 
-    allocate (numbers(size(members) + most_keys), owners(size(members) + most_keys))
-    n = 0
     do i = 1, size(members)
       if (.not. document%groups(members(i))%sound) cycle
       values = keys_of(document%groups(members(i)), key)
-      if (n + size(values) > size(owners)) call make_room(numbers, owners)
       found = diagnostics%count
       do k = 1, size(values)
-        j = findloc(numbers(:n), number_of_key(values(k), document, owners(:n), key), dim=1)
-        if (j == 0) then
-          n = n + 1
-          numbers(n) = number_of_key(values(k), document, owners(:n - 1), key)
-          owners(n) = members(i)
-        else if (owners(j) == members(i)) then
+        owner = owners%find(name_of_key(values(k)))
+        if (owner == 0) then
+          call owners%add(name_of_key(values(k)), members(i))
+        else if (owner == members(i)) then
           call diagnostics%add(values(k)%span, key//' '//diagnostics%text_of(values(k)%span)//' is named twice')
         else
-          call report_second_key(document%groups(members(i)), document%groups(owners(j)), key, values(k)%span, diagnostics)
+          call report_second_key(document%groups(members(i)), document%groups(owner), key, values(k)%span, diagnostics)
         end if
       end do
       if (diagnostics%count > found) document%groups(members(i))%sound = .false.
     end do
   end subroutine check_keys
 
-  !> Make room for more keys.
-  pure subroutine make_room(numbers, owners)
-    integer, allocatable, intent(inout) :: numbers(:)   !< numbers of the keys so far
-    integer, allocatable, intent(inout) :: owners(:)    !< groups to which they belong
-    integer, allocatable :: longer(:)
-
-    allocate (longer(2*size(numbers) + most_keys), source=0)
-    longer(:size(numbers)) = numbers
-    call move_alloc(longer, numbers)
-    allocate (longer(size(numbers)), source=0)
-    longer(:size(owners)) = owners
-    call move_alloc(longer, owners)
-  end subroutine make_room
-
-  !> A number that is equal for equal keys only: the key itself, or minus the place of the first group that has the same text.
-  pure integer function number_of_key(value, document, owners, key) result(number)
-    type(value_type), intent(in) :: value        !< the key: a whole number or a text
-    type(document_type), intent(in) :: document  !< the data file as groups and items
-    integer, intent(in) :: owners(:)             !< numbers of the groups to which the keys before it belong
-    character(len=*), intent(in) :: key          !< name of the key
-    type(value_type), allocatable :: other(:)
+  !> A name that is equal for equal keys only.
+  pure function name_of_key(value) result(name)
+    type(value_type), intent(in) :: value   !< the key: a whole number or a text
+    character(len=:), allocatable :: name
 
     if (value%kind == value_integer) then
-      number = int(value%whole)
-      return
+      name = to_text(value%whole)
+    else
+      name = "'"//value%text
     end if
-    do number = 1, size(owners)
-      other = keys_of(document%groups(owners(number)), key)
-      if (size(other) /= 1) cycle
-      if (other(1)%kind /= value_text) cycle
-      if (other(1)%text == value%text) exit
-    end do
-    number = -number
-  end function number_of_key
+  end function name_of_key
 
   !> The keys of a group: the value of the name that tells groups of its kind apart, or the values under the plural of this name.
   pure function keys_of(group, key) result(values)
