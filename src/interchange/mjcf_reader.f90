@@ -4,10 +4,11 @@ module mech9_mjcf_reader
   use mech9_error, only: error_type
   use mech9_text, only: to_text
   use mech9_rotation, only: unit, about_axis
-  use mech9_pose, only: pose_type, compose
+  use mech9_pose, only: pose_type, compose, transformed
+  use mech9_inertia, only: inertia_in_axes
   use mech9_xml_tree, only: xml_tree_type
   use mech9_xml_values, only: get_numbers, get_number, is_true, place_in, one_of
-  use mech9_robot, only: robot_type, robot_joint_type, fixed_joint, revolute_joint, prismatic_joint, &
+  use mech9_robot, only: robot_type, robot_link_type, robot_joint_type, fixed_joint, revolute_joint, prismatic_joint, &
                          spherical_joint, free_joint
   use mech9_mjcf_settings, only: mjcf_settings_type, read_settings
   use mech9_mjcf_masses, only: read_inertial, add_geom
@@ -35,7 +36,7 @@ contains
     do while (e > 0 .and. .not. allocated(err))
       select case (tree%name(e))
       case ('worldbody')
-        call read_contents(tree, e, settings, 0, pose_type(), 1, robot, err)
+        call read_contents(tree, e, settings, 0, pose_type(), 1, .false., robot, err)
       case ('option')
         call get_numbers(tree, e, 'gravity', robot%gravity, err)
         if (tree%attribute(tree%child(e, 'flag'), 'gravity') == 'disable') robot%gravity = 0.0_wp
@@ -66,21 +67,19 @@ contains
   end subroutine refuse_unknown
 
   !> Read the elements in a body, in the world, or in a frame of one of these.
-  recursive subroutine read_contents(tree, element, settings, class, frame, link, robot, err)
+  recursive subroutine read_contents(tree, element, settings, class, frame, link, from_geoms, robot, err)
     type(xml_tree_type), intent(in) :: tree              !< the document
     integer, intent(in) :: element                       !< number of the element
     type(mjcf_settings_type), intent(in) :: settings     !< units and defaults
     integer, intent(in) :: class                         !< number of the element of the class of defaults that holds in it
     type(pose_type), intent(in) :: frame                 !< of the element, in the frame of the link
     integer, intent(in) :: link                          !< number of the link
+    logical, intent(in) :: from_geoms                    !< shapes give the inertia of the link
     type(robot_type), intent(inout) :: robot             !< gets links, joints and masses
     type(error_type), allocatable, intent(inout) :: err  !< the failure
     type(pose_type) :: pose
-    logical :: from_geoms
     integer :: e, own
 
-    from_geoms = settings%from_geoms
-    if (.not. from_geoms) from_geoms = .not. settings%never_from_geoms .and. tree%child(element, 'inertial') == 0
     e = tree%first_child(element)
     do while (e > 0 .and. .not. allocated(err))
       own = class
@@ -93,21 +92,31 @@ contains
         call read_body(tree, e, settings, own, compose(frame, pose), link, robot, err)
       case ('frame')
         call settings%get_pose(tree, e, 0, pose, err)
-        call read_contents(tree, e, settings, own, compose(frame, pose), link, robot, err)
+        call read_contents(tree, e, settings, own, compose(frame, pose), link, from_geoms, robot, err)
       case ('site')
         call settings%get_pose(tree, e, own, pose, err)
         pose = compose(frame, pose)
         if (tree%has(e, 'name') .and. .not. allocated(err)) call robot%add_point(tree%attribute(e, 'name'), link, pose%p)
       case ('geom')
-        if (link > 1 .and. from_geoms) call add_geom(tree, e, settings, own, frame, robot, robot%links(link), err)
+        if (from_geoms) call add_geom(tree, e, settings, own, frame, robot, robot%links(link), err)
       case ('inertial')
-        if (link > 1 .and. .not. settings%from_geoms) call read_inertial(tree, e, settings, robot%links(link), err)
+        if (link > 1 .and. .not. settings%from_geoms) call read_inertial_in(frame, robot%links(link))
       case ('joint', 'freejoint')
       case default
         call robot%note(tree, e, '<'//tree%name(e)//'> of bodies')
       end select
       e = tree%next_sibling(e)
     end do
+  contains
+    !> Read <inertial>, which stands in a frame of the link.
+    subroutine read_inertial_in(around, told)
+      type(pose_type), intent(in) :: around            !< the frame, in that of the link
+      type(robot_link_type), intent(inout) :: told     !< the link
+
+      call read_inertial(tree, e, settings, told, err)
+      told%centre = transformed(around, told%centre)
+      told%inertia = inertia_in_axes(around%r, told%inertia)
+    end subroutine read_inertial_in
   end subroutine read_contents
 
   !> Read a body: its joints, with massless links between several of them, and its contents.
@@ -123,6 +132,7 @@ contains
     character(len=:), allocatable :: name
     type(robot_joint_type) :: joint
     type(pose_type) :: start
+    logical :: from_geoms
     integer :: e, n, last, own
 
     if (allocated(err)) return
@@ -132,20 +142,7 @@ contains
     n = 0
     start = pose
     last = parent
-    e = tree%first_child(element)
-    do while (e > 0 .and. .not. allocated(err))
-      if (tree%name(e) == 'joint' .or. tree%name(e) == 'freejoint') then
-        if (n > 0) then
-          call robot%add_link(tree, e, name//' ('//to_text(n)//')', err)
-          robot%joints(robot%n_joints)%links(2) = robot%n_links
-          last = robot%n_links
-          start = pose_type()
-        end if
-        n = n + 1
-        call read_joint(tree, e, settings, class, start, last, name, n, robot, err)
-      end if
-      e = tree%next_sibling(e)
-    end do
+    call read_joints(tree, element, settings, class, pose_type(), name, start, last, n, robot, err)
     if (n == 0) then
       joint%name = 'fixed '//name
       joint%kind = fixed_joint
@@ -158,16 +155,72 @@ contains
     ! bodies in this one change the number of links
     own = robot%n_links
     robot%joints(robot%n_joints)%links(2) = own
-    call read_contents(tree, element, settings, class, pose_type(), own, robot, err)
+    from_geoms = settings%from_geoms
+    if (.not. (from_geoms .or. settings%never_from_geoms)) from_geoms = .not. tells_inertia(tree, element)
+    call read_contents(tree, element, settings, class, pose_type(), own, from_geoms, robot, err)
   end subroutine read_body
 
+  !> Read the joints of a body, also those in its frames, with a massless link between each and the next.
+  recursive subroutine read_joints(tree, element, settings, class, frame, body, start, last, n, robot, err)
+    type(xml_tree_type), intent(in) :: tree              !< the document
+    integer, intent(in) :: element                       !< number of the element of the body, or of a frame in it
+    type(mjcf_settings_type), intent(in) :: settings     !< units and defaults
+    integer, intent(in) :: class                         !< number of the element of the class of defaults that holds in it
+    type(pose_type), intent(in) :: frame                 !< of the element, in the frame of the body
+    character(len=*), intent(in) :: body                 !< name of the body
+    type(pose_type), intent(inout) :: start              !< of the body's frame in the link to which the next joint leads
+    integer, intent(inout) :: last                       !< number of that link
+    integer, intent(inout) :: n                          !< how many joints there are so far
+    type(robot_type), intent(inout) :: robot             !< gets joints, and links between them
+    type(error_type), allocatable, intent(inout) :: err  !< the failure
+    type(pose_type) :: pose
+    integer :: e, own
+
+    e = tree%first_child(element)
+    do while (e > 0 .and. .not. allocated(err))
+      select case (tree%name(e))
+      case ('frame')
+        own = class
+        if (tree%has(e, 'childclass')) own = settings%class_of(tree, tree%attribute(e, 'childclass'), e, err)
+        call settings%get_pose(tree, e, 0, pose, err)
+        call read_joints(tree, e, settings, own, compose(frame, pose), body, start, last, n, robot, err)
+      case ('joint', 'freejoint')
+        if (n > 0) then
+          call robot%add_link(tree, e, body//' ('//to_text(n)//')', err)
+          if (allocated(err)) return
+          robot%joints(robot%n_joints)%links(2) = robot%n_links
+          last = robot%n_links
+          start = pose_type()
+        end if
+        n = n + 1
+        call read_joint(tree, e, settings, class, start, frame, last, body, n, robot, err)
+      end select
+      e = tree%next_sibling(e)
+    end do
+  end subroutine read_joints
+
+  !> Whether a body, or a frame in it, has an element <inertial>.
+  recursive logical function tells_inertia(tree, element) result(tells)
+    type(xml_tree_type), intent(in) :: tree   !< the document
+    integer, intent(in) :: element            !< number of the element of the body or frame
+    integer :: e
+
+    tells = tree%child(element, 'inertial') > 0
+    e = tree%child(element, 'frame')
+    do while (e > 0 .and. .not. tells)
+      tells = tells_inertia(tree, e)
+      e = tree%next_named(e, 'frame')
+    end do
+  end function tells_inertia
+
   !> Read a joint, whose moving link follows.
-  subroutine read_joint(tree, element, settings, around, start, link, body, number, robot, err)
+  subroutine read_joint(tree, element, settings, around, start, frame, link, body, number, robot, err)
     type(xml_tree_type), intent(in) :: tree              !< the document
     integer, intent(in) :: element                       !< number of the element <joint> or <freejoint>
     type(mjcf_settings_type), intent(in) :: settings     !< units and defaults
     integer, intent(in) :: around                        !< number of the element of the class of defaults of the body
     type(pose_type), intent(in) :: start                 !< of the body's frame in the reference link
+    type(pose_type), intent(in) :: frame                 !< of the element around the joint, in the frame of the body
     integer, intent(in) :: link                          !< number of the reference link
     character(len=*), intent(in) :: body                 !< name of the body
     integer, intent(in) :: number                        !< of the joint in the body
@@ -195,7 +248,8 @@ contains
     joint%axis = [0.0_wp, 0.0_wp, 1.0_wp]
     call get_numbers(tree, settings%holder(tree, element, class, 'axis'), 'axis', joint%axis, err)
     if (.not. any(abs(joint%axis) > 0.0_wp)) call tree%fail(element, 'the axis has no direction: its components are all zero', err)
-    joint%axis = unit(joint%axis)
+    at%p = transformed(frame, at%p)
+    joint%axis = matmul(frame%r, unit(joint%axis))
     joint%frames(1) = compose(start, at)
     joint%frames(2) = at
     call read_springs(tree, element, settings, class, joint, robot, err)

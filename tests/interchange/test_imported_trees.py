@@ -226,6 +226,11 @@ SHAPES = """<mujoco>
       </frame>
       <site name="s3" pos="0.1 0.1 0"/>
     </body>
+    <body name="told" pos="0.3 0.3 0"><joint name="d1" axis="1 0 0"/><inertial pos="0 0.2 0" mass="0.5" diaginertia="0.01 0.02 0.025"/>
+      <frame pos="0.1 0 0"><geom size="0.1"/><frame pos="0 0.1 0" euler="0 0 30"><joint name="d2" pos="0 0 0.2" axis="1 0 0"/></frame><frame euler="0 20 0"><geom class="heavy"/></frame></frame>
+    </body>
+    <body name="framed" pos="0.3 -0.3 0"><frame pos="0.1 0 0" euler="10 20 30"><joint name="f1" type="slide" axis="0 1 0"/>
+      <inertial pos="0 0.2 0" mass="0.5" diaginertia="0.01 0.02 0.025" euler="5 0 0"/></frame><geom size="0.2"/></body>
     <body name="right" pos="-0.4 0 0" zaxis="1 0.2 0.3">
       <body name="arm" pos="0 0 0.2"><joint name="a1"/><geom size="0.08"/></body>
       <joint name="r1" axis="0 0 1"/>
@@ -241,7 +246,7 @@ def test_shapes_behind_children_are_those_of_mujoco(checks, mech9d, tmp_path):
     mujoco = pytest.importorskip('mujoco', reason='the Python package mujoco is not installed (pip install mujoco)')
     data = imported(checks, mech9d, tmp_path, SHAPES, 'shapes')
     model = mujoco.MjModel.from_xml_string(SHAPES)
-    compare_bodies(checks, data, model, ['left', 'upper', 'tip', 'inner', 'last', 'right', 'arm'])
+    compare_bodies(checks, data, model, ['left', 'upper', 'tip', 'inner', 'last', 'told', 'framed', 'right', 'arm'])
     numbers = coordinates_of(data)
     state = mujoco.MjData(model)
     values = np.random.default_rng(1).uniform(-1, 1, (2, model.njnt))
