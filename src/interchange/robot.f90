@@ -148,6 +148,9 @@ contains
     if (self%n_joints == most_joints) &
       call tree%fail(element, 'the robot has more than '//to_text(most_joints)//' joints, which are too many', err)
     if (self%find_joint(joint%name) > 0) call tree%fail(element, "there are two joints '"//joint%name//"'", err)
+    if (joint%has_range .and. joint%range(1) > joint%range(2)) &
+      call tree%fail(element, "the range of joint '"//joint%name//"' begins above its end: the lower limit is "// &
+                     'greater than the upper one', err)
     if (joint%kind == universal_joint .and. norm2(cross(joint%axis, joint%second)) <= least_sine) &
       call tree%fail(element, "the two axes of joint '"//joint%name//"' are parallel; give the second one another direction", err)
     if (allocated(err)) return

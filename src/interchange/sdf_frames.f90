@@ -35,6 +35,7 @@ module mech9_sdf_frames
     procedure, private :: add
     procedure, private :: up_to
     procedure, private :: find
+    procedure, private :: circle
   end type sdf_frames_type
 
 contains
@@ -211,12 +212,33 @@ contains
       i = self%find(frame)
       if (i == 0) call tree%fail(element, "there is no frame '"//frame//"'", err)
       steps = steps + 1
-      if (steps > self%count) call tree%fail(element, "the frame '"//name//"' stands in itself, by way of others", err)
+      if (steps > self%count) call tree%fail(element, self%circle(name), err)
       if (allocated(err)) return
       pose = compose(self%poses(i), pose)
       frame = self%parents(i)%text
     end do
   end subroutine up_to
+
+  !> The words about frames that stand in each other: the first of them on the way from a frame, and the others.
+  pure function circle(self, name) result(words)
+    class(sdf_frames_type), intent(in) :: self  !< the frames
+    character(len=*), intent(in) :: name        !< a frame whose way does not end
+    character(len=:), allocatable :: words
+    integer :: way(self%count + 1), n, first
+
+    n = 1
+    way(1) = self%find(name)
+    do
+      first = findloc(way(:n), self%find(self%parents(way(n))%text), dim=1)
+      if (first > 0) exit
+      way(n + 1) = self%find(self%parents(way(n))%text)
+      n = n + 1
+    end do
+    words = "the frame '"//self%names(way(first))%text//"' stands in itself"
+    do first = first + 1, n
+      words = words//", by way of '"//self%names(way(first))%text//"'"
+    end do
+  end function circle
 
   !> The number of a link of a robot, or of the link to which a frame is attached; 0: there is none.
   integer function find_link(self, robot, prefix, name) result(link)

@@ -74,6 +74,8 @@ contains
       if (.not. is_child(tree, 'joint', 'child', tree%attribute(e, 'name')) .and. &
           .not. is_child(tree, 'loop', 'successor', tree%attribute(e, 'name'))) then
         if (root > 0) then
+          if (tree%attribute(e, 'name') == tree%attribute(root, 'name')) &
+            call tree%fail(e, "there are two links '"//tree%attribute(e, 'name')//"'", err)
           call refuse_unknown_child(tree, err)
           call tree%fail(e, "link '"//tree%attribute(e, 'name')//"' hangs on no joint, and neither does link '"// &
                          tree%attribute(root, 'name')//"'; only one link, the frame, may be without one", err)
