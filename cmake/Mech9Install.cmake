@@ -47,6 +47,12 @@ foreach(program mech9k mech9d)
   endif()
 endforeach()
 install(FILES "${MECH9_PROGRAMS_DIR}/memory_guard.f90" DESTINATION "${MECH9_INSTALL_PROGRAMS}")
+# The library carries code for optimisation across files, which the linker would take at the cost of minutes. Programs of other projects
+# are linked with the other code, unless they ask: by LTO in mech9_add_programs, or by their property INTERPROCEDURAL_OPTIMIZATION.
+if(MECH9_LTO_NO_LINK)
+  set(asked "$<OR:$<BOOL:$<TARGET_PROPERTY:MECH9_LTO>>,$<BOOL:$<TARGET_PROPERTY:INTERPROCEDURAL_OPTIMIZATION>>>")
+  target_link_options(mech9 INTERFACE "$<INSTALL_INTERFACE:$<$<NOT:${asked}>:${MECH9_LTO_NO_LINK}>>")
+endif()
 install(TARGETS mech9 EXPORT mech9Targets DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 # .smod: users' submodules need those of their hooks
 install(DIRECTORY "${PROJECT_BINARY_DIR}/modules/" DESTINATION "${modules_dir}"
