@@ -133,7 +133,7 @@ contains
     type(robot_joint_type) :: joint
     type(pose_type) :: start
     logical :: from_geoms
-    integer :: e, n, last, own
+    integer :: n, last, own
 
     if (allocated(err)) return
     name = tree%attribute(element, 'name')

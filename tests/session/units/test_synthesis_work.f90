@@ -91,7 +91,7 @@ contains
 
     call prepare(tester, model, varied, synthesis)
     allocate (starts%made(3))
-    call starts%file%create(stem//'.h5', model, synthesis, 'a search', err)
+    call starts%file%create(stem//'.h5', model, synthesis, 'a search', .false., err)
     call tester%no_error(err, 'a file for starts')
     call starts%file%publish(err)
     call starts%begin('mech9k', .true.)
