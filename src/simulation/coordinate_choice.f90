@@ -250,9 +250,8 @@ contains
     type(wanted_type), intent(in), optional :: wanted    !< conditioning for which the change is worthwhile; any unless given
     logical, intent(out), optional :: in_vain            !< it is not worthwhile, and no plan was made
     logical, intent(out), optional :: same_frames        !< the plan has the frames of the present one, perhaps in another order
-    !> The present plan has other angles of ball joints than the mechanism, so that none can be made from the beginning; not unless
-    !> given.
-    logical, intent(in), optional :: other_turns
+    logical, intent(in), optional :: other_turns         !< the present plan has other angles of ball joints than the mechanism, so that
+                                                         !< none can be made from the beginning; not unless given
     type(replanning_type) :: replanning
     type(wanted_type) :: enough
 

@@ -1,4 +1,4 @@
-"""What a build costs: seconds of compiling and linking, the slowest files, the largest procedures, and the sizes of programs.
+"""Costs of a build: seconds of compiling and linking, the slowest files, the largest procedures, and the sizes of programs.
 
 usage: build_costs.py BUILD      a build folder made by ninja
 """

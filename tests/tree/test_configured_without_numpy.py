@@ -9,6 +9,7 @@ from mech9_cases import TREE, run
 def test_configured_without_numpy(checks, build, tmp_path):
     settings = build.settings
     done = run(settings['CMAKE_COMMAND'], '-S', TREE, '-B', tmp_path / 'build', '-G', 'Ninja', '-DMECH9_BUILD_TESTS=ON', '-DMECH9_TEST_PYTHON=false',
+               '-DCMAKE_BUILD_TYPE=Debug',
                f"-DCMAKE_Fortran_COMPILER={settings['CMAKE_Fortran_COMPILER']}", timeout=600)
     said = re.sub(r'\s+', ' ', done.stdout + done.stderr)
     checks.equal(done.returncode, 0, f'cmake configures; {done.stdout}{done.stderr}')
