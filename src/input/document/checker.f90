@@ -290,6 +290,7 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(value_type), allocatable :: values(:)
     type(name_table_type) :: owners
+    character(len=:), allocatable :: name
     integer :: i, k, owner, found
 
     do i = 1, size(members)
@@ -297,9 +298,10 @@ contains
       values = keys_of(document%groups(members(i)), key)
       found = diagnostics%count
       do k = 1, size(values)
-        owner = owners%find(name_of_key(values(k)))
+        call name_key(values(k), name)
+        owner = owners%find(name)
         if (owner == 0) then
-          call owners%add(name_of_key(values(k)), members(i))
+          call owners%add(name, members(i))
         else if (owner == members(i)) then
           call diagnostics%add(values(k)%span, key//' '//diagnostics%text_of(values(k)%span)//' is named twice')
         else
@@ -310,17 +312,17 @@ contains
     end do
   end subroutine check_keys
 
-  !> A name that is equal for equal keys only.
-  pure function name_of_key(value) result(name)
-    type(value_type), intent(in) :: value   !< the key: a whole number or a text
-    character(len=:), allocatable :: name
+  !> Form a name that is equal for equal keys only.
+  pure subroutine name_key(value, name)
+    type(value_type), intent(in) :: value                !< the key: a whole number or a text
+    character(len=:), allocatable, intent(out) :: name   !< the name
 
     if (value%kind == value_integer) then
       name = to_text(value%whole)
     else
       name = "'"//value%text
     end if
-  end function name_of_key
+  end subroutine name_key
 
   !> The keys of a group: the value of the name that tells groups of its kind apart, or the values under the plural of this name.
   pure function keys_of(group, key) result(values)
