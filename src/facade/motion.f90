@@ -30,7 +30,7 @@ module mech9_motion
     type(model_type), pointer :: model => null()            !< owned; the simulation refers to it
     class(simulation_type), allocatable :: simulation
     type(reaction_plan_type) :: reaction_plan               !< of forces, once they are asked for
-    type(reactions_type) :: reactions                       !< of the last position whose forces were asked for
+    class(reactions_type), allocatable :: reactions         !< of the last position whose forces were asked for
     integer :: planned = -1                                 !< changes of coordinates until the plan was made; -1: never
   contains
     procedure :: start_kinematics
@@ -287,7 +287,8 @@ contains
     if (allocated(err)) return
     if (self%planned /= size(self%simulation%events) .or. .not. is_made_for(self%reaction_plan, plan)) then
       call make_reaction_plan(self%model%mechanism, plan, self%reaction_plan)
-      self%reactions = new_reactions(plan, self%reaction_plan)
+      if (allocated(self%reactions)) deallocate (self%reactions)
+      allocate (self%reactions, source=new_reactions(plan, self%reaction_plan))
       self%planned = size(self%simulation%events)
     end if
     call find_reactions(self%model%mechanism, plan, self%reaction_plan, state, self%reactions, err)

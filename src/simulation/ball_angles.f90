@@ -12,8 +12,8 @@ module mech9_ball_angles
   use mech9_three_turns, only: swing_type, heading_type, three_turns_type
   use mech9_partition, only: partition_type
   use mech9_model, only: model_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
+  use mech9_plan, only: plan_type, copy_plan
+  use mech9_state, only: state_type, copy_state
   use mech9_frame_motion, only: place_all, spread_all_velocities, spread_all_accelerations
   use mech9_requested, only: requested_type
   use mech9_ball_joints, only: ball_joint_type, find_ball_joints
@@ -22,12 +22,13 @@ module mech9_ball_angles
   private
   public :: ball_angles_type
 
+  !> The angles. The plan and the state are polymorphic because these are copied by calls, which keeps the code of copies small.
   type :: ball_angles_type
     type(held_angles_type) :: held                    !< angles of rods that are held, and what they imply
     type(ball_joint_type), allocatable :: joints(:)   !< all whose angles may be replaced
     logical, allocatable :: replaced(:)               !< (joints) other angles are integrated
-    type(plan_type) :: plan                           !< with the angles of the data file; set where joints are found
-    type(state_type) :: state                         !< in these angles, as last shown
+    class(plan_type), allocatable :: plan             !< with the angles of the data file; set where joints are found
+    class(state_type), allocatable :: state           !< in these angles, as last shown
     real(wp) :: t = 0.0_wp                            !< time up to which the angles are continued [s]
     type(heading_type), allocatable, private :: headings(:)   !< (joints) at this time
     type(swing_type), allocatable, private :: swings(:)       !< (joints) motion at this time
@@ -61,6 +62,7 @@ contains
     type(state_type), intent(inout) :: state            !< for this plan, with rates
     type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
 
+    if (.not. allocated(self%plan)) allocate (self%plan, self%state)
     call self%held%begin(model, plan)
     call self%restart(model, model%problem%partition, requested, plan, state, err)
   end subroutine begin
@@ -82,9 +84,9 @@ contains
     call find_joints(self, model, plan)
     self%lock = model%request%solver%absolute_tolerance + model%request%solver%relative_tolerance
     if (size(self%joints) > 0) then
-      self%plan = plan
+      call copy_plan(plan, self%plan)
       if (any(self%in_doubt(state%q))) then
-        given = state
+        call copy_state(state, given)
         call self%change(given, plan, state, err)
         if (allocated(err)) return
       end if
@@ -112,7 +114,7 @@ contains
     before%joints = self%joints
     before%headings = self%headings
     before%swings = self%swings
-    given = plan
+    call copy_plan(plan, given)
     do i = 1, size(before%joints)
       do j = 1, 3
         associate (step => before%joints(i)%steps(j), k => before%joints(i)%coordinates(j))
@@ -133,7 +135,7 @@ contains
       end do
     end do
     if (size(self%joints) == 0) return
-    self%plan = given
+    call copy_plan(given, self%plan)
     if (.not. self%in_use()) return
     call carry_given_angles(self, state, err)
   end subroutine follow
@@ -146,7 +148,7 @@ contains
     type(state_type) :: given
     integer :: i
 
-    given = state
+    call copy_state(state, given)
     do i = 1, size(self%joints)
       if (.not. self%replaced(i)) cycle
       associate (k => self%joints(i)%coordinates)
@@ -155,7 +157,7 @@ contains
         given%ddq(k) = self%state%ddq(k)
       end associate
     end do
-    self%state = given
+    call copy_state(given, self%state)
     call place_all(self%plan, self%state, err)
   end subroutine carry_given_angles
 
@@ -219,9 +221,9 @@ contains
     integer :: i
 
     doubt = self%in_doubt(state%q)
-    if (.not. self%in_use()) self%state = state
-    plan = self%plan
-    changed = self%state
+    if (.not. self%in_use()) call copy_state(state, self%state)
+    call copy_plan(self%plan, plan)
+    call copy_state(self%state, changed)
     self%t = state%t
     do i = 1, size(self%joints)
       associate (joint => self%joints(i), k => self%joints(i)%coordinates)
@@ -367,7 +369,7 @@ contains
     real(wp) :: q(3), dq(3), ddq(3)
     integer :: i
 
-    self%state = state
+    call copy_state(state, self%state)
     do i = 1, size(self%joints)
       if (.not. self%replaced(i)) cycle
       associate (joint => self%joints(i), k => self%joints(i)%coordinates)

@@ -9,8 +9,8 @@ module mech9_driven_angles
   use mech9_law, only: drive_slot_type
   use mech9_partition, only: partition_type
   use mech9_model, only: model_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
+  use mech9_plan, only: plan_type, copy_plan
+  use mech9_state, only: state_type, copy_state
   use mech9_requested, only: requested_type
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_ball_angles, only: ball_angles_type
@@ -35,7 +35,7 @@ contains
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(state_type) :: start
 
-    start = assembled
+    call copy_state(assembled, start)
     start%t = t
     call angles%begin(model, requested, plan, start, err)
     if (allocated(err)) return
@@ -82,7 +82,7 @@ contains
     real(wp) :: h
     integer :: i
 
-    before = driven
+    call copy_driven_motion(driven, before)
     h = min(angles%longest_way(), abs(t - before%state%t))
     do i = 1, most_halvings
       reached = .not. h < abs(t - before%state%t)
@@ -94,7 +94,7 @@ contains
       if (allocated(err)) return
       reached = reached .and. .not. driven%paused
       if (angles%may_continue(driven%state)) exit
-      driven = before
+      call copy_driven_motion(before, driven)
       h = 0.5_wp*h
     end do
     driven%positions = before%positions
@@ -120,18 +120,21 @@ contains
     if (angles%in_use()) call show_angles(plan, angles, driven, err)
     if (allocated(err)) return
     if (size(angles%held%rods) > 0) then
-      changed_plan = plan
-      changed = driven%state
-      if (angles%in_use()) changed_plan = angles%plan
-      if (angles%in_use()) changed = angles%state
+      if (angles%in_use()) then
+        call copy_plan(angles%plan, changed_plan)
+        call copy_state(angles%state, changed)
+      else
+        call copy_plan(plan, changed_plan)
+        call copy_state(driven%state, changed)
+      end if
       partition = angles%held%partition
       call angles%restart(model, partition, requested, changed_plan, changed, err)
     else
       call angles%change(driven%state, changed_plan, changed, err)
     end if
     if (allocated(err)) return
-    before = driven
-    plan = changed_plan
+    call copy_driven_motion(driven, before)
+    call copy_plan(changed_plan, plan)
     call start_driven_motion(angles%held%drives, plan, changed, t, driven, err, before%derivatives)
     if (allocated(err)) return
     driven%positions = before%positions - 1
@@ -143,6 +146,14 @@ contains
     driven%worst_closure = max(driven%worst_closure, before%worst_closure)
     call note_angles(angles, driven)
   end subroutine change_angles
+
+  !> Copy a driven motion. The assignment stands here alone, because compilers write it out for all components.
+  subroutine copy_driven_motion(from, to)
+    type(driven_motion_type), intent(in) :: from    !< the driven motion
+    type(driven_motion_type), intent(inout) :: to   !< the same afterwards
+
+    to = from
+  end subroutine copy_driven_motion
 
   !> Tell the motion which angles it has, so that it pauses near their singular positions.
   pure subroutine note_angles(angles, driven)
@@ -189,7 +200,7 @@ contains
     dt = third_derivative_step/max(maxval(abs(driven%state%dq)/plan%unit_of), &
                                    sqrt(maxval(abs(driven%state%ddq)/plan%unit_of)), tiny(dt)/epsilon(dt))
     do i = 1, 2
-      other = driven
+      call copy_driven_motion(driven, other)
       call advance(drives, plan, other, driven%state%t + (2*i - 3)*dt, err)
       t(i) = other%state%t
       ddq(:, i) = other%state%ddq

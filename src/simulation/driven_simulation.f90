@@ -4,8 +4,8 @@ module mech9_driven_simulation
   use mech9_error, only: error_type
   use mech9_model, only: model_type
   use mech9_motion_view, only: motion_view_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
+  use mech9_plan, only: plan_type, copy_plan
+  use mech9_state, only: state_type, copy_state
   use mech9_planning, only: make_plan
   use mech9_requested, only: requested_by_results, add_forces, leave_out_unrequested
   use mech9_driven_motion, only: driven_motion_type, set_inputs
@@ -22,12 +22,13 @@ module mech9_driven_simulation
   private
   public :: driven_simulation_type, new_driven_simulation, assemble_driven
 
+  !> A driven motion. Parts are polymorphic where these are copied by calls, which keeps the code of copies small.
   type, extends(simulation_type) :: driven_simulation_type
-    type(plan_type) :: plan              !< of the requested part of the motion
-    type(state_type) :: assembled        !< the closed position at the start
-    type(driven_motion_type) :: driven
-    type(ball_angles_type) :: angles     !< of ball joints, as in the data file
-    type(dynamics_plan_type), allocatable, private :: dynamics   !< made when energies are asked for first
+    class(plan_type), allocatable :: plan             !< of the requested part of the motion
+    class(state_type), allocatable :: assembled       !< the closed position at the start
+    class(driven_motion_type), allocatable :: driven
+    type(ball_angles_type) :: angles                  !< of ball joints, as in the data file
+    class(dynamics_plan_type), allocatable, private :: dynamics  !< made when energies are asked for first
     type(motion_view_type), allocatable, private :: view         !< of the present state, as loads see it
     type(driven_counts_type), private :: kept_work(batch_size)   !< of positions that wait for their derivatives
   contains
@@ -70,12 +71,13 @@ contains
     logical, intent(in), optional :: with_masses              !< energies are requested as in dynamics; not unless given
 
     simulation%model => model
-    simulation%plan = plan
+    allocate (simulation%plan, simulation%assembled, simulation%driven)
+    call copy_plan(plan, simulation%plan)
+    call copy_state(assembled, simulation%assembled)
     simulation%requested = requested_by_results(model%mechanism, model%request%output, pictures)
     if (present(with_masses)) simulation%with_energies = with_masses .and. model%request%output%energies
     if (simulation%with_energies) call add_forces(model%mechanism, simulation%requested)
     call leave_out_unrequested(simulation%plan, simulation%requested)
-    simulation%assembled = assembled
     simulation%with_conditioning = model%request%output%conditioning
     allocate (simulation%events(0))
   end subroutine new_driven_simulation

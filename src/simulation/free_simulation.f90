@@ -7,8 +7,8 @@ module mech9_free_simulation
   use mech9_simulation_failures, only: failure_no_initial_position, failure_lost_angles
   use mech9_partition, only: free_coordinate
   use mech9_model, only: model_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
+  use mech9_plan, only: plan_type, copy_plan
+  use mech9_state, only: state_type, copy_state
   use mech9_block_equations, only: largest_gap
   use mech9_planning, only: make_plan
   use mech9_branch_stepping, only: set_inputs
@@ -107,16 +107,17 @@ contains
     allocate (simulation%events(0))
     simulation%requested = requested_by_results(model%mechanism, model%request%output, pictures)
     call add_forces(model%mechanism, simulation%requested)
-    used = plan
+    call copy_plan(plan, used)
     call leave_out_unrequested(used, simulation%requested)
     call request_planned(used, simulation%requested)
-    start = assembled
-    given = used
+    call copy_state(assembled, start)
+    call copy_plan(used, given)
     call simulation%motion%angles%begin(model, simulation%requested, used, start, err)
     if (allocated(err)) return
     allocate (simulation%motion%system)
-    simulation%motion%system%plan = used
-    simulation%motion%system%state = start
+    call simulation%motion%system%make_room()
+    call copy_plan(used, simulation%motion%system%plan)
+    call copy_state(start, simulation%motion%system%state)
     associate (held => simulation%motion%angles%held)
       call copy_drives(held%drives, simulation%motion%system%drives)
       call set_motion_system(model, held%partition, simulation%motion%system, err)

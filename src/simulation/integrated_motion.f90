@@ -7,6 +7,8 @@ module mech9_integrated_motion
   use mech9_simulation_failures, only: failure_angles_sensitivity
   use mech9_variable_model, only: variable_model_type
   use mech9_partition, only: partition_type
+  use mech9_plan, only: copy_plan
+  use mech9_state, only: copy_state
   use mech9_block_solver, only: work_count_type, work_of
   use mech9_requested, only: requested_type
   use mech9_replanning, only: wanted_type
@@ -108,6 +110,7 @@ contains
       return
     end if
     allocate (other)
+    call other%make_room()
     call take_coordinates(self, independent, requested, other, angles, in_vain, failure, err)
     if (.not. (in_vain .or. allocated(failure) .or. allocated(err))) &
       changed = other%conditioning() >= worthwhile_improvement*self%system%conditioning()
@@ -208,6 +211,7 @@ contains
     if (gives_up(failure, err)) return
     angles = self%angles
     allocate (other)
+    call other%make_room()
     call take_angles(self, requested, angles, other, failure)
     changed = .not. (gives_up(failure, err) .or. angles%move_as(self%angles))
     if (changed .and. allocated(self%system%sensitivity)) then
@@ -233,11 +237,11 @@ contains
 
     if (size(self%system%plan%closures) > 0) then
       if (angles%in_use()) then
-        other%plan = angles%plan
-        other%state = angles%state
+        call copy_plan(angles%plan, other%plan)
+        call copy_state(angles%state, other%state)
       else
-        other%plan = self%system%plan
-        other%state = self%system%state
+        call copy_plan(self%system%plan, other%plan)
+        call copy_state(self%system%state, other%state)
       end if
       call angles%restart(self%system%model, self%system%partition, requested, other%plan, other%state, failure)
     else

@@ -10,7 +10,7 @@ module mech9_joint_passing
   use mech9_simulation_tolerances, only: round_off_of_jumps
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_simulation_failures, only: failure_jump_sensitivity
-  use mech9_state, only: state_type
+  use mech9_state, only: state_type, copy_state
   use mech9_lagrange, only: find_equations, complete_accelerations
   use mech9_frame_motion, only: place_all
   use mech9_drive_impulse, only: find_impulse
@@ -117,7 +117,7 @@ contains
     real(wp) :: part
     integer :: i
 
-    present = system%state
+    call copy_state(system%state, present)
     do i = 0, 1
       part = real(i, wp)
       system%state%dq = 0.0_wp
@@ -132,6 +132,6 @@ contains
       if (allocated(err)) exit
       changes = changes + (2.0_wp*part - 1.0_wp)*system%sensitivity%values(:, :, 2)
     end do
-    system%state = present
+    call copy_state(present, system%state)
   end subroutine add_varied_impulse
 end module mech9_joint_passing

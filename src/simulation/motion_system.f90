@@ -37,23 +37,25 @@ module mech9_motion_system
   private
   public :: motion_system_type, set_motion_system
 
-  !> The equations of motion of a model in its present coordinates, with the state of the last evaluation.
+  !> The equations of motion of a model in its present coordinates, with the state of the last evaluation. Parts that are
+  !> polymorphic are copied by calls, which keeps the code of copies small.
   type, extends(ode_system_type) :: motion_system_type
     type(model_type), pointer :: model => null()     !< constant, the same for all systems of a motion
     type(partition_type) :: partition                !< of the coordinates, as they are now
     type(drive_slot_type), allocatable :: drives(:)  !< of the driven coordinates, as they are now
-    type(plan_type) :: plan
-    type(dynamics_plan_type) :: dynamics
-    type(lagrange_work_type) :: work
-    type(state_type) :: state                        !< of the last evaluation, or as settled
+    class(plan_type), allocatable :: plan
+    class(dynamics_plan_type), allocatable :: dynamics
+    class(lagrange_work_type), allocatable :: work
+    class(state_type), allocatable :: state          !< of the last evaluation, or as settled
     integer(long) :: iterations = 0                  !< of Newton's method, all blocks
     !> Trials with a worse conditioned block are refused: a step must not cross a singular position unseen.
     real(wp) :: refuse_below = 0.0_wp
     logical, private :: just_settled = .false.
     logical, private :: has_inertia = .false.        !< all free coordinates had inertia in the position with which it was made
     type(smooth_interval_type) :: interval           !< in which the present steps lie
-    type(motion_sensitivity_type), allocatable :: sensitivity   !< derivatives by parameters, where they are integrated, too
+    class(motion_sensitivity_type), allocatable :: sensitivity  !< derivatives by parameters, where they are integrated, too
   contains
+    procedure :: make_room
     procedure :: size_of_vector
     procedure :: size_of_motion
     procedure :: count_varied
@@ -74,6 +76,15 @@ module mech9_motion_system
 
 contains
 
+  !> Make room for the parts that are set from outside and for those that follow from them, where there is none yet.
+  subroutine make_room(self)
+    class(motion_system_type), intent(inout) :: self   !< the system
+
+    if (.not. allocated(self%plan)) allocate (self%plan)
+    if (.not. allocated(self%state)) allocate (self%state)
+    if (.not. allocated(self%dynamics)) allocate (self%dynamics, self%work)
+  end subroutine make_room
+
   !> Make the system from its plan and an assembled start with the independent rates, which stand in it. The motion there is found,
   !> and work%coefficients are those of the start. What an earlier system knows of frames and blocks that stay is taken over. The
   !> drives are those of the model unless they stand in the system.
@@ -84,6 +95,7 @@ contains
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     class(motion_system_type), intent(in), optional :: known   !< the system in other coordinates, whose plan has the same frames
 
+    call system%make_room()
     system%settles = .true.
     system%model => model
     system%partition = partition
@@ -93,7 +105,7 @@ contains
     else
       call make_dynamics_plan(model%mechanism, system%plan, system%dynamics)
     end if
-    system%work = new_lagrange_work(system%plan, system%dynamics)
+    call make_work(system%plan, system%dynamics, system%work)
     call place_motors(system, err)
     if (allocated(err)) return
     call system%interval%begin(model, system%state%t)
@@ -104,6 +116,15 @@ contains
     if (.not. allocated(err)) call check_inertia(system%plan, system%dynamics, system%work, err)
     system%has_inertia = .not. allocated(err)
   end subroutine set_motion_system
+
+  !> Make the scratch for evaluations.
+  subroutine make_work(plan, dynamics, work)
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(lagrange_work_type), intent(inout) :: work    !< made anew
+
+    work = new_lagrange_work(plan, dynamics)
+  end subroutine make_work
 
   !> Rates and accelerations by the equations of motion. A coordinate without inertia is a fault of the data only in the position
   !> with which the system was made; in later ones it is a failure of the integration, which a smaller step may avoid.

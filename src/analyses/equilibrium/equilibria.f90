@@ -6,7 +6,7 @@ module mech9_equilibria
   use mech9_mechanism, only: mechanism_type
   use mech9_partition, only: partition_type, free_coordinate
   use mech9_plan, only: plan_type, within_range
-  use mech9_state, only: state_type
+  use mech9_state, only: state_type, copy_state
   use mech9_assemblies, only: close_from
   use mech9_posture, only: posture_type, new_posture
   use mech9_frame_motion, only: place_all
@@ -23,7 +23,7 @@ module mech9_equilibria
 
   !> One of several equilibria.
   type :: equilibrium_slot_type
-    type(equilibrium_type), allocatable :: item
+    class(equilibrium_type), allocatable :: item
     real(wp), allocatable :: numbers(:)   !< of its posture
   end type equilibrium_slot_type
 
@@ -161,7 +161,7 @@ contains
     call put_to_rest(mechanism, partition, plan, assembled, resting, err)
     if (allocated(err)) return
     do trial = 1, most_trials
-      position = assembled
+      call copy_state(assembled, position)
       do i = 1, size(resting%free)
         k = resting%free(i)
         associate (step => plan%steps(plan%step_of(k)))
@@ -197,7 +197,7 @@ contains
       if (.not. period > 0.0_wp) cycle
       turned = period*ceiling((resting%state%q(k) - assembled%q(k) - same_position*resting%plan%unit_of(k))/period - 0.5_wp)
       if (.not. abs(turned) > 0.0_wp) cycle
-      position = resting%state
+      call copy_state(resting%state, position)
       position%q(k) = position%q(k) - turned
       call place_all(other%plan, position, err)
       if (.not. allocated(err)) call stand_at(mechanism, position, other, err)
@@ -218,7 +218,7 @@ contains
     real(wp), allocatable :: numbers(:)
     integer :: i
 
-    state = found%resting%state
+    call copy_state(found%resting%state, state)
     numbers = posture%numbers(found%resting%plan, state)
     do i = 1, n
       associate (known => slots(i)%item)

@@ -11,7 +11,7 @@ module mech9_resting_mechanism
   use mech9_law, only: drive_slot_type
   use mech9_polynomial_law, only: polynomial_law_type
   use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
+  use mech9_state, only: state_type, copy_state
   use mech9_planning, only: make_plan
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_linearisation, only: linearisation_type, new_linearisation, find_forces, find_matrix, by_position
@@ -26,9 +26,9 @@ module mech9_resting_mechanism
   !> mechanism), so that all are energies.
   type :: resting_type
     type(partition_type) :: partition             !< driven, free and dependent coordinates
-    type(plan_type) :: plan                       !< in space
-    type(state_type) :: state                     !< its position; the free coordinates are at rest
-    type(linearisation_type) :: linearisation     !< at this position
+    class(plan_type), allocatable :: plan         !< in space
+    class(state_type), allocatable :: state       !< its position; the free coordinates are at rest
+    class(linearisation_type), allocatable :: linearisation   !< at this position
     integer, allocatable :: free(:)               !< (n) numbers of the free coordinates, ascending
     real(wp), allocatable :: forces(:)            !< (n) that keep the mechanism in its position; zero in equilibrium [J]
     real(wp), allocatable :: stiffness(:, :)      !< (n,n) their derivatives by the free coordinates [J]
@@ -57,7 +57,8 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     resting%partition = partition
-    resting%plan = plan
+    allocate (resting%state, resting%linearisation)
+    allocate (resting%plan, source=plan)
     resting%free = pack(plan%independent, partition%kind(plan%independent) == free_coordinate)
     allocate (resting%forces(size(resting%free)), resting%stiffness(size(resting%free), size(resting%free)), source=0.0_wp)
     call new_linearisation(mechanism, plan, resting%linearisation)
@@ -79,7 +80,7 @@ contains
     type(resting_type), intent(inout) :: resting        !< stands there afterwards
     type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
 
-    resting%state = position
+    call copy_state(position, resting%state)
     resting%state%dq(resting%free) = 0.0_wp
     resting%state%ddq(resting%free) = 0.0_wp
     call find_forces(mechanism, resting%plan, resting%state, resting%linearisation, err)
@@ -132,7 +133,7 @@ contains
     if (.not. allocated(failure)) call advance(drives, resting%plan, driven, 1.0_wp, failure)
     moved = .not. allocated(failure)
     if (.not. moved) return
-    position = driven%state
+    call copy_state(driven%state, position)
     position%t = resting%state%t
     position%dq(resting%plan%independent) = resting%state%dq(resting%plan%independent)
     position%ddq(resting%plan%independent) = resting%state%ddq(resting%plan%independent)

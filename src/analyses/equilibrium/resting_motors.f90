@@ -12,11 +12,11 @@ module mech9_resting_motors
   use mech9_pid_motor, only: pid_motor_type
   use mech9_motor_states, only: start_motors, find_limits, find_action
   use mech9_partition, only: partition_type, driven_coordinate
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
+  use mech9_plan, only: plan_type, copy_plan
+  use mech9_state, only: state_type, copy_state
   use mech9_planning, only: make_plan
   use mech9_motion_variation, only: vary_motion
-  use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at
+  use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, copy_resting
   implicit none
   private
   public :: motor_coupling_type, hold_setpoints, release_setpoints, couple_motors
@@ -62,8 +62,8 @@ contains
         is_held(motor%coordinate) = .true.
       end select
     end do
-    held_plan = plan
-    position = assembled
+    call copy_plan(plan, held_plan)
+    call copy_state(assembled, position)
     if (.not. any(is_held)) return
     where (is_held) held%kind = driven_coordinate
     call make_plan(mechanism, held, q, held_plan, position, err, in_space=.true.)
@@ -104,7 +104,7 @@ contains
         is_held = .true.
       end select
     end do
-    state = resting%state
+    call copy_state(resting%state, state)
     if (is_held) then
       call make_plan(mechanism, partition, resting%state%q, plan, state, err, in_space=.true.)
       if (allocated(err)) return
@@ -122,7 +122,7 @@ contains
     if (allocated(err)) return
     if (is_held) then
       call put_to_rest(mechanism, partition, plan, state, other, err)
-      if (.not. allocated(err)) resting = other
+      if (.not. allocated(err)) call copy_resting(other, resting)
     else
       call stand_at(mechanism, state, resting, err)
     end if

@@ -66,8 +66,8 @@ module mech9_sensitivity
     integer, allocatable, private :: parents(:)                !< frames whose motion is found as twists
     integer, allocatable, private :: frames(:)                 !< frames whose motion is taken, without frame 0
     integer, allocatable, private :: turned(:)                 !< frames the derivatives of whose rotation are found
-    type(plan_type), private :: plan                           !< in the arithmetic of the derivatives
-    type(state_type), private :: state                         !< the motion, where the frames are placed here
+    class(plan_type), allocatable, private :: plan             !< in the arithmetic of the derivatives
+    class(state_type), allocatable, private :: state           !< the motion, where the frames are placed here
     type(frame_twists_type), private :: motion                 !< twists of the motion in space, at one position
     type(third_derivatives_type), private :: third             !< of pairs without a fixed axis
     real(wp), private :: times(batch_size) = 0.0_wp            !< of the positions [s]

@@ -26,7 +26,7 @@ contains
     type(plan_type), intent(in) :: plan             !< its plan
     type(sensitivity_type), intent(inout) :: self   !< with the support; gets the plan and its arithmetic
 
-    self%plan = plan
+    allocate (self%plan, source=plan)
     if (plan%planar%used .and. .not. any(self%support%constants%by_pair)) &
       call put_in_plane(plan, model%problem%initial%position, self%support, self%in_plane)
     if (self%in_plane) then
@@ -43,7 +43,7 @@ contains
       self%third = new_third_derivatives(plan)
       self%space = new_spatial_batch(plan%n_coordinates)
     end if
-    if (self%own_frames) self%state = new_state(self%plan)
+    if (self%own_frames) allocate (self%state, source=new_state(self%plan))
     allocate (self%series(batch_size, merge(3, 6, self%in_plane), 0:2, self%support%count), source=0.0_wp)
   end subroutine choose_arithmetic
 

@@ -6,7 +6,7 @@
 module mech9_crank_limit
   use mech9_kinds, only: wp, pi
   use mech9_plan, only: plan_type
-  use mech9_design_space, only: design_type, drive_changes
+  use mech9_design_space, only: design_type, copy_design, drive_changes
   use mech9_branch, only: turning_drives
   use mech9_regularity, only: regularity_type
   use mech9_course_extreme, only: course_place_type, sample_course, find_least
@@ -78,7 +78,7 @@ contains
     real(wp) :: change(fit%varied)
     integer :: i, p
 
-    turning = fit%design
+    call copy_design(fit%design, turning)
     call turning_drives(fit%design, fit%q_start, coordinate, turning%drives)
     do i = 1, size(turning%drives)
       call drive_changes(fit%design, i, fit%start, change)

@@ -28,9 +28,9 @@ module mech9_design_search
     type(target_type), allocatable :: targets(:)   !< all targets, then the positions at which chains must be closed
     type(design_limits_type) :: limits
     real(wp), allocatable :: times(:)              !< (targets) their times [s]
-    type(relaxed_fit_type) :: relaxed
-    type(exact_fit_type) :: exact
-    type(design_type) :: design
+    class(relaxed_fit_type), allocatable :: relaxed
+    class(exact_fit_type), allocatable :: exact
+    class(design_type), allocatable :: design
     type(open_position_type) :: position
     real(wp) :: scale = 1.0_wp              !< size of the targets [m, rad]
   end type search_type
@@ -51,6 +51,7 @@ contains
     type(target_type), allocatable :: waypoints(:)
     integer :: i, j
 
+    allocate (seen%design, seen%relaxed, seen%exact)
     call new_design(space, seen%design)
     call new_open_position(seen%design, seen%position)
     call gather_waypoints(space%model, size(targets) > 0, waypoints)

@@ -20,13 +20,13 @@ module mech9_design_space
   implicit none
   private
   public :: design_space_type, design_type, new_design_space, new_design, place_design, place_drives, find_tangents, &
-    drive_changes, fix_design_space, all_values, probe, probes
+    drive_changes, copy_design, fix_design_space, all_values, probe, probes
 
   !> The data that all designs share. A copy needs a model as a function of its own.
   type :: design_space_type
     class(variable_model_type), pointer :: variable => null()   !< the model as a function of all parameters
-    type(model_type) :: model                       !< with the values of the data file
-    type(plan_type) :: plan                         !< its plan
+    class(model_type), allocatable :: model         !< with the values of the data file
+    class(plan_type), allocatable :: plan           !< its plan
     integer, allocatable :: varied(:)               !< numbers of the parameters that are varied
     real(wp), allocatable :: low(:)                 !< least value of each
     real(wp), allocatable :: high(:)                !< largest value of each
@@ -46,8 +46,8 @@ module mech9_design_space
   !> One design.
   type :: design_type
     real(wp), allocatable :: x(:)                  !< values of the varied parameters
-    type(plan_type) :: plan                        !< in the arithmetic of its motion
-    type(plan_type) :: in_space                    !< the same in space
+    class(plan_type), allocatable :: plan          !< in the arithmetic of its motion
+    class(plan_type), allocatable :: in_space      !< the same in space
     real(wp), allocatable :: places(:, :)          !< (3,points) of the points in their links [m]
     type(drive_slot_type), allocatable :: drives(:)
     type(tangent_type), allocatable :: tangents(:) !< (varied) derivatives of its numbers, where these have been found
@@ -69,8 +69,8 @@ contains
     integer :: i
 
     space%variable => variable
-    space%model = model
-    space%plan = plan
+    allocate (space%model, source=model)
+    allocate (space%plan, source=plan)
     space%varied = pack([(i, i=1, size(model%parameters))], model%parameters%has_range)
     space%low = model%parameters(space%varied)%low
     space%high = model%parameters(space%varied)%high
@@ -230,12 +230,15 @@ contains
     integer :: i
 
     design%x = space%values(space%varied)
-    design%plan = space%plan
-    design%in_space = space%plan
+    allocate (design%in_space, source=space%plan)
     design%in_space%blocks%arithmetic = 1
     design%in_space%blocks%is_shown = .false.
     call set_in_space(design%in_space)
-    if (.not. space%in_plane) design%plan = design%in_space
+    if (space%in_plane) then
+      allocate (design%plan, source=space%plan)
+    else
+      allocate (design%plan, source=design%in_space)
+    end if
     design%drives = space%model%problem%drives
     allocate (design%places(3, size(space%model%mechanism%points)))
     do i = 1, size(space%model%mechanism%points)
@@ -243,6 +246,14 @@ contains
     end do
     design%tangents = space%tangents
   end subroutine new_design
+
+  !> Copy a design. The assignment stands here alone, because compilers write it out for all components.
+  subroutine copy_design(from, to)
+    type(design_type), intent(in) :: from    !< the design
+    type(design_type), intent(inout) :: to   !< the same afterwards
+
+    to = from
+  end subroutine copy_design
 
   !> Give a design the values of its parameters. Fails where there is no model with these values, and where the design leaves the plane
   !> in which all designs move.

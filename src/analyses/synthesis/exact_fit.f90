@@ -36,8 +36,8 @@ module mech9_exact_fit
   !> group belongs to each target, and the last ones hold the differences of quantities from their goals.
   type, extends(residuals_type) :: exact_fit_type
     type(design_space_type), pointer :: space => null()
-    type(design_type) :: design
-    type(open_position_type) :: position                    !< scratch
+    class(design_type), allocatable :: design
+    class(open_position_type), allocatable :: position      !< scratch
     type(target_type), allocatable :: targets(:)
     type(free_times_type) :: free                           !< free times of targets
     integer :: varied = 0                                   !< number of parameters that are varied
@@ -52,7 +52,7 @@ module mech9_exact_fit
     real(wp), allocatable :: quantities(:)                  !< values of the quantities of the last design with a value
     type(closed_changes_type) :: changes                    !< scratch
     real(wp), allocatable :: gradient(:, :)                 !< (parameters,quantities) their derivatives by all parameters
-    type(neighbouring_run_type) :: near                     !< runs beside the last one with derivatives
+    class(neighbouring_run_type), allocatable :: near       !< runs beside the last one with derivatives
     logical :: must_follow = .false.                        !< runs are followed from their starts
     integer(long) :: work = 0                               !< steps of all motions that were followed, and positions of others
     integer(long) :: followed = 0                           !< number of runs that were followed
@@ -84,8 +84,8 @@ contains
     integer :: i, m
 
     fit%space => space
-    fit%design = design
-    fit%position = position
+    allocate (fit%design, source=design)
+    allocate (fit%position, source=position)
     fit%targets = targets
     call new_free_times(targets, fit%free)
     associate (request => space%model%request)
@@ -103,6 +103,7 @@ contains
     allocate (fit%q_start(m), fit%q_trial(m), fit%q(m, size(targets)), fit%times(size(targets)), source=0.0_wp)
     allocate (fit%quantities(size(space%model%request%quantities)), source=0.0_wp)
     allocate (fit%gradient(size(space%values), size(fit%quantities)), source=0.0_wp)
+    allocate (fit%near)
     call new_neighbouring_run(fit%space, design, targets, fit%near)
   end subroutine new_exact_fit
 

@@ -19,7 +19,7 @@ module mech9_open_position
     turn_derivatives, frame_derivatives
 
   type :: open_position_type
-    type(state_type) :: state                !< the position, in space
+    class(state_type), allocatable :: state  !< the position, in space
     integer :: equations = 0                 !< of all chains and couplings
     real(wp), allocatable :: opening(:)      !< (equations) values of the equations [rad, lengths of the mechanism]
     real(wp), allocatable :: by_q(:, :)      !< (equations,M) derivatives by the coordinates, each in its unit
@@ -37,7 +37,7 @@ contains
 
     m = design%in_space%n_coordinates
     p = size(design%x)
-    position%state = new_state(design%in_space)
+    allocate (position%state, source=new_state(design%in_space))
     do c = 1, size(design%in_space%closures)
       position%equations = position%equations + design%in_space%constraints(c)%item%equations
     end do

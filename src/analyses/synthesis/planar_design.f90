@@ -5,7 +5,7 @@ module mech9_planar_design
   use mech9_error, only: error_type
   use mech9_pose, only: transformed
   use mech9_planar_numbers, only: planar_design_type, numbers_of_point, place_numbers
-  use mech9_design_space, only: design_space_type, design_type, new_design, place_design, place_drives, probe, probes
+  use mech9_design_space, only: design_space_type, design_type, new_design, copy_design, place_design, place_drives, probe, probes
   implicit none
   private
   public :: judge_plane, new_planar_design, place_planar_design
@@ -54,7 +54,7 @@ contains
     logical :: done
 
     if (.not. (design%plan%planar%used .and. space%is_affine)) return
-    other = design
+    call copy_design(design, other)
     planar%at = space%values(space%varied)
     call numbers_at(space, planar%at, other, planar%base, first, done)
     if (.not. done) return

@@ -19,7 +19,7 @@ module mech9_relaxed_fit
   !> units, and the time, as a part of the run.
   type, extends(residuals_type) :: relaxed_fit_type
     type(design_space_type), pointer :: space => null()
-    type(design_type) :: design
+    class(design_type), allocatable :: design
     type(open_position_type), allocatable :: positions(:)   !< (targets)
     type(target_type), allocatable :: targets(:)            !< targets, and positions at which chains must be closed
     type(free_times_type) :: free                           !< free times of targets
@@ -45,7 +45,7 @@ contains
     logical :: independent(space%plan%n_coordinates)
 
     fit%space => space
-    fit%design = design
+    allocate (fit%design, source=design)
     fit%targets = targets
     allocate (fit%positions(size(targets)))
     do i = 1, size(targets)

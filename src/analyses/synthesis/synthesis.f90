@@ -170,6 +170,7 @@ contains
     if (holds) return
     all = self%space%values
     all(self%space%varied) = optimum%x
+    allocate (alone%model, alone%plan)
     call self%space%variable%at(all, alone%model, err)
     if (allocated(err)) return
     call make_plan(alone%model%mechanism, alone%model%problem%partition, optimum%q, alone%plan, start, err)

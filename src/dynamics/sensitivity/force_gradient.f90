@@ -42,9 +42,9 @@ module mech9_force_gradient
     real(wp), allocatable :: by_parameters(:, :)       !< (P,free) of each force, by each parameter
     class(gradient_arithmetic_type), allocatable, private :: arithmetic   !< of a plane or of space
     integer, private :: d = 0                                             !< numbers of a twist
-    type(plan_type), private :: plan                                      !< in this arithmetic
+    class(plan_type), allocatable, private :: plan                        !< in this arithmetic
     logical, private :: own_frames = .false.           !< the frames are placed here, because others do not place them all in space
-    type(state_type), private :: state                                    !< the motion, where the frames are placed here
+    class(state_type), allocatable, private :: state                      !< the motion, where the frames are placed here
     type(block_work_type), allocatable, private :: blocks(:)              !< factors of closed chains, where the frames are
     type(frame_twists_type), private :: twists                            !< of the motion
     type(third_derivatives_type), private :: third                        !< of pairs without a fixed axis, and of couplings
@@ -72,7 +72,7 @@ contains
     integer, allocatable :: bodies(:)
 
     call list_changes(model, plan, tangents, self%changes)
-    self%plan = plan
+    allocate (self%plan, source=plan)
     bodies = moved_bodies(model, tangents)
     if (self%changes%in_plane) then
       self%arithmetic = planar_arithmetic(model, plan, bodies)
@@ -136,7 +136,7 @@ contains
     self%plan%blocks%is_shown = .false.
     self%plan%blocks%last_moved = self%plan%blocks%last_step
     call set_in_space(self%plan)
-    self%state = new_state(self%plan)
+    allocate (self%state, source=new_state(self%plan))
     allocate (self%blocks(size(self%plan%blocks)))
     do b = 1, size(self%blocks)
       self%blocks(b) = new_block_work(self%plan%blocks(b))

@@ -42,8 +42,8 @@ module mech9_varied_motion
     real(wp), allocatable :: motor(:, :)            !< (P,motors) given, too: of the states of the motors
     real(wp), allocatable :: twists(:, :, :, :)     !< (P,6,0:2,0:M) of the frames
     type(tangent_type), allocatable :: tangents(:)  !< (P) of the constants
-    type(plan_type) :: plan                         !< in space
-    type(state_type) :: state                       !< the motion, in space
+    class(plan_type), allocatable :: plan           !< in space
+    class(state_type), allocatable :: state         !< the motion, in space
     type(frame_twists_type) :: motion               !< twists of this motion
     type(third_derivatives_type) :: third           !< of pairs without a fixed axis, and of couplings
     type(block_work_type), allocatable :: blocks(:) !< factors of the closed chains
@@ -74,12 +74,12 @@ contains
       call find_tangent(variable, model, plan, i, self%tangents(i), err)
       if (allocated(err)) return
     end do
-    self%plan = plan
+    allocate (self%plan, source=plan)
     self%plan%blocks%arithmetic = 1
     self%plan%blocks%is_shown = .false.
     self%plan%blocks%last_moved = self%plan%blocks%last_step
     call set_in_space(self%plan)
-    self%state = new_state(self%plan)
+    allocate (self%state, source=new_state(self%plan))
     self%motion = new_frame_twists(m)
     self%third = new_third_derivatives(plan)
     allocate (self%blocks(size(plan%blocks)))

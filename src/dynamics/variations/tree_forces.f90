@@ -35,7 +35,7 @@ module mech9_tree_forces
     !> Sum of the magnitudes of all inertial forces, weights and loads, as an energy over one length or one rad [J]: forces below
     !> round-off of this are zero.
     real(wp) :: magnitude = 0.0_wp
-    type(lagrange_work_type) :: loads              !< sums of the loads, and the motion that they read
+    class(lagrange_work_type), allocatable :: loads   !< sums of the loads, and the motion that they read
     real(wp), allocatable :: force_change(:, :)    !< (3,0:M) derivative of `force`
     real(wp), allocatable :: moment_change(:, :)   !< (3,0:M) derivative of `moment`
     real(wp), allocatable :: required_change(:)    !< (M) derivative of `required`
@@ -54,7 +54,7 @@ contains
     integer :: m
 
     m = plan%n_coordinates
-    forces%loads = new_lagrange_work(plan, dynamics)
+    allocate (forces%loads, source=new_lagrange_work(plan, dynamics))
     allocate (forces%force(3, 0:m), forces%moment(3, 0:m), forces%force_change(3, 0:m), forces%moment_change(3, 0:m), &
               source=0.0_wp)
     allocate (forces%required(m), forces%required_change(m), source=0.0_wp)

@@ -19,7 +19,7 @@ module mech9_plan
   implicit none
   private
   public :: plan_type, step_type, closure_type, loop_type, block_type, arithmetic_type, arithmetic_slot_type, &
-    constraint_type, constraint_slot_type, new_state, within_range, without_periods
+    constraint_type, constraint_slot_type, new_state, copy_plan, within_range, without_periods
 
   !> One step: from frame `parent` through pair `coordinate` to the frame of the step's own number.
   type :: step_type
@@ -340,4 +340,12 @@ contains
       call plan%arithmetics(i)%kind%make_frames(plan%n_coordinates, state)
     end do
   end function new_state
+
+  !> Copy a plan. The assignment stands here alone, because compilers write it out for all components.
+  pure subroutine copy_plan(from, to)
+    type(plan_type), intent(in) :: from    !< the plan
+    type(plan_type), intent(inout) :: to   !< the same afterwards
+
+    to = from
+  end subroutine copy_plan
 end module mech9_plan

@@ -3,7 +3,7 @@ module mech9_state
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: state_type, planar_motion_type
+  public :: state_type, planar_motion_type, copy_state
 
   !> The motion of frames in planar arithmetic: in the plane's axes, from the origin of frame 0. A pose is (cosine, sine, x, y); a
   !> velocity is the angular velocity about the normal and the velocity of the frame's origin, and accelerations alike.
@@ -44,4 +44,14 @@ module mech9_state
     real(wp), allocatable :: a(:, :)             !< (3,0:M) acceleration of the origin [m/s^2]
     type(planar_motion_type) :: planar           !< of the frames, where the plan is planar
   end type state_type
+
+contains
+
+  !> Copy a state. The assignment stands here alone, because compilers write it out for all components.
+  pure subroutine copy_state(from, to)
+    type(state_type), intent(in) :: from    !< the state
+    type(state_type), intent(inout) :: to   !< the same afterwards
+
+    to = from
+  end subroutine copy_state
 end module mech9_state

@@ -20,7 +20,7 @@ module mech9_branch_crossing
   use mech9_block_equations, only: block_rates, block_residual
   implicit none
   private
-  public :: branch_crossing_type, build_crossing, position_within, close_from_rates, step_until
+  public :: branch_crossing_type, build_crossing, position_within, close_from_rates, step_until, copy_stepper
 
   !> The motion through a crossing, from one regular position to another.
   type :: branch_crossing_type
@@ -28,7 +28,7 @@ module mech9_branch_crossing
     real(wp) :: from = 0.0_wp                    !< time of the first position of the polynomial [s]
     real(wp) :: to = 0.0_wp                      !< time of its last position [s]
     type(hermite_type) :: polynomial             !< all coordinates over time
-    type(branch_stepper_type) :: stepper_beyond  !< branch stepper at the last position
+    class(branch_stepper_type), allocatable :: stepper_beyond   !< branch stepper at the last position, where it exists
     logical :: ends = .false.                    !< the motion ends at the crossing: the drives have no value beyond it
   end type branch_crossing_type
 
@@ -53,7 +53,7 @@ contains
     half = t - stepper%predictor%t
     crossing%exists = .false.
     do trial = 1, most_trials
-      probe = stepper
+      call copy_stepper(stepper, probe)
       probe%derivatives = 2
       if (trial > 1) call step_until(drives, plan, probe, t - half, crossing%exists, err)
       if (allocated(err)) return
@@ -100,7 +100,8 @@ contains
     if (allocated(err) .or. .not. ok) return
     call take(4)
     call build_hermite(times, q, dq, ddq, crossing%polynomial)
-    crossing%stepper_beyond = probe
+    if (.not. allocated(crossing%stepper_beyond)) allocate (crossing%stepper_beyond)
+    call copy_stepper(probe, crossing%stepper_beyond)
 
   contains
 
@@ -296,4 +297,12 @@ contains
     work%right = -work%right
     call work%equations%solve(work%right, work%change, tolerance=near_singular*monitor%largest_pivot/work%equations%largest_pivot())
   end subroutine solve_where_determined
+
+  !> Copy a branch stepper. The assignment stands here alone, because compilers write it out for all components.
+  pure subroutine copy_stepper(from, to)
+    type(branch_stepper_type), intent(in) :: from    !< the branch stepper
+    type(branch_stepper_type), intent(inout) :: to   !< the same afterwards
+
+    to = from
+  end subroutine copy_stepper
 end module mech9_branch_crossing

@@ -18,7 +18,7 @@ module mech9_driven_motion
   use mech9_special_position, only: finding_type, look_ahead, find_escape, has_slides, nothing_special, dead_point, &
     branch_point, uncertain, escape
   use mech9_special_start, only: starting_rates_type, find_starting_rates, start_crossing
-  use mech9_branch_crossing, only: branch_crossing_type, build_crossing, position_within
+  use mech9_branch_crossing, only: branch_crossing_type, build_crossing, position_within, copy_stepper
   use mech9_held_rods, only: held_rod_type, should_change
   use mech9_frame_motion, only: spread_velocities
   use mech9_block_equations, only: largest_gap
@@ -293,7 +293,7 @@ contains
         driven%crossing%stepper_beyond%monitors(b)%largest_pivot)
     end do
     derivatives = driven%derivatives
-    driven%branch_stepper_type = driven%crossing%stepper_beyond
+    call copy_stepper(driven%crossing%stepper_beyond, driven%branch_stepper_type)
     driven%derivatives = derivatives
     driven%crossing%exists = .false.
     driven%crossings = driven%crossings + 1

@@ -14,6 +14,7 @@ module mech9_special_position
   use mech9_plan, only: plan_type, block_type
   use mech9_predictor, only: acceleration_of
   use mech9_branch_stepping, only: branch_stepper_type, step_towards
+  use mech9_branch_crossing, only: copy_stepper
   implicit none
   private
   public :: finding_type, look_ahead, find_escape, has_slides
@@ -60,7 +61,7 @@ contains
     call find_speeds(plan, stepper, b, speed, usual)
     usual = max(usual, speed)
     if (.not. speed > 0.0_wp) return            ! at rest nothing tells the direction of the motion
-    probe = stepper
+    call copy_stepper(stepper, probe)
     probe%derivatives = 2
     probe%last_block = b
     do i = 1, most_steps

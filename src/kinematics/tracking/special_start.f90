@@ -15,7 +15,7 @@ module mech9_special_start
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type
   use mech9_branch_stepping, only: branch_stepper_type
-  use mech9_branch_crossing, only: branch_crossing_type, close_from_rates, step_until
+  use mech9_branch_crossing, only: branch_crossing_type, close_from_rates, step_until, copy_stepper
   use mech9_frame_motion, only: spread_velocities, spread_accelerations
   use mech9_block_equations, only: block_jacobian, block_rates
   implicit none
@@ -166,7 +166,7 @@ contains
     if (.not. speed > 0.0_wp) return
     step = first_move/speed
     do trial = 1, most_trials
-      probe = stepper
+      call copy_stepper(stepper, probe)
       times = stepper%state%t + step*[1.0_wp, 2.0_wp, 3.0_wp]
       do i = 1, 3
         if (i == 1) then
@@ -185,7 +185,8 @@ contains
         crossing%exists = .true.
         crossing%from = stepper%state%t
         crossing%to = times(3)
-        crossing%stepper_beyond = probe
+        if (.not. allocated(crossing%stepper_beyond)) allocate (crossing%stepper_beyond)
+        call copy_stepper(probe, crossing%stepper_beyond)
         return
       end if
       step = step/3.0_wp

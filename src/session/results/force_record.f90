@@ -17,7 +17,7 @@ module mech9_force_record
   type :: force_record_type
     logical :: wanted = .false.              !< forces are recorded
     type(uniqueness_type), allocatable :: unique   !< of forces; not allocated: no reactions are recorded
-    type(reactions_type) :: reactions        !< of the present state
+    class(reactions_type), allocatable :: reactions        !< of the present state
     type(reaction_plan_type), private :: plan
     integer, private :: events = -1          !< changes of coordinates of the simulation until the plan was made; -1: there is none
   contains
@@ -43,6 +43,7 @@ contains
     type(columns_type), intent(inout) :: columns     !< those of coordinates and points; gets those of forces
     logical :: driven(size(model%mechanism%pairs))
 
+    allocate (self%reactions)
     associate (output => model%request%output)
       self%wanted = output%with_forces()
       if (.not. self%wanted) return
@@ -84,7 +85,8 @@ contains
 
     if (self%events /= size(simulation%events) .or. .not. is_made_for(self%plan, plan)) then
       call make_reaction_plan(simulation%model%mechanism, plan, self%plan)
-      self%reactions = new_reactions(plan, self%plan)
+      deallocate (self%reactions)
+      allocate (self%reactions, source=new_reactions(plan, self%plan))
       self%events = size(simulation%events)
     end if
     call find_reactions(simulation%model%mechanism, plan, self%plan, state, self%reactions, err)

@@ -28,7 +28,7 @@ module mech9_row_source
     class(simulation_type), pointer, private :: simulation => null()   !< not owned
     type(columns_type) :: columns
     type(force_record_type) :: forces      !< computes the forces that are recorded
-    type(sensitivity_type), allocatable :: sensitivity   !< finds derivatives by parameters, where it is allocated
+    class(sensitivity_type), allocatable :: sensitivity  !< finds derivatives by parameters, where it is allocated
     type(varied_record_type) :: varied     !< finds those of forces and energies
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
     type(quantity_record_type) :: quantities   !< of the whole run

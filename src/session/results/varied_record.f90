@@ -25,8 +25,8 @@ module mech9_varied_record
     logical, private :: with_reactions = .false.      !< those of pairs and couplings, too
     logical, private :: with_motors = .false.         !< those of motors are wanted
     logical, private :: with_energies = .false.       !< those of energies are wanted
-    type(varied_forces_type), private :: forces       !< of the present state
-    type(varied_reactions_type), private :: reactions !< of the present state
+    class(varied_forces_type), allocatable, private :: forces        !< of the present state
+    class(varied_reactions_type), allocatable, private :: reactions  !< of the present state
     type(varied_energy_type), private :: energy       !< of the present state
     integer, private :: events = -1                   !< changes of coordinates of the simulation until room was made; -1: none was
   contains
@@ -45,6 +45,7 @@ contains
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
     integer :: i
 
+    allocate (self%forces, self%reactions)
     associate (first => columns%motion + 1, motors => columns%motion + columns%forces() + 1, last => columns%varied + 1)
       self%with_forces = motors > first
       self%with_motors = columns%motors > 0

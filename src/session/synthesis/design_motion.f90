@@ -16,9 +16,9 @@ module mech9_design_motion
   public :: design_motion_type, new_design_motion
 
   type :: design_motion_type
-    type(model_type) :: model        !< with the values of the design, from the positions of its assembly
-    type(plan_type) :: plan          !< its plan
-    type(state_type) :: start        !< assembled
+    class(model_type), allocatable :: model   !< with the values of the design, from the positions of its assembly
+    class(plan_type), allocatable :: plan     !< its plan
+    class(state_type), allocatable :: start   !< assembled
   contains
     procedure :: visit
     procedure :: make_film
@@ -35,6 +35,7 @@ contains
     type(design_motion_type), intent(out) :: motion           !< about to begin
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
 
+    allocate (motion%model, motion%plan, motion%start)
     call variable%at(values, motion%model, err)
     if (allocated(err)) return
     motion%model%request = model%request
