@@ -49,12 +49,15 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
     set(MECH9_SMALL_COMPILE -Os)
     add_compile_options(-ffunction-sections -fdata-sections)
     add_link_options(-Wl,--gc-sections)
+    # nothing but debuggers unwinds the stack of Fortran procedures
+    set(MECH9_NO_UNWINDING -fno-asynchronous-unwind-tables -fno-unwind-tables)
+    add_compile_options("$<$<COMPILE_LANGUAGE:Fortran>:${MECH9_NO_UNWINDING}>")
     # Optimisation across files, for the computing floors alone: they carry both kinds of code (fat objects). mech9k and mech9d are
     # linked with the one, in some seconds; unit tests and users' programs with the other, at once.
     if(MECH9_LTO)
       set(MECH9_LTO_COMPILE -flto -ffat-lto-objects)
       # in one piece: as fast as several in parallel, for which the compiler would want make
-      set(MECH9_LTO_LINK -O3 -flto -flto-partition=one)
+      set(MECH9_LTO_LINK -O3 -flto -flto-partition=one ${MECH9_NO_UNWINDING})
       set(MECH9_LTO_NO_LINK -fno-lto)
     endif()
   endif()
