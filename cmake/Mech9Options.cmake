@@ -4,6 +4,7 @@ option(MECH9_BUILD_TESTS "build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(MECH9_BUILD_BENCH "build the benchmarks of bench/run" OFF)
 option(MECH9_NATIVE "use every instruction of this machine (-march=native)" OFF)
 option(MECH9_LTO "release: optimise across the files of the computing floors when linking (a fifth faster)" ON)
+option(MECH9_SYMBOLS "release: keep the names of procedures in mech9k and mech9d, for profilers" OFF)
 option(MECH9_LINE_EDITING "edit lines at the terminal by libedit, where it is found" ON)
 option(MECH9_THREADS "make the runs of a study in threads by OpenMP, where it is found" ON)
 option(MECH9_MPI "build mech9k-mpi and mech9d-mpi, studies in several processes" OFF)
@@ -52,6 +53,9 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
     # nothing but debuggers unwinds the stack of Fortran procedures
     set(MECH9_NO_UNWINDING -fno-asynchronous-unwind-tables -fno-unwind-tables)
     add_compile_options("$<$<COMPILE_LANGUAGE:Fortran>:${MECH9_NO_UNWINDING}>")
+    if(NOT MECH9_SYMBOLS)
+      set(MECH9_STRIP -s)
+    endif()
     # Optimisation across files, for the computing floors alone: they carry both kinds of code (fat objects). mech9k and mech9d are
     # linked with the one, in some seconds; unit tests and users' programs with the other, at once.
     if(MECH9_LTO)
