@@ -53,7 +53,7 @@ module mech9_motion_system
     logical, private :: just_settled = .false.
     logical, private :: has_inertia = .false.        !< all free coordinates had inertia in the position with which it was made
     type(smooth_interval_type) :: interval           !< in which the present steps lie
-    class(motion_sensitivity_type), allocatable :: sensitivity  !< derivatives by parameters, where they are integrated, too
+    type(motion_sensitivity_type), allocatable :: sensitivity   !< derivatives by parameters, where they are integrated, too
   contains
     procedure :: make_room
     procedure :: size_of_vector

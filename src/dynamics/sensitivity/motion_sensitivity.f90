@@ -24,8 +24,8 @@ module mech9_motion_sensitivity
 
   !> The derivatives of the free coordinates by all parameters, and what finds those of the whole motion.
   type :: motion_sensitivity_type
-    class(varied_motion_type), allocatable :: motion !< of all coordinates and frames
-    class(force_gradient_type), allocatable, private :: gradient   !< derivatives of the forces that the motion requires
+    type(varied_motion_type) :: motion             !< of all coordinates and frames
+    type(force_gradient_type), private :: gradient !< derivatives of the forces that the motion requires
     real(wp), allocatable :: values(:, :, :)       !< (P,free,0:2) of free coordinates and their derivatives in time [rad, m]
     real(wp), allocatable :: motors(:, :, :)       !< (P,motors,0:1) of the motors' states and their derivatives in time
     real(wp), allocatable :: size_of(:)            !< (P) size that the derivatives by a parameter have at least, for tolerances
@@ -51,7 +51,6 @@ contains
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     integer :: p
 
-    allocate (self%motion, self%gradient)
     call new_varied_motion(variable, model, plan, self%motion, err)
     if (.not. allocated(err)) call check_known(model, self%motion%tangents, err)
     if (allocated(err)) return
