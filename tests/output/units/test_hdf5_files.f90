@@ -249,13 +249,15 @@ contains
   !> One unit for all, or all units.
   subroutine units(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
-    type(string_type) :: list(3)
+    type(string_type) :: list(3), same(2)
 
     list(1)%text = 'rad'
     list(2)%text = 'm'
     list(3)%text = 'rad'
+    same(1)%text = 'rad'
+    same(2)%text = 'rad'
     call tester%is_true(common_unit(list) == 'rad or m', 'two units: '//common_unit(list))
-    call tester%is_true(common_unit(list([1, 3])) == 'rad', 'one unit')
+    call tester%is_true(common_unit(same) == 'rad', 'one unit')
     call tester%is_true(common_unit(list(:0)) == '', 'no numbers')
     list(1)%text = 'N m'
     list(2)%text = 'N'
