@@ -253,7 +253,7 @@ contains
     do
       at = verify(rest, gaps)
       if (at == 0) exit
-      rest = rest(at:)
+      rest = (rest(at:))
       if (rest(1:1) == '#') exit
       if (scan(rest(1:1), '0123456789+-.') > 0 .or. starts_with(rest, 'nan') .or. starts_with(rest, 'inf')) return
       at = scan(rest, gaps//'#')

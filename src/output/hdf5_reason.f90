@@ -51,7 +51,7 @@ contains
     end if
     first = index(text, "error message = '")
     if (first == 0) return
-    text = text(first + len("error message = '"):)
+    text = (text(first + len("error message = '"):))
     length = index(text, "'") - 1
     if (length > 0) text = text(:length)
   end function last_reason

@@ -185,11 +185,14 @@ contains
     integer, intent(in) :: element            !< number of the element
     character(len=:), allocatable :: text
     character(len=*), parameter :: blanks = ' '//achar(9)//achar(10)//achar(13)
+    integer :: first, last
 
     associate (range => self%elements(element)%text)
-      text = self%pool(range(1):range(2))
+      first = verify(self%pool(range(1):range(2)), blanks)
+      last = range(1) - 1 + verify(self%pool(range(1):range(2)), blanks, back=.true.)
+      ! a part of a text that is assigned to the text itself would be read after its memory is cut
+      text = self%pool(range(1) - 1 + max(first, 1):last)
     end associate
-    text = text(max(verify(text, blanks), 1):verify(text, blanks, back=.true.))
   end function content
 
   !> Number of an attribute; 0 where the element does not have it.
