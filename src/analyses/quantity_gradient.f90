@@ -2,8 +2,8 @@
 !>
 !> The sums are linear in the values of the column, and the time of an extreme changes its value in second order only, or is an end
 !> of the motion. So the derivative of the number is that of the column at the time of the extreme, or summed as the column is.
-!> Where the column jumps at a time that depends on a parameter, its integral changes by the jump as well, and an extreme at this
-!> time moves with it.
+!> A column may jump at a time that depends on a parameter. Its integral then changes by the jump as well, and an extreme at this time
+!> moves with the time.
 module mech9_quantity_gradient
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
