@@ -109,7 +109,7 @@ contains
   pure subroutine begin_piece(self, row, rate)
     class(tracked_quantity_type), intent(inout) :: self   !< the quantity
     real(wp), intent(in) :: row(:)                        !< numbers at its beginning, time first
-    real(wp), intent(in), optional :: rate(:)             !< (P) derivatives of the time of the joint; at the start not given
+    real(wp), allocatable, intent(in) :: rate(:)          !< (P) derivatives of the time of the joint; not allocated at the start
 
     if (.not. self%follows()) return
     if (.not. self%has_extremes) then
@@ -118,7 +118,7 @@ contains
       if (allocated(self%changes)) self%gradient%low = self%changes_of(row)
       if (allocated(self%changes)) self%gradient%high = self%gradient%low
     end if
-    if (self%is_cut .and. allocated(self%changes) .and. present(rate)) &
+    if (self%is_cut .and. allocated(self%changes) .and. allocated(rate)) &
       call self%gradient%add_jump(self%value_before, row(self%column), rate)
     self%is_cut = .false.
     self%count = 0
@@ -134,8 +134,8 @@ contains
     real(wp), intent(in) :: row(:)                        !< numbers at its end, time first
     real(wp), intent(in) :: values(:)                     !< (rule%n) of its column, those at both ends included, if it needs them
     real(wp), intent(in) :: changes(:, :)                 !< (P,rule%n) its derivatives by parameters, where they are followed
-    real(wp), intent(in), optional :: from_rate(:)        !< (P) derivatives of the time of a joint at its beginning
-    real(wp), intent(in), optional :: rate(:)             !< (P) those of the time of a joint at its end
+    real(wp), allocatable, intent(in) :: from_rate(:)     !< (P) derivatives of the time of a joint at its beginning
+    real(wp), allocatable, intent(in) :: rate(:)          !< (P) those of the time of a joint at its end
 
     if (.not. self%follows()) return
     if (self%family(0) == 0) then
@@ -146,7 +146,7 @@ contains
       ! an interval between others is known best
       if (self%count > 2) call add_intervals(self, rule, self%count - 2)
     end if
-    if (.not. present(rate)) return
+    if (.not. allocated(rate)) return
     if (self%family(0) > 0) call add_intervals(self, rule, self%count - 1)
     self%is_cut = .true.
     self%value_before = row(self%column)
@@ -156,15 +156,15 @@ contains
   pure subroutine keep_output(self, row, rate)
     type(tracked_quantity_type), intent(inout) :: self    !< the quantity
     real(wp), intent(in) :: row(:)                        !< numbers of the output
-    real(wp), intent(in), optional :: rate(:)             !< (P) derivatives of the time of its joint, if it is at one
+    real(wp), allocatable, intent(in) :: rate(:)          !< (P) derivatives of the time of its joint, if it is at one
     integer :: order
 
     self%count = self%count + 1
     self%t(self%count) = row(1)
     self%y(:, self%count) = row(self%family)
-    self%at_joint(self%count) = present(rate)
+    self%at_joint(self%count) = allocated(rate)
     if (.not. allocated(self%changes)) return
-    if (present(rate)) self%rate(:, self%count) = rate
+    if (allocated(rate)) self%rate(:, self%count) = rate
     do order = 0, 2
       self%dy(:, self%count, order) = row(self%changes(:, order))
     end do
@@ -207,8 +207,8 @@ contains
     real(wp), intent(in) :: to                            !< its end [s]
     real(wp), intent(in) :: values(:)                     !< (rule%n) of its column, those at both ends included
     real(wp), intent(in) :: changes(:, :)                 !< (P,rule%n) its derivatives by parameters, where they are followed
-    real(wp), intent(in), optional :: from_rate(:)        !< (P) derivatives of the time of a joint at its beginning
-    real(wp), intent(in), optional :: to_rate(:)          !< (P) those of the time of a joint at its end
+    real(wp), allocatable, intent(in) :: from_rate(:)     !< (P) derivatives of the time of a joint at its beginning
+    real(wp), allocatable, intent(in) :: to_rate(:)       !< (P) those of the time of a joint at its end
     type(quantity_sums_type) :: before
 
     before = self%sums
@@ -230,8 +230,8 @@ contains
         between(p) = rule%value_at(changes(p, :), 2.0_wp*(t - from)/(to - from) - 1.0_wp)
       end do
       slopes = 2.0_wp/(to - from)*matmul(rule%derivative, values)
-      if (present(from_rate)) between = between + moved_with(from_rate, slopes(1), t, from, to)
-      if (present(to_rate)) between = between + moved_with(to_rate, slopes(rule%n), t, to, from)
+      if (allocated(from_rate)) between = between + moved_with(from_rate, slopes(1), t, from, to)
+      if (allocated(to_rate)) between = between + moved_with(to_rate, slopes(rule%n), t, to, from)
     end function between
   end subroutine take_values
 

@@ -105,7 +105,7 @@ contains
     logical, intent(in) :: with_derivatives                !< outputs have two derivatives
     type(tracked_quantity_type), intent(out) :: quantity   !< the number
     type(chebyshev_type) :: rule
-    real(wp), allocatable :: values(:), changes(:, :)
+    real(wp), allocatable :: values(:), changes(:, :), no_joint(:)
     real(wp) :: row(13), from, to
     integer :: i, j
 
@@ -120,14 +120,14 @@ contains
       to = t_end*i/outputs
       row = row_at(to)
       call quantity%take_output(row)
-      if (i == 0) call quantity%begin_piece(row)
+      if (i == 0) call quantity%begin_piece(row, no_joint)
       if (i > 0) then
         do j = 1, rule%n
           row = row_at(from + 0.5_wp*(to - from)*(1.0_wp + rule%points(j)))
           values(j) = row(2)
           changes(:, j) = row([5, 8, 11])
         end do
-        call quantity%end_piece(rule, from, row_at(to), values, changes)
+        call quantity%end_piece(rule, from, row_at(to), values, changes, no_joint, no_joint)
       end if
       from = to
     end do

@@ -131,6 +131,7 @@ contains
     type(model_type), intent(in) :: model                     !< the model
     type(tracked_quantity_type), intent(inout) :: tracked(:)  !< the quantities
     real(wp), intent(in) :: row(:)                            !< numbers of the output, time first
+    real(wp), allocatable :: no_joint(:)
 
     if (.not. self%follows) return
     if (self%is_started) then
@@ -141,7 +142,7 @@ contains
       end if
       deallocate (self%list)
     else if (.not. self%taken%is_at_joint(row(1))) then
-      call begin_piece(self, tracked, row)
+      call begin_piece(self, tracked, row, no_joint)
     end if
     self%is_started = .true.
     self%previous = row(1)
@@ -166,7 +167,7 @@ contains
     type(quantity_pieces_type), intent(inout) :: self         !< the pieces
     type(tracked_quantity_type), intent(inout) :: tracked(:)  !< the quantities
     real(wp), intent(in) :: row(:)                            !< numbers at its beginning
-    real(wp), intent(in), optional :: rate(:)                 !< (P) derivatives of the time of its joint; not given at the start
+    real(wp), allocatable, intent(in) :: rate(:)              !< (P) derivatives of the time of its joint; not allocated at the start
     integer :: i
 
     do i = 1, size(tracked)
@@ -185,7 +186,6 @@ contains
     call keep_values(self, tracked, points_between, row)
     associate (piece => self%list(self%current))
       do i = 1, size(tracked)
-        ! rates that are not allocated, at outputs, are not present
         call tracked(i)%end_piece(self%rule, piece%from, row, self%values(:, i), self%changes(:, :, i), piece%from_rate, &
                                   piece%to_rate)
       end do
