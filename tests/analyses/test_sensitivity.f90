@@ -4,12 +4,7 @@ module test_sensitivity
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_differentiation, only: half_width, derivatives_from_stencil
-  use mech9_source, only: source_from_text
-  use mech9_document, only: document_type
-  use mech9_diagnostics, only: diagnostics_type
-  use mech9_parser, only: parse_document
-  use mech9_reader, only: read_model
-  use mech9_varied_document, only: varied_document_type, new_varied_document
+  use mech9_varied_document, only: varied_document_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -18,6 +13,7 @@ module test_sensitivity
   use mech9_driven_simulation, only: assemble_driven
   use mech9_motion_changes, only: place_of_coordinate, place_of_point
   use mech9_sensitivity, only: sensitivity_type, new_sensitivity, take_position, find_waiting
+  use mech9_text_models, only: varied_from_text
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -76,21 +72,6 @@ contains
     if (tester%runs('screw')) call compare(tester, screw//harmonic, 'crank, rod and screw')
     if (tester%runs('geared')) call compare(tester, geared//law//harmonic, 'geared five-bar')
   end subroutine run
-
-  !> The model of a text as a function of its parameters.
-  subroutine read_varied(tester, text, varied, model)
-    type(tester_type), intent(inout) :: tester            !< counts the checks
-    character(len=*), intent(in) :: text                  !< of a data file
-    type(varied_document_type), intent(out) :: varied     !< its model as a function of its parameters
-    type(model_type), intent(out) :: model                !< the model of the values in the text
-    type(document_type) :: document
-    type(diagnostics_type) :: diagnostics
-
-    call parse_document(source_from_text('test.nml', text), document, diagnostics)
-    call read_model(document, .true., model, diagnostics)
-    call tester%is_true(.not. diagnostics%failed(), 'there is a model')
-    call new_varied_document(document, diagnostics%sources, .true., varied)
-  end subroutine read_varied
 
   !> All numbers of a motion at the times: coordinates and points, with two derivatives.
   subroutine follow(tester, model, numbers)
@@ -176,7 +157,7 @@ contains
     real(wp) :: slope, curvature, error
     integer :: p, k, i, number
 
-    call read_varied(tester, text, varied, model)
+    call varied_from_text(tester, text, .true., varied, model)
     call find_changes(tester, varied, model, changes)
     allocate (numbers(size(changes, 2), size(times), -half_width:half_width))
     do p = 1, size(model%parameters)
@@ -208,8 +189,8 @@ contains
     real(wp) :: a, w
     integer :: i
 
-    call read_varied(tester, slider_crank//'&drive coordinate=1, kind=''polynomial'', coefficients=0.4,3 / &time end=1 /', varied, &
-                     model)
+    call varied_from_text(tester, slider_crank//'&drive coordinate=1, kind=''polynomial'', coefficients=0.4,3 / &time end=1 /', &
+                          .true., varied, model)
     call find_changes(tester, varied, model, changes)
     do i = 1, size(times)
       a = 0.4_wp + 3.0_wp*times(i)

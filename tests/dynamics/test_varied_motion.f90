@@ -4,12 +4,7 @@ module test_varied_motion
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_differentiation, only: half_width, derivatives_from_stencil
-  use mech9_source, only: source_from_text
-  use mech9_document, only: document_type
-  use mech9_diagnostics, only: diagnostics_type
-  use mech9_parser, only: parse_document
-  use mech9_reader, only: read_model
-  use mech9_varied_document, only: varied_document_type, new_varied_document
+  use mech9_varied_document, only: varied_document_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -21,41 +16,12 @@ module test_varied_motion
   use mech9_varied_energy, only: varied_energy_type, new_varied_energy, find_varied_energy
   use mech9_varied_forces, only: varied_forces_type, new_varied_forces, find_varied_forces
   use mech9_varied_poses, only: find_varied_poses
+  use mech9_small_models, only: loaded_pendulum, loaded_four_bar, loaded_screw
+  use mech9_text_models, only: varied_from_text
   use mech9_testing, only: tester_type
   implicit none
   private
   public :: run
-
-  character(len=*), parameter :: pendulum = '&structure cq=1 / &pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 / '// &
-    '&body link=2, mass=2, centre=0,-0.8,0, inertia=0,0,0.3,0,0,0 / &gravity acceleration=0,-9.81,0 / '// &
-    '&load kind=''coordinate'', coordinate=1, stiffness=5, damping=3 / &initial coordinate=1, position=0.6 / '// &
-    '&parameter name=''mass'', sets=''body(1).mass'' / &parameter name=''inertia'', sets=''body(1).inertia(3)'' / '// &
-    '&parameter name=''centre'', sets=''body(1).centre(2)'' / &parameter name=''stiffness'', sets=''load(1).stiffness'' / '// &
-    '&parameter name=''damping'', sets=''load(1).damping'' / &parameter name=''gravity'', sets=''gravity.acceleration(2)'' / '
-  character(len=*), parameter :: four_bar = '&structure cq=1 / '// &
-    '&pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 / '// &
-    '&pair coordinate=2, links=2,3, kind=''revolute'', axis=0,0,1, point=0.4,0,0, moving_point=0,0,0 / '// &
-    '&pair coordinate=3, links=3,4, kind=''revolute'', axis=0,0,1, point=1.9,0,0, moving_point=1.6,0,0 / '// &
-    '&pair coordinate=4, links=1,4, kind=''revolute'', axis=0,0,1, point=2,0.1,0, moving_point=0,0,0 / '// &
-    '&initial coordinate=1, position=0.8 / &initial coordinate=2, position=0.3 / &initial coordinate=3, position=1 / '// &
-    '&initial coordinate=4, position=1.7 / &gravity acceleration=0,-9.81,0 / &point name=''P'', link=3, position=0.5,0.3,0 / '// &
-    '&body link=3, mass=2, centre=0.9,0.2,0, inertia=0,0,0.3,0,0,0 / &body link=4, mass=1, centre=0.7,0,0 / '// &
-    '&load kind=''spring'', links=1,3, position=0,1,0, second_position=0.5,0,0, stiffness=40, free_length=0.3, damping=2 / '// &
-    '&parameter name=''crank'', sets=''pair(2).point(1)'' / &parameter name=''height'', sets=''pair(4).point(2)'' / '// &
-    '&parameter name=''centre'', sets=''body(1).centre(1)'' / &parameter name=''length'', sets=''load(1).free_length'' / '// &
-    '&parameter name=''place'', sets=''point(1).position(2)'' / &parameter name=''end'', sets=''load(1).position(1)'' / '
-  character(len=*), parameter :: screw = '&structure cq=1 / '// &
-    '&pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1, moving_point=0,0,0 / '// &
-    '&pair coordinates=2,3, links=2,3, kind=''universal'', axis=0,0,1, moving_axis=0,1,0, point=0.2,0.15,0, '// &
-    'moving_point=0,0,0 / '// &
-    '&pair coordinates=4,5,6, links=3,4, kind=''spherical'', point=1.1,0,0, moving_point=0,0,0.6 / '// &
-    '&pair coordinate=7, links=1,4, kind=''helical'', axis=0.1,1,0, point=1,0,0, moving_point=0,0,0, pitch=0.3 / '// &
-    '&gravity acceleration=1,-9,3 / &point name=''P'', link=4, position=0.5,0.3,0.1 / &initial coordinate=1, position=0.4 / '// &
-    '&body link=2, mass=2, centre=0.2,0.1,0.1, inertia=0.2,0.25,0.3,0.02,0.01,0.03 / '// &
-    '&body link=4, mass=1, centre=0.1,0.2,0.3, inertia=0.3,0.2,0.25,0.01,0.02,0.03 / '// &
-    '&load kind=''force'', link=4, position=0.1,0.5,0, force=3,1,2, frame=''link'' / '// &
-    '&parameter name=''rod'', sets=''pair(3).point(1)'' / &parameter name=''tilt'', sets=''pair(4).axis(1)'' / '// &
-    '&parameter name=''pitch'', sets=''pair(4).pitch'' / &parameter name=''force'', sets=''load(1).force(2)'' / '
 
 contains
 
@@ -64,25 +30,10 @@ contains
     type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
 
     if (test%runs('closed_form')) call closed_form(test)
-    if (test%runs('pendulum')) call compare(test, pendulum, 'pendulum')
-    if (test%runs('four_bar')) call compare(test, four_bar, 'four-bar')
-    if (test%runs('screw')) call compare(test, screw, 'crank, rod and screw')
+    if (test%runs('pendulum')) call compare(test, loaded_pendulum, 'pendulum')
+    if (test%runs('four_bar')) call compare(test, loaded_four_bar, 'four-bar')
+    if (test%runs('screw')) call compare(test, loaded_screw, 'crank, rod and screw')
   end subroutine run
-
-  !> The model of a text as a function of its parameters.
-  subroutine read_varied(test, text, varied, model)
-    type(tester_type), intent(inout) :: test              !< counts the checks
-    character(len=*), intent(in) :: text                  !< of a data file
-    type(varied_document_type), intent(out) :: varied     !< its model as a function of its parameters
-    type(model_type), intent(out) :: model                !< the model of the values in the text
-    type(document_type) :: document
-    type(diagnostics_type) :: diagnostics
-
-    call parse_document(source_from_text('test.nml', text), document, diagnostics)
-    call read_model(document, .false., model, diagnostics)
-    call test%is_true(.not. diagnostics%failed(), 'there is a model')
-    call new_varied_document(document, diagnostics%sources, .false., varied)
-  end subroutine read_varied
 
   !> The numbers of a mechanism whose first coordinate has a rate of 1.3 and an acceleration of -0.7: kinetic and potential energy, the
   !> force that it requires, points, and poses of the links.
@@ -170,7 +121,7 @@ contains
     real(wp) :: slope, curvature, error
     integer :: p, k, i
 
-    call read_varied(test, text, varied, model)
+    call varied_from_text(test, text, .false., varied, model)
     call find_numbers(model, model%problem%initial%position, numbers, state, plan, err)
     call test%no_error(err, name//': there is a motion')
     if (allocated(err)) return
@@ -206,7 +157,7 @@ contains
     real(wp), allocatable :: changes(:, :), numbers(:)
     real(wp) :: expected(6, 3)
 
-    call read_varied(test, pendulum, varied, model)
+    call varied_from_text(test, loaded_pendulum, .false., varied, model)
     call find_numbers(model, model%problem%initial%position, numbers, state, plan, err)
     call test%no_error(err, 'there is a motion')
     call find_changes(test, varied, model, state, plan, changes)

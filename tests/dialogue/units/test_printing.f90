@@ -3,7 +3,8 @@ module test_printing
   use mech9_model, only: model_type
   use mech9_paragraph, only: print_paragraph
   use mech9_structure_sketch, only: print_sketch
-  use mech9_small_models, only: model_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: model_from_text
   use mech9_test_files, only: text_of_unit
   use mech9_testing, only: tester_type
   implicit none
@@ -86,7 +87,7 @@ contains
     character(len=:), allocatable :: text
     integer :: unit
 
-    call model_of(tester, slider_crank, .false., model)
+    call model_from_text(tester, slider_crank, .false., model)
     open (newunit=unit, file=path)
     call print_sketch(unit, model%mechanism%structure, model%problem%partition)
     call text_of_unit(tester, unit, text)
@@ -94,7 +95,7 @@ contains
     call tester%is_true(index(text, ' -2- ') > 0 .and. index(text, ' -3- ') > 0 .and. index(text, ' -4- ') > 0, 'the others')
     call tester%is_true(index(text, '1 = 4 - 1 x 3 in a plane, -2 = 4 - 1 x 6 in space;') > 0, 'the mobility by the count')
     call tester%is_true(index(text, 'Independent now: 1.') > 0, 'the number of independent coordinates')
-    call model_of(tester, '&mechanism links=3, coordinates=4 /'//eol//'&structure cq=1,2,3,4 /'//eol// &
+    call model_from_text(tester, '&mechanism links=3, coordinates=4 /'//eol//'&structure cq=1,2,3,4 /'//eol// &
       "&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /"//eol// &
       "&pair coordinates=2,3,4, links=2,3, kind='spherical' /"//eol, .false., model)
     open (newunit=unit, file=path)

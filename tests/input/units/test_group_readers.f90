@@ -23,7 +23,8 @@ module test_group_readers
   use mech9_study, only: study_type
   use mech9_study_reader, only: read_study
   use mech9_checks, only: near_vector, near_matrix
-  use mech9_small_models, only: model_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: model_from_text, checked_from_text
   use mech9_test_files, only: save_lines, remove_file
   use mech9_testing, only: tester_type
   implicit none
@@ -53,10 +54,8 @@ contains
     type(model_type), intent(out) :: model                !< the slider-crank
     type(diagnostics_type), intent(out) :: diagnostics    !< gets the errors
 
-    call model_of(tester, slider_crank, .false., model)
-    call parse_document(source_from_text('case.nml', slider_crank//groups), document, diagnostics)
-    call check_document(document, diagnostics)
-    call tester%is_true(.not. diagnostics%failed(), 'the groups are as the grammar wants')
+    call model_from_text(tester, slider_crank, .false., model)
+    call checked_from_text(tester, slider_crank//groups, document, diagnostics)
   end subroutine checked
 
   !> The order of an inertia is xx, yy, zz, xy, xz, yz, and a body without centre has it at its origin.

@@ -16,7 +16,8 @@ module test_items
   use mech9_scanner, only: skip_blanks, next_is_name, scan_word, is_letter
   use mech9_source, only: source_from_text, span_type
   use mech9_checks, only: near_vector
-  use mech9_small_models, only: document_of, eol
+  use mech9_small_models, only: eol
+  use mech9_text_models, only: document_from_text
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -73,7 +74,7 @@ contains
     type(document_type) :: document
     integer :: number
 
-    call document_of(tester, '&pair '//items//' /'//eol, document)
+    call document_from_text(tester, '&pair '//items//' /'//eol, document)
     call diagnostics%add_source(document%source, number)
     call merge_items(document%groups(1)%items, 'dh', merged, diagnostics)
   end subroutine merge
@@ -251,7 +252,7 @@ contains
       type(matrix_type) :: matrix
       logical :: ok
 
-      call document_of(tester, '&structure '//items//' /'//eol, document)
+      call document_from_text(tester, '&structure '//items//' /'//eol, document)
       call read_matrix(document%groups(1), 0, matrix, ok, diagnostics)
       call tester%is_true(ok .and. diagnostics%count == 0, 'a matrix: '//items)
       if (ok) call tester%is_true(all(shape(matrix%c) == [3, 3]), 'its size')
@@ -277,7 +278,7 @@ contains
       type(matrix_type) :: matrix
       logical :: ok
 
-      call document_of(tester, '&structure '//items//' /'//eol, document)
+      call document_from_text(tester, '&structure '//items//' /'//eol, document)
       call read_matrix(document%groups(1), 3, matrix, ok, diagnostics)
       call tester%is_true(.not. ok .and. only_message(diagnostics) == message, items//': '//only_message(diagnostics))
     end subroutine says
@@ -299,7 +300,7 @@ contains
       type(document_type) :: document
       type(diagnostics_type) :: diagnostics
 
-      call document_of(tester, "&point name='"//name//"', link=1 /"//eol, document)
+      call document_from_text(tester, "&point name='"//name//"', link=1 /"//eol, document)
       call check_name(document%groups(1), name, diagnostics)
       call tester%is_true((diagnostics%count == 0) .eqv. good, 'the name '''//name//'''')
     end subroutine judge

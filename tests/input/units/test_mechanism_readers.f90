@@ -34,7 +34,8 @@ module test_mechanism_readers
   use mech9_structure_reader, only: read_structure
   use mech9_text, only: string_type
   use mech9_checks, only: near_vector
-  use mech9_small_models, only: model_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: model_from_text, checked_from_text
   use mech9_test_files, only: save_lines, remove_file
   use mech9_testing, only: tester_type
   implicit none
@@ -71,11 +72,8 @@ contains
     type(model_type), intent(out) :: model                !< the slider-crank
     type(diagnostics_type), intent(out) :: diagnostics    !< gets the errors
 
-    call model_of(tester, slider_crank, .false., model)
-    call parse_document(source_from_text('case.nml', slider_crank//groups), document, diagnostics)
-    call check_document(document, diagnostics)
-    call tester%is_true(.not. diagnostics%failed(), 'the groups are as the grammar wants')
-    if (diagnostics%failed()) call diagnostics%report(6)
+    call model_from_text(tester, slider_crank, .false., model)
+    call checked_from_text(tester, slider_crank//groups, document, diagnostics)
   end subroutine checked
 
   !> A screw advances by its pitch in a turn; a slide moves along its axis; points and axes are those of the reference link.

@@ -9,7 +9,8 @@ module test_columns
   use mech9_text, only: string_type
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_checks, only: near_vector
-  use mech9_small_models, only: model_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: model_from_text
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -36,7 +37,7 @@ contains
     type(model_type), intent(out) :: model         !< the model
     type(columns_type), intent(out) :: columns     !< of a run
 
-    call model_of(tester, "&mechanism angle_unit='deg', "//slider_crank(11:)// &
+    call model_from_text(tester, "&mechanism angle_unit='deg', "//slider_crank(11:)// &
       "&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol//"&output "//output//" /"//eol, .true., model)
     columns = kinematic_columns(model%mechanism, model%request%output)
   end subroutine with_output

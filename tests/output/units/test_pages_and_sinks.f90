@@ -13,7 +13,8 @@ module test_pages_and_sinks
   use mech9_result_sink, only: result_sink_type, sink_slot_type, append_sink
   use mech9_text, only: string_type
   use mech9_page, only: page_type
-  use mech9_small_models, only: model_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: model_from_text
   use mech9_test_files, only: remove_file, text_of_file
   use mech9_testing, only: tester_type
   implicit none
@@ -97,7 +98,7 @@ contains
     integer, allocatable :: extents(:)
     real(wp), allocatable :: rows(:, :)
 
-    call model_of(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol// &
+    call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol// &
       "&time end=1, intervals=4 /"//eol//"&output derivatives=1, poses=.true. /"//eol, .true., model)
     columns = kinematic_columns(model%mechanism, model%request%output)
     allocate (file_sink, slots(0))

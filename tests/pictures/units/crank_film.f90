@@ -14,7 +14,8 @@ module crank_film
   use mech9_projection, only: projection_type, fit_projection
   use mech9_scene, only: scene_type
   use mech9_scene_making, only: make_scene
-  use mech9_small_models, only: model_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: model_from_text
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -33,7 +34,7 @@ contains
     type(error_type), allocatable :: err
     integer :: i
 
-    call model_of(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol, .true., model)
+    call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol, .true., model)
     film = new_film(model%mechanism, model%problem%partition%independent(), steps + 1)
     do i = 0, steps
       model%problem%initial%position(1) = 8.0_wp*atan(1.0_wp)*i/steps

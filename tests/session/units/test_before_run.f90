@@ -5,7 +5,8 @@ module test_before_run
   use mech9_model, only: model_type
   use mech9_law_times, only: check_times_of_laws
   use mech9_choice_check, only: judge_choice_of
-  use mech9_small_models, only: model_of, document_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: model_from_text, document_from_text
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -36,7 +37,7 @@ contains
       type(model_type) :: model
       type(diagnostics_type) :: diagnostics
 
-      call model_of(tester, slider_crank//"&time "//times//" /"//eol//"&drive coordinate=1, kind='segments', "// &
+      call model_from_text(tester, slider_crank//"&time "//times//" /"//eol//"&drive coordinate=1, kind='segments', "// &
                     "times=1, 2, 3, values=0, 1, 5, laws='harmonic' /"//eol, .true., model)
       call check_times_of_laws(model, .false., diagnostics)
       call tester%is_true(diagnostics%failed() .neqv. right, 'a drive from 1 s to 3 s and a run of '//times)
@@ -60,7 +61,7 @@ contains
       type(diagnostics_type) :: sources, wrong
       integer :: number
 
-      call document_of(tester, before//independent//behind, document)
+      call document_from_text(tester, before//independent//behind, document)
       call sources%add_source(document%source, number)
       call judge_choice_of(document, sources, wrong)
       call tester%is_true(wrong%failed() .neqv. right, 'independent coordinates '//independent)

@@ -4,7 +4,8 @@ module test_design_file
   use mech9_document, only: document_type
   use mech9_model, only: model_type
   use mech9_design_file, only: text_of_design
-  use mech9_small_models, only: document_of, model_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: document_from_text, model_from_text
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -35,8 +36,8 @@ contains
     type(document_type) :: document
     type(model_type) :: model
 
-    call document_of(tester, data, document)
-    call model_of(tester, data, .true., model)
+    call document_from_text(tester, data, document)
+    call model_from_text(tester, data, .true., model)
     call text_of_design(document, model, values, q, '! made'//eol, text)
   end subroutine design
 
@@ -60,7 +61,7 @@ contains
     type(model_type) :: model
 
     call design(tester, slider_crank//parameters//drive, values, q, text)
-    call model_of(tester, text, .true., model)
+    call model_from_text(tester, text, .true., model)
     call tester%is_true(all(abs([model%parameters(1)%value, model%parameters(2)%value] - values) <= 0.0_wp), 'values read back')
     call tester%is_true(all(abs(model%problem%initial%position(2:) - q(2:)) <= 0.0_wp), 'positions read back')
   end subroutine reads_back
@@ -73,7 +74,7 @@ contains
     type(model_type) :: model
 
     call design(tester, "&mechanism angle_unit='deg', "//slider_crank(11:)//drive, [real(wp) ::], q, text)
-    call model_of(tester, text, .true., model)
+    call model_from_text(tester, text, .true., model)
     ! a number goes to degrees and back, with two roundings
     call tester%is_true(all(abs(model%problem%initial%position(2:) - q(2:)) <= 4.0e-16_wp), 'positions in degrees read back')
     call tester%is_true(index(text, 'position=28.6478') > 0, 'half a radian is 28.6478 degrees')

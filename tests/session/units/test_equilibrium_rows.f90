@@ -11,7 +11,8 @@ module test_equilibrium_rows
   use mech9_plan, only: plan_type
   use mech9_planning, only: make_plan
   use mech9_state, only: state_type
-  use mech9_small_models, only: model_of, eol
+  use mech9_small_models, only: eol
+  use mech9_text_models, only: model_from_text
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -46,7 +47,7 @@ contains
     type(state_type) :: own_start, start
     type(error_type), allocatable :: err
 
-    call model_of(tester, data, .false., model)
+    call model_from_text(tester, data, .false., model)
     call assemble_free_start(model, own_plan, own_start, err)
     call tester%no_error(err, 'the start')
     call make_plan(model%mechanism, model%problem%partition, own_start%q, plan, start, err, in_space=.true.)

@@ -3,7 +3,8 @@ module test_missing_column
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_missing_column, only: remedy_of_missing
-  use mech9_small_models, only: model_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: model_from_text
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -30,7 +31,7 @@ contains
     type(columns_type) :: columns
     character(len=:), allocatable :: remedy
 
-    call model_of(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol// &
+    call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol// &
       "&time end=1, intervals=4 /"//eol//"&output "//output//" /"//eol, .true., model)
     columns = kinematic_columns(model%mechanism, model%request%output)
     remedy = remedy_of_missing(name, model, columns)

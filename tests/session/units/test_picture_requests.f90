@@ -9,7 +9,8 @@ module test_picture_requests
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_checks, only: has_message
-  use mech9_small_models, only: model_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: model_from_text
   use mech9_test_files, only: remove_file, text_of_file, text_of_unit
   use mech9_testing, only: tester_type
   use option_words, only: options_of
@@ -42,7 +43,7 @@ contains
     type(model_type) :: model
     type(command_line_type) :: options
 
-    call model_of(tester, driven//more, .true., model)
+    call model_from_text(tester, driven//more, .true., model)
     call options_of(tester, line, options)
     call read_picture_requests(options, model, 'mech9k', requests, err)
   end subroutine ask
@@ -116,7 +117,7 @@ contains
 
     call remove_file(sketch)
     call remove_file(film)
-    call model_of(tester, driven, .true., model)
+    call model_from_text(tester, driven, .true., model)
     call options_of(tester, 'a.nml --sketch '//sketch//' --animate '//film, options)
     call read_picture_requests(options, model, 'mech9k', requests, err)
     call assemble_driven_start(model, plan, position, err)

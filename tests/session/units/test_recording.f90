@@ -17,7 +17,8 @@ module test_recording
   use mech9_results, only: results_type
   use mech9_row_source, only: row_source_type, new_row_source
   use mech9_state, only: state_type
-  use mech9_small_models, only: model_of, slider_crank, crank, rod, eol
+  use mech9_small_models, only: slider_crank, crank, rod, eol
+  use mech9_text_models, only: model_from_text
   use mech9_test_files, only: remove_file, text_of_file
   use mech9_testing, only: tester_type
   use option_words, only: options_of
@@ -55,7 +56,7 @@ contains
     type(kept_rows_type) :: kept
     type(error_type), allocatable :: err
 
-    call model_of(tester, data, .true., model)
+    call model_from_text(tester, data, .true., model)
     call tester%is_true(all(reacting_pairs(model) .eqv. [.false., .false., .false., .true.]), 'one pair has its forces recorded')
     call assemble_driven_start(model, plan, start, err)
     call tester%no_error(err, 'the start')
@@ -145,7 +146,7 @@ contains
     type(row_source_type), allocatable :: source
     type(error_type), allocatable :: err
 
-    call model_of(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0.2, 3 /"//eol// &
+    call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0.2, 3 /"//eol// &
       "&time end=2, intervals=3 /"//eol//"&quantity name='f', of='F1', take='max' /"//eol, .true., model)
     call assemble_driven_start(model, plan, start, err)
     allocate (simulation, source)

@@ -13,7 +13,8 @@ module test_run_words
   use mech9_geometry_text, only: print_dimensions
   use mech9_range_text, only: print_ranges
   use mech9_assemblies_text, only: print_assemblies
-  use mech9_small_models, only: model_of, slider_crank, crank, rod, eol
+  use mech9_small_models, only: slider_crank, crank, rod, eol
+  use mech9_text_models, only: model_from_text
   use mech9_test_files, only: text_of_unit
   use mech9_testing, only: tester_type
   implicit none
@@ -67,7 +68,7 @@ contains
     character(len=:), allocatable :: text
     integer :: unit
 
-    call model_of(tester, slider_crank//drive//"&time end=1 /"//eol// &
+    call model_from_text(tester, slider_crank//drive//"&time end=1 /"//eol// &
                   "&parameter name='a', value=0.25, sets='pair(2).point(1)', 'time.end' /"//eol, &
                   .true., model)
     open (newunit=unit, file=path)
@@ -83,13 +84,13 @@ contains
     character(len=:), allocatable :: text
     integer :: unit
 
-    call model_of(tester, slider_crank//"&time end=3 /"//eol//"&drive coordinate=1, kind='segments', times=0, 1, 3, "// &
+    call model_from_text(tester, slider_crank//"&time end=3 /"//eol//"&drive coordinate=1, kind='segments', times=0, 1, 3, "// &
                   "values=0, 1, 5, laws='constant-velocity' /"//eol, .true., model)
     open (newunit=unit, file=path)
     call print_jumps(unit, model)
     call text_of_unit(tester, unit, text)
     call tester%is_true(index(text, 'note: the rate of the ') == 1 .and. index(text, 'jumps at t = 1') > 0, 'a jump: '//text)
-    call model_of(tester, slider_crank//"&time end=3 /"//eol//drive, .true., model)
+    call model_from_text(tester, slider_crank//"&time end=3 /"//eol//drive, .true., model)
     open (newunit=unit, file=path)
     call print_jumps(unit, model)
     call text_of_unit(tester, unit, text)
@@ -112,7 +113,7 @@ contains
       character(len=:), allocatable :: text
       integer :: unit
 
-      call model_of(tester, slider_crank//"&drive coordinate=1, kind='polynomial', "//coefficients//" /"//eol, .true., model)
+      call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', "//coefficients//" /"//eol, .true., model)
       open (newunit=unit, file=path)
       call print_notes(unit, model, .false.)
       call text_of_unit(tester, unit, text)
@@ -128,7 +129,7 @@ contains
     character(len=:), allocatable :: text
     integer :: unit
 
-    call model_of(tester, slider_crank//drive, .true., model)
+    call model_from_text(tester, slider_crank//drive, .true., model)
     open (newunit=unit, file=path)
     call print_dimensions(unit, model%mechanism)
     call text_of_unit(tester, unit, text)
@@ -165,7 +166,7 @@ contains
       type(error_type), allocatable :: err
       integer :: unit
 
-      call model_of(tester, data, .true., model)
+      call model_from_text(tester, data, .true., model)
       associate (position => model%problem%initial%position)
         if (model%problem%drives(1)%drive%coordinate == 1) position(1) = 0.4_wp
         if (model%problem%drives(1)%drive%coordinate == 4) position(4) = 1.2_wp
@@ -190,7 +191,7 @@ contains
     integer :: unit, at, i, status
 
     q = 0.4_wp
-    call model_of(tester, slider_crank//drive, .true., model)
+    call model_from_text(tester, slider_crank//drive, .true., model)
     model%problem%initial%position(1) = q
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     open (newunit=unit, file=path)

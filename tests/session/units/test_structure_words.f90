@@ -15,7 +15,8 @@ module test_structure_words
   use mech9_structure_text, only: print_structure, print_mobility, print_mobility_report, print_marked
   use mech9_uniqueness, only: uniqueness_type
   use mech9_unused_options, only: print_unused_options
-  use mech9_small_models, only: model_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: model_from_text
   use mech9_test_files, only: text_of_unit
   use mech9_testing, only: tester_type
   use option_words, only: options_of
@@ -47,7 +48,7 @@ contains
     type(state_type), intent(out) :: state        !< a closed position
     type(error_type), allocatable :: err
 
-    call model_of(tester, slider_crank//'&initial coordinate=1, position=0.4 /'//eol, .false., model)
+    call model_from_text(tester, slider_crank//'&initial coordinate=1, position=0.4 /'//eol, .false., model)
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call tester%no_error(err, 'a plan')
   end subroutine planned
@@ -164,7 +165,7 @@ contains
       character(len=:), allocatable :: text
       integer :: unit
 
-      call model_of(tester, slider_crank//groups, .false., model)
+      call model_from_text(tester, slider_crank//groups, .false., model)
       open (newunit=unit, file=path)
       call print_forceless(unit, model%mechanism)
       call text_of_unit(tester, unit, text)
@@ -185,14 +186,14 @@ contains
     character(len=:), allocatable :: text
     integer :: unit
 
-    call model_of(tester, rod, .true., model)
+    call model_from_text(tester, rod, .true., model)
     open (newunit=unit, file=path)
     call print_held(unit, model)
     call text_of_unit(tester, unit, text)
     call tester%is_true(index(text, 'note: link 3 can turn by itself between the spherical joint of coordinates 2, 3, 4 '// &
                               'and the spherical joint of coordinates 5, 6, 7') == 1, 'a rod: '//text)
     call tester%is_true(index(text, ' is held at ') > 0, 'one of its angles is held')
-    call model_of(tester, slider_crank, .false., model)
+    call model_from_text(tester, slider_crank, .false., model)
     open (newunit=unit, file=path)
     call print_held(unit, model)
     call text_of_unit(tester, unit, text)
@@ -219,7 +220,7 @@ contains
       integer :: unit
 
       call options_of(tester, line, options)
-      call model_of(tester, slider_crank, .false., model)
+      call model_from_text(tester, slider_crank, .false., model)
       open (newunit=unit, file=path)
       call print_unused_options(unit, 'mech9d', options, model)
       call text_of_unit(tester, unit, text)

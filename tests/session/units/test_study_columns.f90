@@ -14,7 +14,8 @@ module test_study_columns
   use mech9_study_filling, only: fill_rows
   use mech9_text, only: string_type
   use mech9_checks, only: has_message
-  use mech9_small_models, only: model_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: model_from_text
   use mech9_test_files, only: remove_file
   use mech9_testing, only: tester_type
   implicit none
@@ -48,7 +49,7 @@ contains
     type(error_type), allocatable :: err
     integer :: i
 
-    call model_of(tester, data, .true., model)
+    call model_from_text(tester, data, .true., model)
     columns = kinematic_columns(model%mechanism, model%request%output)
     call file%create(path, err)
     call tester%no_error(err, 'a file')
@@ -146,10 +147,10 @@ contains
     type(model_type) :: model
     type(error_type), allocatable :: err
 
-    call model_of(tester, data//"&parameter name='a', sets='pair(2).point(1)' /"//eol, .true., model)
+    call model_from_text(tester, data//"&parameter name='a', sets='pair(2).point(1)' /"//eol, .true., model)
     call refuse_varied_times(model, err)
     call tester%no_error(err, 'a length may vary')
-    call model_of(tester, data//"&parameter name='e', sets='time.end' /"//eol, .true., model)
+    call model_from_text(tester, data//"&parameter name='e', sets='time.end' /"//eol, .true., model)
     call refuse_varied_times(model, err)
     call has_message(tester, err, exit_data, "parameter 'e' sets time.end, and hdf5_runs=.true.", 'a time may not')
   end subroutine varied_times

@@ -3,7 +3,8 @@ module test_study_definition
   use mech9_error, only: error_type, exit_file
   use mech9_document, only: document_type
   use mech9_study_definition, only: define_study, tell_difference, digest_of
-  use mech9_small_models, only: document_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: document_from_text
   use mech9_test_files, only: save_lines, remove_file
   use mech9_testing, only: tester_type
   implicit none
@@ -33,7 +34,7 @@ contains
     type(document_type) :: document
     type(error_type), allocatable :: err
 
-    call document_of(tester, text, document)
+    call document_from_text(tester, text, document)
     call define_study('mech9k', document, definition, err)
     call tester%no_error(err, 'a study is defined')
   end subroutine define
@@ -91,7 +92,7 @@ contains
     call define(tester, text, other)
     call tester%is_true(one == other, 'the same bytes do not')
     call remove_file(path)
-    call document_of(tester, text, document)
+    call document_from_text(tester, text, document)
     call define_study('mech9k', document, other, err)
     call tester%has_error(err, exit_file, 'a file that is not there')
   end subroutine files

@@ -19,7 +19,8 @@ module test_study_runs
   use mech9_study_words, only: print_study
   use mech9_varied_document, only: varied_document_type, new_varied_document
   use mech9_checks, only: near_vector
-  use mech9_small_models, only: document_of, model_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: document_from_text, model_from_text
   use mech9_test_files, only: remove_file, text_of_file, text_of_unit
   use mech9_testing, only: tester_type
   use option_words, only: options_of
@@ -64,8 +65,8 @@ contains
     type(error_type), allocatable :: err
     integer :: number
 
-    call document_of(tester, text, this%document)
-    call model_of(tester, text, .true., this%model)
+    call document_from_text(tester, text, this%document)
+    call model_from_text(tester, text, .true., this%model)
     call diagnostics%add_source(this%document%source, number)
     call new_varied_document(this%document, diagnostics%sources, .true., this%varied)
     call find_quantities('mech9k', this%model, this%quantities, err)

@@ -5,7 +5,8 @@ module test_study_statistics
   use mech9_main_effects, only: shares_type
   use mech9_study_values, only: values_of_run
   use mech9_study_statistics, only: study_statistics_type, quantile_type, n_levels, quantile_levels
-  use mech9_small_models, only: model_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: model_from_text
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -29,7 +30,7 @@ contains
     character(len=*), intent(in) :: kind         !< of the study
     type(model_type), intent(out) :: model       !< the model
 
-    call model_of(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol// &
+    call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol// &
       "&time end=1, intervals=4 /"//eol// &
       "&parameter name='a', value=0.3, low=0, high=1, count=3, sets='pair(2).point(1)' /"//eol// &
       "&parameter name='b', value=1, low=0, high=1, count=3, sets='pair(3).point(1)' /"//eol// &

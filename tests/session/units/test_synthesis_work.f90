@@ -23,7 +23,8 @@ module test_synthesis_work
   use mech9_synthesis, only: synthesis_type, new_synthesis
   use mech9_varied_document, only: varied_document_type, new_varied_document
   use mech9_checks, only: near_vector, has_message
-  use mech9_small_models, only: document_of, model_of, slider_crank, eol
+  use mech9_small_models, only: slider_crank, eol
+  use mech9_text_models, only: document_from_text, model_from_text
   use mech9_test_files, only: save_lines, remove_file, text_of_unit
   use mech9_testing, only: tester_type
   implicit none
@@ -69,8 +70,8 @@ contains
       "&parameter name='r', value=0.3, low=0.1, high=0.5, sets='pair(2).point(1)' /"//eol// &
       "&parameter name='l', value=1, low=0.8, high=1.5, sets='pair(3).point(1)' /"//eol// &
       "&objective kind='function', of='q4', over='q1', file='"//stem//".dat' /"//eol//'&optimum starts=3, seed=5 /'//eol
-    call document_of(tester, text, document)
-    call model_of(tester, text, .true., model)
+    call document_from_text(tester, text, document)
+    call model_from_text(tester, text, .true., model)
     call diagnostics%add_source(document%source, number)
     call new_varied_document(document, diagnostics%sources, .true., varied)
     call assemble_driven_start(model, plan, start, err)

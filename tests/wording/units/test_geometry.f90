@@ -3,7 +3,8 @@ module test_geometry
   use mech9_error, only: error_type, raise, exit_assembly, exit_data
   use mech9_geometry_words, only: explain_geometry
   use mech9_model, only: model_type
-  use mech9_small_models, only: model_of, eol
+  use mech9_small_models, only: eol
+  use mech9_text_models, only: model_from_text
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -30,7 +31,7 @@ contains
     type(model_type) :: model
     type(error_type), allocatable :: err
 
-    call model_of(tester, '&mechanism links=4, coordinates=4 /'//eol//'&structure cq=1 /'//eol// &
+    call model_from_text(tester, '&mechanism links=4, coordinates=4 /'//eol//'&structure cq=1 /'//eol// &
       "&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /"//eol// &
       "&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /"//eol// &
       "&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point="//coupler//",0,0, moving_point=0.8,0,0 /"//eol// &

@@ -14,7 +14,8 @@ module test_sentences
   use mech9_joint_words, only: joint_name, pair_name, link_name
   use mech9_model, only: model_type
   use mech9_sensitivity_words, only: explain_sensitivity
-  use mech9_small_models, only: model_of, eol
+  use mech9_small_models, only: eol
+  use mech9_text_models, only: model_from_text
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -81,7 +82,7 @@ contains
     joint%freedoms = 2
     joint%numbers(:2) = [4, 5]
     call says(tester, trim(joint_name(joint)), 'universal joint of coordinates 4, 5')
-    call model_of(tester, '&mechanism links=3, coordinates=4 /'//eol//'&structure cq=1,2,3,4 /'//eol// &
+    call model_from_text(tester, '&mechanism links=3, coordinates=4 /'//eol//'&structure cq=1,2,3,4 /'//eol// &
       "&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /"//eol// &
       "&pair coordinates=2,3,4, links=2,3, kind='spherical' /"//eol, .false., model)
     associate (structure => model%mechanism%structure)
