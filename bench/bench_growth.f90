@@ -5,6 +5,7 @@
 !> microseconds a position (ladder only), microseconds an evaluation of the motion, megabytes of memory at most.
 program bench_growth
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_program_kind, only: kinematics, dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
@@ -43,7 +44,7 @@ contains
       call write_chain(argument(3), n)
     end if
     clock = seconds()
-    call read_data_file(argument(3), argument(1) == 'ladder', model)
+    call read_data_file(argument(3), merge(kinematics, dynamics, argument(1) == 'ladder'), model)
     reading = seconds() - clock
     clock = seconds()
     if (argument(1) == 'ladder') then

@@ -4,6 +4,7 @@
 !> Prints a line of names and a row for each mechanism: its name, microseconds a position for positions
 !> only and for velocities and accelerations too, each with one point, and the ratios of both to the closed form.
 program bench_positions
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_clock, only: seconds
@@ -83,7 +84,7 @@ contains
     real(wp) :: each(2, passes), error
     integer :: pass
 
-    call read_data_file(path, .true., model)
+    call read_data_file(path, kinematics, model)
     model%request%time%intervals = positions
     call assemble_driven(model, plan, start, err)
     call stop_at(err, name)

@@ -8,6 +8,7 @@
 !> by prince-dormand.
 program bench_precision
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type
@@ -65,7 +66,7 @@ contains
       stop 1
     end if
     quick = argument(3) == 'quick'
-    call read_data_file(argument(1)//'/'//trim(problems(p)%data_file), .false., model)
+    call read_data_file(argument(1)//'/'//trim(problems(p)%data_file), dynamics, model)
     model%request%time%end = problems(p)%end
     ! the reference holds times from the start on: a quick run ends early
     if (quick) model%request%time%end = problems(p)%end/20
@@ -216,7 +217,7 @@ contains
     call assemble_free(model, plan, start, err)
     if (.not. allocated(err)) call new_free_simulation(model, plan, start, simulation, err)
     if (.not. allocated(err)) then
-      call new_row_source('mech9d', simulation, rows)
+      call new_row_source(simulation, rows)
       allocate (row(rows%columns%count), source=0.0_wp)
       begin = seconds()
       call rows%row_at(model%request%time%start, row, err)

@@ -7,6 +7,7 @@
 !> this number is made, for counts of instructions. `four_bar` is the four-bar alone; with `file` the data file is taken as it is.
 program bench_structures
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
@@ -52,7 +53,7 @@ contains
     word = argument(5)
     if (word /= '') read (word, *, iostat=status) evaluations
     if (kind /= 'file') call write_structure(argument(4), kind, argument(2) == 'plane', n)
-    call read_data_file(argument(4), .false., model)
+    call read_data_file(argument(4), dynamics, model)
     clock = seconds()
     call assemble_free(model, plan, start, err)
     planning = seconds() - clock

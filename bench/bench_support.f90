@@ -23,15 +23,15 @@ module mech9_bench_support
 contains
 
   !> A mechanism from its data file; ends the program where something is wrong with it.
-  subroutine read_data_file(path, needs_drives, model)
+  subroutine read_data_file(path, program, model)
     character(len=*), intent(in) :: path                !< of the data file
-    logical, intent(in) :: needs_drives                 !< each independent coordinate must have a drive
+    integer, intent(in) :: program                      !< kinematics or dynamics
     type(model_type), intent(out) :: model              !< all that the file says, checked
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 
     call read_document(path, document, diagnostics)
-    call read_model(document, needs_drives, model, diagnostics)
+    call read_model(document, program, model, diagnostics)
     if (.not. diagnostics%failed()) return
     call diagnostics%report(error_unit)
     stop 1

@@ -9,6 +9,7 @@
 !> gradient is found together with the value before it; followed are values of designs whose runs are followed from their starts.
 !> Prints the microseconds of each, and the positions that were closed for it.
 program bench_synthesis
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_clock, only: seconds
@@ -50,11 +51,11 @@ contains
     integer :: count
 
     call read_document(argument(1)//'/examples/timed_path/timed_path.nml', document, diagnostics)
-    call read_model(document, .true., model, diagnostics)
+    call read_model(document, kinematics, model, diagnostics)
     if (diagnostics%failed()) stop 1
     ! nine parameters: the angle at which the crank starts is held
     model%parameters(size(model%parameters))%has_range = .false.
-    call new_varied_document(document, diagnostics%sources, .true., variable)
+    call new_varied_document(document, diagnostics%sources, kinematics, variable)
     call assemble_driven(model, plan, start, err)
     if (.not. allocated(err)) call new_synthesis(variable, model, plan, synthesis, err)
     call stop_at(err, 'the synthesis')
@@ -123,7 +124,7 @@ contains
     real(wp) :: begin, place(3), total
     integer :: i
 
-    call read_data_file(path, .true., model)
+    call read_data_file(path, kinematics, model)
     model%request%time%intervals = count
     call assemble_driven(model, plan, start, err)
     call stop_at(err, 'the four-bar linkage')

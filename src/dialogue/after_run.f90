@@ -2,6 +2,7 @@
 !> value is changed, and the mechanism is run again.
 module mech9_after_run
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_program_kind, only: dynamics
   use mech9_error, only: error_type
   use mech9_text, only: string_type, lower, join
   use mech9_diagnostics, only: printable
@@ -51,7 +52,7 @@ contains
     character(len=:), allocatable :: line, word, rest, usual, prompt
     logical :: done, with_rest, with_study
 
-    with_rest = conversation%program_name == 'mech9d'
+    with_rest = conversation%program == dynamics
     with_study = conversation%interview%draft%count_of('study') > 0
     call words_here(kept, with_rest, words)
     prompt = '  show, plot, compare, change, run or done ['

@@ -75,7 +75,7 @@ contains
     type(error_type), allocatable :: err
     character(len=:), allocatable :: otherwise
 
-    call read_draft(conversation%interview%draft, conversation%draft_path, task%needs_drives, model, written, diagnostics)
+    call read_draft(conversation%interview%draft, conversation%draft_path, task%program, model, written, diagnostics)
     otherwise = 'guesses'
     if (.not. diagnostics%failed()) then
       call task%assemble(model, plan, start, err)

@@ -1,6 +1,7 @@
 !> The end of a conversation: the summary, in which any answer can be changed, and then saving and running.
 module mech9_closing
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_program_kind, only: program_names
   use mech9_error, only: error_type
   use mech9_text, only: string_type, lower
   use mech9_path, only: folder_of
@@ -30,15 +31,14 @@ contains
 
   !> All answers and the remaining errors are shown, and corrections are heard. When everything is right the user decides
   !> to save or to run.
-  subroutine close_conversation(conversation, needs_drives, run_path)
+  subroutine close_conversation(conversation, run_path)
     class(conversation_type), intent(inout) :: conversation   !< the conversation as it stands
-    logical, intent(in) :: needs_drives                       !< the program needs a drive for each independent coordinate
     character(len=:), allocatable, intent(inout) :: run_path  !< data file to be run then; empty: none
     type(string_type) :: words(5)
     character(len=:), allocatable :: line
     logical :: done
 
-    call show_all(conversation, needs_drives)
+    call show_all(conversation)
     words(1)%text = 'add'
     words(2)%text = 'remove'
     words(3)%text = 'list'
@@ -60,9 +60,8 @@ contains
   end subroutine close_conversation
 
   !> All answers are shown when the end is reached first, and their errors each time.
-  subroutine show_all(conversation, needs_drives)
+  subroutine show_all(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    logical, intent(in) :: needs_drives                      !< the program needs a drive for each independent coordinate
     type(model_type) :: model
     type(draft_text_type) :: written
     type(diagnostics_type) :: diagnostics
@@ -75,7 +74,7 @@ contains
       end if
       conversation%summed_up = .true.
       conversation%topic = 0
-      call read_draft(draft, conversation%draft_path, needs_drives, model, written, diagnostics)
+      call read_draft(draft, conversation%draft_path, conversation%program, model, written, diagnostics)
     end associate
     call faults_of(diagnostics, written, faults)
     if (size(faults) == 0) return
@@ -138,7 +137,7 @@ contains
       call conversation%listen('  data file ['//conversation%data_path//']: ', words, path)
       if (conversation%state /= going .or. path == 'back') return
       if (path == '?') then
-        call conversation%say('The name of the file that will hold these data; '//conversation%program_name// &
+        call conversation%say('The name of the file that will hold these data; '//program_names(conversation%program)// &
                               ' FILE runs it again.')
         cycle
       end if
@@ -160,7 +159,7 @@ contains
     end do
     saved = .true.
     conversation%data_path = path
-    call conversation%say('Saved in '//path//'; '//conversation%program_name//' '//path//' runs it again.')
+    call conversation%say('Saved in '//path//'; '//program_names(conversation%program)//' '//path//' runs it again.')
   end subroutine save
 
   !> Whether a data file of this name would be written over a table, a curve or a list that it names.
@@ -194,8 +193,8 @@ contains
 
     draft = conversation%interview%draft
     call drop_empty_guesses(draft)
-    if (draft%head == '') draft%head = '! A data file of '//conversation%program_name//', from a conversation.'//achar(10)
-    call save_draft(draft, path, '', conversation%program_name, err)
+    if (draft%head == '') draft%head = '! A data file of '//program_names(conversation%program)//', from a conversation.'//achar(10)
+    call save_draft(draft, path, '', conversation%program, err)
     if (allocated(err)) return
     if (conversation%draft_path == '') return
     if (.not. same_file(conversation%draft_path, path)) call delete_file(conversation%draft_path)

@@ -2,6 +2,7 @@
 !> in which these are kept.
 module mech9_conversation
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_program_kind, only: kinematics
   use mech9_error, only: error_type
   use mech9_text, only: string_type, lower
   use mech9_grammar, only: item_table
@@ -20,7 +21,7 @@ module mech9_conversation
   integer, parameter :: going = 0, left = 1, cut_off = 2, finished = 3
 
   type :: conversation_type
-    character(len=6) :: program_name = ''
+    integer :: program = kinematics
     type(interview_type) :: interview
     type(line_input_type) :: input
     integer :: state = going
@@ -103,7 +104,7 @@ contains
       call self%say('(What you type is kept in '//self%draft_path//'.)')
     end if
     associate (interview => self%interview)
-      call save_draft(interview%draft, self%draft_path, interview%bookmark(), self%program_name, err)
+      call save_draft(interview%draft, self%draft_path, interview%bookmark(), self%program, err)
     end associate
     if (.not. allocated(err)) return
     self%cannot_keep = .true.

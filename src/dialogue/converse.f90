@@ -1,6 +1,7 @@
 !> A whole conversation, from its first question to a run. It can be new, resumed, or about an existing data file.
 module mech9_converse
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_program_kind, only: kinematics, program_names
   use mech9_error, only: exit_done, exit_usage, exit_interrupted
   use mech9_text, only: to_text
   use mech9_command_line, only: command_line_type
@@ -30,11 +31,11 @@ contains
 
     call begin(conversation, task, options, code)
     if (code /= exit_done) return
-    call conversation%input%open(task%program_name)
+    call conversation%input%open(program_names(task%program))
     run_path = ''
     do while (conversation%state == going)
       call lead(conversation, task)
-      if (conversation%state == going) call close_conversation(conversation, task%needs_drives, run_path)
+      if (conversation%state == going) call close_conversation(conversation, run_path)
     end do
     if (run_path == '') then
       call take_leave(conversation, code)
@@ -55,7 +56,7 @@ contains
     type(diagnostics_type) :: diagnostics
 
     code = exit_done
-    conversation%program_name = task%program_name
+    conversation%program = task%program
     conversation%draft_path = ''
     conversation%stem = ''
     conversation%data_path = ''
@@ -79,11 +80,11 @@ contains
       ! a data file stays as it is until the end; the file of an interrupted conversation is continued
       if (bookmark /= '') conversation%draft_path = path
     end if
-    call greet(conversation, task%program_name, path)
+    call greet(conversation, task%program, path)
     if (draft%comments_left_out > 0) &
       call conversation%say('Comments inside and behind groups, '//to_text(draft%comments_left_out)// &
                             ' here, are not kept when it is saved.')
-    call conversation%interview%start(task%program_name, draft)
+    call conversation%interview%start(task%program, draft)
     if (path /= '') then
       conversation%interview%at = size(conversation%interview%questions)
       call conversation%interview%open_at(bookmark)
@@ -91,19 +92,19 @@ contains
   end subroutine begin
 
   !> The first words of a conversation.
-  subroutine greet(conversation, program_name, path)
+  subroutine greet(conversation, program, path)
     type(conversation_type), intent(in) :: conversation  !< the conversation as it stands
-    character(len=*), intent(in) :: program_name         !< mech9k or mech9d
+    integer, intent(in) :: program                       !< kinematics or dynamics
     character(len=*), intent(in) :: path                 !< file that the conversation is about; empty: none
     character(len=*), parameter :: how = 'Enter takes what stands in brackets, ? explains, back returns, list shows all '// &
                                          'answers, quit leaves; what is typed is kept.'
 
     if (path /= '') then
-      write (error_unit, '(a)') program_name//': '//path//' in a conversation.'
-    else if (program_name == 'mech9k') then
-      write (error_unit, '(a)') program_name//': kinematics of a mechanism, from your answers.'
+      write (error_unit, '(a)') program_names(program)//': '//path//' in a conversation.'
+    else if (program == kinematics) then
+      write (error_unit, '(a)') program_names(program)//': kinematics of a mechanism, from your answers.'
     else
-      write (error_unit, '(a)') program_name//': dynamics of a mechanism, from your answers.'
+      write (error_unit, '(a)') program_names(program)//': dynamics of a mechanism, from your answers.'
     end if
     call conversation%say(how)
   end subroutine greet
@@ -122,15 +123,15 @@ contains
       if (conversation%cannot_keep) then
         call conversation%say('What was typed could not be kept.')
       else
-        call conversation%say('What was typed is kept in '//conversation%draft_path//'; '//conversation%program_name// &
+        call conversation%say('What was typed is kept in '//conversation%draft_path//'; '//program_names(conversation%program)// &
                               ' --resume '//conversation%draft_path//' goes on.')
       end if
     else if (code == exit_interrupted) then
       if (is_terminal(standard_input)) return
       missing = 'nothing was answered'
       if (conversation%data_path == '') missing = 'no data file is given and nothing was answered'
-      write (error_unit, '(a)') conversation%program_name//': '//missing//'; '//conversation%program_name// &
-        ' FILE runs a data file, '//conversation%program_name//' --help tells more'
+      write (error_unit, '(a)') program_names(conversation%program)//': '//missing//'; '//program_names(conversation%program)// &
+        ' FILE runs a data file, '//program_names(conversation%program)//' --help tells more'
       code = exit_usage
     end if
   end subroutine take_leave

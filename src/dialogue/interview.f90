@@ -52,14 +52,14 @@ module mech9_interview
 contains
 
   !> The interview begins with a draft, which is empty or was read from a file.
-  pure subroutine start(self, program_name, draft)
+  pure subroutine start(self, program, draft)
     class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+    integer, intent(in) :: program                !< kinematics or dynamics
     type(draft_type), intent(in) :: draft         !< draft to begin with
 
     self%draft = draft
     if (self%draft%count_of('mechanism') == 0) call self%draft%add('mechanism')
-    self%outline = new_outline(program_name, self%draft)
+    self%outline = new_outline(program, self%draft)
     self%return_to = ''
     self%at = 1
     call self%refresh('')
@@ -191,7 +191,7 @@ contains
     is_begun = .false.
     associate (question => self%questions(self%at))
       if (question%kind /= ask_item .or. question%is_new) return
-      if (.not. can_be_left_out(question%group_row, self%outline%program_name)) return
+      if (.not. can_be_left_out(question%group_row, self%outline%program)) return
       rows = rows_of_group(group_table(question%group_row)%name)
       if (question%row /= rows(1)) return
       do i = self%at, size(self%questions)
@@ -213,7 +213,7 @@ contains
     question = self%due()
     done = .false.
     if (question%kind /= ask_item .or. question%is_new) return
-    done = can_be_left_out(question%group_row, self%outline%program_name)
+    done = can_be_left_out(question%group_row, self%outline%program)
     if (.not. done) return
     group = trim(group_table(question%group_row)%name)
     rows = rows_of_group(group)

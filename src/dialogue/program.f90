@@ -2,6 +2,7 @@
 !> a conversation.
 module mech9_program
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_program_kind, only: program_names
   use mech9_error, only: error_type
   use mech9_text, only: string_type
   use mech9_command_line, only: command_line_type, get_command_words, parse_command_line
@@ -45,13 +46,13 @@ contains
     type(string_type), allocatable :: inputs(:)
     type(error_type), allocatable :: err
 
-    call parse_command_line(words, task%program_name, options, err)
+    call parse_command_line(words, task%program, options, err)
     if (allocated(err)) then
-      write (error_unit, '(3a)') task%program_name, ': ', err%message
+      write (error_unit, '(3a)') program_names(task%program), ': ', err%message
       code = err%code
     else if (options%has('import') .and. .not. asks_for_text(options)) then
       call options%arguments('import', inputs)
-      call import_robot(task%program_name, inputs, options%argument('out'), options%has('quiet'), code)
+      call import_robot(task%program, inputs, options%argument('out'), options%has('quiet'), code)
     else if (options%converses() .and. .not. asks_for_text(options)) then
       call converse(task, options, code)
     else

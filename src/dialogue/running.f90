@@ -1,5 +1,6 @@
 !> The run at the end of a conversation, and what follows it: looking at results, changes, further runs.
 module mech9_running
+  use mech9_program_kind, only: program_names
   use mech9_error, only: error_type
   use mech9_text, only: string_type
   use mech9_grammar, only: words_of
@@ -88,7 +89,7 @@ contains
       words(i)%text = trim(options_given(i))
     end do
     words(size(words))%text = file
-    call parse_command_line(words, conversation%program_name, options, err)
+    call parse_command_line(words, conversation%program, options, err)
     if (allocated(err)) then
       call conversation%say(err%message)
     else
@@ -105,7 +106,7 @@ contains
     character(len=:), allocatable :: draft, how
 
     draft = conversation%draft_path
-    how = conversation%program_name//' --resume '//draft//' goes on'
+    how = program_names(conversation%program)//' --resume '//draft//' goes on'
     if ((changed .or. path == draft) .and. conversation%cannot_keep) then
       call conversation%say('What was changed since the last run, or never saved, could not be kept.')
     else if (path == draft) then

@@ -1,5 +1,6 @@
 !> A mechanism as the library's users hold it: read from a data file or a text of the same form, and checked.
 module mech9_checked_mechanism
+  use mech9_program_kind, only: dynamics
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_model, only: model_type
   use mech9_explanation, only: explain
@@ -57,16 +58,16 @@ contains
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
     type(model_type) :: unused
 
-    call read_model(mechanism%document, .false., unused, diagnostics)
+    call read_model(mechanism%document, dynamics, unused, diagnostics)
     call fail_as(diagnostics, err)
     mechanism%is_read = .not. allocated(err)
   end subroutine check
 
   !> The model of a driven or of a free motion, with all coordinates and their derivatives requested. Fails with exit_data
   !> where drives are missing for the former.
-  subroutine take(self, driven, model, err)
+  subroutine take(self, program, model, err)
     class(checked_mechanism_type), intent(in) :: self      !< the mechanism
-    logical, intent(in) :: driven                          !< all independent coordinates must have drives
+    integer, intent(in) :: program                         !< kinematics, where all independent coordinates have drives, or dynamics
     type(model_type), intent(out) :: model                 !< in m, rad, kg, s
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(diagnostics_type) :: diagnostics
@@ -77,7 +78,7 @@ contains
       return
     end if
     call diagnostics%add_source(self%document%source, number)
-    call read_model(self%document, driven, model, diagnostics)
+    call read_model(self%document, program, model, diagnostics)
     call fail_as(diagnostics, err)
     if (allocated(err)) return
     if (allocated(model%request%output%coordinates)) deallocate (model%request%output%coordinates)

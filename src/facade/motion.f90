@@ -1,12 +1,12 @@
 !> A motion as the library's users run it: started, advanced from time to time, and asked for its coordinates, points and energies.
 module mech9_motion
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use mech9_program_kind, only: kinematics, dynamics
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_model, only: model_type
   use mech9_point, only: point_type
-  use mech9_partition, only: free_coordinate
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: point_motion
@@ -76,7 +76,7 @@ contains
 
     call self%close()
     allocate (simulation, self%model)
-    call mechanism%take(.true., self%model, err)
+    call mechanism%take(kinematics, self%model, err)
     if (.not. allocated(err)) call assemble_driven_start(self%model, plan, assembled, err)
     if (.not. allocated(err)) then
       call new_driven_simulation(self%model, plan, assembled, simulation, .true., with_masses)
@@ -104,9 +104,9 @@ contains
 
     call self%close()
     allocate (simulation, self%model)
-    call mechanism%take(.false., self%model, err)
+    call mechanism%take(dynamics, self%model, err)
     if (.not. allocated(err)) then
-      if (all(self%model%problem%partition%kind /= free_coordinate)) then
+      if (self%model%is_driven()) then
         call start_driven(self, mechanism, .true., err, interruption)
         return
       end if

@@ -67,11 +67,10 @@ contains
   end function can_be_read_alone
 
   !> Read groups again. The model is of use only where nothing is reported.
-  subroutine read_changed(document, changed, map, needs_drives, model, diagnostics)
+  subroutine read_changed(document, changed, map, model, diagnostics)
     type(document_type), intent(in) :: document           !< checked, with the new numbers
     logical, intent(in) :: changed(:)                     !< (groups) numbers of the group have changed; it can be read alone
     type(group_map_type), intent(in) :: map               !< of the groups
-    logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
     type(model_type), intent(inout) :: model              !< with the numbers before, and without held rods; gets the new ones
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     logical :: pairs, initials, drives, bodies, cams
@@ -115,7 +114,7 @@ contains
       if (bodies .or. (pairs .and. size(m%bodies) > 0)) call read_bodies(document, m%structure, m%pairs, m%bodies, diagnostics)
       if (cams .or. (pairs .and. size(model%request%cams) > 0)) &
         call read_cams(document, m%structure, m%pairs, model%request%cams, diagnostics)
-      if (drives .or. initials) call check_drives(document, needs_drives, model, diagnostics)
+      if (drives .or. initials) call check_drives(document, model, diagnostics)
     end associate
   end subroutine read_changed
 

@@ -1,5 +1,6 @@
 !> Checks of drives that need the whole model: a drive of a dependent coordinate, and initial values that contradict a drive.
 module mech9_drive_check
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
@@ -23,9 +24,8 @@ module mech9_drive_check
 contains
 
   !> Check all drives.
-  subroutine check_drives(document, needed, model, diagnostics)
+  subroutine check_drives(document, model, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
-    logical, intent(in) :: needed                         !< every independent coordinate must have a drive
     type(model_type), intent(in) :: model                 !< all that was read; sound where there are no errors
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:)
@@ -38,7 +38,8 @@ contains
       call check_independent(document%groups(numbers(i)), model, sound, 'be driven', &
                              'drive an independent one (see cq)', diagnostics)
     end do
-    if (needed .and. .not. has_unsound(document, 'drive')) call check_complete(document, model%problem%partition, diagnostics)
+    if (model%program == kinematics .and. .not. has_unsound(document, 'drive')) &
+      call check_complete(document, model%problem%partition, diagnostics)
     numbers = groups_named(document, 'initial')
     do i = 1, size(numbers)
       call check_start(document%groups(numbers(i)), model, diagnostics)

@@ -1,5 +1,6 @@
 !> The mechanism of a document, with all data checked.
 module mech9_reader
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp, radians_per_degree
   use mech9_structure, only: structure_type
   use mech9_partition, only: partition_type
@@ -55,19 +56,20 @@ contains
 
   !> The model, in m, rad, kg, s. All errors are collected in the diagnostics, which may hold some from
   !> reading the document already; the model is of use only where there are none.
-  subroutine read_model(document, needs_drives, model, diagnostics)
+  subroutine read_model(document, program, model, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
-    logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
+    integer, intent(in) :: program                        !< kinematics, where every independent coordinate must be driven, or dynamics
     type(model_type), intent(out) :: model                !< the mechanism, its problem, and the request for results
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(document_type) :: checked
 
+    model%program = program
     if (size(document%groups) == 0) return          ! the reason was reported when the file was read
     checked = document
     call check_document(checked, diagnostics)
     call read_parameters(checked, model%parameters, diagnostics)
-    call read_checked(checked, needs_drives, model, diagnostics)
-    if (.not. diagnostics%failed()) call hold_idle_rods(needs_drives, model)
+    call read_checked(checked, model, diagnostics)
+    if (.not. diagnostics%failed()) call hold_idle_rods(model)
     call read_study(checked, model%parameters, model%request%study, diagnostics)
     call read_objectives(checked, model, diagnostics)
     call read_limits(checked, model, diagnostics)
@@ -75,10 +77,9 @@ contains
 
   !> The model of a document that is checked and in which the parameters have set their numbers; see read_model. Idle rods are not
   !> held yet. Motors are left out where all independent coordinates are driven.
-  subroutine read_checked(document, needs_drives, model, diagnostics)
+  subroutine read_checked(document, model, diagnostics)
     type(document_type), intent(in) :: document           !< checked
-    logical, intent(in) :: needs_drives                   !< whether every independent coordinate must be driven, as in kinematics
-    type(model_type), intent(inout) :: model              !< with its parameters; gets all else
+    type(model_type), intent(inout) :: model              !< with its program and its parameters; gets all else
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     logical :: known
 
@@ -87,10 +88,10 @@ contains
     call read_structure(document, model%mechanism%structure, model%problem%partition, known, diagnostics)
     if (.not. known) call forget(model%mechanism%structure, model%problem%partition)
     call read_parts(document, model%mechanism, model%problem, model%request, diagnostics)
-    if (.not. needs_drives) call read_motors(document, model%mechanism%pairs, model%mechanism%angle_unit, &
-                                             model%mechanism%loads, model%mechanism%n_motors, diagnostics)
-    call check_drives(document, needs_drives, model, diagnostics)
-    if (.not. needs_drives) call check_motors(document, model, diagnostics)
+    if (model%program == dynamics) call read_motors(document, model%mechanism%pairs, model%mechanism%angle_unit, &
+                                                    model%mechanism%loads, model%mechanism%n_motors, diagnostics)
+    call check_drives(document, model, diagnostics)
+    if (model%program == dynamics) call check_motors(document, model, diagnostics)
     call check_sensitivities(document, size(model%parameters), diagnostics)
   end subroutine read_checked
 

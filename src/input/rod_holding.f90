@@ -6,6 +6,7 @@
 !> held at the nearest position where the rod can point in all directions, so that chains close: there the middle axis is at a
 !> right angle to the rod's line.
 module mech9_rod_holding
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp, pi
   use mech9_rotation, only: cross, unit
   use mech9_error, only: error_type
@@ -35,8 +36,7 @@ module mech9_rod_holding
 contains
 
   !> Make one angle of each idle rod independent, unless one is so already.
-  subroutine hold_idle_rods(all_driven, model)
-    logical, intent(in) :: all_driven           !< every independent coordinate is driven, as in kinematics
+  subroutine hold_idle_rods(model)
     type(model_type), intent(inout) :: model    !< the model without errors
     type(idle_rod_type), allocatable :: rods(:)
     integer, allocatable :: kinds(:)
@@ -52,7 +52,7 @@ contains
       changed = .true.
       if (.not. (serves_there .or. model%problem%initial%position_given(k))) &
         call let_point_anywhere(model%mechanism, rods(i), k, model%problem%initial%position)
-      turns_freely = .not. all_driven
+      turns_freely = model%program == dynamics
       if (turns_freely) turns_freely = resists(model%mechanism, rods(i), model%problem%initial%position)
       if (turns_freely) then
         kinds(k) = free_coordinate

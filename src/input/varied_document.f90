@@ -3,6 +3,7 @@
 !> The model is kept. Where other values of the parameters change few groups of the document, only these are read again; the result
 !> has the same bits as reading all, and where a number is wrong all is read, so that the message is the same, too.
 module mech9_varied_document
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise
   use mech9_source, only: source_type, span_type
@@ -26,7 +27,7 @@ module mech9_varied_document
     type(group_map_type) :: map                           !< of its groups
     type(diagnostics_type) :: diagnostics                 !< with the texts that the document comes from; without errors
     type(parameter_type), allocatable :: parameters(:)
-    logical :: needs_drives = .false.                     !< every independent coordinate must be driven
+    integer :: program = kinematics                       !< or dynamics
     type(model_type), allocatable :: kept                 !< of the present document, without held rods; only where it is right
   contains
     procedure :: at
@@ -35,14 +36,14 @@ module mech9_varied_document
 contains
 
   !> Prepare a document that has been read without errors.
-  subroutine new_varied_document(document, sources, needs_drives, varied)
+  subroutine new_varied_document(document, sources, program, varied)
     type(document_type), intent(in) :: document           !< the data file as groups and items, with the changes by --set
     type(source_type), intent(in) :: sources(:)           !< the texts that it comes from, for messages: those of its diagnostics
-    logical, intent(in) :: needs_drives                   !< every independent coordinate must be driven
+    integer, intent(in) :: program                        !< kinematics, where every independent coordinate must be driven, or dynamics
     type(varied_document_type), intent(out) :: varied     !< the model as a function of the parameters
 
     varied%document = document
-    varied%needs_drives = needs_drives
+    varied%program = program
     varied%diagnostics%sources = sources
     call check_document(varied%document, varied%diagnostics)
     call read_parameters(varied%document, varied%parameters, varied%diagnostics)
@@ -63,7 +64,7 @@ contains
     if (allocated(err)) return
     model = self%kept
     model%parameters = self%parameters
-    call hold_idle_rods(self%needs_drives, model)
+    call hold_idle_rods(model)
   end subroutine at
 
   !> Let the kept model follow the values of the parameters. It is given up where the whole document must be read, or a number is
@@ -75,7 +76,7 @@ contains
     changed = .false.
     call place_parameters(self%document, self%parameters, self%diagnostics, changed)
     if (all(self%map%is_alone .or. .not. changed) .and. .not. self%diagnostics%failed()) then
-      call read_changed(self%document, changed, self%map, self%needs_drives, self%kept, self%diagnostics)
+      call read_changed(self%document, changed, self%map, self%kept, self%diagnostics)
       if (.not. self%diagnostics%failed()) return
     end if
     deallocate (self%kept)
@@ -91,8 +92,9 @@ contains
 
     allocate (self%kept)
     call place_parameters(self%document, self%parameters, self%diagnostics)
+    self%kept%program = self%program
     self%kept%parameters = self%parameters
-    call read_checked(self%document, self%needs_drives, self%kept, self%diagnostics)
+    call read_checked(self%document, self%kept, self%diagnostics)
     if (.not. self%diagnostics%failed()) return
     call self%diagnostics%get(1, text, span)
     call raise(err, self%diagnostics%code(), text, self%diagnostics%place(span))

@@ -1,6 +1,7 @@
 !> The import of robots: from an XML file in one of several formats to a data file.
 module mech9_importing
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_program_kind, only: kinematics, dynamics, program_names
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_done, exit_internal, exit_usage, exit_data, exit_structure
   use mech9_text, only: to_text, string_type
@@ -39,8 +40,8 @@ module mech9_importing
 contains
 
   !> Import a robot. `code` is the exit code of the program.
-  subroutine import_robot(program_name, inputs, output, quiet, code)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
+  subroutine import_robot(program, inputs, output, quiet, code)
+    integer, intent(in) :: program                 !< kinematics or dynamics
     type(string_type), intent(in) :: inputs(:)     !< path of the robot, and perhaps that of its loops
     character(len=*), intent(in) :: output         !< path of the data file; empty or '-': standard output
     logical, intent(in) :: quiet                   !< write errors only
@@ -50,7 +51,7 @@ contains
     character(len=:), allocatable :: text, summary
     type(error_type), allocatable :: err
 
-    call make_data_file(program_name, inputs, robot, files, text, summary, err)
+    call make_data_file(program, inputs, robot, files, text, summary, err)
     if (.not. allocated(err)) call refuse_overwriting(files, output, err)
     if (.not. allocated(err)) then
       if (output == '' .or. output == '-') then
@@ -62,16 +63,16 @@ contains
     code = exit_done
     if (allocated(err)) then
       code = err%code
-      write (error_unit, '(3a)') program_name, ': ', err%message
+      write (error_unit, '(3a)') program_names(program), ': ', err%message
     else if (.not. quiet) then
       call print_notes(robot)
-      write (error_unit, '(3a)') program_name, ': ', summary
+      write (error_unit, '(3a)') program_names(program), ': ', summary
     end if
   end subroutine import_robot
 
   !> From the files of the robot to the text of a data file.
-  subroutine make_data_file(program_name, inputs, robot, files, text, summary, err)
-    character(len=*), intent(in) :: program_name           !< mech9k or mech9d
+  subroutine make_data_file(program, inputs, robot, files, text, summary, err)
+    integer, intent(in) :: program                         !< kinematics or dynamics
     type(string_type), intent(in) :: inputs(:)             !< path of the robot, and perhaps that of its loops
     type(robot_type), intent(out) :: robot                 !< the robot, with notes about what is not taken over
     type(string_type), allocatable, intent(out) :: files(:)   !< paths of all files that were read
@@ -90,7 +91,7 @@ contains
       call raise(err, exit_data, printable(inputs(1)%text)//': the robot has no joints that move, so that there is no '// &
                  'motion to compute; a mechanism needs one joint at least that is not fixed')
     else
-      call write_robot(program_name, name_of(inputs(1)%text), robot, series, text, summary, err)
+      call write_robot(program, name_of(inputs(1)%text), robot, series, text, summary, err)
     end if
   end subroutine make_data_file
 
@@ -149,8 +150,8 @@ contains
   end subroutine read_robot
 
   !> The data file as text, with start and independent coordinates, and a line about it.
-  subroutine write_robot(program_name, file, robot, series, text, summary, err)
-    character(len=*), intent(in) :: program_name                  !< mech9k or mech9d
+  subroutine write_robot(program, file, robot, series, text, summary, err)
+    integer, intent(in) :: program                                !< kinematics or dynamics
     character(len=*), intent(in) :: file                          !< name of the file that was imported
     type(robot_type), intent(inout) :: robot                      !< the robot; gets notes
     type(series_type), intent(in) :: series                       !< its pairs
@@ -195,10 +196,10 @@ contains
         return
       end if
     end if
-    call draft_of_robot(robot, series, independent, q, program_name == 'mech9k', draft)
+    call draft_of_robot(robot, series, independent, q, program == kinematics, draft)
     call take_model(draft, robot, model, err)
     if (allocated(err)) return
-    draft%head = head_of(program_name, file, robot, series)
+    draft%head = head_of(program, file, robot, series)
     if (moved) draft%head = draft%head//'!'//eol//'! '//beside_singular//eol
     call write_draft(draft, '', written)
     call move_alloc(written%text, text)
@@ -223,7 +224,7 @@ contains
 
     call write_draft(draft, '', written)
     call parse_document(source_from_text('imported', written%text), document, diagnostics)
-    call read_model(document, .false., model, diagnostics)
+    call read_model(document, dynamics, model, diagnostics)
     if (.not. diagnostics%failed()) return
     changed = .false.
     do i = 1, diagnostics%known()
@@ -241,7 +242,7 @@ contains
     call write_draft(draft, '', written)
     diagnostics = diagnostics_type()
     call parse_document(source_from_text('imported', written%text), document, diagnostics)
-    call read_model(document, .false., model, diagnostics)
+    call read_model(document, dynamics, model, diagnostics)
     if (.not. diagnostics%failed()) return
     call diagnostics%get(1, message, span)
     call raise(err, exit_internal, 'the data file that was made has an error: '//message)
@@ -265,16 +266,16 @@ contains
   end subroutine leave_inertia_out
 
   !> The comment at the beginning of the data file: its origin, the links, and all that is not taken over.
-  function head_of(program_name, file, robot, series) result(text)
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+  function head_of(program, file, robot, series) result(text)
+    integer, intent(in) :: program                !< kinematics or dynamics
     character(len=*), intent(in) :: file          !< name of the file that was imported
     type(robot_type), intent(in) :: robot         !< the robot
     type(series_type), intent(in) :: series       !< its pairs
     character(len=:), allocatable :: text
     integer :: i
 
-    text = '! Imported by '//program_name//' from '//printable(file)//' ('//robot%format//'). Lengths are in m, masses in kg, '// &
-           'angles in rad.'//eol//'!'//eol
+    text = '! Imported by '//program_names(program)//' from '//printable(file)//' ('//robot%format//'). '// &
+           'Lengths are in m, masses in kg, angles in rad.'//eol//'!'//eol
     do i = 1, size(robot%links)
       text = text//'! Link '//to_text(series%number_of(i))//': '//printable(robot%links(i)%name)//eol
     end do

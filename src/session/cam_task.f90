@@ -17,7 +17,7 @@ module mech9_cam_task
   use mech9_state, only: state_type
   use mech9_cam_profile, only: cam_profile_type, find_profile
   use mech9_table, only: table_type
-  use mech9_version, only: version
+  use mech9_version, only: name_and_version
   use mech9_cam_picture, only: save_cam_picture
   use mech9_cam_text, only: print_cam, judge_cam, name_of_cam
   use mech9_cam_report, only: add_cam
@@ -31,8 +31,7 @@ module mech9_cam_task
 contains
 
   !> Compute the profiles of all cams that are asked for, and write their files.
-  subroutine work_on_cams(program_name, options, model, plan, start, diagnostics, reported, err)
-    character(len=*), intent(in) :: program_name        !< mech9k
+  subroutine work_on_cams(options, model, plan, start, diagnostics, reported, err)
     type(command_line_type), intent(in) :: options      !< the command line
     type(model_type), intent(in), target :: model       !< the model
     type(plan_type), intent(in) :: plan                 !< its plan
@@ -48,7 +47,7 @@ contains
     reported = .false.
     call read_files(options, size(model%request%cams), files, err)
     if (allocated(err)) return
-    call begin_report(json, program_name, model, diagnostics, '')
+    call begin_report(json, model, diagnostics, '')
     call json%begin_array('cams')
     do k = 1, size(model%request%cams)
       if (.not. any(files%number == k)) cycle
@@ -64,7 +63,7 @@ contains
           if (files(i)%is_picture) then
             call save_cam_picture(files(i)%path, name_of_cam(model, k), model, cam, profile, err)
           else
-            call save_table(files(i)%path, program_name, model, k, profile, err)
+            call save_table(files(i)%path, model, k, profile, err)
           end if
           if (allocated(err)) return
           if (files(i)%path /= '-' .and. .not. options%has('quiet')) &
@@ -112,9 +111,8 @@ contains
   end subroutine read_files
 
   !> The table of a profile, with a row for each output at which the follower moves against the cam.
-  subroutine save_table(path, program_name, model, number, profile, err)
+  subroutine save_table(path, model, number, profile, err)
     character(len=*), intent(in) :: path                !< of the table; '-' is standard output
-    character(len=*), intent(in) :: program_name        !< mech9k
     type(model_type), intent(in) :: model               !< the model
     integer, intent(in) :: number                       !< of the cam
     type(cam_profile_type), intent(in) :: profile       !< its profile
@@ -126,8 +124,8 @@ contains
     integer :: i
 
     call list_columns(model, model%request%cams(number), profile%has_pressure, names, units)
-    call table%open(path, model%mechanism%title//new_line('a')//name_of_cam(model, number), program_name//' '//version, names, &
-                    units, err)
+    call table%open(path, model%mechanism%title//new_line('a')//name_of_cam(model, number), &
+                    name_and_version(model%program), names, units, err)
     do i = 1, size(profile%contacts)
       if (allocated(err)) exit
       if (.not. (profile%at_output(i) .and. profile%contacts(i)%known)) cycle

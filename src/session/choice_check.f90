@@ -1,6 +1,7 @@
 !> The choice of the independent coordinates judged apart from their drives: where it is wrong, it explains why drives are
 !> missing.
 module mech9_choice_check
+  use mech9_program_kind, only: dynamics
   use mech9_error, only: error_type, exit_structure
   use mech9_document, only: document_type, group_type
   use mech9_diagnostics, only: diagnostics_type
@@ -31,7 +32,7 @@ contains
     wrong%sources = sources_of%sources
     of_data%sources = sources_of%sources
     call leave_drives_out(document, bare)
-    call read_model(bare, .false., model, of_data)
+    call read_model(bare, dynamics, model, of_data)
     if (of_data%failed()) return
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, start, err)
     if (.not. allocated(err)) return

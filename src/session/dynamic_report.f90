@@ -192,7 +192,7 @@ contains
     type(json_type) :: json
     type(facts_type) :: facts
 
-    call begin_report(json, 'mech9d', model, diagnostics, table_path)
+    call begin_report(json, model, diagnostics, table_path)
     call dynamic_facts(model, plan, outcome, simulation, facts)
     call facts%to_json(json)
     call add_coefficients(json, plan, simulation%coefficients)

@@ -1,11 +1,11 @@
 !> The work of mech9d on a mechanism.
 module mech9_dynamic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
-  use mech9_partition, only: free_coordinate
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_kept_rows, only: kept_rows_type
@@ -42,8 +42,7 @@ contains
   pure function dynamic_task() result(task)
     type(dynamic_task_type) :: task
 
-    task%program_name = 'mech9d'
-    task%needs_drives = .false.
+    task%program = dynamics
   end function dynamic_task
 
   !> Make the plan and assemble the mechanism at the start.
@@ -54,7 +53,7 @@ contains
     type(state_type), intent(out) :: state              !< position and motion of the mechanism
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    if (is_all_driven(model)) then
+    if (model%is_driven()) then
       call assemble_driven_start(model, plan, state, err)
     else
       call assemble_free_start(model, plan, state, err)
@@ -81,8 +80,8 @@ contains
       call find_rest(options, model, diagnostics, reported)
       return
     end if
-    if (is_all_driven(model)) then
-      call work_driven(self%program_name, .true., options, model, variable, diagnostics, reported, kept)
+    if (model%is_driven()) then
+      call work_driven(.true., options, model, variable, diagnostics, reported, kept)
       return
     end if
     reported = .false.
@@ -90,7 +89,7 @@ contains
     if (diagnostics%failed()) return
     used = model
     allocate (simulation)   ! too large for a small stack
-    call read_picture_requests(options, model, self%program_name, pictures, err)
+    call read_picture_requests(options, model, pictures, err)
     if (.not. allocated(err)) call assemble_free_start(model, plan, start, err)
     if (.not. allocated(err)) &
       call new_free_simulation(used, plan, start, simulation, err, &
@@ -109,13 +108,6 @@ contains
     call simulation%close()
   end subroutine work
 
-  !> Whether nothing is left to integrate: all independent coordinates are driven.
-  pure logical function is_all_driven(model)
-    type(model_type), intent(in) :: model   !< the model
-
-    is_all_driven = any(model%problem%partition%driven()) .and. .not. any(model%problem%partition%kind == free_coordinate)
-  end function is_all_driven
-
   !> Fail in a check where a run would fail at its start.
   subroutine check_motion(model, variable, simulation, err)
     type(model_type), intent(in), target :: model                     !< the model
@@ -126,7 +118,7 @@ contains
     real(wp), allocatable :: row(:)
 
     allocate (source)
-    call new_row_source('mech9d', simulation, source)
+    call new_row_source(simulation, source)
     if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
     if (.not. allocated(err)) call source%begin_quantities(err)
     if (allocated(err)) return
@@ -155,7 +147,7 @@ contains
     logical :: ready
 
     allocate (source)
-    call new_row_source('mech9d', simulation, source)
+    call new_row_source(simulation, source)
     call source%forces%judge(model, plan, start)
     reported = .false.
     if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)

@@ -67,7 +67,7 @@ contains
 
     reported = .false.
     allocate (list(0))
-    if (options%has('animate')) call read_picture_requests(options, model, 'mech9d', pictures, err)
+    if (options%has('animate')) call read_picture_requests(options, model, pictures, err)
     if (.not. allocated(err)) call assemble_in_space(model, plan, start, err)
     if (.not. allocated(err) .and. options%has('verbose')) call print_making(model, plan)
     if (.not. allocated(err)) call search(options, model, plan, start, list, err)
@@ -278,7 +278,7 @@ contains
     call file%create(path, err)
     if (allocated(err)) return
     call write_coordinates(file, model)
-    call write_provenance(file, 'mech9d', options, model, data_text)
+    call write_provenance(file, options, model, data_text)
     call write_structure(file, model)
   end subroutine begin_file
 
@@ -335,7 +335,7 @@ contains
     type(json_type) :: json
     integer :: i
 
-    call begin_report(json, 'mech9d', model, diagnostics, options%table_of_answer())
+    call begin_report(json, model, diagnostics, options%table_of_answer())
     call json%begin_array('equilibria')
     do i = 1, size(list)
       call json%begin_object()

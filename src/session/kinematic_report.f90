@@ -92,10 +92,9 @@ contains
   end subroutine kinematic_facts
 
   !> Write the report as JSON, with the structure.
-  subroutine save_kinematic_report(path, program_name, model, plan, table_path, diagnostics, outcome, driven, err, &
+  subroutine save_kinematic_report(path, model, plan, table_path, diagnostics, outcome, driven, err, &
                                    unique, quantities)
     character(len=*), intent(in) :: path                  !< of the report
-    character(len=*), intent(in) :: program_name          !< mech9k or mech9d
     type(model_type), intent(in) :: model             !< the model
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
@@ -108,7 +107,7 @@ contains
     type(json_type) :: json
     type(facts_type) :: facts
 
-    call begin_report(json, program_name, model, diagnostics, table_path)
+    call begin_report(json, model, diagnostics, table_path)
     call kinematic_facts(plan, outcome, driven, facts)
     call facts%to_json(json)
     call quantities%to_json(json)

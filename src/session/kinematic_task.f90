@@ -1,6 +1,7 @@
 !> The work of mech9k on a mechanism, and that of mech9d where all independent coordinates are driven.
 module mech9_kinematic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
@@ -40,8 +41,7 @@ contains
   pure function kinematic_task() result(task)
     type(kinematic_task_type) :: task
 
-    task%program_name = 'mech9k'
-    task%needs_drives = .true.
+    task%program = kinematics
   end function kinematic_task
 
   !> Make the plan and assemble the mechanism at the start.
@@ -65,12 +65,11 @@ contains
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
 
-    call work_driven(self%program_name, .false., options, model, variable, diagnostics, reported, kept)
+    call work_driven(.false., options, model, variable, diagnostics, reported, kept)
   end subroutine work
 
   !> The work on a mechanism whose independent coordinates are all driven.
-  subroutine work_driven(program_name, with_masses, options, model, variable, diagnostics, reported, kept)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine work_driven(with_masses, options, model, variable, diagnostics, reported, kept)
     logical, intent(in) :: with_masses                      !< bodies count, and energies are recorded
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in), target :: model               !< the model
@@ -88,7 +87,7 @@ contains
     if (options%has('check') .or. options%has('cam') .or. .not. answers_only(options)) &
       call check_times_of_laws(model, with_masses .or. model%request%output%with_forces(), diagnostics)
     if (diagnostics%failed()) return
-    call read_picture_requests(options, model, program_name, pictures, err)
+    call read_picture_requests(options, model, pictures, err)
     if (.not. allocated(err)) call assemble_driven_start(model, plan, start, err)
     if (allocated(err)) then
       if (options%has('check')) call print_given(model, with_masses)
@@ -102,13 +101,13 @@ contains
       if (options%has('range')) call print_ranges(output_unit, model, plan, start)
       if (options%has('check')) call check_motion(model, variable, plan, start, err)
       if (options%has('cam') .and. .not. allocated(err)) &
-        call work_on_cams(program_name, options, model, plan, start, diagnostics, reported, err)
+        call work_on_cams(options, model, plan, start, diagnostics, reported, err)
       if (allocated(err)) call diagnostics%add_error(err)
       return
     end if
     allocate (simulation)   ! too large for a small stack
     call new_driven_simulation(model, plan, start, simulation, pictures%any_wanted(), with_masses)
-    call carry_out(program_name, options, pictures, model, variable, plan, simulation, diagnostics, reported, kept)
+    call carry_out(options, pictures, model, variable, plan, simulation, diagnostics, reported, kept)
   end subroutine work_driven
 
   !> Fail in a check where a run would fail: at a start from which the motion cannot begin, or at drives without values
@@ -126,7 +125,7 @@ contains
 
     allocate (simulation, source)
     call new_driven_simulation(model, plan, start, simulation)
-    call new_row_source('mech9k', simulation, source)
+    call new_row_source(simulation, source)
     if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
     if (.not. allocated(err)) call source%begin_quantities(err)
     if (allocated(err)) return
@@ -136,8 +135,7 @@ contains
   end subroutine check_motion
 
   !> The run itself and its report.
-  subroutine carry_out(program_name, options, pictures, model, variable, plan, simulation, diagnostics, reported, kept)
-    character(len=*), intent(in) :: program_name                        !< mech9k or mech9d
+  subroutine carry_out(options, pictures, model, variable, plan, simulation, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options                      !< the command line
     type(picture_requests_type), intent(in) :: pictures                 !< the pictures of the mechanism that are requested
     type(model_type), intent(in), target :: model                           !< the model
@@ -155,7 +153,7 @@ contains
     logical :: ready
 
     allocate (source)
-    call new_row_source(program_name, simulation, source)
+    call new_row_source(simulation, source)
     call source%forces%judge(model, plan, simulation%assembled)
     reported = .false.
     if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
@@ -176,7 +174,7 @@ contains
     call results%write_facts(facts, diagnostics%code())
     call end_run(options, pictures, model, source, results, diagnostics)
     if (.not. reported) return
-    call save_kinematic_report(options%argument('report'), program_name, model, simulation%plan, results%table_path, diagnostics, &
+    call save_kinematic_report(options%argument('report'), model, simulation%plan, results%table_path, diagnostics, &
                                outcome, simulation%driven, err, source%forces%unique, source%quantities)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out

@@ -1,6 +1,7 @@
 !> Work on a data file, from the options of a command line to an exit code, the same for all tasks.
 module mech9_session
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use mech9_program_kind, only: kinematics, program_names
   use mech9_error, only: error_type, exit_done, exit_file
   use mech9_text, only: string_type
   use mech9_command_line, only: command_line_type
@@ -47,20 +48,20 @@ contains
 
     code = exit_done
     if (options%has('help')) then
-      write (output_unit, '(a)') help_text(task%program_name)
+      write (output_unit, '(a)') help_text(task%program)
     else if (options%has('version')) then
-      write (output_unit, '(a)') version_text(task%program_name)
+      write (output_unit, '(a)') version_text(task%program)
     else if (options%has('help-data')) then
       call show_data_help(task, options%argument('help-data'), code)
     else if (options%has('merge')) then
       call catch_size_limit()
-      call merge_studies(task%program_name, options, code)
+      call merge_studies(options, code)
     else
       call run_file(task, options, options%file, code, team=team)
     end if
     call flush_output(err)
     if (.not. allocated(err)) return
-    write (error_unit, '(3a)') task%program_name, ': ', err%message
+    write (error_unit, '(3a)') program_names(task%program), ': ', err%message
     if (code == exit_done) code = err%code
   end subroutine carry_out
 
@@ -80,7 +81,7 @@ contains
     code = exit_done
     call write_data_help(output_unit, group, err)
     if (.not. allocated(err)) return
-    write (error_unit, '(3a)') task%program_name, ': ', err%message
+    write (error_unit, '(3a)') program_names(task%program), ': ', err%message
     code = err%code
   end subroutine show_data_help
 
@@ -106,6 +107,7 @@ contains
     ! an answer without a run has no results to keep: Ctrl-C ends it at once
     call catch_size_limit()
     if (.not. answers_only(options)) call catch_interrupts()
+    model%program = task%program
     call read_document(path, document, diagnostics)
     call options%arguments('set', settings)
     if (diagnostics%code() /= exit_file) then
@@ -116,7 +118,7 @@ contains
     call list_inputs(path, options, document, inputs)
     call refuse_overwriting(options, inputs, err)
     if (allocated(err)) then
-      write (error_unit, '(3a)') task%program_name, ': ', err%message
+      write (error_unit, '(3a)') program_names(task%program), ': ', err%message
       code = err%code
       return
     end if
@@ -124,7 +126,7 @@ contains
     reported = .false.
     if (present(team)) reported = .not. team%is_first
     if (options%has('structure')) then
-      if (.not. options%has('quiet')) call print_unused_options(error_unit, task%program_name, options, model)
+      if (.not. options%has('quiet')) call print_unused_options(error_unit, options, model)
       call read_structure_only(document, structure, partition, diagnostics)
       if (.not. diagnostics%failed()) then
         if (.not. options%has('quiet')) call print_names_of_vectors(error_unit)
@@ -132,25 +134,25 @@ contains
       end if
     else
       legible = .not. diagnostics%failed()
-      call read_model(document, task%needs_drives, model, diagnostics)
+      call read_model(document, task%program, model, diagnostics)
       if (.not. diagnostics%failed()) then
-        if (.not. options%has('quiet')) call print_unused_options(error_unit, task%program_name, options, model)
+        if (.not. options%has('quiet')) call print_unused_options(error_unit, options, model)
         call refuse_overwriting(options, inputs, err, model%request%output)
         reported = reported .or. allocated(err)
         if (allocated(err)) call diagnostics%add_error(err)
         if (options%has('study') .or. options%has('optimize') .or. options%has('dakota') .or. &
             model%request%output%with_derivatives()) &
-          call new_varied_document(document, diagnostics%sources, task%needs_drives, variable)
+          call new_varied_document(document, diagnostics%sources, task%program, variable)
         if (.not. allocated(err) .and. options%has('dakota')) then
-          call work_for_dakota(task%program_name, options, variable, model, diagnostics)
+          call work_for_dakota(options, variable, model, diagnostics)
         else if (.not. allocated(err) .and. options%has('study')) then
-          call work_on_study(task%program_name, options, document, variable, model, diagnostics, reported, team)
+          call work_on_study(options, document, variable, model, diagnostics, reported, team)
         else if (.not. allocated(err) .and. options%has('optimize')) then
-          call work_on_optimum(task%program_name, options, document, variable, model, diagnostics, reported)
+          call work_on_optimum(options, document, variable, model, diagnostics, reported)
         else if (.not. allocated(err)) then
           call task%work(options, model, variable, diagnostics, reported, kept)
         end if
-      else if (legible .and. task%needs_drives) then
+      else if (legible .and. task%program == kinematics) then
         call judge_choice_of(document, diagnostics, choice)
       end if
     end if
@@ -192,7 +194,7 @@ contains
     integer, intent(inout) :: code                         !< exit code of the program; of the first error
     type(error_type), allocatable :: err
 
-    call save_short_report(options%argument('report'), task%program_name, model, code, choice, diagnostics, err)
+    call save_short_report(options%argument('report'), model, code, choice, diagnostics, err)
     if (.not. allocated(err)) return
     call diagnostics%add_error(err)
     if (code == exit_done) code = err%code

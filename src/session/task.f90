@@ -1,6 +1,7 @@
 !> The interface of a program's work on a mechanism, and procedures that all tasks share.
 module mech9_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use mech9_program_kind, only: kinematics
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
@@ -35,8 +36,7 @@ module mech9_task
   public :: task_type, answers_only, print_check, print_given, begin_run, end_run
 
   type, abstract :: task_type
-    character(len=6) :: program_name = ''
-    logical :: needs_drives = .false.      !< every independent coordinate must be driven
+    integer :: program = kinematics   !< or dynamics
   contains
     procedure(assemble_interface), deferred :: assemble
     procedure(work_interface), deferred :: work
@@ -195,7 +195,7 @@ contains
       source%film = new_film(model%mechanism, model%problem%partition%independent(), model%request%time%intervals + 1, &
                              source%columns)
     end if
-    call results%open(options, model, diagnostics%sources(1)%text, source%program_name, source%columns, err)
+    call results%open(options, model, diagnostics%sources(1)%text, source%columns, err)
     ready = .not. allocated(err)
     if (.not. ready) call diagnostics%add_error(err)
     hdf5 => results%hdf5()

@@ -1,5 +1,6 @@
 !> Profiles of cams that are circles: the crank of a slider-crank as the cam of its slide, and an eccentric circle under a flat face.
 module test_cams
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
   use mech9_model, only: model_type
@@ -117,7 +118,7 @@ contains
                          '&pair coordinate=2, links=1,3, kind=''prismatic'', axis=0,1,0, zero=1,0,0 / '// &
                          '&drive coordinate=1, kind=''polynomial'', coefficients='//angle//',2 / &drive coordinate=2, '// &
                          'kind=''harmonic'', mean=0.8, amplitude=0.3, angular_frequency=2, phase='//angle//' / &time end=1 /', &
-                         .true., model)
+                         kinematics, model)
     call assemble_driven(model, plan, start, err)
     if (.not. allocated(err)) call start_driven_motion(model%problem%drives, plan, start, 0.0_wp, driven, err)
     call tester%no_error(err, 'the motion starts')
@@ -169,7 +170,7 @@ contains
     call model_from_text(tester, '&structure cq=1,2 / &pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 / '// &
                          '&pair coordinate=2, links=1,3, kind=''prismatic'', axis=0,1,0, zero=1,0,0 / '// &
                          '&drive coordinate=1, kind=''polynomial'', coefficients=0,1 / &drive coordinate=2, '// &
-                         'kind=''harmonic'', mean=0.8, amplitude=0.3, angular_frequency=2 / &time end=4 /', .true., model)
+                         'kind=''harmonic'', mean=0.8, amplitude=0.3, angular_frequency=2 / &time end=4 /', kinematics, model)
     cam = cam_request_type(link=2, follower=3, flat=.true., face=[0.0_wp, -1.0_wp, 0.0_wp], axis=[0.0_wp, 0.0_wp, 1.0_wp], &
                            coordinate=1)
     do i = 0, 7

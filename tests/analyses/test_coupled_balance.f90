@@ -1,5 +1,6 @@
 !> The balance of clusters with couplings: regular in all positions but the first, with the wrenches of least norm.
 module test_coupled_balance
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_source, only: source_from_text
@@ -64,7 +65,7 @@ contains
     logical :: regular
 
     call parse_document(source_from_text('text', chain), document, diagnostics)
-    call read_model(document, .true., model, diagnostics)
+    call read_model(document, kinematics, model, diagnostics)
     call tester%is_true(.not. diagnostics%failed(), 'the text is sound')
     call assemble_driven(model, first_plan, start, err)
     call tester%no_error(err, 'the chain closes')

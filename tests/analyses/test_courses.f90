@@ -1,6 +1,7 @@
 !> Numbers along the motions of four-bar designs, with their derivatives by the lengths: transmission angles, angles of all links and
 !> extreme values in closed form, and the regularity of the chain against its definition by differences.
 module test_courses
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
   use mech9_differentiation, only: half_width, derivatives_from_stencil
@@ -69,9 +70,9 @@ contains
     type(error_type), allocatable :: err
 
     call parse_document(source_from_text('test.nml', text), document, diagnostics)
-    call read_model(document, .true., model, diagnostics)
+    call read_model(document, kinematics, model, diagnostics)
     call tester%is_true(.not. diagnostics%failed(), 'there is a model')
-    call new_varied_document(document, diagnostics%sources, .true., varied)
+    call new_varied_document(document, diagnostics%sources, kinematics, varied)
     call assemble_driven(model, plan, start, err)
     if (.not. allocated(err)) call new_design_space(varied, model, plan, space, err)
     call tester%no_error(err, 'there are designs')

@@ -1,6 +1,7 @@
 !> Equilibria of pendulums with springs and motors: positions, matrices, roots and shapes have closed forms. The stiffness of closed
 !> chains is the derivative of the forces that hold them.
 module test_equilibrium
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
   use mech9_differentiation, only: half_width, derivatives_from_stencil
@@ -55,7 +56,7 @@ contains
     type(state_type), intent(out) :: state       !< its position
     type(error_type), allocatable :: err
 
-    call model_from_text(tester, text, .false., model)
+    call model_from_text(tester, text, dynamics, model)
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space=.true.)
     call tester%no_error(err, 'there is a plan in space')
   end subroutine assemble

@@ -1,6 +1,7 @@
 !> Reports on mobility against elementary geometry: four-bars, three parallel cranks, a rod between balls, repeated gears; and choices
 !> of independent coordinates.
 module test_mobility
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_model, only: model_type
@@ -119,7 +120,7 @@ contains
                          '&pair coordinates=2,3,4, links=2,3, kind=''spherical'', point=0.2,0.15,0, moving_point=0,0,0 / '// &
                          '&pair coordinates=5,6,7, links=3,4, kind=''spherical'', point=1.1,0.2,0.1, moving_point=0,0,0.6 / '// &
                          '&pair coordinate=8, links=1,4, kind=''revolute'', axis=0.1,1,0, point=1,0,0, moving_point=0,0,0 /', &
-                         .false., model)
+                         dynamics, model)
     call judge(tester, model, plan, report)
     call tester%is_true(report%by_count == 2 .and. report%by_rank == 2, 'the crank and the turn of the rod are two freedoms')
     call tester%is_true(size(report%idle) == 1, 'one of them is idle')
@@ -140,7 +141,8 @@ contains
     integer :: c
 
     call model_from_text(tester, '&structure cq=1 / &pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 / '// &
-                         '&pair coordinate=2, links=1,3, kind=''revolute'', axis=0,0,1, point=1,0,0 / '//gear//gear, .false., model)
+                         '&pair coordinate=2, links=1,3, kind=''revolute'', axis=0,0,1, point=1,0,0 / '//gear//gear, &
+                         dynamics, model)
     call judge(tester, model, plan, report)
     call tester%is_true(report%by_count == 0 .and. report%by_rank == 1, 'two wheels have one freedom')
     call tester%is_true(sum(report%redundant) == 1, 'one gear is redundant')
@@ -185,7 +187,7 @@ contains
     call model_from_text(tester, '&structure cq=1 / &pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 / '// &
                          '&pair coordinate=2, links=1,3, kind=''revolute'', axis=0,0,1, point=1,0,0 / '// &
                          '&coupling kind=''gear'', coordinates=1,2, ratio=-2.5 / '// &
-                         '&drive coordinate=1, kind=''polynomial'', coefficients=0,1 /', .false., model)
+                         '&drive coordinate=1, kind=''polynomial'', coefficients=0,1 /', dynamics, model)
     call find_choice(model, 2, known, choice)
     call tester%is_true(known .and. size(choice) == 0, 'a wheel that is driven by gears cannot become independent')
   end subroutine driven_choice

@@ -1,6 +1,7 @@
 !> Modes of mechanisms with motors: roots against characteristic polynomials, stability of a controlled pendulum against Routh's
 !> criterion, and setpoints that an integral part holds.
 module test_motor_modes
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_assembly
   use mech9_text, only: to_text
@@ -172,7 +173,7 @@ contains
     type(plan_type) :: plan
     type(state_type) :: state
 
-    call model_from_text(tester, text, .false., model)
+    call model_from_text(tester, text, dynamics, model)
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space=.true.)
     if (.not. allocated(err)) call find_equilibrium(model%mechanism, model%problem%partition, plan, state, found, err)
   end subroutine rest

@@ -2,6 +2,7 @@
 !> starts and of the derivatives of chains in space. A run that is found where the one that is followed does not come to its end would be
 !> a design with a dead point that wins. The cost is bounded by the number of positions that are closed.
 module test_neighbouring_run
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -55,10 +56,10 @@ contains
     type(error_type), allocatable :: err
 
     call read_document(test%tree//'/examples/'//name//'/'//name//'.nml', document, diagnostics)
-    call read_model(document, .true., model, diagnostics)
+    call read_model(document, kinematics, model, diagnostics)
     call test%is_true(.not. diagnostics%failed(), name//' is read')
     if (diagnostics%failed()) return
-    call new_varied_document(document, diagnostics%sources, .true., variable)
+    call new_varied_document(document, diagnostics%sources, kinematics, variable)
     call assemble_driven(model, plan, start, err)
     if (.not. allocated(err)) call new_synthesis(variable, model, plan, synthesis, err)
     call test%no_error(err, name)

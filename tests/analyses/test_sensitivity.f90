@@ -1,6 +1,7 @@
 !> Derivatives of driven motions by parameters: a slider-crank in closed form, and planar, spatial and coupled mechanisms against
 !> differences of motions that start anew with other parameters.
 module test_sensitivity
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_differentiation, only: half_width, derivatives_from_stencil
@@ -157,7 +158,7 @@ contains
     real(wp) :: slope, curvature, error
     integer :: p, k, i, number
 
-    call varied_from_text(tester, text, .true., varied, model)
+    call varied_from_text(tester, text, kinematics, varied, model)
     call find_changes(tester, varied, model, changes)
     allocate (numbers(size(changes, 2), size(times), -half_width:half_width))
     do p = 1, size(model%parameters)
@@ -190,7 +191,7 @@ contains
     integer :: i
 
     call varied_from_text(tester, slider_crank//'&drive coordinate=1, kind=''polynomial'', coefficients=0.4,3 / &time end=1 /', &
-                          .true., varied, model)
+                          kinematics, varied, model)
     call find_changes(tester, varied, model, changes)
     do i = 1, size(times)
       a = 0.4_wp + 3.0_wp*times(i)

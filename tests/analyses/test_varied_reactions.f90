@@ -1,6 +1,7 @@
 !> Derivatives of the wrenches of all pairs by all parameters, against differences of mechanisms with other parameters that have the
 !> same motion of their independent coordinates; a pendulum in closed form.
 module test_varied_reactions
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_differentiation, only: half_width, derivatives_from_stencil
@@ -103,7 +104,7 @@ contains
     real(wp) :: slope, curvature, error
     integer :: p, k, i
 
-    call varied_from_text(test, text, .false., varied, model)
+    call varied_from_text(test, text, dynamics, varied, model)
     call find_numbers(model, model%problem%initial%position, numbers, state, plan, err)
     call test%no_error(err, name//': there is a motion')
     if (allocated(err)) return
@@ -139,7 +140,7 @@ contains
     real(wp), allocatable :: changes(:, :), numbers(:)
     real(wp) :: a(2), expected(6, 3)
 
-    call varied_from_text(test, loaded_pendulum, .false., varied, model)
+    call varied_from_text(test, loaded_pendulum, dynamics, varied, model)
     call find_numbers(model, model%problem%initial%position, numbers, state, plan, err)
     call test%no_error(err, 'there is a motion')
     call find_changes(test, varied, model, state, plan, changes)

@@ -1,6 +1,7 @@
 !> Wrenches of pairs: a slider-crank and gears in closed form by each way of balance, wrenches of least norm of a cluster with redundant
 !> equations, and which components equilibrium determines.
 module test_wrenches
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -296,7 +297,7 @@ contains
     type(uniqueness_type) :: unique
     type(error_type), allocatable :: err
 
-    call model_from_text(tester, text, .true., model)
+    call model_from_text(tester, text, kinematics, model)
     model%problem%initial%position = [0.3_wp, -0.75_wp]
     call prepare(tester, model, .false., plan, plan_of_forces, state)
     call tester%near(state%q(2), -2.5_wp*state%q(1), 1.0e-14_wp, 'the second wheel turns by the ratio')
@@ -327,7 +328,7 @@ contains
     type(error_type), allocatable :: err
     real(wp) :: multipliers(2), forces(2)
 
-    call model_from_text(tester, text, .true., model)
+    call model_from_text(tester, text, kinematics, model)
     model%problem%initial%position = [0.3_wp, -0.75_wp]
     call prepare(tester, model, .false., plan, plan_of_forces, state)
     reactions = new_reactions(plan, plan_of_forces)

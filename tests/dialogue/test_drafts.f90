@@ -1,6 +1,7 @@
 !> Drafts: what is given is found, taken away is gone; written as a data file and read again nothing is lost, and each
 !> error is found at the entry that it is about.
 module test_drafts
+  use mech9_program_kind, only: dynamics
   use mech9_source, only: source_from_text
   use mech9_document, only: document_type
   use mech9_parser, only: parse_document
@@ -127,7 +128,7 @@ contains
     call tester%is_true(draft%groups(group)%entries(entry)%name == 'moving_point', 'the entry at a byte of the text is found')
     call locate(written, 1, group, entry)
     call tester%is_true(group == 0, 'a comment belongs to no group')
-    call read_draft(draft, 'a.nml', .false., model, written, diagnostics)
+    call read_draft(draft, 'a.nml', dynamics, model, written, diagnostics)
     call faults_of(diagnostics, written, faults)
     found = .false.
     do i = 1, size(faults)

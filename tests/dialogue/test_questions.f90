@@ -2,6 +2,7 @@
 !> names holds; each question is told from the others by its label, and explained in whole sentences with an example in the
 !> unit that is asked for. A group that was begun can be left out, and nothing is proposed that was meant for something else.
 module test_questions
+  use mech9_program_kind, only: kinematics, dynamics, program_names
   use mech9_text, only: string_type
   use mech9_grammar, only: group_table, item_table, find_group_row
   use mech9_item_rows, only: item_row_for_kind
@@ -55,16 +56,15 @@ contains
   subroutine all_names(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(interview_type) :: interview
-    character(len=6), parameter :: programs(2) = ['mech9k', 'mech9d']
-    character(len=10), parameter :: drives(5) = [character(len=10) :: 'polynomial', 'harmonic', 'table', 'segments', 'user']
+      character(len=10), parameter :: drives(5) = [character(len=10) :: 'polynomial', 'harmonic', 'table', 'segments', 'user']
     logical :: asked(size(item_table))
     integer :: program, way, drive, row
 
     asked = .false.
-    do program = 1, size(programs)
+    do program = 1, size(program_names)
       do way = 1, size(ways)
         do drive = 1, size(drives)
-          call begin(programs(program), trim(ways(way)), trim(drives(drive)), interview)
+          call begin(program, trim(ways(way)), trim(drives(drive)), interview)
           call tester%is_true(interview%outline%structure_known, trim(ways(way))//': the structure is known')
           call look_at(tester, interview, asked)
         end do
@@ -83,8 +83,8 @@ contains
     end do
   end subroutine all_names
 
-  subroutine begin(program_name, way, drive, interview)
-    character(len=*), intent(in) :: program_name     !< mech9k or mech9d
+  subroutine begin(program, way, drive, interview)
+    integer, intent(in) :: program        !< mech9k or mech9d
     character(len=*), intent(in) :: way              !< in which the structure is given
     character(len=*), intent(in) :: drive            !< kind of the drive
     type(interview_type), intent(out) :: interview   !< about to ask its first question
@@ -110,7 +110,7 @@ contains
       if (i == 2 .and. drive == 'table') call draft%give('pair', i, 'kind', '''path''')
       if (way == 'pairs') call draft%give('pair', i, 'links', trim(links(i)))
     end do
-    if (program_name == 'mech9k') then
+    if (program == kinematics) then
       call draft%give('drive', 1, 'coordinate', '1')
       call draft%give('drive', 1, 'kind', ''''//drive//'''')
       call draft%give('cam', 1, 'link', '2')
@@ -121,7 +121,7 @@ contains
     do i = 1, size(loads)
       call draft%give('load', i, 'kind', ''''//trim(loads(i))//'''')
     end do
-    if (program_name == 'mech9d') then
+    if (program == dynamics) then
       call draft%give('motor', 1, 'coordinate', '1')
       call draft%give('motor', 1, 'kind', '''dc''')
       call draft%give('motor', 2, 'coordinate', '1')
@@ -134,7 +134,7 @@ contains
     call draft%give('body', 1, 'link', '2')
     call draft%give('parameter', 1, 'name', '''crank''')
     call draft%give('quantity', 1, 'name', '''stroke''')
-    if (program_name == 'mech9k') then
+    if (program == kinematics) then
       do i = 1, size(objectives)
         call draft%give('objective', i, 'kind', ''''//trim(objectives(i))//'''')
       end do
@@ -144,7 +144,7 @@ contains
       call draft%give('optimum', 1, 'starts', '10')
     end if
     call draft%give('study', 1, 'kind', trim(merge('''list''  ', '''random''', drive == 'table')))
-    call interview%start(program_name, draft)
+    call interview%start(program, draft)
     interview%outline%asked = .true.
     interview%outline%guesses = .true.
     call interview%refresh('')
@@ -166,7 +166,7 @@ contains
     call draft%give('pair', 1, 'coordinate', '1')
     call draft%give('pair', 1, 'kind', ''''//kind//'''')
     call draft%give('pair', 1, 'links', '1, 2')
-    call interview%start('mech9d', draft)
+    call interview%start(dynamics, draft)
     interview%outline%asked = .true.
     call interview%refresh('')
   end subroutine begin_joint
@@ -219,7 +219,7 @@ contains
                                   label_of(question)//': the prompt names the item')
         call tester%is_true(index(help_of(question, interview%draft, interview%outline), 'For example: ') > 0, &
                             label_of(question)//': the help gives an example')
-        call tester%is_true(any([character(len=6) :: 'both', interview%outline%program_name] == item%program), &
+        call tester%is_true(any([character(len=6) :: 'both', program_names(interview%outline%program)] == item%program), &
                             label_of(question)//': the question is used by the program that asks')
       end associate
     end do
@@ -296,9 +296,9 @@ contains
     integer :: number
 
     if (label(:4) == 'load') then
-      call begin('mech9d', 'pairs', 'polynomial', interview)
+      call begin(dynamics, 'pairs', 'polynomial', interview)
     else
-      call begin('mech9k', 'pairs', 'polynomial', interview)
+      call begin(kinematics, 'pairs', 'polynomial', interview)
     end if
     call interview%draft%give('mechanism', 1, 'angle_unit', "'"//angle_unit//"'")
     call interview%draft%give('pair', 1, 'kind', "'"//kind//"'")
@@ -315,7 +315,7 @@ contains
     type(interview_type) :: interview
     logical :: done
 
-    call begin('mech9d', 'pairs', 'polynomial', interview)
+    call begin(dynamics, 'pairs', 'polynomial', interview)
     interview%at = find_question(interview%questions, 'load(1).kind')
     call tester%is_true(interview%is_begun(), 'a force without its link and its components is begun')
     interview%at = find_question(interview%questions, 'load(5).kind')
@@ -340,7 +340,7 @@ contains
     integer :: number
     logical :: done
 
-    call begin('mech9d', 'pairs', 'polynomial', interview)
+    call begin(dynamics, 'pairs', 'polynomial', interview)
     interview%outline%asked = .false.
     interview%at = find_question(interview%questions, 'study(1).kind')
     call tester%is_true(.not. interview%questions(interview%at)%is_new .and. &
@@ -386,7 +386,7 @@ contains
     type(interview_type) :: interview
     integer :: i
 
-    call begin('mech9d', 'pairs', 'polynomial', interview)
+    call begin(dynamics, 'pairs', 'polynomial', interview)
     do i = 1, 4
       call interview%draft%take_away('pair', i, 'kind')
     end do
@@ -426,7 +426,7 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(interview_type) :: interview
 
-    call begin('mech9k', 'pairs', 'polynomial', interview)
+    call begin(kinematics, 'pairs', 'polynomial', interview)
     call interview%draft%give('structure', 1, 'cq', '1, 2')
     call interview%refresh('')
     call tester%is_true(interview%draft%count_of('drive') == 2, 'a drive of coordinate 2 is asked for')
@@ -445,7 +445,7 @@ contains
     type(interview_type) :: interview
     character(len=:), allocatable :: problem
 
-    call begin('mech9k', 'pairs', 'polynomial', interview)
+    call begin(kinematics, 'pairs', 'polynomial', interview)
     call give_joints(interview%draft, '3 universal', problem)
     call tester%is_true(problem == '', 'pair 3 becomes a universal joint')
     call interview%refresh('')

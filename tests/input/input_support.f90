@@ -1,5 +1,6 @@
 !> Tools that the tests of the input floor share: documents from texts, and the text that diagnostics print.
 module mech9_input_support
+  use mech9_program_kind, only: kinematics
   use mech9_source, only: source_from_text
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
@@ -72,7 +73,7 @@ contains
     type(document_type) :: document
 
     call parse_document(source_from_text('test.nml', text), document, diagnostics)
-    call read_model(document, .true., model, diagnostics)
+    call read_model(document, kinematics, model, diagnostics)
   end subroutine mechanism_from_text
 
   !> How often a piece occurs in a text.

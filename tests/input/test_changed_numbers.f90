@@ -33,6 +33,7 @@ contains
 end module counting_model
 
 module test_changed_numbers
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -102,7 +103,7 @@ contains
     type(diagnostics_type) :: diagnostics
 
     call parse_document(source_from_text('f.nml', text), document, diagnostics)
-    call new_varied_document(document, diagnostics%sources, .true., varied)
+    call new_varied_document(document, diagnostics%sources, kinematics, varied)
   end subroutine new_varied
 
   !> A model that has had many other values, wrong ones among them, against one that is read for the first time.

@@ -2,6 +2,7 @@
 !> in. Whatever they have become, they are read, or refused with a message and an exit code; never a crash.
 module test_fuzz
   use mech9_kinds, only: wp
+  use mech9_program_kind, only: kinematics, dynamics
   use mech9_error, only: exit_data, exit_structure, exit_file
   use mech9_random, only: random_type
   use mech9_source, only: source_from_text
@@ -162,7 +163,7 @@ contains
 
     call parse_document(source_from_text('test.nml', text), document, diagnostics)
     again = diagnostics
-    call read_model(document, mod(number, 2) == 0, model, diagnostics)
+    call read_model(document, merge(kinematics, dynamics, mod(number, 2) == 0), model, diagnostics)
     call read_structure_only(document, structure, partition, again)
     if (diagnostics%failed()) refused = refused + 1
     call judge(tester, diagnostics, text)
@@ -223,7 +224,7 @@ contains
       call forget(diagnostics)
       call parse_document(source_from_text('test.nml', everything), document, diagnostics)
       call apply_setting(document, text, diagnostics)
-      call read_model(document, .true., model, diagnostics)
+      call read_model(document, kinematics, model, diagnostics)
       call judge(tester, diagnostics, text)
     end do
   end subroutine damaged_settings

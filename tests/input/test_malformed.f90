@@ -1,6 +1,7 @@
 !> Reads every file that tests/input/malformed/expected.txt lists, and holds the exit code
 !> and what is printed against the list.
 module test_malformed
+  use mech9_program_kind, only: kinematics
   use mech9_text, only: to_text
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
@@ -58,7 +59,7 @@ contains
     call next_field(expected, at, fragment)
     read (fragment, *) code
     call read_document(tester%tree//folder//name, document, diagnostics)
-    call read_model(document, .true., model, diagnostics)
+    call read_model(document, kinematics, model, diagnostics)
     answer = without(printed(diagnostics), tester%tree//folder)
     call tester%is_true(diagnostics%code() == code, name//': exit code '//to_text(code)//', not '// &
                         to_text(diagnostics%code()))

@@ -1,5 +1,6 @@
 !> Parameters: the numbers that they set, their values by --set, what is refused, and the model at other values.
 module test_parameters
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_source, only: source_from_text
@@ -49,7 +50,7 @@ contains
     call parse_document(source_from_text('f.nml', bodies//groups), document, diagnostics)
     if (present(first)) call apply_setting(document, first, diagnostics)
     if (present(second)) call apply_setting(document, second, diagnostics)
-    call read_model(document, .true., model, diagnostics)
+    call read_model(document, kinematics, model, diagnostics)
     answer = printed(diagnostics)
   end subroutine read_with
 
@@ -166,7 +167,7 @@ contains
 
     call parse_document(source_from_text('f.nml', bodies//crank//" &parameter name='k', sets='load.stiffness' /"), document, &
                         diagnostics)
-    call new_varied_document(document, diagnostics%sources, .true., varied)
+    call new_varied_document(document, diagnostics%sources, kinematics, varied)
     call varied%at([0.6_wp, 30.0_wp], model, err)
     call tester%is_true(.not. allocated(err), 'a model at other values is made')
     call tester%near(crank_of(model), 0.6_wp, 0.0_wp, 'its crank is longer')

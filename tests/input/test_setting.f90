@@ -1,6 +1,7 @@
 !> --set: values replaced, added, refused, each time seen in the mechanism that comes out.
 module test_setting
   use mech9_kinds, only: wp
+  use mech9_program_kind, only: kinematics
   use mech9_source, only: source_from_text
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
@@ -33,7 +34,7 @@ contains
 
     call parse_document(source_from_text('f.nml', slider_crank), document, diagnostics)
     call apply_setting(document, setting, diagnostics)
-    call read_model(document, .true., model, diagnostics)
+    call read_model(document, kinematics, model, diagnostics)
     answer = printed(diagnostics)
   end subroutine set
 

@@ -1,5 +1,6 @@
 !> From the file of a robot to a data file: it is right, tells where it comes from, and never replaces a file that is read.
 module test_importing
+  use mech9_program_kind, only: kinematics, dynamics
   use mech9_error, only: error_type, exit_done, exit_usage, exit_data, exit_file
   use mech9_text, only: string_type
   use mech9_file_bytes, only: read_bytes
@@ -31,10 +32,10 @@ contains
   end subroutine run
 
   !> Import a robot; `text` is the data file, empty where there is none.
-  subroutine import_lines(tester, lines, program_name, text, code)
+  subroutine import_lines(tester, lines, program, text, code)
     type(tester_type), intent(inout) :: tester             !< counts the checks
     character(len=*), intent(in) :: lines(:)               !< file of the robot
-    character(len=*), intent(in) :: program_name           !< mech9k or mech9d
+    integer, intent(in) :: program                         !< kinematics or dynamics
     character(len=:), allocatable, intent(out) :: text     !< the data file
     integer, intent(out) :: code                           !< exit code
     type(string_type) :: inputs(1)
@@ -42,7 +43,7 @@ contains
 
     call save_lines(tester, path, lines)
     inputs(1)%text = path
-    call import_robot(program_name, inputs, output, .true., code)
+    call import_robot(program, inputs, output, .true., code)
     call read_bytes(output, text, err)
     if (allocated(err)) text = ''
     call remove_file(path)
@@ -50,16 +51,16 @@ contains
   end subroutine import_lines
 
   !> Read a data file as the programs do.
-  subroutine read_data(tester, text, needs_drives, model)
+  subroutine read_data(tester, text, program, model)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=*), intent(in) :: text         !< the data file
-    logical, intent(in) :: needs_drives          !< as in kinematics
+    integer, intent(in) :: program               !< kinematics or dynamics
     type(model_type), intent(out) :: model       !< the model
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 
     call parse_document(source_from_text('d.nml', text), document, diagnostics)
-    call read_model(document, needs_drives, model, diagnostics)
+    call read_model(document, program, model, diagnostics)
     call tester%is_true(.not. diagnostics%failed(), 'the data file is right')
   end subroutine read_data
 
@@ -86,13 +87,13 @@ contains
       type(model_type) :: model
       integer :: code
 
-      call import_lines(tester, lines, 'mech9k', text, code)
+      call import_lines(tester, lines, kinematics, text, code)
       call tester%is_true(code == exit_done, name//' is imported')
       call tester%is_true(index(text, 'from '//path//' ('//name//')') > 0, 'the data file tells where it comes from')
       call tester%is_true(index(text, '&drive') > 0, 'kinematics has drives')
-      call read_data(tester, text, .true., model)
+      call read_data(tester, text, kinematics, model)
       call tester%is_true(model%mechanism%structure%n_links == 2 .and. model%mechanism%structure%n_coordinates == 1, 'two links')
-      call import_lines(tester, lines, 'mech9d', text, code)
+      call import_lines(tester, lines, dynamics, text, code)
       call tester%is_true(index(text, '&drive') == 0 .and. index(text, '&initial') > 0, 'dynamics has initial values')
     end subroutine check_format
   end subroutine formats
@@ -108,9 +109,9 @@ contains
       '<body name="rod" pos="0.3 0 0"><joint name="r" axis="0 0 1"/></body></body>', &
       '<body name="slider" pos="1.3 0 0"><joint name="s" type="slide" axis="1 0 0"/></body></worldbody>', &
       '<equality><connect body1="rod" body2="slider" anchor="1 0 0"/></equality>', &
-      '<actuator><motor joint="c"/></actuator></mujoco>'], 'mech9k', text, code)
+      '<actuator><motor joint="c"/></actuator></mujoco>'], kinematics, text, code)
     call tester%is_true(code == exit_done, 'a closed chain is imported')
-    call read_data(tester, text, .true., model)
+    call read_data(tester, text, kinematics, model)
     call tester%is_true(model%mechanism%structure%n_coordinates == 4, 'the ball joint became revolute')
     call tester%is_true(count(model%problem%partition%independent()) == 1, 'one coordinate is independent')
   end subroutine closed_chain
@@ -124,11 +125,11 @@ contains
 
     call import_lines(tester, [character(len=110) :: '<robot name="r"><link name="a"/><link name="b"><inertial><mass value="2"/>', &
       '<inertia ixx="1" iyy="1" izz="9"/></inertial></link><joint name="j" type="continuous">', &
-      '<parent link="a"/><child link="b"/></joint></robot>'], 'mech9d', text, code)
+      '<parent link="a"/><child link="b"/></joint></robot>'], dynamics, text, code)
     call tester%is_true(code == exit_done, 'a robot with a wrong inertia is imported')
     call tester%is_true(index(text, "the inertia of link 'b'") > 0, 'the file tells that the inertia is left out')
     call tester%is_true(index(text, 'mass = 2') > 0 .or. index(text, 'mass=2') > 0, 'the mass stays')
-    call read_data(tester, text, .false., model)
+    call read_data(tester, text, dynamics, model)
   end subroutine bad_inertia
 
   subroutine refusals(tester)
@@ -137,16 +138,16 @@ contains
     type(string_type) :: inputs(1)
     integer :: code
 
-    call import_lines(tester, ['<html/>'], 'mech9k', text, code)
+    call import_lines(tester, ['<html/>'], kinematics, text, code)
     call tester%is_true(code == exit_data .and. text == '', 'a file that is no robot')
-    call import_lines(tester, ['<robot name="r"><link name="a"/></robot>'], 'mech9k', text, code)
+    call import_lines(tester, ['<robot name="r"><link name="a"/></robot>'], kinematics, text, code)
     call tester%is_true(code == exit_data, 'a robot without joints')
     inputs(1)%text = 'there_is_no_such_file.xml'
-    call import_robot('mech9k', inputs, output, .true., code)
+    call import_robot(kinematics, inputs, output, .true., code)
     call tester%is_true(code == exit_file, 'a file that is not there')
     call save_lines(tester, path, ['<mujoco><worldbody><body><joint/></body></worldbody></mujoco>'])
     inputs(1)%text = path
-    call import_robot('mech9k', inputs, './'//path, .true., code)
+    call import_robot(kinematics, inputs, './'//path, .true., code)
     call tester%is_true(code == exit_usage, 'a data file that would replace the robot')
     call remove_file(path)
   end subroutine refusals

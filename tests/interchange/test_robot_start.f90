@@ -1,5 +1,6 @@
 !> A start for closed chains: a slider-crank, whose positions are known, from guesses that do not close it.
 module test_robot_start
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_assembly
   use mech9_source, only: source_from_text
@@ -45,7 +46,7 @@ contains
       "&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1,0,0, moving_point=0,0,0 /"//achar(10)// &
       "&pair coordinate=4, links=1,4, kind='prismatic', axis=1,0,0, point=0,"//height//",0, moving_point=0,0,0 /"//achar(10)// &
       "&initial coordinate=1, position=0 /"//achar(10)), document, diagnostics)
-    call read_model(document, .false., model, diagnostics)
+    call read_model(document, dynamics, model, diagnostics)
     call tester%is_true(.not. diagnostics%failed(), 'the data file is right')
   end subroutine slider_crank
 

@@ -1,6 +1,7 @@
 !> The equations of closed chains and couplings: columns of their Jacobians and derivatives in time against differences, in the plane
 !> and in space, and gaps of known sizes.
 module test_closures
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_random, only: random_type
@@ -77,7 +78,7 @@ contains
                          '&pair coordinate=3, links=3,4, kind=''prismatic'', axis=1,0,0, zero=0,1,0 / '// &
                          '&coupling kind=''gear'', coordinates=1,2, ratio=-2.5 / '// &
                          '&coupling kind=''rack'', coordinates=2,3, radius=0.2 / '// &
-                         '&drive coordinate=1, kind=''polynomial'', coefficients=0,1 /', .true., model)
+                         '&drive coordinate=1, kind=''polynomial'', coefficients=0,1 /', kinematics, model)
     call check_all(test, model, .false., 'gears and a rack')
   end subroutine couplings
 

@@ -1,5 +1,6 @@
 !> Tests of mech9_command_line: the words are an array, so that any command line can be tried here.
 module test_command_line
+  use mech9_program_kind, only: kinematics, dynamics, program_names
   use mech9_error, only: error_type, exit_usage
   use mech9_text, only: string_type
   use mech9_options, only: options_table, option_names, find_option, needed_argument, whole_number, part_of_whole
@@ -24,9 +25,9 @@ contains
   end subroutine run
 
   !> Parse a line whose words are separated by `|`.
-  subroutine parse(line, options, err, program_name)
+  subroutine parse(line, options, err, program)
     character(len=*), intent(in) :: line                     !< words with `|` between them
-    character(len=*), intent(in), optional :: program_name   !< mech9k unless given
+    integer, intent(in), optional :: program   !< mech9k unless given
     type(command_line_type), intent(out) :: options          !< options that it asks for
     type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
     type(string_type), allocatable :: words(:)
@@ -39,10 +40,10 @@ contains
       words(i)%text = line(first:next - 1)
       first = next + 1
     end do
-    if (present(program_name)) then
-      call parse_command_line(words, program_name, options, err)
+    if (present(program)) then
+      call parse_command_line(words, program, options, err)
     else
-      call parse_command_line(words, 'mech9k', options, err)
+      call parse_command_line(words, kinematics, options, err)
     end if
   end subroutine parse
 
@@ -93,16 +94,16 @@ contains
     character(len=*), parameter :: argument = 'time.end=3'
     character(len=12) :: name
     character(len=40) :: word
-    character(len=6) :: program_name
+    integer :: program
     type(string_type), allocatable :: given(:)
     integer :: i, of_both
 
     of_both = 0
     do i = 1, size(options_table)
       name = options_table(i)%name
-      program_name = 'mech9d'
-      if (index(options_table(i)%programs, 'mech9k') > 0) then
-        program_name = 'mech9k'
+      program = dynamics
+      if (index(options_table(i)%programs, program_names(kinematics)) > 0) then
+        program = kinematics
         of_both = of_both + 1
       end if
       if (name == 'dakota' .or. name == 'merge') cycle   ! they take several files: tests/study
@@ -123,19 +124,19 @@ contains
       else if (any(name == [character(len=8) :: 'part', 'threads', 'continue'])) then
         call parse('a.nml|--study|'//trim(word), options, err)
       else if (name == 'mode') then
-        call parse('a.nml|--modes|--animate|a.svg|'//trim(word), options, err, program_name)
+        call parse('a.nml|--modes|--animate|a.svg|'//trim(word), options, err, program)
       else
-        call parse('a.nml|'//trim(word), options, err, program_name)
+        call parse('a.nml|'//trim(word), options, err, program)
       end if
       call tester%no_error(err, trim(word))
       call options%arguments(name, given)
       call tester%is_true(options%has(name) .and. size(given) == 1, trim(word)//' is taken')
       if (options_table(i)%takes == needed_argument) &
         call tester%is_true(options%argument(name) == word(index(word, '=') + 1:), trim(word)//' keeps its argument')
-      call tester%is_true(index(help_text(program_name), '--'//trim(name)//' ') > 0, trim(word)//' is in the help')
+      call tester%is_true(index(help_text(program), '--'//trim(name)//' ') > 0, trim(word)//' is in the help')
     end do
-    call tester%is_true(size(option_names('mech9k')) == of_both .and. of_both < size(options_table) &
-                        .and. size(option_names('other')) == 0 .and. find_option('check', 'other') == 0, &
+    call tester%is_true(size(option_names(kinematics)) == of_both .and. of_both < size(options_table) &
+                        .and. find_option('range', kinematics) > 0 .and. find_option('range', dynamics) == 0, &
                         'options belong to programs')
   end subroutine test_every_option
 
@@ -151,12 +152,12 @@ contains
     call refuse(tester, 'a.nml|--threads|2', '--threads N is the number of threads of --study')
     call refuse(tester, 'a.nml|--study|--part|3/2', '--part needs the number K of a part, from 1 to N')
     call refuse(tester, 'a.nml|--study|--check', 'leave --check out')
-    call refuse(tester, 'a.nml|--range', 'only mech9k has it', 'mech9d')
+    call refuse(tester, 'a.nml|--range', 'only mech9k has it', dynamics)
     call refuse(tester, 'a.nml|--modes', 'only mech9d has it')
-    call refuse(tester, 'a.nml|--modes|--equilibrium', 'different tables', 'mech9d')
-    call refuse(tester, 'a.nml|--mode|2', 'give all three', 'mech9d')
-    call refuse(tester, 'a.nml|--modes|--animate|a.svg', 'tell which by --mode K', 'mech9d')
-    call refuse(tester, 'a.nml|--equilibrium|--animate|a.svg', '--animate shows a run', 'mech9d')
+    call refuse(tester, 'a.nml|--modes|--equilibrium', 'different tables', dynamics)
+    call refuse(tester, 'a.nml|--mode|2', 'give all three', dynamics)
+    call refuse(tester, 'a.nml|--modes|--animate|a.svg', 'tell which by --mode K', dynamics)
+    call refuse(tester, 'a.nml|--equilibrium|--animate|a.svg', '--animate shows a run', dynamics)
     call refuse_beside_rest(tester)
     call refuse(tester, 'a.nml|b.nml', "two data files are given, 'a.nml' and 'b.nml'")
     call refuse(tester, 'a.nml||', 'the name of the data file is empty')
@@ -202,33 +203,33 @@ contains
     do i = 1, size(of_rest)
       start = 'a.nml|'//trim(of_rest(i))//'|'
       do k = 1, size(good)
-        call parse(start//trim(good(k)), options, err, 'mech9d')
+        call parse(start//trim(good(k)), options, err, dynamics)
         call tester%no_error(err, start//trim(good(k)))
       end do
       do k = 1, size(answers)
-        call refuse(tester, start//trim(answers(k)), 'are two tasks', 'mech9d')
+        call refuse(tester, start//trim(answers(k)), 'are two tasks', dynamics)
       end do
-      call refuse(tester, start//'--plot|q1', '--plot shows a run', 'mech9d')
-      call refuse(tester, start//'--sketch|s.svg', '--sketch shows a run', 'mech9d')
-      call refuse(tester, start//'--view|xy', 'draws none', 'mech9d')
-      if (i > 1) call refuse(tester, start//'--starts|3', '--starts belongs to --equilibrium', 'mech9d')
+      call refuse(tester, start//'--plot|q1', '--plot shows a run', dynamics)
+      call refuse(tester, start//'--sketch|s.svg', '--sketch shows a run', dynamics)
+      call refuse(tester, start//'--view|xy', 'draws none', dynamics)
+      if (i > 1) call refuse(tester, start//'--starts|3', '--starts belongs to --equilibrium', dynamics)
     end do
-    call refuse(tester, 'a.nml|--equilibrium|--starts|3|--linear|l.h5', '--linear is about one equilibrium', 'mech9d')
-    call refuse(tester, 'a.nml|--linear|l.h5|--no-write', 'contradicts', 'mech9d')
-    call refuse(tester, 'a.nml|--linear|l.h5|--animate|a.svg', '--animate shows a run', 'mech9d')
-    call refuse(tester, 'a.nml|--equilibrium|--starts|-1', "--starts needs a whole number from 1 on, not '-1'", 'mech9d')
+    call refuse(tester, 'a.nml|--equilibrium|--starts|3|--linear|l.h5', '--linear is about one equilibrium', dynamics)
+    call refuse(tester, 'a.nml|--linear|l.h5|--no-write', 'contradicts', dynamics)
+    call refuse(tester, 'a.nml|--linear|l.h5|--animate|a.svg', '--animate shows a run', dynamics)
+    call refuse(tester, 'a.nml|--equilibrium|--starts|-1', "--starts needs a whole number from 1 on, not '-1'", dynamics)
   end subroutine refuse_beside_rest
 
   !> The line is an error of usage whose message holds some words.
-  subroutine refuse(tester, line, words, program_name)
+  subroutine refuse(tester, line, words, program)
     type(tester_type), intent(inout) :: tester               !< counts the checks
     character(len=*), intent(in) :: line                     !< words with `|` between them
     character(len=*), intent(in) :: words                    !< of the message
-    character(len=*), intent(in), optional :: program_name   !< mech9k unless given
+    integer, intent(in), optional :: program   !< mech9k unless given
     type(command_line_type) :: options
     type(error_type), allocatable :: err
 
-    call parse(line, options, err, program_name)
+    call parse(line, options, err, program)
     call tester%has_error(err, exit_usage, line)
     if (allocated(err)) call tester%is_true(index(err%message, words) > 0, &
                                             line//' is refused with the right part in the message: '//err%message)
@@ -258,7 +259,7 @@ contains
     character(len=:), allocatable :: text
     integer :: first, next
 
-    text = help_text('mech9k')//achar(10)
+    text = help_text(kinematics)//achar(10)
     call tester%is_true(index(text, 'usage: mech9k FILE [options]') == 1, 'the help begins with the usage')
     first = 1
     do while (first <= len(text))

@@ -1,6 +1,7 @@
 !> Derivatives by which a search goes on, against differences of what they are derivatives of: of the limit that a crank turns fully,
 !> and of the equations of open chains and couplings.
 module test_design_derivatives
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_source, only: source_from_text
@@ -116,10 +117,10 @@ contains
     type(error_type), allocatable :: err
 
     call parse_document(source_from_text('f.nml', text), document, diagnostics)
-    call read_model(document, .true., model, diagnostics)
+    call read_model(document, kinematics, model, diagnostics)
     call tester%is_true(.not. diagnostics%failed(), name//': the data file is sound')
     if (diagnostics%failed()) return
-    call new_varied_document(document, diagnostics%sources, .true., varied)
+    call new_varied_document(document, diagnostics%sources, kinematics, varied)
     call assemble_driven_start(model, plan, start, err)
     if (.not. allocated(err)) call new_design_space(varied, model, plan, space, err)
     call tester%no_error(err, name//': there are designs')

@@ -1,6 +1,7 @@
 !> Quantities of a driven motion and their derivatives, without any results: the stroke of a slider-crank.
 module test_design_gradient
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_source, only: source_from_text
@@ -48,11 +49,11 @@ contains
     real(wp) :: numbers(2), gradient(2, 2)
 
     call parse_document(source_from_text('f.nml', slider_crank), document, diagnostics)
-    call new_varied_document(document, diagnostics%sources, .true., varied)
+    call new_varied_document(document, diagnostics%sources, kinematics, varied)
     call varied%at([0.25_wp, 1.0_wp], model, err)
     call tester%is_true(.not. allocated(err), 'there is a model')
     if (allocated(err)) return
-    call find_design_gradient('mech9k', model, varied, numbers, gradient, err)
+    call find_design_gradient(model, varied, numbers, gradient, err)
     call tester%is_true(.not. allocated(err), 'it moves')
     ! polynomials through outputs that are 1/36 of a turn apart
     call tester%near(numbers(1), 0.5_wp, 1.0e-9_wp, 'the stroke is twice the crank')
@@ -60,7 +61,7 @@ contains
     call tester%near(gradient(2, 1), 0.0_wp, 1.0e-9_wp, 'its derivative by the rod')
     call tester%is_true(all(ieee_is_nan(gradient(:, 2))), 'the error of closed chains has no derivative')
     call varied%at([0.3_wp, 0.25_wp], model, err)
-    if (.not. allocated(err)) call find_design_gradient('mech9k', model, varied, numbers, gradient, err)
+    if (.not. allocated(err)) call find_design_gradient(model, varied, numbers, gradient, err)
     call tester%is_true(allocated(err), 'a rod that is too short fails')
   end subroutine stroke
 end module test_design_gradient

@@ -1,5 +1,6 @@
 !> Tests of the text of the progress line, and of its pacer in a loop that slows down.
 module test_progress
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_clock, only: seconds, pacer_type
   use mech9_progress, only: progress_line
@@ -23,7 +24,7 @@ contains
   subroutine test_version(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
 
-    call tester%is_true(index(version_text('mech9k'), 'mech9k '//version) == 1, 'the version tells program and version')
+    call tester%is_true(index(version_text(kinematics), 'mech9k '//version) == 1, 'the version tells program and version')
   end subroutine test_version
 
   subroutine test_line(tester)

@@ -1,5 +1,6 @@
 !> Drives that are not smooth, beside a free coordinate: a jump of the position ends the motion with its time and its coordinate.
 module test_driven_coordinates
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_singular
   use mech9_simulation_failures, only: failure_drive_jumps
@@ -58,7 +59,7 @@ contains
     integer :: i
 
     call parse_document(source_from_text('test.nml', text), document, diagnostics)
-    call read_model(document, .false., model, diagnostics)
+    call read_model(document, dynamics, model, diagnostics)
     call test%is_true(.not. diagnostics%failed(), 'the data file is right')
     deallocate (model%problem%drives(1)%drive)
     allocate (model%problem%drives(1)%drive, source=jumping_drive_type(coordinate=1, rate=0.2_wp, t=1.0_wp, height=height))

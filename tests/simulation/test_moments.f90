@@ -1,6 +1,7 @@
 !> Computations of simulations at single moments: coefficients of motion and impulses of drives in closed form, gimbal lock, the
 !> intervals between joints of laws, and the guard of closed chains.
 module test_moments
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_singular
   use mech9_model, only: model_type
@@ -61,7 +62,7 @@ contains
     type(state_type), intent(out) :: state     !< its position
     type(error_type), allocatable :: err
 
-    call model_from_text(test, text, .false., model)
+    call model_from_text(test, text, dynamics, model)
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call test%no_error(err, 'there is a plan')
   end subroutine prepare

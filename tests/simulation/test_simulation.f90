@@ -3,6 +3,7 @@
 !>
 !> Compares the program with itself: a motion in one go, in pieces and after an interruption.
 module test_simulation
+  use mech9_program_kind, only: kinematics, dynamics
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, exit_usage, exit_data, exit_singular, exit_integrator, exit_interrupted
   use mech9_dynamics_failures, only: failure_no_inertia
@@ -117,7 +118,7 @@ contains
     type(diagnostics_type) :: diagnostics
 
     call parse_document(source_from_text('text', text), document, diagnostics)
-    call read_model(document, is_driven, model, diagnostics)
+    call read_model(document, merge(kinematics, dynamics, is_driven), model, diagnostics)
     call test%is_true(.not. diagnostics%failed(), 'the text is sound')
   end subroutine read
 

@@ -39,33 +39,33 @@ contains
   end subroutine checked_from_text
 
   !> The model that a text describes.
-  subroutine model_from_text(tester, text, needs_drives, model)
+  subroutine model_from_text(tester, text, program, model)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=*), intent(in) :: text         !< of a data file
-    logical, intent(in) :: needs_drives          !< all independent coordinates are driven, as in kinematics
+    integer, intent(in) :: program               !< kinematics or dynamics
     type(model_type), intent(out) :: model       !< the model
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 
     call parse_document(source_from_text('test.nml', text), document, diagnostics)
-    call read_model(document, needs_drives, model, diagnostics)
+    call read_model(document, program, model, diagnostics)
     call judge(tester, text, diagnostics)
   end subroutine model_from_text
 
   !> The model that a text describes, as a function of its parameters.
-  subroutine varied_from_text(tester, text, needs_drives, varied, model)
+  subroutine varied_from_text(tester, text, program, varied, model)
     type(tester_type), intent(inout) :: tester           !< counts the checks
     character(len=*), intent(in) :: text                 !< of a data file
-    logical, intent(in) :: needs_drives                  !< all independent coordinates are driven, as in kinematics
+    integer, intent(in) :: program                       !< kinematics or dynamics
     type(varied_document_type), intent(out) :: varied    !< the model as a function of its parameters
     type(model_type), intent(out) :: model               !< the model of the values in the text
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
 
     call parse_document(source_from_text('test.nml', text), document, diagnostics)
-    call read_model(document, needs_drives, model, diagnostics)
+    call read_model(document, program, model, diagnostics)
     call judge(tester, text, diagnostics)
-    call new_varied_document(document, diagnostics%sources, needs_drives, varied)
+    call new_varied_document(document, diagnostics%sources, program, varied)
   end subroutine varied_from_text
 
   !> Check that nothing is wrong with a text, and print the errors where something is.

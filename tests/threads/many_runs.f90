@@ -1,5 +1,6 @@
 !> Whole runs, from the data file to the rows, that share nothing: what several threads are given.
 module many_runs
+  use mech9_program_kind, only: kinematics, dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_document, only: document_type
@@ -27,7 +28,7 @@ module many_runs
   !> One run and its results.
   type :: run_type
     character(len=:), allocatable :: file
-    logical :: dynamic = .false.
+    integer :: program = kinematics
     real(wp), allocatable :: rows(:, :)     !< (columns, outputs); none of a data file that is refused
     character(len=:), allocatable :: said    !< of such a data file
     logical :: done = .false.                !< ended as it should
@@ -52,7 +53,7 @@ contains
     do i = 1, count
       which = 1 + modulo(i - 1, size(names))
       runs(i)%file = folder//'/'//trim(names(which))//'.nml'
-      runs(i)%dynamic = index(names(which), '/dynamics') > 0 .or. index(names(which), '/forced') > 0
+      if (index(names(which), '/dynamics') > 0 .or. index(names(which), '/forced') > 0) runs(i)%program = dynamics
     end do
   end subroutine list_runs
 
@@ -65,7 +66,7 @@ contains
     type(error_type), allocatable :: err
 
     call read_document(run%file, document, diagnostics)
-    call read_model(document, .not. run%dynamic, model, diagnostics)
+    call read_model(document, run%program, model, diagnostics)
     if (diagnostics%failed()) then
       call diagnostics%render(1, run%said)
       run%done = index(run%file, 'malformed') > 0
@@ -77,13 +78,13 @@ contains
       return
     end if
     if (size(model%request%objectives) > 0) then
-      call search(document, diagnostics, model, run%dynamic, run%rows, err)
+      call search(document, diagnostics, model, run%rows, err)
       run%done = .not. allocated(err)
       return
     end if
     ! short, so that the threads begin and end often
     model%request%time%intervals = 20
-    if (run%dynamic) then
+    if (run%program == dynamics) then
       call integrate(model, run%rows, err)
     else
       call follow(model, run%rows, err)
@@ -102,8 +103,8 @@ contains
     type(made_run_type) :: made
     integer :: i
 
-    call new_varied_document(document, diagnostics%sources, .true., varied)
-    call maker%begin('mech9k', model, varied)
+    call new_varied_document(document, diagnostics%sources, kinematics, varied)
+    call maker%begin(model, varied)
     allocate (rows(1 + size(model%parameters) + size(model%request%quantities), model%request%study%runs))
     do i = 1, size(rows, 2)
       call maker%make(i, made)
@@ -114,11 +115,10 @@ contains
   end subroutine make_study
 
   !> Search for a design from some starts.
-  subroutine search(document, diagnostics, model, dynamic, rows, err)
+  subroutine search(document, diagnostics, model, rows, err)
     type(document_type), intent(in) :: document          !< the data file
     type(diagnostics_type), intent(in) :: diagnostics    !< of its reading
     type(model_type), intent(in) :: model                !< with the values of the data file
-    logical, intent(in) :: dynamic                       !< the motion follows from forces
     real(wp), allocatable, intent(out) :: rows(:, :)     !< a column for each start: value and parameters of its best design
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(varied_document_type), target :: varied
@@ -131,10 +131,10 @@ contains
     type(found_design_type), allocatable :: found(:)
     integer :: i, best
 
-    call new_varied_document(document, diagnostics%sources, .not. dynamic, varied)
+    call new_varied_document(document, diagnostics%sources, model%program, varied)
     searched => varied
     present = model
-    if (dynamic) then
+    if (model%program == dynamics) then
       allocate (held%moving, source=varied)
       searched => held
       call hold_start(present, err)
@@ -142,7 +142,7 @@ contains
     end if
     call assemble_driven(present, plan, start, err)
     if (.not. allocated(err)) call new_synthesis(searched, present, plan, synthesis, err)
-    if (.not. allocated(err)) call check_synthesis(merge('mech9d', 'mech9k', dynamic), varied, model, start, synthesis, err)
+    if (.not. allocated(err)) call check_synthesis(varied, model, start, synthesis, err)
     if (allocated(err)) return
     allocate (rows(1 + size(synthesis%space%varied), model%request%optimum%starts), source=0.0_wp)
     do i = 1, size(rows, 2)
@@ -189,7 +189,7 @@ contains
     type(row_source_type) :: source
     integer :: i
 
-    call new_row_source('mech9', simulation, source)
+    call new_row_source(simulation, source)
     allocate (rows(source%columns%count, 0:model%request%time%intervals), source=0.0_wp)
     do i = 0, model%request%time%intervals
       call source%row_at(model%request%time%time(i), rows(:, i), err)

@@ -1,5 +1,6 @@
 !> A draft is checked by reading it as the data file that it will be. Each error gets its place in the draft.
 module mech9_draft_check
+  use mech9_program_kind, only: dynamics
   use mech9_text, only: to_text
   use mech9_source, only: span_type, source_from_text
   use mech9_grammar, only: item_table, rows_of_group
@@ -30,10 +31,10 @@ module mech9_draft_check
 contains
 
   !> The mechanism of a draft is read. It is of use only if there are no errors.
-  subroutine read_draft(draft, path, needs_drives, model, written, diagnostics)
+  subroutine read_draft(draft, path, program, model, written, diagnostics)
     type(draft_type), intent(in) :: draft               !< groups and names with their values as text
     character(len=*), intent(in) :: path                !< path of the data file; tables of drives are sought beside it
-    logical, intent(in) :: needs_drives                 !< the program needs a drive for each independent coordinate
+    integer, intent(in) :: program                      !< kinematics, where each independent coordinate needs a drive, or dynamics
     type(model_type), intent(out) :: model              !< the model
     type(draft_text_type), intent(out) :: written       !< text of the draft, with the place of each entry
     type(diagnostics_type), intent(out) :: diagnostics  !< gets the errors
@@ -41,7 +42,7 @@ contains
 
     call write_draft(draft, '', written)
     call parse_document(source_from_text(path, written%text), document, diagnostics)
-    call read_model(document, needs_drives, model, diagnostics)
+    call read_model(document, program, model, diagnostics)
   end subroutine read_draft
 
   !> The structure of a draft is read. It is of use only if there are no faults.
@@ -209,7 +210,7 @@ contains
     else
       trial = draft
       call complete(trial, group, place)
-      call read_draft(trial, path, .false., model, written, diagnostics)
+      call read_draft(trial, path, dynamics, model, written, diagnostics)
     end if
     call find_faults(diagnostics, written, faults)
     do i = 1, size(faults)

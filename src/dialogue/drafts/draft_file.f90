@@ -1,5 +1,6 @@
 !> Files of drafts, in which a conversation keeps the answers and from which it can be resumed.
 module mech9_draft_file
+  use mech9_program_kind, only: program_names
   use mech9_error, only: error_type, exit_data
   use mech9_text, only: to_text, lower
   use mech9_source, only: span_type
@@ -23,17 +24,17 @@ contains
 
   !> A draft is written as a data file. With a bookmark the conversation can be resumed there. The former content of the
   !> file is kept until everything is written.
-  subroutine save_draft(draft, path, bookmark, program_name, err)
+  subroutine save_draft(draft, path, bookmark, program, err)
     type(draft_type), intent(in) :: draft              !< groups and names with their values as text
     character(len=*), intent(in) :: path               !< name of the file
     character(len=*), intent(in) :: bookmark           !< the place where the conversation goes on; empty: the data file is finished
-    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
+    integer, intent(in) :: program                     !< kinematics or dynamics
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(draft_text_type) :: written
     character(len=:), allocatable :: remark
 
     remark = ''
-    if (bookmark /= '') remark = mark//bookmark//' ('//program_name//' --resume '//path//')'
+    if (bookmark /= '') remark = mark//bookmark//' ('//program_names(program)//' --resume '//path//')'
     call write_draft(draft, remark, written)
     call replace_text(path, written%text, err)
   end subroutine save_draft

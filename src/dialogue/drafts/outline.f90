@@ -1,6 +1,7 @@
 !> The facts that a conversation knows beside the draft: the way in which the structure is given, the rarely used names
 !> that the user wants, and the independent coordinates. The groups that follow from them are made here.
 module mech9_outline
+  use mech9_program_kind, only: kinematics
   use mech9_text, only: to_text
   use mech9_grammar, only: item_table
   use mech9_item_rows, only: find_item_rows, item_row_for_kind
@@ -15,7 +16,7 @@ module mech9_outline
 
   !> The facts known beside the draft.
   type :: outline_type
-    character(len=6) :: program_name = ''
+    integer :: program = kinematics
     character(len=7) :: way = ways(1)                       !< way in which the structure is given, one of `ways`
     logical :: asked(size(item_table)) = .false.            !< rarely used names that the user wants to give
     logical :: guesses = .false.                            !< guesses of the dependent coordinates at the start are wanted
@@ -27,13 +28,13 @@ module mech9_outline
 contains
 
   !> The outline that follows from the values in a draft.
-  pure function new_outline(program_name, draft) result(outline)
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+  pure function new_outline(program, draft) result(outline)
+    integer, intent(in) :: program                !< kinematics or dynamics
     type(draft_type), intent(in) :: draft         !< groups and names with their values as text
     type(outline_type) :: outline
     integer :: i, j, row
 
-    outline%program_name = program_name
+    outline%program = program
     allocate (outline%independent(0), outline%links(2, 0))
     do i = 1, size(draft%groups)
       associate (group => draft%groups(i))
@@ -80,7 +81,7 @@ contains
 
     if (.not. outline%structure_known) return
     if (outline%way /= 'pairs') call give_links(draft, outline%links)
-    if (outline%program_name == 'mech9k') then
+    if (outline%program == kinematics) then
       call make_numbered(draft, 'drive', outline%independent)
     else
       call drop_driven_starts(draft)

@@ -71,7 +71,7 @@ contains
     text = text//line_end//'Enter takes what stands in brackets. Also: back (to the question before), list (what is '// &
            'known), default (as if never answered), quit (what was typed is kept).'
     if (question%kind /= ask_item .or. question%is_new) return
-    if (can_be_left_out(question%group_row, outline%program_name)) &
+    if (can_be_left_out(question%group_row, outline%program)) &
       text = text//' remove leaves out the '//trim(item_table(question%row)%group)// &
                                                     ' that is asked about.'
   end function help_of

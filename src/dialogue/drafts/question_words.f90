@@ -358,7 +358,7 @@ contains
       list = trim(item_table(question%row)%words)//' '
       if (question%is_new) list = list//'none '
       if (item_table(question%row)%type == 'logical') list = 'yes no '
-      if (can_be_left_out(question%group_row, outline%program_name) .and. .not. question%is_new) list = list//'remove '
+      if (can_be_left_out(question%group_row, outline%program) .and. .not. question%is_new) list = list//'remove '
     end select
     associate (all_words => words_of(list//'back list default quit'))
       allocate (words(size(all_words)))

@@ -3,6 +3,7 @@
 !> The list is made anew after each answer, since an answer may open or close other questions. A question is the same in
 !> two lists if it has the same label.
 module mech9_questions
+  use mech9_program_kind, only: kinematics, dynamics, program_names
   use mech9_text, only: to_text
   use mech9_grammar, only: group_table, item_table, for_forces, rows_of_group, find_group_row
   use mech9_item_rows, only: takes_kind, find_item_rows
@@ -49,8 +50,8 @@ contains
     allocate (questions(64))
     count = 0
     do topic = 1, size(topics)
-      call ask_about_topic(draft, outline, topic, outline%program_name == 'mech9d', questions, count)
-      if (topics(topic)%groups == 'output' .and. outline%program_name == 'mech9k' .and. wants_forces(draft)) &
+      call ask_about_topic(draft, outline, topic, outline%program == dynamics, questions, count)
+      if (topics(topic)%groups == 'output' .and. outline%program == kinematics .and. wants_forces(draft)) &
         call ask_about_masses(draft, outline, questions, count)
     end do
     call append(questions, count, question_type(kind=check_all, topic=size(topics)))
@@ -72,7 +73,7 @@ contains
     do i = 1, size(rows)
       associate (program => group_table(rows(i))%program)
         if (program == for_forces .and. .not. with_masses) cycle
-        if (all(program /= ['both  ', for_forces, outline%program_name])) cycle
+        if (all(program /= ['both  ', for_forces, program_names(outline%program)])) cycle
       end associate
       call ask_about_group(draft, outline, topic, rows(i), questions, count)
     end do
@@ -117,7 +118,7 @@ contains
     if (group == 'cam' .and. .not. may_have_cams(draft)) return
     if (group == 'coupling' .and. draft%number('mechanism', 1, 'coordinates') == 1) return
     if (group == 'initial') then
-      if (outline%program_name == 'mech9k' .or. .not. all(outline%independent)) &
+      if (outline%program == kinematics .or. .not. all(outline%independent)) &
         call append(questions, count, question_type(kind=ask_guesses, topic=topic, group_row=group_row))
     else if (any(item_table(rows)%seldom) .and. group /= 'mechanism' .and. &
              (draft%count_of(group) > 0 .or. .not. (is_on_request(group_row) .or. &
@@ -126,7 +127,7 @@ contains
       ! those of loads, motors, cams, couplings and of groups that are begun on request are for the ones that are there
       call append(questions, count, question_type(kind=ask_seldom, topic=topic, group_row=group_row))
     end if
-    may_begin = can_be_left_out(group_row, outline%program_name)
+    may_begin = can_be_left_out(group_row, outline%program)
     do place = 1, merge(draft%count_of(group), 1, group_table(group_row)%repeats .or. may_begin)
       call ask_about_one(draft, outline, question_type(topic=topic, group_row=group_row, place=place), rows, questions, count)
     end do
@@ -197,7 +198,7 @@ contains
       kind = ''
       if (group > 0) kind = kind_in(draft, group)
       if (is_numbered(question%group_row) .and. row%name == 'coordinate' .and. &
-          .not. can_be_left_out(question%group_row, outline%program_name)) return
+          .not. can_be_left_out(question%group_row, outline%program)) return
       if (row%kinds /= '' .and. (kind == '' .or. .not. takes_kind(row, kind))) return
       if (is_seldom(outline, row) .and. .not. (outline%asked(question%row) .or. is_wanted)) return
       if (name == 'pair' .and. row%name == 'links' .and. outline%way == 'pairs') return
@@ -220,7 +221,7 @@ contains
     k = draft%number('initial', question%place, 'coordinate')
     if (k < 1 .or. k > size(outline%independent)) return
     if (outline%independent(k)) then
-      open = outline%program_name == 'mech9d' .and. .not. is_driven(draft, k)
+      open = outline%program == dynamics .and. .not. is_driven(draft, k)
     else
       open = item_table(question%row)%name /= 'velocity'
     end if

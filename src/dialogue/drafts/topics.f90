@@ -1,5 +1,6 @@
 !> The topics of a conversation, in the order in which a person thinks. Each topic has some groups of the data file.
 module mech9_topics
+  use mech9_program_kind, only: dynamics
   use mech9_grammar, only: group_table, find_group_row, words_of
   implicit none
   private
@@ -95,11 +96,11 @@ contains
 
   !> Whether the user begins the groups of a name, and can leave them out. There can be any number of most of them, and one of
   !> studies and searches. In mech9d, drives are among them: an independent coordinate without one is free.
-  pure logical function can_be_left_out(group_row, program_name)
+  pure logical function can_be_left_out(group_row, program)
     integer, intent(in) :: group_row              !< row of the group in group_table
-    character(len=*), intent(in) :: program_name  !< program of the conversation: mech9k or mech9d
+    integer, intent(in) :: program                !< kinematics or dynamics
 
     can_be_left_out = (group_table(group_row)%repeats .or. is_on_request(group_row)) .and. .not. is_numbered(group_row)
-    if (group_table(group_row)%name == 'drive') can_be_left_out = program_name == 'mech9d'
+    if (group_table(group_row)%name == 'drive') can_be_left_out = program == dynamics
   end function can_be_left_out
 end module mech9_topics

@@ -2,6 +2,7 @@
 module mech9_mpi_program
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use mpi_f08, only: MPI_COMM_WORLD, MPI_INTEGER, MPI_Init, MPI_Finalize, MPI_Comm_rank, MPI_Comm_size, MPI_Bcast
+  use mech9_program_kind, only: program_names
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type
   use mech9_command_line, only: command_line_type, get_command_words, parse_command_line
@@ -46,9 +47,9 @@ contains
     type(command_line_type) :: options
     type(error_type), allocatable :: err
 
-    call read_options(task%program_name, options, err)
+    call read_options(task%program, options, err)
     if (allocated(err)) then
-      write (error_unit, '(4a)') task%program_name, '-mpi: ', err%message
+      write (error_unit, '(4a)') program_names(task%program), '-mpi: ', err%message
       code = err%code
       return
     end if
@@ -63,17 +64,17 @@ contains
   end subroutine run_processes
 
   !> Read the command line. It must be that of a study.
-  subroutine read_options(program_name, options, err)
-    character(len=*), intent(in) :: program_name          !< mech9k or mech9d
+  subroutine read_options(program, options, err)
+    integer, intent(in) :: program                        !< kinematics or dynamics
     type(command_line_type), intent(out) :: options       !< the command line
     type(error_type), allocatable, intent(out) :: err     !< allocated if it is wrong
     type(string_type), allocatable :: words(:)
 
     call get_command_words(words)
-    call parse_command_line(words, program_name, options, err)
+    call parse_command_line(words, program, options, err)
     if (allocated(err) .or. asks_for_text(options)) return
     if (.not. options%has('study')) then
-      call raise(err, exit_usage, 'several processes make the runs of a study; add --study, or use '//program_name)
+      call raise(err, exit_usage, 'several processes make the runs of a study; add --study, or use '//program_names(program))
     else if (options%has('threads')) then
       call raise(err, exit_usage, '--threads is for one process; here mpirun -n tells how many make the runs')
     end if

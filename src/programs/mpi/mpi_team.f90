@@ -61,9 +61,8 @@ contains
   end subroutine agree_by_mpi
 
   !> Hand out runs to the other processes and make some, until all are made.
-  subroutine lead_by_mpi(self, program_name, model, varied, runs)
+  subroutine lead_by_mpi(self, model, varied, runs)
     class(mpi_team_type), intent(in) :: self              !< the processes
-    character(len=*), intent(in) :: program_name          !< mech9k or mech9d
     type(model_type), intent(in) :: model                 !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
     type(study_runs_type), intent(inout) :: runs          !< about to begin
@@ -73,7 +72,7 @@ contains
     integer :: number, batch, other
     real(wp) :: begun
 
-    call maker%begin(program_name, model, varied)
+    call maker%begin(model, varied)
     waiting = 0
     batch = 1
     do
@@ -183,9 +182,8 @@ contains
   end subroutine take_batch
 
   !> Make the runs that the first process hands out, until it has no more.
-  subroutine follow_by_mpi(self, program_name, model, varied)
+  subroutine follow_by_mpi(self, model, varied)
     class(mpi_team_type), intent(in) :: self              !< the processes
-    character(len=*), intent(in) :: program_name          !< mech9k or mech9d
     type(model_type), intent(in) :: model                 !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
     type(run_maker_type) :: maker
@@ -193,7 +191,7 @@ contains
     integer :: numbers(longest_batch), n
     logical :: arrived
 
-    call maker%begin(program_name, model, varied)
+    call maker%begin(model, varied)
     do
       do
         call MPI_Iprobe(0, of_numbers, MPI_COMM_WORLD, arrived, status)

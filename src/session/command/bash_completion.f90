@@ -1,5 +1,6 @@
 !> Completion of a program's command line in bash: a script with the program's options and the data file's names.
 module mech9_bash_completion
+  use mech9_program_kind, only: program_names
   use mech9_options, only: options_table, no_argument, assignment
   use mech9_grammar, only: group_table, item_table
   implicit none
@@ -11,28 +12,28 @@ module mech9_bash_completion
 contains
 
   !> The script, as whole lines. Bash passes it the command line, split at each `=`; names of files may have any letters.
-  pure function bash_completion(program_name) result(script)
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+  pure function bash_completion(program) result(script)
+    integer, intent(in) :: program                !< kinematics or dynamics
     character(len=:), allocatable :: script
 
-    script = '# Completion of '//program_name//' in bash; made from its tables of options and of the data file.'//eol// &
-      '_'//program_name//'() {'//eol// &
+    script = '# Completion of '//program_names(program)//' in bash; made from its tables of options and of the data file.'//eol// &
+      '_'//program_names(program)//'() {'//eol// &
       '  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} assigns=no'//eol// &
       '  if [[ $word == "=" ]]; then word="" assigns=yes'//eol// &
       '  elif [[ $before == "=" ]]; then before=${COMP_WORDS[COMP_CWORD-2]} assigns=yes; fi'//eol// &
       '  COMPREPLY=()'//eol// &
       '  case $assigns:$before in'//eol// &
-      values()//arguments(program_name)// &
+      values()//arguments(program)// &
       '    yes:*) return ;;'//eol// &
       '  esac'//eol// &
       '  if [[ $word == -* ]]; then'//eol// &
-      '    COMPREPLY=($(compgen -W "'//options_of(program_name)//'" -- "$word"))'//eol// &
+      '    COMPREPLY=($(compgen -W "'//options_of(program)//'" -- "$word"))'//eol// &
       '  else'//eol// &
       '    compopt -o filenames'//eol// &
       '    mapfile -t COMPREPLY < <(compgen -f -X "!*.nml" -- "$word"; compgen -d -- "$word")'//eol// &
       '  fi'//eol// &
       '}'//eol// &
-      'complete -F _'//program_name//' '//program_name//eol
+      'complete -F _'//program_names(program)//' '//program_names(program)//eol
   end function bash_completion
 
   !> Completion after --set GROUP.NAME= by the words that the name takes.
@@ -49,8 +50,8 @@ contains
   end function values
 
   !> Completion after each option that takes an argument.
-  pure function arguments(program_name) result(text)
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+  pure function arguments(program) result(text)
+    integer, intent(in) :: program                !< kinematics or dynamics
     character(len=:), allocatable :: text, label
     integer :: i
 
@@ -58,7 +59,7 @@ contains
     label = ''
     do i = 1, size(options_table)
       associate (option => options_table(i))
-        if (index(option%programs, program_name) == 0 .or. option%takes == no_argument) cycle
+        if (index(option%programs, program_names(program)) == 0 .or. option%takes == no_argument) cycle
         label = '*:--'//trim(option%name)
         if (option%form == assignment) then
           text = text//choice(label, names_of_data('='), ' compopt -o nospace;')
@@ -89,14 +90,14 @@ contains
   end function choice
 
   !> The options of a program, each with its dashes.
-  pure function options_of(program_name) result(text)
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+  pure function options_of(program) result(text)
+    integer, intent(in) :: program                !< kinematics or dynamics
     character(len=:), allocatable :: text
     integer :: i
 
     text = ''
     do i = 1, size(options_table)
-      if (index(options_table(i)%programs, program_name) > 0) text = text//' --'//trim(options_table(i)%name)
+      if (index(options_table(i)%programs, program_names(program)) > 0) text = text//' --'//trim(options_table(i)%name)
     end do
     text = text(2:)
   end function options_of

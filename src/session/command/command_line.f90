@@ -1,5 +1,6 @@
 !> The command line: its words, the data file and the options.
 module mech9_command_line
+  use mech9_program_kind, only: kinematics, program_names
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type, nearest_name, starts_with
   use mech9_options, only: option_type, options_table, option_names, find_option, &
@@ -18,6 +19,7 @@ module mech9_command_line
 
   !> The content of a command line: a data file, and options by the names of the table of options.
   type :: command_line_type
+    integer :: program = kinematics        !< or dynamics
     character(len=:), allocatable :: file  !< the data file; empty where none is given
     character(len=:), allocatable :: line  !< all words as a line for a shell
     type(given_type), allocatable, private :: given(:)
@@ -49,14 +51,15 @@ contains
   end subroutine get_command_words
 
   !> Read the words. An error is a wrong command line (exit_usage).
-  pure subroutine parse_command_line(words, program_name, options, err)
+  pure subroutine parse_command_line(words, program, options, err)
     type(string_type), intent(in) :: words(:)          !< the words, without the program's name
-    character(len=*), intent(in) :: program_name       !< mech9k or mech9d: whose options count
+    integer, intent(in) :: program                     !< kinematics or dynamics: whose options count
     type(command_line_type), intent(out) :: options    !< the data file and the options
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer :: i
     logical :: only_files
 
+    options%program = program
     options%file = ''
     options%line = shell_line(words)
     allocate (options%given(0))
@@ -67,14 +70,14 @@ contains
         only_files = .true.
         i = i + 1
       else if (is_option(words(i)%text) .and. .not. only_files) then
-        call read_option(words, i, program_name, options, err)
+        call read_option(words, i, program, options, err)
       else
         call take_file(words(i)%text, options, err)
         i = i + 1
       end if
       if (allocated(err)) return
     end do
-    call judge_options(program_name, options%given%name, options%file /= '', options%converses(), err)
+    call judge_options(program, options%given%name, options%file /= '', options%converses(), err)
   end subroutine parse_command_line
 
   !> Words as one line that a shell splits into the same words.
@@ -172,10 +175,10 @@ contains
   end subroutine take_file
 
   !> Read the option that begins at words(i), and step over it.
-  pure subroutine read_option(words, i, program_name, options, err)
+  pure subroutine read_option(words, i, program, options, err)
     type(string_type), intent(in) :: words(:)          !< the words of the command line
     integer, intent(inout) :: i                        !< position of the option; afterwards that of the next word
-    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
+    integer, intent(in) :: program                     !< kinematics or dynamics
     type(command_line_type), intent(inout) :: options  !< gets the option
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     character(len=:), allocatable :: name, argument
@@ -191,9 +194,9 @@ contains
       name = name(:equals - 1)
     end if
     place = 0
-    if (starts_with(name, '--')) place = find_option(name(3:), program_name)
+    if (starts_with(name, '--')) place = find_option(name(3:), program)
     if (place == 0) then
-      call raise_unknown(name, program_name, err)
+      call raise_unknown(name, program, err)
       return
     end if
     i = i + 1
@@ -228,15 +231,15 @@ contains
   end subroutine take_further
 
   !> Fail because of an unknown option, with the nearest known one.
-  pure subroutine raise_unknown(name, program_name, err)
+  pure subroutine raise_unknown(name, program, err)
     character(len=*), intent(in) :: name               !< the option as it was given, with its dashes
-    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
+    integer, intent(in) :: program                     !< kinematics or dynamics
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     character(len=:), allocatable :: nearest, hint
     integer :: i
 
-    nearest = nearest_name(name(verify(name//'x', '-'):), option_names(program_name))
-    hint = program_name//' --help lists the options'
+    nearest = nearest_name(name(verify(name//'x', '-'):), option_names(program))
+    hint = program_names(program)//' --help lists the options'
     if (nearest /= '') hint = 'did you mean --'//nearest//'?'
     do i = 1, size(options_table)
       if ('--'//options_table(i)%name == name) hint = 'only '//trim(options_table(i)%programs)//' has it'

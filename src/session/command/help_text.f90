@@ -1,6 +1,7 @@
 !> The help of a program: its purpose, its options, its exit codes. --help, the manual page and the completion of the
 !> shell are made from these.
 module mech9_help_text
+  use mech9_program_kind, only: dynamics, program_names
   use mech9_error, only: exit_done, exit_internal, exit_usage, exit_data, exit_structure, exit_assembly, &
                          exit_singular, exit_integrator, exit_file, exit_interrupted
   use mech9_text, only: to_text
@@ -33,28 +34,28 @@ module mech9_help_text
 contains
 
   !> The purpose of a program, in one line.
-  pure function purpose(program_name) result(text)
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+  pure function purpose(program) result(text)
+    integer, intent(in) :: program                !< kinematics or dynamics
     character(len=:), allocatable :: text
 
     text = 'kinematics of mechanisms from structural data'
-    if (program_name == 'mech9d') text = 'dynamics of mechanisms from structural data'
+    if (program == dynamics) text = 'dynamics of mechanisms from structural data'
   end function purpose
 
   !> The text of --help, as whole lines; the last one has no line end.
-  pure function help_text(program_name) result(text)
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+  pure function help_text(program) result(text)
+    integer, intent(in) :: program                !< kinematics or dynamics
     character(len=:), allocatable :: text
     character(len=28) :: left
     integer :: i
 
-    text = 'usage: '//program_name//' FILE [options]'//eol// &
+    text = 'usage: '//program_names(program)//' FILE [options]'//eol// &
            '       runs the mechanism that the data file FILE describes'//eol// &
-           '       '//program_name//' [options]'//eol// &
+           '       '//program_names(program)//' [options]'//eol// &
            '       asks for the mechanism in a conversation, saves it as a data file and runs it'//eol//eol// &
            'options:'
     do i = 1, size(options_table)
-      if (index(options_table(i)%programs, program_name) == 0) cycle
+      if (index(options_table(i)%programs, program_names(program)) == 0) cycle
       left = option_form(options_table(i))
       text = text//eol//'  '//left//trim(options_table(i)%help)
     end do

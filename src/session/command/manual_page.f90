@@ -1,5 +1,6 @@
 !> The manual page of a program, in the markup of man(7).
 module mech9_manual_page
+  use mech9_program_kind, only: kinematics, program_names
   use mech9_text, only: to_text, starts_with
   use mech9_printable, only: with_escapes
   use mech9_options, only: options_table
@@ -16,24 +17,24 @@ module mech9_manual_page
 contains
 
   !> The whole page, as whole lines.
-  pure function manual_page(program_name) result(page)
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+  pure function manual_page(program) result(page)
+    integer, intent(in) :: program                !< kinematics or dynamics
     character(len=:), allocatable :: page
 
-    page = '.TH '//program_name//' 1 "" "MECH9 '//version//'" "User Commands"'//eol// &
-           '.SH NAME'//eol//line(program_name//' - '//purpose(program_name))// &
-           '.SH SYNOPSIS'//eol//'.B '//program_name//eol//'.RI [ FILE ]'//eol//line('[options]')// &
-           description(program_name)//options_of(program_name)//conversation(program_name)//data_file()// &
-           examples(program_name)//environment()//exit_status()
+    page = '.TH '//program_names(program)//' 1 "" "MECH9 '//version//'" "User Commands"'//eol// &
+           '.SH NAME'//eol//line(program_names(program)//' - '//purpose(program))// &
+           '.SH SYNOPSIS'//eol//'.B '//program_names(program)//eol//'.RI [ FILE ]'//eol//line('[options]')// &
+           description(program)//options_of(program)//conversation(program)//data_file()// &
+           examples(program)//environment()//exit_status()
   end function manual_page
 
   !> The section on the purpose of the program.
-  pure function description(program_name) result(text)
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+  pure function description(program) result(text)
+    integer, intent(in) :: program                !< kinematics or dynamics
     character(len=:), allocatable :: text
 
     text = '.SH DESCRIPTION'//eol
-    if (program_name == 'mech9k') then
+    if (program == kinematics) then
       text = text//line('Computes the motion of a mechanism with closed kinematic chains whose independent coordinates are &
                         &driven as functions of time: positions, velocities and accelerations of all coordinates &
                         &and of chosen points.')
@@ -49,25 +50,25 @@ contains
   end function description
 
   !> The section on the options.
-  pure function options_of(program_name) result(text)
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+  pure function options_of(program) result(text)
+    integer, intent(in) :: program                !< kinematics or dynamics
     character(len=:), allocatable :: text
     integer :: i
 
     text = '.SH OPTIONS'//eol
     do i = 1, size(options_table)
-      if (index(options_table(i)%programs, program_name) == 0) cycle
+      if (index(options_table(i)%programs, program_names(program)) == 0) cycle
       text = text//entry(option_form(options_table(i)), trim(options_table(i)%help))
     end do
   end function options_of
 
   !> The section on the conversation.
-  pure function conversation(program_name) result(text)
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+  pure function conversation(program) result(text)
+    integer, intent(in) :: program                !< kinematics or dynamics
     character(len=:), allocatable :: text
 
     text = '.SH CONVERSATION'//eol// &
-      line('Without FILE '//program_name//' asks for the data, one after the other. Enter takes the value in brackets; &
+      line('Without FILE '//program_names(program)//' asks for the data, one after the other. Enter takes the value in brackets; &
            &? explains the question, back returns to the one before, list shows all answers, quit leaves. A wrong answer &
            &is refused at once with the reason. The structure is checked as soon as it is complete, and the geometry by &
            &assembling the mechanism.')// &
@@ -77,7 +78,7 @@ contains
       paragraph('After the run its results can be shown, plotted in the terminal or into a picture, and compared with &
                 &those of the previous run; an answer can be changed and the mechanism run again.')// &
       paragraph('On a terminal lines can be edited; the arrow keys recall earlier answers, and Tab completes words. &
-                &Answers can also be read from a file or a pipe: '//program_name//' < answers.')
+                &Answers can also be read from a file or a pipe: '//program_names(program)//' < answers.')
   end function conversation
 
   !> The section on environment variables.
@@ -118,18 +119,18 @@ contains
   end function item
 
   !> The section with examples.
-  pure function examples(program_name) result(text)
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+  pure function examples(program) result(text)
+    integer, intent(in) :: program                !< kinematics or dynamics
     character(len=:), allocatable :: text
 
     text = '.SH EXAMPLES'//eol// &
-           entry(program_name, 'Ask for a mechanism, save and run it.')// &
-           entry(program_name//' --edit mine.nml', 'The same, beginning with the data of a file.')// &
-           entry(program_name//' mine.nml --check', &
+           entry(program_names(program), 'Ask for a mechanism, save and run it.')// &
+           entry(program_names(program)//' --edit mine.nml', 'The same, beginning with the data of a file.')// &
+           entry(program_names(program)//' mine.nml --check', &
                  'Read the file, check structure and mobility, assemble the mechanism.')// &
-           entry(program_name//' mine.nml --table mine.dat', &
+           entry(program_names(program)//' mine.nml --table mine.dat', &
                  'Run it; the table goes to mine.dat.')// &
-           entry(program_name//' mine.nml --set time.end=2 --table -', &
+           entry(program_names(program)//' mine.nml --set time.end=2 --table -', &
                  'Run it for two seconds; the table goes to standard output.')
   end function examples
 

@@ -1,5 +1,6 @@
 !> Options that contradict each other, and those that take the place of a run.
 module mech9_option_conflicts
+  use mech9_program_kind, only: program_names
   use mech9_error, only: error_type, raise, exit_usage
   implicit none
   private
@@ -47,8 +48,8 @@ contains
   end function first_of
 
   !> Fail where options contradict each other (exit_usage).
-  pure subroutine judge_options(program_name, given, has_file, converses, err)
-    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
+  pure subroutine judge_options(program, given, has_file, converses, err)
+    integer, intent(in) :: program                     !< kinematics or dynamics
     character(len=*), intent(in) :: given(:)           !< names of the options that are given, without the dashes
     logical, intent(in) :: has_file                    !< a data file is given
     logical, intent(in) :: converses                   !< the program holds a conversation
@@ -78,7 +79,7 @@ contains
       call raise(err, exit_usage, '--equilibrium and --modes write different tables; give one of them, --modes finds the '// &
                  'equilibrium, too')
     else if (converses) then
-      call judge_conversation(program_name, given, has_file, err)
+      call judge_conversation(program, given, has_file, err)
     else if (has('study') .and. has('optimize')) then
       call raise(err, exit_usage, '--study and --optimize are different tasks; give one of them')
     else if (has('dakota')) then
@@ -217,8 +218,8 @@ contains
   end subroutine judge_rest
 
   !> Check the options of a conversation: it takes one data file or none, and no option that replaces the run by an answer.
-  pure subroutine judge_conversation(program_name, given, has_file, err)
-    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
+  pure subroutine judge_conversation(program, given, has_file, err)
+    integer, intent(in) :: program                     !< kinematics or dynamics
     character(len=*), intent(in) :: given(:)           !< names of the options that are given, without the dashes
     logical, intent(in) :: has_file                    !< a data file is given beside the options
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
@@ -228,7 +229,7 @@ contains
     if (other /= '') then
       missing = 'no data file is given'
       if (has_file .or. any(given == 'edit') .or. any(given == 'resume')) missing = 'this is a conversation'
-      call raise(err, exit_usage, missing//'; --'//other//' is for a data file alone: '//program_name//' FILE --'//other)
+      call raise(err, exit_usage, missing//'; --'//other//' is for a data file alone: '//program_names(program)//' FILE --'//other)
     else if (count([has_file, any(given == 'edit'), any(given == 'resume')]) > 1) then
       call raise(err, exit_usage, 'more than one data file is given; a conversation takes one')
     end if

@@ -1,5 +1,6 @@
 !> The one table of the options of the command line; reading and help both come from it.
 module mech9_options
+  use mech9_program_kind, only: program_names
   implicit none
   private
   public :: option_type, options_table, option_names, find_option
@@ -107,24 +108,24 @@ module mech9_options
 contains
 
   !> Place of an option in the table; 0 where the program has none of that name.
-  pure integer function find_option(name, program_name) result(place)
+  pure integer function find_option(name, program) result(place)
     character(len=*), intent(in) :: name          !< name of the option, without the dashes
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+    integer, intent(in) :: program                !< kinematics or dynamics
 
     do place = 1, size(options_table)
       if (options_table(place)%name == name &
-          .and. index(options_table(place)%programs, program_name) > 0) return
+          .and. index(options_table(place)%programs, program_names(program)) > 0) return
     end do
     place = 0
   end function find_option
 
   !> The names of all options of a program, without the dashes.
-  pure function option_names(program_name) result(names)
-    character(len=*), intent(in) :: program_name  !< mech9k or mech9d
+  pure function option_names(program) result(names)
+    integer, intent(in) :: program                !< kinematics or dynamics
     character(len=len(options_table%name)), allocatable :: names(:)
     integer :: i
 
-    names = pack(options_table%name, [(index(options_table(i)%programs, program_name) > 0, &
+    names = pack(options_table%name, [(index(options_table(i)%programs, program_names(program)) > 0, &
                                        i=1, size(options_table))])
   end function option_names
 end module mech9_options

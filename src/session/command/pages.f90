@@ -1,6 +1,7 @@
 !> The files about the programs that are installed beside them: manual pages and completions.
 module mech9_pages
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_program_kind, only: program_names
   use mech9_error, only: error_type, exit_done
   use mech9_text_file, only: save_text
   use mech9_system, only: exit_program
@@ -10,7 +11,6 @@ module mech9_pages
   private
   public :: write_pages
 
-  character(len=6), parameter :: programs(*) = ['mech9k', 'mech9d']
 
 contains
 
@@ -19,9 +19,9 @@ contains
     type(error_type), allocatable :: err
     integer :: i
 
-    do i = 1, size(programs)
-      call save_text(programs(i)//'.1', manual_page(programs(i)), err)
-      if (.not. allocated(err)) call save_text(programs(i)//'.bash', bash_completion(programs(i)), err)
+    do i = 1, size(program_names)
+      call save_text(program_names(i)//'.1', manual_page(i), err)
+      if (.not. allocated(err)) call save_text(program_names(i)//'.bash', bash_completion(i), err)
       if (allocated(err)) then
         write (error_unit, '(a)') err%message
         call exit_program(err%code)

@@ -1,5 +1,6 @@
 !> Notes about options without effect, which are no errors.
 module mech9_unused_options
+  use mech9_program_kind, only: program_names
   use mech9_command_line, only: command_line_type
   use mech9_model, only: model_type
   implicit none
@@ -14,33 +15,33 @@ module mech9_unused_options
 contains
 
   !> Write a line for each reason why options are without effect.
-  subroutine print_unused_options(unit, program_name, options, model)
+  subroutine print_unused_options(unit, options, model)
     integer, intent(in) :: unit                     !< Fortran unit to write to
-    character(len=*), intent(in) :: program_name    !< mech9k or mech9d
     type(command_line_type), intent(in) :: options  !< the command line
     type(model_type), intent(in) :: model       !< the model, whose data file may request pictures, too
-    character(len=:), allocatable :: answer, names
+    character(len=:), allocatable :: name, answer, names
     logical :: drawn
 
+    name = program_names(options%program)
     answer = options%answer()
     ! options without effect are refused there
     if (options%rest() /= '') return
     if (answer /= '') then
       call list_given(options, of_runs, names)
-      if (names /= '') write (unit, '(a)') program_name//': without effect: '//names//'; --'//answer//' makes no run'
+      if (names /= '') write (unit, '(a)') name//': without effect: '//names//'; --'//answer//' makes no run'
     end if
     if (answer == 'structure') then
       call list_given(options, of_mechanisms, names)
-      if (names /= '') write (unit, '(a)') program_name//': without effect: '//names//'; --structure reads the structure alone'
+      if (names /= '') write (unit, '(a)') name//': without effect: '//names//'; --structure reads the structure alone'
     end if
     if (options%has('starts') .and. (answer == 'structure' .or. .not. options%has('branches'))) &
-      write (unit, '(a)') program_name//': without effect: --starts; it is the number of guesses of --branches'
+      write (unit, '(a)') name//': without effect: --starts; it is the number of guesses of --branches'
     drawn = options%has('sketch')
     if (answer == '') drawn = drawn .or. options%has('animate') .or. pictures_of(model)
     if (options%has('sketch') .and. answer /= '' .and. answer /= 'structure' .and. model%request%output%force_arrows) &
-      write (unit, '(a)') program_name//': without effect: force_arrows; a run draws the forces, and --'//answer//' makes none'
+      write (unit, '(a)') name//': without effect: force_arrows; a run draws the forces, and --'//answer//' makes none'
     if (options%has('view') .and. (answer == 'structure' .or. .not. drawn)) &
-      write (unit, '(a)') program_name//': without effect: --view; no picture of the mechanism is drawn'
+      write (unit, '(a)') name//': without effect: --view; no picture of the mechanism is drawn'
   end subroutine print_unused_options
 
   !> Whether the data file requests pictures of the mechanism.

@@ -1,5 +1,6 @@
 !> Content of an HDF5 file of results besides the rows: their origin, and the structure of the mechanism.
 module mech9_hdf5_record
+  use mech9_program_kind, only: program_names
   use mech9_text, only: to_text, string_type
   use mech9_lapack, only: ilaver
   use mech9_structural_vectors, only: structural_vectors_type
@@ -10,7 +11,7 @@ module mech9_hdf5_record
   use mech9_force_record, only: force_record_type
   use mech9_hdf5_file, only: hdf5_file_type, hdf5_version
   use mech9_command_line, only: command_line_type
-  use mech9_version, only: version, revision, compiler, sundials_version
+  use mech9_version, only: name_and_version, version, revision, compiler, sundials_version
   implicit none
   private
   public :: write_provenance, write_structure, write_uniqueness, write_coordinates
@@ -21,9 +22,8 @@ module mech9_hdf5_record
 contains
 
   !> Write the origin of the results, with all data that are needed to compute them again.
-  subroutine write_provenance(file, program_name, options, model, data_text, created)
+  subroutine write_provenance(file, options, model, data_text, created)
     type(hdf5_file_type), intent(inout) :: file      !< the open file
-    character(len=*), intent(in) :: program_name     !< mech9k or mech9d
     type(command_line_type), intent(in) :: options   !< the command line
     type(model_type), intent(in) :: model        !< the model
     character(len=*), intent(in) :: data_text        !< of the data file, as it is
@@ -33,14 +33,14 @@ contains
     began = present_time()
     if (present(created)) began = created
     call file%add_attribute('/', 'title', model%mechanism%title)
-    call file%add_attribute('/', 'source', program_name//' '//version)
-    call file%put('provenance/program', program_name, 'program that wrote this file')
+    call file%add_attribute('/', 'source', name_and_version(model%program))
+    call file%put('provenance/program', program_names(model%program), 'program that wrote this file')
     call file%put('provenance/version', version, 'version of the program')
     call file%put('provenance/revision', revision, 'git revision of its sources; empty where unknown')
     call file%put('provenance/compiler', compiler(), 'compiler that built it')
     call file%put('provenance/libraries', libraries(), 'libraries that it stands on')
     call file%put('provenance/created', began, 'when the run began')
-    call file%put('provenance/command_line', program_name//' '//options%line, 'command line of the run')
+    call file%put('provenance/command_line', program_names(model%program)//' '//options%line, 'command line of the run')
     call file%put('provenance/data_file', options%file, 'name of the data file')
     call file%put('provenance/data', data_text, 'text of the data file')
   end subroutine write_provenance

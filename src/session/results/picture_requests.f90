@@ -1,6 +1,7 @@
 !> Requested pictures of the mechanism: a sketch, and a moving picture.
 module mech9_picture_requests
   use mech9_kinds, only: wp
+  use mech9_program_kind, only: dynamics
   use mech9_error, only: error_type, raise, exit_usage, exit_data
   use mech9_path, only: ending_of
   use mech9_model, only: model_type
@@ -46,10 +47,9 @@ contains
 
   !> Read the requests of the options, or those of the data file where the options have none. A wrong view and a wrong
   !> ending of a file's name are errors.
-  subroutine read_picture_requests(options, model, program_name, requests, err)
+  subroutine read_picture_requests(options, model, requests, err)
     type(command_line_type), intent(in) :: options         !< the command line
     type(model_type), intent(in) :: model                  !< the model
-    character(len=*), intent(in) :: program_name           !< mech9k or mech9d
     type(picture_requests_type), intent(out) :: requests   !< the pictures that are requested
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(result_paths_type) :: paths
@@ -57,7 +57,7 @@ contains
     call find_result_paths(options, model%request%output, paths)
     requests%sketch = paths%sketch
     requests%animation = paths%animation
-    requests%with_masses = program_name == 'mech9d'
+    requests%with_masses = model%program == dynamics
     if (requests%sketch /= '' .and. kind_of(requests%sketch) /= 'svg') then
       call raise(err, merge(exit_usage, exit_data, options%has('sketch')), "'"//requests%sketch// &
                  "' is no name of a sketch; it must end in .svg")

@@ -1,5 +1,6 @@
 !> Recording of a motion: rows are computed and written alternately.
 module mech9_recording
+  use mech9_program_kind, only: program_names
   use mech9_kinds, only: wp
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type, exit_interrupted
@@ -60,7 +61,7 @@ contains
       call kept%begin(model%mechanism%title, source%columns%names(:source%columns%count), &
                       source%columns%units(:source%columns%count), model%request%time%intervals + 1)
     clock = seconds()
-    call progress%start(source%program_name, quiet)
+    call progress%start(program_names(model%program), quiet)
     call pacer%start(longest_wait)
     allocate (pause)
     call pause%start(longest_wait)
@@ -121,7 +122,7 @@ contains
     integer :: status
 
     standing = source%standing()
-    write (error_unit, '(a)') source%program_name//': no new row for '//to_text(waited)//' s: the motion is at '// &
+    write (error_unit, '(a)') program_names(model%program)//': no new row for '//to_text(waited)//' s: the motion is at '// &
       standing_text(model, standing)
     flush (error_unit, iostat=status)
   end subroutine tell_standing

@@ -14,7 +14,7 @@ module mech9_results
   use mech9_command_line, only: command_line_type
   use mech9_written_files, only: result_paths_type, find_result_paths
   use mech9_hdf5_record, only: write_provenance, write_structure
-  use mech9_version, only: version
+  use mech9_version, only: name_and_version
   implicit none
   private
   public :: results_type
@@ -39,12 +39,11 @@ module mech9_results
 contains
 
   !> Open all requested results. After an error none is open.
-  subroutine open_results(self, options, model, data_text, program_name, columns, err)
+  subroutine open_results(self, options, model, data_text, columns, err)
     class(results_type), intent(out) :: self            !< the results
     type(command_line_type), intent(in) :: options      !< the command line
     type(model_type), intent(in) :: model               !< the model
     character(len=*), intent(in) :: data_text           !< of the data file
-    character(len=*), intent(in) :: program_name        !< mech9k or mech9d
     type(columns_type), intent(in) :: columns           !< of the rows to come
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(result_paths_type) :: paths
@@ -59,9 +58,9 @@ contains
     self%hdf5_path = paths%hdf5
     ! a wrong name in a plot is found before a file is touched
     call self%open_plots(options, model, columns, plots, err)
-    if (.not. allocated(err) .and. self%table_path /= '') call self%open_table(model, program_name, columns, err)
+    if (.not. allocated(err) .and. self%table_path /= '') call self%open_table(model, columns, err)
     if (.not. allocated(err) .and. self%hdf5_path /= '') &
-      call self%open_hdf5(options, model, data_text, program_name, columns, err)
+      call self%open_hdf5(options, model, data_text, columns, err)
     if (allocated(err)) then
       call self%close(at_close)
       return
@@ -110,10 +109,9 @@ contains
     end associate
   end function leaves_out
 
-  subroutine open_table(self, model, program_name, columns, err)
+  subroutine open_table(self, model, columns, err)
     class(results_type), intent(inout) :: self          !< the results
     type(model_type), intent(in) :: model               !< the model
-    character(len=*), intent(in) :: program_name        !< mech9k or mech9d
     type(columns_type), intent(in) :: columns           !< names and units of the columns
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(table_type), allocatable :: table
@@ -122,19 +120,18 @@ contains
 
     allocate (table)
     if (columns%sensitivities > 0) order = columns%order_in_table()
-    call table%open(self%table_path, model%mechanism%title, program_name//' '//version, &
+    call table%open(self%table_path, model%mechanism%title, name_and_version(model%program), &
                     columns%names(:columns%count), columns%units(:columns%count), err, order)
     if (allocated(err)) return
     call move_alloc(table, sink)
     call append_sink(self%sinks, sink)
   end subroutine open_table
 
-  subroutine open_hdf5(self, options, model, data_text, program_name, columns, err)
+  subroutine open_hdf5(self, options, model, data_text, columns, err)
     class(results_type), intent(inout) :: self          !< the results
     type(command_line_type), intent(in) :: options      !< the command line
     type(model_type), intent(in) :: model               !< the model
     character(len=*), intent(in) :: data_text           !< text of the data file, kept in the file
-    character(len=*), intent(in) :: program_name        !< mech9k or mech9d
     type(columns_type), intent(in) :: columns           !< names and units of the columns
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(hdf5_sink_type), allocatable :: file
@@ -143,7 +140,7 @@ contains
     allocate (file)
     call file%open(self%hdf5_path, model%mechanism, model%request, columns, err)
     if (allocated(err)) return
-    call write_provenance(file%file, program_name, options, model, data_text)
+    call write_provenance(file%file, options, model, data_text)
     call write_structure(file%file, model)
     call file%tell(err)
     call move_alloc(file, sink)

@@ -24,7 +24,6 @@ module mech9_row_source
   public :: row_source_type, signal_interruption_type, new_row_source, find_columns
 
   type :: row_source_type
-    character(len=6) :: program_name = ''
     class(simulation_type), pointer, private :: simulation => null()   !< not owned
     type(columns_type) :: columns
     type(force_record_type) :: forces      !< computes the forces that are recorded
@@ -63,12 +62,10 @@ module mech9_row_source
 contains
 
   !> The rows of a simulation, which must have the target attribute and outlive them.
-  subroutine new_row_source(program_name, simulation, source)
-    character(len=*), intent(in) :: program_name                   !< for messages and files
+  subroutine new_row_source(simulation, source)
     class(simulation_type), intent(inout), target :: simulation    !< made, and not started
     type(row_source_type), intent(out) :: source                   !< its rows
 
-    source%program_name = program_name
     source%simulation => simulation
     call find_columns(simulation%model, simulation%with_energies, simulation%with_error, source%columns, source%forces)
   end subroutine new_row_source

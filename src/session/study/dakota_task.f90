@@ -2,6 +2,7 @@
 module mech9_dakota_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use mech9_program_kind, only: program_names
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data, exit_singular, exit_interrupted
   use mech9_text, only: string_type, nearest_name
@@ -28,8 +29,7 @@ contains
 
   !> Make the run that Dakota asks for, and write its quantities. A run that fails is told to Dakota, and is no failure of the
   !> program; a request that cannot be understood is one, and leaves no results.
-  subroutine work_for_dakota(program_name, options, varied, model, diagnostics)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine work_for_dakota(options, varied, model, diagnostics)
     type(command_line_type), intent(in) :: options          !< the command line, with --dakota
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
@@ -41,10 +41,10 @@ contains
     integer, allocatable :: parameters(:), quantities(:)
 
     call options%arguments('dakota', paths)
-    call find_quantities(program_name, model, columns, err)
+    call find_quantities(model, columns, err)
     if (.not. allocated(err)) call read_dakota(paths(1)%text, request, err)
     if (.not. allocated(err)) call match_names(model, paths(1)%text, request, parameters, quantities, err)
-    if (.not. allocated(err)) call evaluate(program_name, varied, model, request, parameters, quantities, paths(2)%text, &
+    if (.not. allocated(err)) call evaluate(varied, model, request, parameters, quantities, paths(2)%text, &
                                             options%has('quiet'), err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine work_for_dakota
@@ -103,8 +103,7 @@ contains
   end subroutine match
 
   !> Make the run and write its results, or that it failed.
-  subroutine evaluate(program_name, varied, model, request, parameters, quantities, path, quiet, err)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine evaluate(varied, model, request, parameters, quantities, path, quiet, err)
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(dakota_request_type), intent(in) :: request        !< the evaluation
@@ -119,7 +118,7 @@ contains
 
     present = model%parameters%value
     present(parameters) = request%values
-    call run_at(program_name, varied, present, request%wants(gradients), numbers, gradient, failure)
+    call run_at(model%program, varied, present, request%wants(gradients), numbers, gradient, failure)
     if (.not. allocated(failure)) &
       call check_numbers(request, numbers(quantities), gradient(parameters(request%by), quantities), failure)
     if (allocated(failure)) then
@@ -129,7 +128,7 @@ contains
         call move_alloc(failure, err)
         return
       end if
-      if (.not. quiet) write (error_unit, '(4a)') program_name, ': ', 'the run failed: ', failure%message
+      if (.not. quiet) write (error_unit, '(4a)') program_names(model%program), ': ', 'the run failed: ', failure%message
       call write_dakota_failure(path, failure%message, err)
     else
       call write_dakota_results(path, request, numbers(quantities), gradient(parameters(request%by), quantities), err)
@@ -157,8 +156,8 @@ contains
   end subroutine check_numbers
 
   !> Make a run with values of the parameters.
-  subroutine run_at(program_name, varied, values, with_gradient, numbers, gradient, err)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine run_at(program, varied, values, with_gradient, numbers, gradient, err)
+    integer, intent(in) :: program                          !< kinematics or dynamics
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
     real(wp), intent(in) :: values(:)                       !< (parameters) in the units of the file
     logical, intent(in) :: with_gradient                    !< derivatives are taken
@@ -173,9 +172,9 @@ contains
     call varied%at(values, model, err)
     if (allocated(err)) return
     if (with_gradient) then
-      call find_design_gradient(program_name, model, varied, numbers, gradient, err)
+      call find_design_gradient(model, varied, numbers, gradient, err)
     else
-      call run_design(program_name, model, source, numbers, err)
+      call run_design(model, source, numbers, err)
     end if
   end subroutine run_at
 end module mech9_dakota_task

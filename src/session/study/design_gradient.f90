@@ -1,5 +1,6 @@
 !> The quantities of one run with their derivatives by all parameters, without any files.
 module mech9_design_gradient
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_model, only: model_type
@@ -12,7 +13,6 @@ module mech9_design_gradient
   use mech9_accuracy, only: find_accuracy
   use mech9_explained_assembly, only: assemble_driven_start, assemble_free_start
   use mech9_row_source, only: row_source_type, signal_interruption_type, new_row_source
-  use mech9_design_run, only: is_driven
   implicit none
   private
   public :: find_design_gradient
@@ -20,8 +20,7 @@ module mech9_design_gradient
 contains
 
   !> Make the motion of a model and take its quantities and their derivatives. Fails as a run with derivatives would.
-  subroutine find_design_gradient(program_name, model, variable, numbers, gradient, err)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine find_design_gradient(model, variable, numbers, gradient, err)
     type(model_type), intent(inout), target :: model        !< with quantities; gets the tolerances where an accuracy is requested
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
     real(wp), intent(out) :: numbers(:)                     !< (quantities)
@@ -33,22 +32,21 @@ contains
     type(state_type) :: start
 
     model%request%output%gradients = .true.
-    if (is_driven(program_name, model)) then
+    if (model%is_driven()) then
       call assemble_driven_start(model, plan, start, err)
       if (allocated(err)) return
-      call new_driven_simulation(model, plan, start, driven, .false., program_name == 'mech9d')
-      call take_gradient(program_name, model, plan, start, variable, driven, numbers, gradient, err)
+      call new_driven_simulation(model, plan, start, driven, .false., model%program == dynamics)
+      call take_gradient(model, plan, start, variable, driven, numbers, gradient, err)
     else
       call assemble_free_start(model, plan, start, err)
       if (.not. allocated(err)) call new_free_simulation(model, plan, start, free, err, .true.)
-      if (.not. allocated(err)) call take_gradient(program_name, model, plan, start, variable, free, numbers, gradient, err)
+      if (.not. allocated(err)) call take_gradient(model, plan, start, variable, free, numbers, gradient, err)
       call free%close()
     end if
   end subroutine find_design_gradient
 
   !> Go through all outputs of a simulation with its derivatives.
-  subroutine take_gradient(program_name, model, plan, start, variable, simulation, numbers, gradient, err)
-    character(len=*), intent(in) :: program_name                    !< mech9k or mech9d
+  subroutine take_gradient(model, plan, start, variable, simulation, numbers, gradient, err)
     type(model_type), intent(inout), target :: model                !< the model; gets the tolerances where an accuracy is requested
     type(plan_type), intent(in) :: plan                             !< its plan
     type(state_type), intent(in) :: start                           !< its assembled position
@@ -59,7 +57,7 @@ contains
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
     type(row_source_type) :: source
 
-    call new_row_source(program_name, simulation, source)
+    call new_row_source(simulation, source)
     call source%add_sensitivities(variable, err)
     if (.not. allocated(err)) call source%begin_quantities(err)
     if (allocated(err)) return

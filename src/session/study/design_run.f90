@@ -1,8 +1,8 @@
 !> One run of a study: the quantities of a motion, and its columns where they are wanted, without any files.
 module mech9_design_run
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_partition, only: free_coordinate
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -17,14 +17,13 @@ module mech9_design_run
   use mech9_quantity_record, only: quantity_record_type
   implicit none
   private
-  public :: run_design, begin_design, find_quantities, columns_of_runs, is_driven
+  public :: run_design, begin_design, find_quantities, columns_of_runs
 
 contains
 
   !> Make the motion of a model and take its quantities. Fails as a run would; the quantities are then of no use, and rows have
   !> their numbers up to the failure.
-  subroutine run_design(program_name, model, source, numbers, err, rows)
-    character(len=*), intent(in) :: program_name          !< mech9k or mech9d
+  subroutine run_design(model, source, numbers, err, rows)
     type(model_type), intent(inout), target :: model      !< gets the tolerances where an accuracy is requested
     type(row_source_type), intent(inout) :: source        !< rows of the run; made anew
     real(wp), intent(out) :: numbers(:)                   !< (quantities)
@@ -35,66 +34,54 @@ contains
     type(plan_type) :: plan
     type(state_type) :: start
 
-    if (is_driven(program_name, model)) then
+    if (model%is_driven()) then
       call assemble_driven_start(model, plan, start, err)
       if (allocated(err)) return
-      call new_driven_simulation(model, plan, start, driven, .false., program_name == 'mech9d')
-      call take_quantities(program_name, model, driven, source, numbers, err, rows)
+      call new_driven_simulation(model, plan, start, driven, .false., model%program == dynamics)
+      call take_quantities(model, driven, source, numbers, err, rows)
     else
       call assemble_free_start(model, plan, start, err)
       if (.not. allocated(err)) call new_free_simulation(model, plan, start, free, err)
       if (.not. allocated(err) .and. free%with_error) &
         call find_accuracy(model, plan, start, free%errors, err, interruption=signal_interruption_type())
-      if (.not. allocated(err)) call take_quantities(program_name, model, free, source, numbers, err, rows)
+      if (.not. allocated(err)) call take_quantities(model, free, source, numbers, err, rows)
       call free%close()
     end if
   end subroutine run_design
 
-  !> Whether the motion follows from drives alone.
-  pure logical function is_driven(program_name, model)
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
-    type(model_type), intent(in) :: model          !< the model
-
-    is_driven = program_name == 'mech9k' .or. .not. any(model%problem%partition%kind == free_coordinate)
-  end function is_driven
-
   !> Find the columns of the quantities that the runs of a model will have. Fails with exit_data where one is not recorded.
-  subroutine find_quantities(program_name, model, quantities, err)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine find_quantities(model, quantities, err)
     type(model_type), intent(in) :: model                   !< the model
     type(quantity_record_type), intent(out) :: quantities   !< with their columns
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(columns_type) :: columns
 
-    call columns_of_runs(program_name, model, columns)
+    call columns_of_runs(model, columns)
     call quantities%begin(model, columns, err)
   end subroutine find_quantities
 
   !> Find the columns that the runs of a model will have.
-  subroutine columns_of_runs(program_name, model, columns)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine columns_of_runs(model, columns)
     type(model_type), intent(in) :: model                   !< the model
     type(columns_type), intent(out) :: columns              !< of each run
     type(force_record_type) :: forces
 
-    call find_columns(model, program_name == 'mech9d' .and. model%request%output%energies, &
-                      model%request%solver%accuracy > 0.0_wp .and. .not. is_driven(program_name, model), columns, forces)
+    call find_columns(model, model%program == dynamics .and. model%request%output%energies, &
+                      model%request%solver%accuracy > 0.0_wp .and. .not. model%is_driven(), columns, forces)
   end subroutine columns_of_runs
 
   !> Begin the rows of a simulation, with their quantities.
-  subroutine begin_design(program_name, simulation, source, err)
-    character(len=*), intent(in) :: program_name                   !< mech9k or mech9d
+  subroutine begin_design(simulation, source, err)
     class(simulation_type), intent(inout), target :: simulation    !< about to start
     type(row_source_type), intent(inout) :: source                 !< rows of the run; made anew
     type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
 
-    call new_row_source(program_name, simulation, source)
+    call new_row_source(simulation, source)
     call source%begin_quantities(err)
   end subroutine begin_design
 
   !> Go through all outputs of a simulation.
-  subroutine take_quantities(program_name, model, simulation, source, numbers, err, rows)
-    character(len=*), intent(in) :: program_name                   !< mech9k or mech9d
+  subroutine take_quantities(model, simulation, source, numbers, err, rows)
     type(model_type), intent(in) :: model                          !< the model
     class(simulation_type), intent(inout), target :: simulation    !< about to start
     type(row_source_type), intent(inout) :: source                 !< rows of the run; made anew
@@ -102,7 +89,7 @@ contains
     type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
     real(wp), intent(inout), optional :: rows(:, :)                !< (columns,outputs) gets the columns of all outputs
 
-    call begin_design(program_name, simulation, source, err)
+    call begin_design(simulation, source, err)
     if (allocated(err)) return
     call source%go_through(err, rows)
     if (allocated(err)) return

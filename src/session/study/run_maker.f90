@@ -27,7 +27,6 @@ module mech9_run_maker
 
   type :: run_maker_type
     private
-    character(len=6) :: program_name = ''                        !< mech9k or mech9d
     type(study_type) :: study
     type(parameter_type), allocatable :: parameters(:)
     class(variable_model_type), allocatable :: varied            !< the model as a function of its parameters
@@ -43,20 +42,18 @@ module mech9_run_maker
 contains
 
   !> Prepare a maker for the runs of a study.
-  subroutine begin(self, program_name, model, varied)
+  subroutine begin(self, model, varied)
     class(run_maker_type), intent(out) :: self              !< the maker
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied        !< the model as a function of its parameters; copied
     type(columns_type) :: columns
 
-    self%program_name = program_name
     self%study = model%request%study
     self%parameters = model%parameters
     self%n_quantities = size(model%request%quantities)
     allocate (self%varied, source=varied)
     if (.not. model%request%output%hdf5_runs) return
-    call columns_of_runs(program_name, model, columns)
+    call columns_of_runs(model, columns)
     self%n_columns = columns%width()
     self%n_outputs = model%request%time%intervals + 1
   end subroutine begin
@@ -85,7 +82,7 @@ contains
       allocate (run%rows(self%n_columns, self%n_outputs), source=ieee_value(1.0_wp, ieee_quiet_nan))
     call self%varied%at(run%values, model, run%failure)
     if (.not. allocated(run%failure)) &
-      call run_design(self%program_name, model, source, run%quantities, run%failure, run%rows)
+      call run_design(model, source, run%quantities, run%failure, run%rows)
     if (.not. allocated(run%failure)) return
     run%exit_code = run%failure%code
     run%quantities = ieee_value(1.0_wp, ieee_quiet_nan)

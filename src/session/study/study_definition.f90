@@ -1,5 +1,6 @@
 !> A text that determines the numbers of a study, by which two studies are compared.
 module mech9_study_definition
+  use mech9_program_kind, only: program_names
   use mech9_kinds, only: wp, long
   use mech9_text, only: string_type, to_text
   use mech9_error, only: error_type
@@ -24,8 +25,8 @@ contains
 
   !> The program, the groups of the data file with the changes by --set, and a digest of each file that the groups name: one line
   !> for each. Blanks, comments, the files of the results and the number of starts do not matter. Fails with exit_file where a file cannot be read.
-  subroutine define_study(program_name, document, text, err)
-    character(len=*), intent(in) :: program_name             !< mech9k or mech9d
+  subroutine define_study(program, document, text, err)
+    integer, intent(in) :: program                           !< kinematics or dynamics
     type(document_type), intent(in) :: document              !< the data file as groups and items, with the changes by --set
     character(len=:), allocatable, intent(out) :: text       !< the definition
     type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
@@ -33,7 +34,7 @@ contains
     character(len=:), allocatable :: bytes, line
     integer :: i
 
-    text = 'program '//program_name//line_end
+    text = 'program '//program_names(program)//line_end
     do i = 1, size(document%groups)
       call write_group(document%groups(i), line)
       text = text//line

@@ -2,11 +2,12 @@
 module mech9_study_merge
   use, intrinsic :: iso_fortran_env, only: error_unit
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use mech9_program_kind, only: program_names
   use mech9_kinds, only: wp, long
   use mech9_text, only: string_type, to_text
   use mech9_counted, only: counted
   use mech9_error, only: error_type, raise, exit_done, exit_file
-  use mech9_version, only: version
+  use mech9_version, only: name_and_version
   use mech9_request, only: output_settings_type
   use mech9_command_line, only: command_line_type
   use mech9_hdf5_file, only: hdf5_file_type
@@ -34,8 +35,7 @@ module mech9_study_merge
 contains
 
   !> Join the files that --merge names, to the file that --hdf5 names and a table; `code` is the exit code of the program.
-  subroutine merge_studies(program_name, options, code)
-    character(len=*), intent(in) :: program_name     !< mech9k or mech9d
+  subroutine merge_studies(options, code)
     type(command_line_type), intent(in) :: options   !< the command line
     integer, intent(out) :: code                     !< exit code
     type(string_type), allocatable :: paths(:)
@@ -49,14 +49,14 @@ contains
     call refuse_overwriting(options, paths, err, output_settings_type(table='', hdf5='', sketch='', animation=''))
     allocate (files(size(paths)))
     if (.not. allocated(err)) call open_files(paths, files, err)
-    if (.not. allocated(err)) call join(program_name, options, paths, files, sums, overlap, err)
+    if (.not. allocated(err)) call join(options, paths, files, sums, overlap, err)
     do i = 1, size(files)
       call files(i)%close(at_close)
     end do
     code = exit_done
     if (allocated(err)) then
       code = err%code
-      write (error_unit, '(3a)') program_name, ': ', err%message
+      write (error_unit, '(3a)') program_names(options%program), ': ', err%message
     else if (.not. options%has('quiet')) then
       call print_merge(options, paths, files(1)%layout%runs, sums, overlap)
     end if
@@ -85,8 +85,7 @@ contains
   end subroutine open_files
 
   !> Join the runs of all files in the order of their numbers.
-  subroutine join(program_name, options, paths, files, sums, overlap, err)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine join(options, paths, files, sums, overlap, err)
     type(command_line_type), intent(in) :: options          !< the command line
     type(string_type), intent(in) :: paths(:)               !< of the files
     type(study_file_type), intent(inout) :: files(:)        !< the files
@@ -99,7 +98,7 @@ contains
     real(wp), allocatable :: rows(:, :)
     integer :: source(runs_together), first, n, i
 
-    call open_results(program_name, options, files(1), whole, table, err)
+    call open_results(options, files(1), whole, table, err)
     if (allocated(err)) return
     allocate (rows(size(files(1)%layout%parameters) + size(files(1)%layout%quantities) + 1, runs_together))
     call sums%begin(0)
@@ -154,8 +153,7 @@ contains
   end subroutine read_columns
 
   !> Create the files of the whole study. The HDF5 file gets its name when it is whole.
-  subroutine open_results(program_name, options, part, whole, table, err)
-    character(len=*), intent(in) :: program_name          !< mech9k or mech9d
+  subroutine open_results(options, part, whole, table, err)
     type(command_line_type), intent(in) :: options        !< the command line
     type(study_file_type), intent(inout) :: part          !< the first file of a part
     type(study_file_type), intent(inout) :: whole         !< the HDF5 file, if one is wanted
@@ -173,13 +171,13 @@ contains
       if (size(layout%columns) > 0) call whole%copy_columns(part, err)
     end if
     if (options%has('table') .and. .not. allocated(err)) &
-      call open_table(program_name, options%argument('table'), layout, table, err)
+      call open_table(options%program, options%argument('table'), layout, table, err)
     if (allocated(err)) call whole%close(at_close)
   end subroutine open_results
 
   !> Open the table of the whole study.
-  subroutine open_table(program_name, path, layout, table, err)
-    character(len=*), intent(in) :: program_name          !< mech9k or mech9d
+  subroutine open_table(program, path, layout, table, err)
+    integer, intent(in) :: program                        !< kinematics or dynamics
     character(len=*), intent(in) :: path                  !< of the table
     type(study_layout_type), intent(in) :: layout         !< names and units
     type(table_type), intent(inout) :: table              !< the table
@@ -202,7 +200,7 @@ contains
       units(i)%text = ''
       if (i > n + 1 .and. i < n + m + 2) units(i)%text = layout%units(i - n - 1)%text
     end do
-    call table%open(path, layout%title, program_name//' '//version, names, units, err)
+    call table%open(path, layout%title, name_and_version(program), names, units, err)
   end subroutine open_table
 
   !> Copy the origin of the first part.

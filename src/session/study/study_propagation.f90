@@ -25,8 +25,7 @@ module mech9_study_propagation
 contains
 
   !> Find how all quantities scatter to first order. Fails where the run with derivatives does.
-  subroutine propagate(program_name, model, varied, found, err)
-    character(len=*), intent(in) :: program_name                       !< mech9k or mech9d
+  subroutine propagate(model, varied, found, err)
     type(model_type), intent(in) :: model                              !< the model with the values of the data file
     class(variable_model_type), intent(inout) :: varied                !< the model as a function of its parameters
     type(propagation_type), allocatable, intent(out) :: found(:)       !< (quantities) none where it fails
@@ -40,7 +39,7 @@ contains
     if (size(numbers) == 0) return
     values = [(mean_of(model%parameters(i)), i=1, size(values))]
     call varied%at(values, mean, err)
-    if (.not. allocated(err)) call find_design_gradient(program_name, mean, varied, numbers, gradient, err)
+    if (.not. allocated(err)) call find_design_gradient(mean, varied, numbers, gradient, err)
     if (allocated(err)) then
       call explain(err)
       return

@@ -3,7 +3,7 @@ module mech9_study_results
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_file
   use mech9_text, only: to_text
-  use mech9_version, only: version
+  use mech9_version, only: name_and_version
   use mech9_command_line, only: command_line_type
   use mech9_document, only: document_type
   use mech9_model, only: model_type
@@ -40,9 +40,8 @@ module mech9_study_results
 contains
 
   !> Open the files that are asked for. After an error none is open, and none has changed where the other one cannot be opened.
-  subroutine open_results(self, program_name, options, document, model, quantities, err)
+  subroutine open_results(self, options, document, model, quantities, err)
     class(study_results_type), intent(out) :: self            !< the files
-    character(len=*), intent(in) :: program_name              !< mech9k or mech9d
     type(command_line_type), intent(in) :: options            !< the command line
     type(document_type), intent(in) :: document               !< the data file as groups and items, with the changes by --set
     type(model_type), intent(in) :: model                     !< the model with the values of the data file
@@ -56,16 +55,16 @@ contains
     call find_result_paths(options, model%request%output, self%paths)
     self%part = options%part()
     if (self%paths%hdf5 /= '') then
-      call define_study(program_name, document, definition, err)
+      call define_study(model%program, document, definition, err)
       if (allocated(err)) return
       if (options%has('continue')) then
         call continue_file(self, options, definition, err)
       else
         call layout_of(model, quantities, definition, self%part, layout)
         call self%file%create(self%paths%hdf5, layout, err)
-        if (.not. allocated(err)) call write_provenance(self%file%file, program_name, options, model, document%source%text)
+        if (.not. allocated(err)) call write_provenance(self%file%file, options, model, document%source%text)
       end if
-      if (.not. allocated(err) .and. model%request%output%hdf5_runs) call begin_columns(self, program_name, options, model, err)
+      if (.not. allocated(err) .and. model%request%output%hdf5_runs) call begin_columns(self, options, model, err)
       if (allocated(err)) then
         call self%close(at_close)
         return
@@ -74,22 +73,21 @@ contains
     columns = columns_of_study(model, quantities)
     allocate (self%row(columns%count), source=0.0_wp)
     if (self%paths%table /= '') &
-      call self%table%open(self%paths%table, model%mechanism%title, program_name//' '//version, columns%names(:columns%count), &
-                           columns%units(:columns%count), err)
+      call self%table%open(self%paths%table, model%mechanism%title, name_and_version(model%program), &
+                           columns%names(:columns%count), columns%units(:columns%count), err)
     if (.not. allocated(err) .and. self%paths%hdf5 /= '' .and. .not. options%has('continue')) call self%file%publish(err)
     if (allocated(err)) call self%close(at_close)
   end subroutine open_results
 
   !> Begin the columns of all runs in the HDF5 file, which is new or continued.
-  subroutine begin_columns(self, program_name, options, model, err)
+  subroutine begin_columns(self, options, model, err)
     class(study_results_type), intent(inout) :: self          !< the files
-    character(len=*), intent(in) :: program_name              !< mech9k or mech9d
     type(command_line_type), intent(in) :: options            !< the command line
     type(model_type), intent(in) :: model                     !< the model with the values of the data file
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(columns_type) :: columns
 
-    call columns_of_runs(program_name, model, columns)
+    call columns_of_runs(model, columns)
     if (options%has('continue')) then
       call self%file%open_columns(columns, model, err)
     else

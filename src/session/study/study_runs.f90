@@ -5,6 +5,7 @@
 !> the other. Results are written and added up in the order of the numbers, hence with the same bits in any case. Runs that are
 !> made before their turn wait; so few numbers are handed out ahead that memory stays bounded.
 module mech9_study_runs
+  use mech9_program_kind, only: program_names
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, add_place, raise, exit_done, exit_interrupted
   use mech9_text, only: to_text
@@ -51,9 +52,8 @@ module mech9_study_runs
 contains
 
   !> Begin the runs of part K of N parts: K, K + N, K + 2 N and so on, so that each part has its share of long ones.
-  subroutine begin(self, program_name, model, ahead, with_sample, quiet)
+  subroutine begin(self, model, ahead, with_sample, quiet)
     class(study_runs_type), intent(inout) :: self     !< the runs; its results are open, and know the part
-    character(len=*), intent(in) :: program_name      !< mech9k or mech9d
     type(model_type), intent(in) :: model             !< the model with the values of the data file
     integer, intent(in) :: ahead                      !< most runs that are handed out before the first of them is written
     logical, intent(in) :: with_sample                !< a sample of the runs is kept for plots
@@ -71,7 +71,7 @@ contains
       allocate (self%made(i)%values(size(model%parameters)), self%made(i)%quantities(size(model%request%quantities)))
     end do
     allocate (self%before(0:ahead - 1), source=.false.)
-    call self%progress%start(program_name, quiet)
+    call self%progress%start(program_names(model%program), quiet)
   end subroutine begin
 
   !> The number of a run to be made next; or all_handed_out, or wait_for_others: ask again when another run was taken. Runs that

@@ -34,8 +34,7 @@ module mech9_study_task
 contains
 
   !> Carry out the study that a data file describes.
-  subroutine work_on_study(program_name, options, document, varied, model, diagnostics, reported, team)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine work_on_study(options, document, varied, model, diagnostics, reported, team)
     type(command_line_type), intent(in) :: options          !< the command line
     type(document_type), intent(in) :: document             !< the data file as groups and items, with the changes by --set
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
@@ -51,24 +50,24 @@ contains
 
     reported = .false.
     used = model
-    call check_study(program_name, options, used, quantities, err)
+    call check_study(options, used, quantities, err)
     if (present(team)) call agree_on(team, err)
     if (present(team) .and. .not. allocated(err)) then
       if (.not. team%is_first) then
         call agree_on(team, err)
-        if (.not. allocated(err)) call team%follow(program_name, used, varied)
+        if (.not. allocated(err)) call team%follow(used, varied)
         reported = .true.
         return
       end if
     end if
     if (.not. allocated(err)) then
-      call open_files(program_name, options, document, used, quantities, runs, plots, err)
+      call open_files(options, document, used, quantities, runs, plots, err)
       if (present(team)) call agree_on(team, err)
     end if
     if (allocated(err)) then
       call diagnostics%add_error(err)
     else
-      call carry_out(program_name, options, varied, used, quantities, runs, plots, diagnostics, reported, team)
+      call carry_out(options, varied, used, quantities, runs, plots, diagnostics, reported, team)
     end if
   end subroutine work_on_study
 
@@ -86,8 +85,7 @@ contains
   end subroutine agree_on
 
   !> Open the files of a study, and read the requests for its plots.
-  subroutine open_files(program_name, options, document, model, quantities, runs, plots, err)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine open_files(options, document, model, quantities, runs, plots, err)
     type(command_line_type), intent(in) :: options          !< the command line
     type(document_type), intent(in) :: document             !< the data file as groups and items, with the changes by --set
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
@@ -101,13 +99,12 @@ contains
     call plots%open(options, model, quantities, paths%table, err)
     if (allocated(err)) return
     if (.not. options%has('quiet')) call print_notes(options, model)
-    call runs%results%open(program_name, options, document, model, quantities, err)
+    call runs%results%open(options, document, model, quantities, err)
   end subroutine open_files
 
   !> Report a study that cannot be carried out, and find the columns of its quantities. Runs keep their columns only where a file
   !> gets them.
-  subroutine check_study(program_name, options, model, quantities, err)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine check_study(options, model, quantities, err)
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(inout) :: model                !< the model with the values of the data file
     type(quantity_record_type), intent(out) :: quantities   !< with their columns
@@ -127,7 +124,7 @@ contains
                  model%request%output%sensitivities_place)
     else
       if (model%request%output%hdf5_runs) call refuse_varied_times(model, err)
-      if (.not. allocated(err)) call find_quantities(program_name, model, quantities, err)
+      if (.not. allocated(err)) call find_quantities(model, quantities, err)
     end if
   end subroutine check_study
 
@@ -164,8 +161,7 @@ contains
   end subroutine print_notes
 
   !> Make the runs, close the files, and tell how the study went. Where every run failed, the first failure is that of the study.
-  subroutine carry_out(program_name, options, varied, model, quantities, runs, plots, diagnostics, reported, team)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine carry_out(options, varied, model, quantities, runs, plots, diagnostics, reported, team)
     type(command_line_type), intent(in) :: options          !< the command line
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
@@ -185,11 +181,11 @@ contains
     clock = seconds()
     threads = threads_of_study(options, model)
     if (present(team)) threads = team%processes
-    call runs%begin(program_name, model, runs_ahead*threads, options%has('plot'), quiet)
+    call runs%begin(model, runs_ahead*threads, options%has('plot'), quiet)
     if (present(team)) then
-      call team%lead(program_name, model, varied, runs)
+      call team%lead(model, varied, runs)
     else
-      call make_in_threads(program_name, model, varied, threads, runs)
+      call make_in_threads(model, varied, threads, runs)
     end if
     call runs%finish(err)
     kept = .true.
@@ -198,7 +194,7 @@ contains
     allocate (propagation(0))
     if (.not. allocated(err) .and. runs%statistics%drawn .and. runs%sums%done > 0 .and. &
         .not. (quiet .and. .not. options%has('report'))) &
-      call propagate(program_name, model, varied, propagation, without_shares)
+      call propagate(model, varied, propagation, without_shares)
     if (.not. quiet) call print_study(error_unit, model, quantities, runs%sums, runs%statistics, propagation, clock)
     if (.not. quiet .and. allocated(without_shares)) &
       write (error_unit, '(a)') 'note: no shares by derivatives: '//without_shares%message
@@ -216,7 +212,7 @@ contains
       if (allocated(err)) call diagnostics%add_error(err)
     end if
     if (.not. options%has('report')) return
-    call save_study_report(options%argument('report'), program_name, model, quantities, runs%values, runs%sums, &
+    call save_study_report(options%argument('report'), model, quantities, runs%values, runs%sums, &
                            runs%statistics, propagation, runs%results%paths%table, diagnostics, err)
     reported = .true.
     if (allocated(err)) call diagnostics%add_error(err)

@@ -29,20 +29,18 @@ module mech9_study_team
     end subroutine agree
 
     !> Hand out runs to the other processes and make some, until all are made. The first process calls it.
-    subroutine lead(self, program_name, model, varied, runs)
+    subroutine lead(self, model, varied, runs)
       import :: study_team_type, model_type, variable_model_type, study_runs_type
       class(study_team_type), intent(in) :: self            !< the processes
-      character(len=*), intent(in) :: program_name          !< mech9k or mech9d
       type(model_type), intent(in) :: model                 !< the model with the values of the data file
       class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
       type(study_runs_type), intent(inout) :: runs          !< about to begin
     end subroutine lead
 
     !> Make the runs that the first process hands out. All other processes call it.
-    subroutine follow(self, program_name, model, varied)
+    subroutine follow(self, model, varied)
       import :: study_team_type, model_type, variable_model_type
       class(study_team_type), intent(in) :: self            !< the processes
-      character(len=*), intent(in) :: program_name          !< mech9k or mech9d
       type(model_type), intent(in) :: model                 !< the model with the values of the data file
       class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
     end subroutine follow

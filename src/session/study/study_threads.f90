@@ -31,8 +31,7 @@ contains
   end function threads_of_machine
 
   !> Make all runs. Each thread takes the next one when it has finished one, so that none waits for runs that take long.
-  subroutine make_in_threads(program_name, model, varied, threads, runs)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine make_in_threads(model, varied, threads, runs)
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied        !< the model as a function of its parameters
     integer, intent(in) :: threads                          !< how many
@@ -42,7 +41,7 @@ contains
 
     allocate (makers(threads))
     do i = 1, threads
-      call makers(i)%begin(program_name, model, varied)
+      call makers(i)%begin(model, varied)
     end do
     !$omp parallel do num_threads(threads) schedule(static, 1) default(shared) private(i)
     do i = 1, threads

@@ -139,10 +139,9 @@ contains
 
   !> Write the report of a study as JSON: the runs, the failed ones by code, the ranges of parameters and quantities, and of values
   !> that were drawn how the quantities scatter.
-  subroutine save_study_report(path, program_name, model, quantities, values, sums, statistics, propagation, table_path, &
+  subroutine save_study_report(path, model, quantities, values, sums, statistics, propagation, table_path, &
                                diagnostics, err)
     character(len=*), intent(in) :: path                   !< of the report
-    character(len=*), intent(in) :: program_name           !< mech9k or mech9d
     type(model_type), intent(in) :: model                  !< the model
     type(quantity_record_type), intent(in) :: quantities   !< with their columns
     type(study_sums_type), intent(in) :: values            !< of the parameters, over all runs
@@ -156,7 +155,7 @@ contains
     type(shares_type), allocatable :: shares(:)
     integer :: i
 
-    call begin_report(json, program_name, model, diagnostics, table_path)
+    call begin_report(json, model, diagnostics, table_path)
     call json%add('study', trim(model%request%study%kind))
     call json%add('runs', sums%made())
     call json%begin_array('failed_runs')

@@ -89,7 +89,7 @@ contains
     integer :: i
 
     call new_driven_simulation(self%model, self%plan, self%start, simulation, pictures=.true.)
-    call new_row_source('mech9k', simulation, source)
+    call new_row_source(simulation, source)
     allocate (row(source%columns%width()), source=0.0_wp)
     film = new_film(shown%mechanism, shown%problem%partition%independent(), shown%request%time%intervals + 1, source%columns)
     do i = 0, shown%request%time%intervals

@@ -1,5 +1,6 @@
 !> Judges before a search begins whether it can be made: its methods, its quantities, its limits.
 module mech9_optimum_check
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_error, only: error_type, raise, exit_data
@@ -14,7 +15,7 @@ module mech9_optimum_check
   use mech9_targets, only: time_at
   use mech9_limited_minimum, only: has_limited_minimum
   use mech9_quantity_record, only: quantity_record_type
-  use mech9_design_run, only: find_quantities, is_driven
+  use mech9_design_run, only: find_quantities
   use mech9_synthesis, only: synthesis_type
   use mech9_closed_search, only: is_least_squares
   use mech9_transmission, only: has_transmission_angle
@@ -26,8 +27,7 @@ module mech9_optimum_check
 contains
 
   !> Report what no search can find, and prepare the runs for quantities.
-  subroutine check_synthesis(program_name, variable, model, start, synthesis, err)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine check_synthesis(variable, model, start, synthesis, err)
     class(variable_model_type), intent(in) :: variable      !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(state_type), intent(in) :: start                   !< its assembled position
@@ -37,17 +37,17 @@ contains
     type(run_evaluator_type) :: evaluator
     type(model_type) :: asked
 
-    if (program_name == 'mech9d') call check_forced(model, err)
-    if (program_name == 'mech9d' .and. .not. allocated(err)) call check_start(model, err)
+    if (model%program == dynamics) call check_forced(model, err)
+    if (model%program == dynamics .and. .not. allocated(err)) call check_start(model, err)
     if (.not. allocated(err)) call check_method(model, err)
     if (.not. allocated(err)) call check_driven_values(model, synthesis, err)
     if (.not. allocated(err)) call check_transmissions(model, synthesis, start, err)
     if (allocated(err) .or. size(used_quantities(model)) == 0) return
     asked = model
     asked%request%quantities = model%request%quantities(used_quantities(model))
-    call find_quantities(program_name, asked, quantities, err)
+    call find_quantities(asked, quantities, err)
     if (allocated(err)) return
-    call new_run_evaluator(program_name, variable, model, evaluator)
+    call new_run_evaluator(variable, model, evaluator)
     allocate (synthesis%space%evaluator, source=evaluator)
   end subroutine check_synthesis
 
@@ -80,7 +80,7 @@ contains
     type(plan_type) :: plan
     type(state_type) :: start
 
-    if (is_driven('mech9d', model)) return
+    if (model%is_driven()) return
     moving = model
     call assemble_free_start(moving, plan, start, err)
     if (.not. allocated(err)) call new_free_simulation(moving, plan, start, free, err)

@@ -1,6 +1,7 @@
 !> Pictures of the best design of a synthesis: plots of targets and result, and drawings and films of it with the targets.
 module mech9_optimum_pictures
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_program_kind, only: dynamics
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type, to_text
   use mech9_path, only: name_of
@@ -43,9 +44,8 @@ module mech9_optimum_pictures
 contains
 
   !> Read the requests before the search. A wrong one is an error of the command line, or of the data file.
-  subroutine open_pictures(self, program_name, options, model, err)
+  subroutine open_pictures(self, options, model, err)
     class(optimum_pictures_type), intent(inout) :: self   !< the pictures
-    character(len=*), intent(in) :: program_name          !< mech9k or mech9d
     type(command_line_type), intent(in) :: options        !< the command line
     type(model_type), intent(in) :: model                 !< with its objectives
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
@@ -54,14 +54,14 @@ contains
     type(result_paths_type) :: paths
     integer :: i
 
-    call read_picture_requests(options, model, program_name, self%drawings, err)
+    call read_picture_requests(options, model, self%drawings, err)
     if (allocated(err)) return
     call find_result_paths(options, model%request%output, paths)
     do i = 1, size(names)
       names(i)%text = name_of_objective(model, i)
     end do
     call options%arguments('plot', requests)
-    if (program_name == 'mech9d' .and. (size(requests) > 0 .or. self%drawings%any_wanted())) then
+    if (model%program == dynamics .and. (size(requests) > 0 .or. self%drawings%any_wanted())) then
       call raise(err, exit_usage, 'mech9d --optimize draws no pictures; write the best design by --out FILE.nml, and '// &
                  'give --plot, --sketch and --animate to its run')
       return

@@ -4,7 +4,7 @@ module mech9_optimum_results
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_version, only: version
+  use mech9_version, only: name_and_version
   use mech9_command_line, only: command_line_type
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
@@ -30,8 +30,7 @@ contains
 
   !> Make room for all starts, read those that were made before, and open the HDF5 file, where one is asked for. A file that is
   !> continued is written anew, with all places and with the starts that it has; until that is done it stays as it is.
-  subroutine open_starts(program_name, options, document, model, synthesis, starts, err)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine open_starts(options, document, model, synthesis, starts, err)
     type(command_line_type), intent(in) :: options          !< the command line
     type(document_type), intent(in) :: document             !< the data file as groups and items, with the changes by --set
     type(model_type), intent(in) :: model                   !< the model
@@ -45,12 +44,12 @@ contains
     allocate (starts%made(model%request%optimum%starts))
     call find_result_paths(options, model%request%output, paths)
     if (paths%hdf5 == '') return
-    call define_study(program_name, document, definition, err)
+    call define_study(model%program, document, definition, err)
     if (.not. allocated(err) .and. options%has('continue')) &
       call read_starts(paths%hdf5, model, synthesis, definition, starts%made, err)
     if (.not. allocated(err)) call starts%file%create(paths%hdf5, model, synthesis, definition, .false., err)
     if (allocated(err)) return
-    call write_provenance(starts%file%file, program_name, options, model, document%source%text)
+    call write_provenance(starts%file%file, options, model, document%source%text)
     call write_made(starts)
     call starts%file%publish(err)
     if (.not. allocated(err)) return
@@ -69,8 +68,7 @@ contains
 
   !> Write the file anew, with the designs, and close it. Where that fails, as on a full disk, the file stays as it is, with all starts,
   !> and the search can be continued.
-  subroutine write_whole_file(program_name, options, document, model, synthesis, starts, err)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine write_whole_file(options, document, model, synthesis, starts, err)
     type(command_line_type), intent(in) :: options          !< the command line
     type(document_type), intent(in) :: document             !< the data file
     type(model_type), intent(in) :: model                   !< the model
@@ -83,10 +81,10 @@ contains
     path = starts%file%file%path
     call read_text(starts%file%file, 'provenance/created', created)
     call starts%file%close(err)
-    if (.not. allocated(err)) call define_study(program_name, document, definition, err)
+    if (.not. allocated(err)) call define_study(model%program, document, definition, err)
     if (.not. allocated(err)) call starts%file%create(path, model, synthesis, definition, .true., err)
     if (allocated(err)) return
-    call write_provenance(starts%file%file, program_name, options, model, document%source%text, created)
+    call write_provenance(starts%file%file, options, model, document%source%text, created)
     call write_made(starts)
     call write_optima(starts%file%file, model, synthesis)
     call starts%file%publish(err)
@@ -106,8 +104,7 @@ contains
   end function table_of
 
   !> Write the table and the HDF5 data of the distinct designs, and the data file of the best one.
-  subroutine write_results(program_name, options, document, model, synthesis, starts, diagnostics)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine write_results(options, document, model, synthesis, starts, diagnostics)
     type(command_line_type), intent(in) :: options          !< the command line
     type(document_type), intent(in) :: document             !< the data file
     type(model_type), intent(in) :: model                   !< the model
@@ -118,14 +115,14 @@ contains
     type(error_type), allocatable :: err
 
     path = table_of(options, model)
-    if (path /= '') call write_table(path, program_name, model, synthesis, err)
+    if (path /= '') call write_table(path, model, synthesis, err)
     call tell(err, 'table', path)
     path = ''
     if (starts%file%is_open()) path = starts%file%file%path
-    if (path /= '') call write_whole_file(program_name, options, document, model, synthesis, starts, err)
+    if (path /= '') call write_whole_file(options, document, model, synthesis, starts, err)
     call tell(err, 'HDF5 file', path)
     if (.not. options%has('out') .or. size(synthesis%optima) == 0) return
-    call text_of_best(program_name, document, model, synthesis, text)
+    call text_of_best(document, model, synthesis, text)
     path = options%argument('out')
     call replace_text(path, text, err)
     call tell(err, 'best design', path)
@@ -145,8 +142,7 @@ contains
   end subroutine write_results
 
   !> The data file of the best design.
-  subroutine text_of_best(program_name, document, model, synthesis, text)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine text_of_best(document, model, synthesis, text)
     type(document_type), intent(in) :: document             !< the data file
     type(model_type), intent(in) :: model                   !< the model
     type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
@@ -155,16 +151,15 @@ contains
     type(error_type), allocatable :: err
     character(len=:), allocatable :: history
 
-    call history_of_design(program_name//' '//version, model, synthesis, history)
+    call history_of_design(name_and_version(model%program), model, synthesis, history)
     ! there is such a model, because its motion was followed
     call synthesis%space%variable%at(synthesis%values_of(1), designed, err)
     call text_of_design(document, designed, synthesis%values_of(1), synthesis%optima(1)%q, history, text)
   end subroutine text_of_best
 
   !> Write a row for each distinct design, best first.
-  subroutine write_table(path, program_name, model, synthesis, err)
+  subroutine write_table(path, model, synthesis, err)
     character(len=*), intent(in) :: path                    !< of the table; '-' is standard output
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
     type(model_type), intent(in) :: model                   !< the model
     type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
@@ -181,7 +176,7 @@ contains
       call columns%append(model%parameters(i)%name, '')
     end do
     call columns%append('starts', '')
-    call table%open(path, model%mechanism%title, program_name//' '//version, columns%names(:columns%count), &
+    call table%open(path, model%mechanism%title, name_and_version(model%program), columns%names(:columns%count), &
                     columns%units(:columns%count), err)
     if (allocated(err)) return
     do i = 1, size(synthesis%optima)

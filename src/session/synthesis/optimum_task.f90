@@ -1,6 +1,7 @@
 !> The search for the best design: from many starts to the distinct designs, their files and their report.
 module mech9_optimum_task
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_assembly
   use mech9_text, only: string_type
@@ -33,8 +34,7 @@ module mech9_optimum_task
 contains
 
   !> Carry out the search that a data file describes.
-  subroutine work_on_optimum(program_name, options, document, variable, model, diagnostics, reported)
-    character(len=*), intent(in) :: program_name                    !< mech9k or mech9d
+  subroutine work_on_optimum(options, document, variable, model, diagnostics, reported)
     type(command_line_type), intent(in) :: options                  !< the command line
     type(document_type), intent(in) :: document                     !< the data file
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
@@ -58,8 +58,8 @@ contains
     searched => variable
     present = model
     call check_request(options, model, err)
-    if (.not. allocated(err)) call pictures%open(program_name, options, model, err)
-    if (.not. allocated(err) .and. program_name == 'mech9d') then
+    if (.not. allocated(err)) call pictures%open(options, model, err)
+    if (.not. allocated(err) .and. model%program == dynamics) then
       ! runs follow from forces; the search itself knows the mechanism at their start
       allocate (held%moving, source=variable)
       searched => held
@@ -67,14 +67,14 @@ contains
     end if
     if (.not. allocated(err)) call assemble_driven_start(present, plan, start, err)
     if (.not. allocated(err)) call new_synthesis(searched, present, plan, synthesis, err)
-    if (.not. allocated(err)) call check_synthesis(program_name, variable, model, start, synthesis, err)
-    if (.not. allocated(err)) call open_starts(program_name, options, document, model, synthesis, starts, err)
+    if (.not. allocated(err)) call check_synthesis(variable, model, start, synthesis, err)
+    if (.not. allocated(err)) call open_starts(options, document, model, synthesis, starts, err)
     if (allocated(err)) then
       call explain(err)
       call diagnostics%add_error(err)
       return
     end if
-    call make_starts(program_name, options, searched, model, synthesis, starts, err)
+    call make_starts(options, searched, model, synthesis, starts, err)
     call synthesis%keep_verified()
     if (.not. options%has('quiet')) call print_optimum(error_unit, model, synthesis, seconds() - clock)
     if (size(synthesis%optima) == 0 .and. .not. allocated(err)) &
@@ -83,10 +83,10 @@ contains
                  '; give more starts in &optimum, or other ranges of the parameters'// &
                  trim(merge(' and limits', '           ', size(model%request%limits) > 0)))
     if (allocated(err)) call diagnostics%add_error(err)
-    call write_results(program_name, options, document, model, synthesis, starts, diagnostics)
+    call write_results(options, document, model, synthesis, starts, diagnostics)
     call pictures%draw(options, variable, synthesis, diagnostics)
     if (.not. options%has('report')) return
-    call save_optimum_report(options%argument('report'), program_name, model, synthesis, table_of(options, model), diagnostics, err)
+    call save_optimum_report(options%argument('report'), model, synthesis, table_of(options, model), diagnostics, err)
     reported = .true.
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine work_on_optimum
@@ -125,8 +125,7 @@ contains
   end function changes_design
 
   !> Make all starts that are missing. Fails where the user interrupts; the starts so far then count.
-  subroutine make_starts(program_name, options, variable, model, synthesis, starts, err)
-    character(len=*), intent(in) :: program_name             !< mech9k or mech9d
+  subroutine make_starts(options, variable, model, synthesis, starts, err)
     type(command_line_type), intent(in) :: options           !< the command line
     class(variable_model_type), intent(in) :: variable       !< the model as a function of its parameters
     type(model_type), intent(in) :: model                    !< the model
@@ -139,7 +138,7 @@ contains
     ! a user's procedures may keep numbers from call to call
     if (calls_user_procedures(model)) threads = 1
     threads = min(options%number('threads', threads), most_threads)
-    call starts%begin(program_name, options%has('quiet'))
+    call starts%begin(model%program, options%has('quiet'))
     call make_in_threads(variable, synthesis, model%request%optimum%seed, threads, starts)
     call starts%finish(synthesis)
     if (allocated(starts%stopped)) err = starts%stopped

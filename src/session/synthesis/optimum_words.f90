@@ -59,9 +59,8 @@ contains
   end subroutine history_of_design
 
   !> Write the report of a synthesis as JSON.
-  subroutine save_optimum_report(path, program_name, model, synthesis, table_path, diagnostics, err)
+  subroutine save_optimum_report(path, model, synthesis, table_path, diagnostics, err)
     character(len=*), intent(in) :: path                   !< of the report
-    character(len=*), intent(in) :: program_name           !< mech9k or mech9d
     type(model_type), intent(in) :: model                  !< the model
     type(synthesis_type), intent(in) :: synthesis          !< with its optima, best first
     character(len=*), intent(in) :: table_path             !< path of the table; '-' is standard output; empty: no table
@@ -71,7 +70,7 @@ contains
     real(wp), allocatable :: values(:)
     integer :: i
 
-    call begin_report(json, program_name, model, diagnostics, table_path)
+    call begin_report(json, model, diagnostics, table_path)
     call json%add('distinct', size(synthesis%optima))
     if (size(synthesis%optima) > 0) then
       values = synthesis%values_of(1)

@@ -16,7 +16,6 @@ module mech9_run_evaluator
 
   type, extends(quantity_evaluator_type) :: run_evaluator_type
     private
-    character(len=6) :: program_name = ''                 !< mech9k or mech9d
     class(variable_model_type), allocatable :: variable   !< the model as a function of its parameters
     integer, allocatable :: used(:)                       !< numbers of the quantities of objectives and limits
     integer, allocatable :: varied(:)                     !< numbers of the parameters that are varied
@@ -32,14 +31,12 @@ module mech9_run_evaluator
 contains
 
   !> Prepare an evaluator. It has a model of its own, so that each thread can have a copy.
-  subroutine new_run_evaluator(program_name, variable, model, evaluator)
-    character(len=*), intent(in) :: program_name            !< mech9k or mech9d
+  subroutine new_run_evaluator(variable, model, evaluator)
     class(variable_model_type), intent(in) :: variable      !< the model as a function of its parameters; copied
     type(model_type), intent(in) :: model                   !< the model with its objectives and limits
     type(run_evaluator_type), intent(out) :: evaluator      !< ready
     integer :: i
 
-    evaluator%program_name = program_name
     allocate (evaluator%variable, source=variable)
     evaluator%used = used_quantities(model)
     evaluator%varied = pack([(i, i=1, size(model%parameters))], model%parameters%has_range)
@@ -119,7 +116,7 @@ contains
     numbers = 0.0_wp
     call make_model(self, values, q, model, has_value)
     if (.not. has_value) return
-    call run_design(self%program_name, model, source, numbers, err)
+    call run_design(model, source, numbers, err)
     has_value = .not. allocated(err)
     if (has_value) has_value = all(ieee_is_finite(numbers))
   end subroutine take_numbers
@@ -139,7 +136,7 @@ contains
     call make_model(self, values, q, model, made)
     if (.not. made) return
     model%request%output%gradients = .true.
-    call find_design_gradient(self%program_name, model, self%variable, numbers, slopes, err)
+    call find_design_gradient(model, self%variable, numbers, slopes, err)
     if (allocated(err)) slopes = ieee_value(1.0_wp, ieee_quiet_nan)
   end subroutine take_gradient
 

@@ -3,6 +3,7 @@
 !> Whoever makes starts asks for a number (`hand_out`) and gives the designs back when the start is made (`take`); it does not matter
 !> how many do so at a time, as long as the calls come one after the other. A start is in the file as soon as it is taken.
 module mech9_starts
+  use mech9_program_kind, only: program_names
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_counted, only: counted
@@ -37,14 +38,14 @@ module mech9_starts
 contains
 
   !> Begin to make the starts that are missing.
-  subroutine begin(self, program_name, quiet)
+  subroutine begin(self, program, quiet)
     class(starts_type), intent(inout) :: self        !< with room for all starts, and with those that were made before
-    character(len=*), intent(in) :: program_name     !< for the progress
+    integer, intent(in) :: program                   !< kinematics or dynamics
     logical, intent(in) :: quiet                     !< no progress is shown
     integer :: i
 
     self%missing = count([(.not. allocated(self%made(i)%found), i=1, size(self%made))])
-    call self%progress%start(program_name, quiet)
+    call self%progress%start(program_names(program), quiet)
   end subroutine begin
 
   !> The number of a start to be made next, or all_handed_out. Starts that were made before are not handed out.

@@ -1,5 +1,6 @@
 !> Words and JSON that the reports of all runs share.
 module mech9_run_words
+  use mech9_program_kind, only: program_names
   use mech9_kinds, only: wp
   use mech9_uniqueness, only: uniqueness_type
   use mech9_text, only: to_text
@@ -44,15 +45,14 @@ contains
   end function duration
 
   !> Write the beginning of a report: the program, the mechanism, the exit code and the errors.
-  subroutine begin_report(json, program_name, model, diagnostics, table_path)
+  subroutine begin_report(json, model, diagnostics, table_path)
     type(json_type), intent(inout) :: json             !< the report, which is being composed
-    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
     type(model_type), intent(in) :: model              !< the model
     type(diagnostics_type), intent(in) :: diagnostics  !< all errors, which determine the exit code
     character(len=*), intent(in) :: table_path         !< path of the table; '-' is standard output; empty: no table
 
     call json%begin_object()
-    call add_outcome(json, program_name, model, diagnostics%code())
+    call add_outcome(json, model, diagnostics%code())
     call json%add('table', table_path)
     call json%begin_array('errors')
     call add_errors(json, diagnostics)
@@ -60,9 +60,8 @@ contains
   end subroutine begin_report
 
   !> Write the report of a program that made no run, because of an option such as --check or because of an error.
-  subroutine save_short_report(path, program_name, model, exit_code, choice, diagnostics, err)
+  subroutine save_short_report(path, model, exit_code, choice, diagnostics, err)
     character(len=*), intent(in) :: path               !< path of the report
-    character(len=*), intent(in) :: program_name       !< mech9k or mech9d
     type(model_type), intent(in) :: model              !< the model, as far as it was read
     integer, intent(in) :: exit_code                   !< exit code of the program
     type(diagnostics_type), intent(in) :: choice       !< errors of the choice of the independent coordinates
@@ -71,7 +70,7 @@ contains
     type(json_type) :: json
 
     call json%begin_object()
-    call add_outcome(json, program_name, model, exit_code)
+    call add_outcome(json, model, exit_code)
     call json%begin_array('errors')
     call add_errors(json, choice)
     call add_errors(json, diagnostics)
@@ -81,13 +80,12 @@ contains
   end subroutine save_short_report
 
   !> Add the program with its version, and the exit code.
-  subroutine add_outcome(json, program_name, model, exit_code)
+  subroutine add_outcome(json, model, exit_code)
     type(json_type), intent(inout) :: json         !< the report, which is being composed
-    character(len=*), intent(in) :: program_name   !< mech9k or mech9d
     type(model_type), intent(in) :: model          !< the model
     integer, intent(in) :: exit_code               !< exit code of the program
 
-    call json%add('program', program_name)
+    call json%add('program', program_names(model%program))
     call json%add('version', version)
     call json%add('revision', revision)
     call json%add('compiler', compiler())

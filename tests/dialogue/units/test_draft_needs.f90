@@ -1,5 +1,6 @@
 !> Names for which a conversation asks on request only, names that studies need, and explanations in their parts.
 module test_draft_needs
+  use mech9_program_kind, only: kinematics
   use mech9_draft, only: draft_type
   use mech9_explanations, only: explanations
   use mech9_force_explanations, only: body_texts, load_texts, motor_texts
@@ -36,7 +37,7 @@ contains
     integer :: i, g, n
 
     call draft%clear()
-    outline = new_outline('mech9k', draft)
+    outline = new_outline(kinematics, draft)
     outline%way = 'pairs'
     n = 0
     do g = 1, size(group_table)

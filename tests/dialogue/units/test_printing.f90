@@ -1,5 +1,6 @@
 !> Text of a conversation: paragraphs that fit the terminal, and structures as chains of links and pairs.
 module test_printing
+  use mech9_program_kind, only: dynamics
   use mech9_model, only: model_type
   use mech9_paragraph, only: print_paragraph
   use mech9_structure_sketch, only: print_sketch
@@ -87,7 +88,7 @@ contains
     character(len=:), allocatable :: text
     integer :: unit
 
-    call model_from_text(tester, slider_crank, .false., model)
+    call model_from_text(tester, slider_crank, dynamics, model)
     open (newunit=unit, file=path)
     call print_sketch(unit, model%mechanism%structure, model%problem%partition)
     call text_of_unit(tester, unit, text)
@@ -97,7 +98,7 @@ contains
     call tester%is_true(index(text, 'Independent now: 1.') > 0, 'the number of independent coordinates')
     call model_from_text(tester, '&mechanism links=3, coordinates=4 /'//eol//'&structure cq=1,2,3,4 /'//eol// &
       "&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /"//eol// &
-      "&pair coordinates=2,3,4, links=2,3, kind='spherical' /"//eol, .false., model)
+      "&pair coordinates=2,3,4, links=2,3, kind='spherical' /"//eol, dynamics, model)
     open (newunit=unit, file=path)
     call print_sketch(unit, model%mechanism%structure, model%problem%partition)
     call text_of_unit(tester, unit, text)

@@ -1,5 +1,6 @@
 !> Readers of single groups, each called with the mechanism that it needs: units, defaults, and order of numbers.
 module test_group_readers
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_axis_reader, only: read_axis_frames, real_or, pair_words
   use mech9_body, only: body_type
@@ -54,7 +55,7 @@ contains
     type(model_type), intent(out) :: model                !< the slider-crank
     type(diagnostics_type), intent(out) :: diagnostics    !< gets the errors
 
-    call model_from_text(tester, slider_crank, .false., model)
+    call model_from_text(tester, slider_crank, dynamics, model)
     call checked_from_text(tester, slider_crank//groups, document, diagnostics)
   end subroutine checked
 

@@ -1,6 +1,7 @@
 !> Readers of pairs, drives, couplings, loads, motors, joints, limits, objectives and cams: what they make of the numbers is held
 !> against the formulas of the data file's description, with angles in degrees.
 module test_mechanism_readers
+  use mech9_program_kind, only: kinematics, dynamics
   use mech9_kinds, only: wp
   use mech9_cam_reader, only: read_cams
   use mech9_checker, only: check_document
@@ -72,7 +73,7 @@ contains
     type(model_type), intent(out) :: model                !< the slider-crank
     type(diagnostics_type), intent(out) :: diagnostics    !< gets the errors
 
-    call model_from_text(tester, slider_crank, .false., model)
+    call model_from_text(tester, slider_crank, dynamics, model)
     call checked_from_text(tester, slider_crank//groups, document, diagnostics)
   end subroutine checked
 
@@ -196,7 +197,8 @@ contains
       call checked(tester, groups, document, model, diagnostics)
       call read_drives(document, model%problem%partition, model%mechanism%pairs, degree, 0.0_wp, [real(wp) ::], list, diagnostics)
       call move_alloc(list, model%problem%drives)
-      call check_drives(document, .true., model, diagnostics)
+      model%program = kinematics
+      call check_drives(document, model, diagnostics)
       call tester%is_true(diagnostics%failed() .neqv. right, 'drives: '//groups)
     end subroutine judge
   end subroutine checked_drives

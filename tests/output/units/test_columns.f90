@@ -1,5 +1,6 @@
 !> Columns of results: their names, their order, and their numbers for a slider-crank whose motion is known.
 module test_columns
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_model, only: model_type
@@ -38,7 +39,7 @@ contains
     type(columns_type), intent(out) :: columns     !< of a run
 
     call model_from_text(tester, "&mechanism angle_unit='deg', "//slider_crank(11:)// &
-      "&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol//"&output "//output//" /"//eol, .true., model)
+      "&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol//"&output "//output//" /"//eol, kinematics, model)
     columns = kinematic_columns(model%mechanism, model%request%output)
   end subroutine with_output
 

@@ -1,5 +1,6 @@
 !> Pages of text that grow, facts in reports, and files of rows in a list.
 module test_pages_and_sinks
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_file
   use mech9_facts, only: facts_type
@@ -99,7 +100,7 @@ contains
     real(wp), allocatable :: rows(:, :)
 
     call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol// &
-      "&time end=1, intervals=4 /"//eol//"&output derivatives=1, poses=.true. /"//eol, .true., model)
+      "&time end=1, intervals=4 /"//eol//"&output derivatives=1, poses=.true. /"//eol, kinematics, model)
     columns = kinematic_columns(model%mechanism, model%request%output)
     allocate (file_sink, slots(0))
     call file_sink%open(path, model%mechanism, model%request, columns, err)

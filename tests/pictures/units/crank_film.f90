@@ -1,5 +1,6 @@
 !> A film of the slider-crank, turned in equal steps, and its scene, for the tests of pictures.
 module crank_film
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_model, only: model_type
@@ -34,7 +35,8 @@ contains
     type(error_type), allocatable :: err
     integer :: i
 
-    call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol, .true., model)
+    call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol, &
+                         kinematics, model)
     film = new_film(model%mechanism, model%problem%partition%independent(), steps + 1)
     do i = 0, steps
       model%problem%initial%position(1) = 8.0_wp*atan(1.0_wp)*i/steps

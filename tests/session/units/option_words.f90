@@ -1,5 +1,6 @@
 !> Command lines of tests, from their words in one text.
 module option_words
+  use mech9_program_kind, only: dynamics
   use mech9_error, only: error_type
   use mech9_text, only: string_type
   use mech9_command_line, only: command_line_type, parse_command_line
@@ -26,7 +27,7 @@ contains
       words(i)%text = line(first:first + index(line(first:)//' ', ' ') - 2)
       first = first + len(words(i)%text) + 1
     end do
-    call parse_command_line(words, 'mech9d', options, err)
+    call parse_command_line(words, dynamics, options, err)
     call tester%no_error(err, 'a command line: '//line)
   end subroutine options_of
 end module option_words

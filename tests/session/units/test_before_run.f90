@@ -1,5 +1,6 @@
 !> Checks before a run: laws of time that do not reach over it, and a wrong choice of independent coordinates without drives.
 module test_before_run
+  use mech9_program_kind, only: kinematics
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
@@ -38,7 +39,7 @@ contains
       type(diagnostics_type) :: diagnostics
 
       call model_from_text(tester, slider_crank//"&time "//times//" /"//eol//"&drive coordinate=1, kind='segments', "// &
-                    "times=1, 2, 3, values=0, 1, 5, laws='harmonic' /"//eol, .true., model)
+                    "times=1, 2, 3, values=0, 1, 5, laws='harmonic' /"//eol, kinematics, model)
       call check_times_of_laws(model, .false., diagnostics)
       call tester%is_true(diagnostics%failed() .neqv. right, 'a drive from 1 s to 3 s and a run of '//times)
     end subroutine reaches

@@ -1,5 +1,6 @@
 !> The data file of a design: the text of the data file with other values and positions, all else as it stands.
 module test_design_file
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_document, only: document_type
   use mech9_model, only: model_type
@@ -37,7 +38,7 @@ contains
     type(model_type) :: model
 
     call document_from_text(tester, data, document)
-    call model_from_text(tester, data, .true., model)
+    call model_from_text(tester, data, kinematics, model)
     call text_of_design(document, model, values, q, '! made'//eol, text)
   end subroutine design
 
@@ -61,7 +62,7 @@ contains
     type(model_type) :: model
 
     call design(tester, slider_crank//parameters//drive, values, q, text)
-    call model_from_text(tester, text, .true., model)
+    call model_from_text(tester, text, kinematics, model)
     call tester%is_true(all(abs([model%parameters(1)%value, model%parameters(2)%value] - values) <= 0.0_wp), 'values read back')
     call tester%is_true(all(abs(model%problem%initial%position(2:) - q(2:)) <= 0.0_wp), 'positions read back')
   end subroutine reads_back
@@ -74,7 +75,7 @@ contains
     type(model_type) :: model
 
     call design(tester, "&mechanism angle_unit='deg', "//slider_crank(11:)//drive, [real(wp) ::], q, text)
-    call model_from_text(tester, text, .true., model)
+    call model_from_text(tester, text, kinematics, model)
     ! a number goes to degrees and back, with two roundings
     call tester%is_true(all(abs(model%problem%initial%position(2:) - q(2:)) <= 4.0e-16_wp), 'positions in degrees read back')
     call tester%is_true(index(text, 'position=28.6478') > 0, 'half a radian is 28.6478 degrees')

@@ -1,5 +1,6 @@
 !> Tables of equilibria and modes of a mass that hangs from a spring with a damper, by its formulas.
 module test_equilibrium_rows
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_columns, only: columns_type
   use mech9_equilibria, only: find_equilibrium
@@ -47,7 +48,7 @@ contains
     type(state_type) :: own_start, start
     type(error_type), allocatable :: err
 
-    call model_from_text(tester, data, .false., model)
+    call model_from_text(tester, data, dynamics, model)
     call assemble_free_start(model, own_plan, own_start, err)
     call tester%no_error(err, 'the start')
     call make_plan(model%mechanism, model%problem%partition, own_start%q, plan, start, err, in_space=.true.)

@@ -1,5 +1,6 @@
 !> Remedies for columns that a run does not have: the setting that records them, or the name that may be meant.
 module test_missing_column
+  use mech9_program_kind, only: kinematics
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_missing_column, only: remedy_of_missing
@@ -32,7 +33,7 @@ contains
     character(len=:), allocatable :: remedy
 
     call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol// &
-      "&time end=1, intervals=4 /"//eol//"&output "//output//" /"//eol, .true., model)
+      "&time end=1, intervals=4 /"//eol//"&output "//output//" /"//eol, kinematics, model)
     columns = kinematic_columns(model%mechanism, model%request%output)
     remedy = remedy_of_missing(name, model, columns)
     call tester%is_true(remedy == expected, 'the remedy of '//name//' with '//output//': "'//remedy//'"')

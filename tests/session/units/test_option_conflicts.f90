@@ -1,5 +1,6 @@
 !> Options that contradict each other, one case for each reason, and those that replace a run.
 module test_option_conflicts
+  use mech9_program_kind, only: kinematics, dynamics
   use mech9_error, only: error_type, exit_usage
   use mech9_options, only: options_table
   use mech9_option_conflicts, only: judge_options, answer_of, rest_of
@@ -47,7 +48,7 @@ contains
     character(len=*), intent(in) :: words        !< part of the message
     type(error_type), allocatable :: err
 
-    call judge_options('mech9d', names_in(names), .true., .false., err)
+    call judge_options(dynamics, names_in(names), .true., .false., err)
     call has_message(tester, err, exit_usage, words, 'a contradiction: '//names)
   end subroutine refused
 
@@ -57,7 +58,7 @@ contains
     logical, intent(in) :: has_file              !< a data file is given
     type(error_type), allocatable :: err
 
-    call judge_options('mech9d', names_in(names), has_file, .false., err)
+    call judge_options(dynamics, names_in(names), has_file, .false., err)
     call tester%no_error(err, 'good options: '//names)
   end subroutine accepted
 
@@ -124,7 +125,7 @@ contains
       character(len=*), intent(in) :: words   !< part of the message
       type(error_type), allocatable :: err
 
-      call judge_options('mech9d', names_in(names), .false., .false., err)
+      call judge_options(dynamics, names_in(names), .false., .false., err)
       call has_message(tester, err, exit_usage, words, 'a contradiction: '//names)
     end subroutine refused_without_file
   end subroutine imports_and_merges
@@ -147,14 +148,14 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(error_type), allocatable :: err
 
-    call judge_options('mech9k', names_in('check'), .false., .true., err)
+    call judge_options(kinematics, names_in('check'), .false., .true., err)
     call has_message(tester, err, exit_usage, 'no data file is given; --check is for a data file alone: mech9k FILE --check', &
                      'an answer without a data file')
-    call judge_options('mech9k', names_in('edit range'), .false., .true., err)
+    call judge_options(kinematics, names_in('edit range'), .false., .true., err)
     call has_message(tester, err, exit_usage, 'this is a conversation; --range', 'an answer in a conversation')
-    call judge_options('mech9k', names_in('edit'), .true., .true., err)
+    call judge_options(kinematics, names_in('edit'), .true., .true., err)
     call has_message(tester, err, exit_usage, 'more than one data file is given', 'two data files')
-    call judge_options('mech9k', names_in('resume table'), .false., .true., err)
+    call judge_options(kinematics, names_in('resume table'), .false., .true., err)
     call tester%no_error(err, 'a conversation with a table')
   end subroutine conversations
 

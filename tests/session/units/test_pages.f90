@@ -1,5 +1,6 @@
 !> Manual pages and completions name every option of their program, and none of the other alone; roff and bash read them as meant.
 module test_pages
+  use mech9_program_kind, only: kinematics, dynamics, program_names
   use mech9_grammar, only: group_table
   use mech9_options, only: options_table
   use mech9_manual_page, only: manual_page
@@ -10,7 +11,6 @@ module test_pages
   public :: run
 
   character, parameter :: eol = achar(10)
-  character(len=6), parameter :: programs(2) = ['mech9k', 'mech9d']
 
 contains
 
@@ -44,15 +44,17 @@ contains
     integer :: i, k
 
     do k = 1, 2
-      page = manual_page(programs(k))
-      script = bash_completion(programs(k))
+      page = manual_page(k)
+      script = bash_completion(k)
       do i = 1, size(options_table)
-        has = index(options_table(i)%programs, programs(k)) > 0
+        has = index(options_table(i)%programs, program_names(k)) > 0
         name = trim(options_table(i)%name)
         call tester%is_true((index(page, '.B "'//in_roff(name)//'"') + index(page, '.B "'//in_roff(name)//' ') + &
-                             index(page, '.B "'//in_roff(name)//'[') > 0) .eqv. has, 'the page of '//programs(k)//' on --'//name)
+                             index(page, '.B "'//in_roff(name)//'[') > 0) .eqv. has, &
+                            'the page of '//program_names(k)//' on --'//name)
         call tester%is_true((index(script, ' --'//name//' ') + index(script, ' --'//name//'"') + &
-                             index(script, '"--'//name//' ') > 0) .eqv. has, 'the completion of '//programs(k)//' on --'//name)
+                             index(script, '"--'//name//' ') > 0) .eqv. has, &
+                            'the completion of '//program_names(k)//' on --'//name)
       end do
     end do
   end subroutine options
@@ -62,7 +64,7 @@ contains
     character(len=:), allocatable :: page
     integer :: i
 
-    page = manual_page('mech9k')
+    page = manual_page(kinematics)
     do i = 1, size(group_table)
       call tester%is_true(index(page, '.SS &'//trim(group_table(i)%name)//eol) > 0, 'the group '//group_table(i)%name)
     end do
@@ -76,7 +78,7 @@ contains
     integer :: first, last, i
     logical :: right
 
-    page = manual_page('mech9d')
+    page = manual_page(dynamics)
     call tester%is_true(page(len(page):) == eol, 'the last line ends')
     right = .true.
     first = 1
@@ -96,7 +98,7 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=:), allocatable :: script
 
-    script = bash_completion('mech9k')
+    script = bash_completion(kinematics)
     call tester%is_true(index(script, 'yes:mechanism.angle_unit) COMPREPLY=($(compgen -W "rad deg" -- "$word"))') > 0, 'words')
     call tester%is_true(index(script, 'yes:output.reactions) COMPREPLY=($(compgen -W ".true. .false." -- "$word"))') > 0, &
                         'logicals')

@@ -1,5 +1,6 @@
 !> Pictures that a run is asked for: by options or the data file, with an ending that tells the kind and a view.
 module test_picture_requests
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_data, exit_usage
   use mech9_command_line, only: command_line_type
@@ -43,9 +44,9 @@ contains
     type(model_type) :: model
     type(command_line_type) :: options
 
-    call model_from_text(tester, driven//more, .true., model)
+    call model_from_text(tester, driven//more, kinematics, model)
     call options_of(tester, line, options)
-    call read_picture_requests(options, model, 'mech9k', requests, err)
+    call read_picture_requests(options, model, requests, err)
   end subroutine ask
 
   !> Options come before names of the data file.
@@ -117,9 +118,9 @@ contains
 
     call remove_file(sketch)
     call remove_file(film)
-    call model_from_text(tester, driven, .true., model)
+    call model_from_text(tester, driven, kinematics, model)
     call options_of(tester, 'a.nml --sketch '//sketch//' --animate '//film, options)
-    call read_picture_requests(options, model, 'mech9k', requests, err)
+    call read_picture_requests(options, model, requests, err)
     call assemble_driven_start(model, plan, position, err)
     call tester%no_error(err, 'the start')
     call requests%save_start(model, plan, position, err)

@@ -1,6 +1,7 @@
 !> A recorded run of a slider-crank: rows by the formulas of its motion, forces by the balance of power, and the same numbers in all
 !> files.
 module test_recording
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_command_line, only: command_line_type
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
@@ -56,15 +57,15 @@ contains
     type(kept_rows_type) :: kept
     type(error_type), allocatable :: err
 
-    call model_from_text(tester, data, .true., model)
+    call model_from_text(tester, data, kinematics, model)
     call tester%is_true(all(reacting_pairs(model) .eqv. [.false., .false., .false., .true.]), 'one pair has its forces recorded')
     call assemble_driven_start(model, plan, start, err)
     call tester%no_error(err, 'the start')
     allocate (simulation, source)
     call new_driven_simulation(model, plan, start, simulation)
-    call new_row_source('mech9k', simulation, source)
+    call new_row_source(simulation, source)
     call options_of(tester, 'a.nml --table '//stem//'.dat --hdf5 '//stem//'.h5 --quiet', options)
-    call results%open(options, model, data, 'mech9k', source%columns, err)
+    call results%open(options, model, data, source%columns, err)
     call tester%no_error(err, 'files are opened')
     call record(source, model, results, .true., outcome, err, kept)
     call tester%no_error(err, 'the run is recorded')
@@ -147,11 +148,11 @@ contains
     type(error_type), allocatable :: err
 
     call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0.2, 3 /"//eol// &
-      "&time end=2, intervals=3 /"//eol//"&quantity name='f', of='F1', take='max' /"//eol, .true., model)
+      "&time end=2, intervals=3 /"//eol//"&quantity name='f', of='F1', take='max' /"//eol, kinematics, model)
     call assemble_driven_start(model, plan, start, err)
     allocate (simulation, source)
     call new_driven_simulation(model, plan, start, simulation)
-    call new_row_source('mech9k', simulation, source)
+    call new_row_source(simulation, source)
     call source%begin_quantities(err)
     call tester%is_true(allocated(err), 'a column that is not there')
     if (allocated(err)) call tester%is_true(index(err%message, 'drive_forces=.true.') > 0, 'its remedy: '//err%message)

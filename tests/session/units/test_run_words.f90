@@ -1,5 +1,6 @@
 !> Words of reports: times, parameters, jumps of drives, notes, ranges and assemblies of a mechanism whose motion is known.
 module test_run_words
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_model, only: model_type
@@ -70,7 +71,7 @@ contains
 
     call model_from_text(tester, slider_crank//drive//"&time end=1 /"//eol// &
                   "&parameter name='a', value=0.25, sets='pair(2).point(1)', 'time.end' /"//eol, &
-                  .true., model)
+                  kinematics, model)
     open (newunit=unit, file=path)
     call print_parameters(unit, model)
     call text_of_unit(tester, unit, text)
@@ -85,12 +86,12 @@ contains
     integer :: unit
 
     call model_from_text(tester, slider_crank//"&time end=3 /"//eol//"&drive coordinate=1, kind='segments', times=0, 1, 3, "// &
-                  "values=0, 1, 5, laws='constant-velocity' /"//eol, .true., model)
+                  "values=0, 1, 5, laws='constant-velocity' /"//eol, kinematics, model)
     open (newunit=unit, file=path)
     call print_jumps(unit, model)
     call text_of_unit(tester, unit, text)
     call tester%is_true(index(text, 'note: the rate of the ') == 1 .and. index(text, 'jumps at t = 1') > 0, 'a jump: '//text)
-    call model_from_text(tester, slider_crank//"&time end=3 /"//eol//drive, .true., model)
+    call model_from_text(tester, slider_crank//"&time end=3 /"//eol//drive, kinematics, model)
     open (newunit=unit, file=path)
     call print_jumps(unit, model)
     call text_of_unit(tester, unit, text)
@@ -113,7 +114,8 @@ contains
       character(len=:), allocatable :: text
       integer :: unit
 
-      call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', "//coefficients//" /"//eol, .true., model)
+      call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', "//coefficients//" /"//eol, &
+                           kinematics, model)
       open (newunit=unit, file=path)
       call print_notes(unit, model, .false.)
       call text_of_unit(tester, unit, text)
@@ -129,7 +131,7 @@ contains
     character(len=:), allocatable :: text
     integer :: unit
 
-    call model_from_text(tester, slider_crank//drive, .true., model)
+    call model_from_text(tester, slider_crank//drive, kinematics, model)
     open (newunit=unit, file=path)
     call print_dimensions(unit, model%mechanism)
     call text_of_unit(tester, unit, text)
@@ -166,7 +168,7 @@ contains
       type(error_type), allocatable :: err
       integer :: unit
 
-      call model_from_text(tester, data, .true., model)
+      call model_from_text(tester, data, kinematics, model)
       associate (position => model%problem%initial%position)
         if (model%problem%drives(1)%drive%coordinate == 1) position(1) = 0.4_wp
         if (model%problem%drives(1)%drive%coordinate == 4) position(4) = 1.2_wp
@@ -191,7 +193,7 @@ contains
     integer :: unit, at, i, status
 
     q = 0.4_wp
-    call model_from_text(tester, slider_crank//drive, .true., model)
+    call model_from_text(tester, slider_crank//drive, kinematics, model)
     model%problem%initial%position(1) = q
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     open (newunit=unit, file=path)

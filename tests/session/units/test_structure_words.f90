@@ -1,6 +1,7 @@
 !> Words about structure, mobility, plan and forces of a slider-crank, whose mobility and equations are known; and notes about
 !> options without effect.
 module test_structure_words
+  use mech9_program_kind, only: kinematics, dynamics
   use mech9_command_line, only: command_line_type
   use mech9_error, only: error_type
   use mech9_force_text, only: print_uniqueness, print_undetermined, print_forceless, component_names
@@ -48,7 +49,7 @@ contains
     type(state_type), intent(out) :: state        !< a closed position
     type(error_type), allocatable :: err
 
-    call model_from_text(tester, slider_crank//'&initial coordinate=1, position=0.4 /'//eol, .false., model)
+    call model_from_text(tester, slider_crank//'&initial coordinate=1, position=0.4 /'//eol, dynamics, model)
     call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
     call tester%no_error(err, 'a plan')
   end subroutine planned
@@ -165,7 +166,7 @@ contains
       character(len=:), allocatable :: text
       integer :: unit
 
-      call model_from_text(tester, slider_crank//groups, .false., model)
+      call model_from_text(tester, slider_crank//groups, dynamics, model)
       open (newunit=unit, file=path)
       call print_forceless(unit, model%mechanism)
       call text_of_unit(tester, unit, text)
@@ -186,14 +187,14 @@ contains
     character(len=:), allocatable :: text
     integer :: unit
 
-    call model_from_text(tester, rod, .true., model)
+    call model_from_text(tester, rod, kinematics, model)
     open (newunit=unit, file=path)
     call print_held(unit, model)
     call text_of_unit(tester, unit, text)
     call tester%is_true(index(text, 'note: link 3 can turn by itself between the spherical joint of coordinates 2, 3, 4 '// &
                               'and the spherical joint of coordinates 5, 6, 7') == 1, 'a rod: '//text)
     call tester%is_true(index(text, ' is held at ') > 0, 'one of its angles is held')
-    call model_from_text(tester, slider_crank, .false., model)
+    call model_from_text(tester, slider_crank, dynamics, model)
     open (newunit=unit, file=path)
     call print_held(unit, model)
     call text_of_unit(tester, unit, text)
@@ -220,9 +221,9 @@ contains
       integer :: unit
 
       call options_of(tester, line, options)
-      call model_from_text(tester, slider_crank, .false., model)
+      call model_from_text(tester, slider_crank, dynamics, model)
       open (newunit=unit, file=path)
-      call print_unused_options(unit, 'mech9d', options, model)
+      call print_unused_options(unit, options, model)
       call text_of_unit(tester, unit, text)
       call tester%is_true(text == expected, 'notes on '//line//': '//text)
     end subroutine says

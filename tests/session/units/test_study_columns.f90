@@ -2,6 +2,7 @@
 !> same data sets.
 module test_study_columns
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_error, only: error_type, exit_data
@@ -49,7 +50,7 @@ contains
     type(error_type), allocatable :: err
     integer :: i
 
-    call model_from_text(tester, data, .true., model)
+    call model_from_text(tester, data, kinematics, model)
     columns = kinematic_columns(model%mechanism, model%request%output)
     call file%create(path, err)
     call tester%no_error(err, 'a file')
@@ -147,10 +148,10 @@ contains
     type(model_type) :: model
     type(error_type), allocatable :: err
 
-    call model_from_text(tester, data//"&parameter name='a', sets='pair(2).point(1)' /"//eol, .true., model)
+    call model_from_text(tester, data//"&parameter name='a', sets='pair(2).point(1)' /"//eol, kinematics, model)
     call refuse_varied_times(model, err)
     call tester%no_error(err, 'a length may vary')
-    call model_from_text(tester, data//"&parameter name='e', sets='time.end' /"//eol, .true., model)
+    call model_from_text(tester, data//"&parameter name='e', sets='time.end' /"//eol, kinematics, model)
     call refuse_varied_times(model, err)
     call has_message(tester, err, exit_data, "parameter 'e' sets time.end, and hdf5_runs=.true.", 'a time may not')
   end subroutine varied_times

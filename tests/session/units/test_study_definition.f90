@@ -1,5 +1,6 @@
 !> The text by which studies are compared: blind to what changes no numbers, different for all else; and its digest.
 module test_study_definition
+  use mech9_program_kind, only: kinematics
   use mech9_error, only: error_type, exit_file
   use mech9_document, only: document_type
   use mech9_study_definition, only: define_study, tell_difference, digest_of
@@ -35,7 +36,7 @@ contains
     type(error_type), allocatable :: err
 
     call document_from_text(tester, text, document)
-    call define_study('mech9k', document, definition, err)
+    call define_study(kinematics, document, definition, err)
     call tester%no_error(err, 'a study is defined')
   end subroutine define
 
@@ -93,7 +94,7 @@ contains
     call tester%is_true(one == other, 'the same bytes do not')
     call remove_file(path)
     call document_from_text(tester, text, document)
-    call define_study('mech9k', document, other, err)
+    call define_study(kinematics, document, other, err)
     call tester%has_error(err, exit_file, 'a file that is not there')
   end subroutine files
 

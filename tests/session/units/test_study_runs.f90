@@ -1,9 +1,10 @@
 !> Runs of a study: handed out, taken in any order, made in threads, kept in files, continued and merged. The quantity is the place
 !> of the slider of a stretched slider-crank, which is the sum of the two lengths.
 module test_study_runs
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_command_line, only: command_line_type
-  use mech9_design_run, only: find_quantities, is_driven
+  use mech9_design_run, only: find_quantities
   use mech9_diagnostics, only: diagnostics_type
   use mech9_document, only: document_type
   use mech9_error, only: error_type, exit_done, exit_usage
@@ -66,10 +67,10 @@ contains
     integer :: number
 
     call document_from_text(tester, text, this%document)
-    call model_from_text(tester, text, .true., this%model)
+    call model_from_text(tester, text, kinematics, this%model)
     call diagnostics%add_source(this%document%source, number)
-    call new_varied_document(this%document, diagnostics%sources, .true., this%varied)
-    call find_quantities('mech9k', this%model, this%quantities, err)
+    call new_varied_document(this%document, diagnostics%sources, kinematics, this%varied)
+    call find_quantities(this%model, this%quantities, err)
     call tester%no_error(err, 'quantities of the study')
   end subroutine prepare
 
@@ -84,9 +85,9 @@ contains
     type(error_type), allocatable :: err
 
     call options_of(tester, line, options)
-    call runs%results%open('mech9k', options, this%document, this%model, this%quantities, err)
+    call runs%results%open(options, this%document, this%model, this%quantities, err)
     call tester%no_error(err, 'results of '//line)
-    call runs%begin('mech9k', this%model, ahead, .false., .true.)
+    call runs%begin(this%model, ahead, .false., .true.)
   end subroutine begin
 
   !> The last parameter changes from run to run; each run has the sum of its lengths.
@@ -98,8 +99,8 @@ contains
     integer :: i
 
     call prepare(tester, grid, this)
-    call tester%is_true(is_driven('mech9k', this%model) .and. size(used_quantities(this%model)) == 0, 'a driven study')
-    call maker%begin('mech9k', this%model, this%varied)
+    call tester%is_true(this%model%is_driven() .and. size(used_quantities(this%model)) == 0, 'a driven study')
+    call maker%begin(this%model, this%varied)
     do i = 6, 1, -1
       call maker%make(i, made)
       call tester%is_true(made%number == i .and. made%exit_code == exit_done, 'a run that went to its end')
@@ -122,7 +123,7 @@ contains
 
     call prepare(tester, grid, this)
     call begin(tester, this, 'a.nml --study --table '//stem//'.dat', 3, runs)
-    call maker%begin('mech9k', this%model, this%varied)
+    call maker%begin(this%model, this%varied)
     do i = 1, 6
       call maker%make(i, made(i))
     end do
@@ -181,7 +182,7 @@ contains
       type(error_type), allocatable :: err
 
       call begin(tester, this, 'a.nml --study --table '//stem//'.dat', 2*n, runs)
-      call make_in_threads('mech9k', this%model, this%varied, n, runs)
+      call make_in_threads(this%model, this%varied, n, runs)
       call runs%finish(err)
       call tester%no_error(err, 'a study in threads')
       call text_of_file(tester, stem//'.dat', text)
@@ -202,14 +203,14 @@ contains
 
     call prepare(tester, grid, this)
     call begin(tester, this, 'a.nml --study --part 1/2 --hdf5 '//stem//'_1.h5', 2, first)
-    call make_in_threads('mech9k', this%model, this%varied, 1, first)
+    call make_in_threads(this%model, this%varied, 1, first)
     call first%finish(err)
     call begin(tester, this, 'a.nml --study --part 2/2 --hdf5 '//stem//'_2.h5', 2, second)
-    call make_in_threads('mech9k', this%model, this%varied, 1, second)
+    call make_in_threads(this%model, this%varied, 1, second)
     call second%finish(err)
     call tester%is_true(first%sums%done == 3 .and. second%sums%done == 3, 'three runs each')
     call options_of(tester, '--merge '//stem//'_1.h5 '//stem//'_2.h5 --hdf5 '//stem//'.h5 --quiet', options)
-    call merge_studies('mech9k', options, code)
+    call merge_studies(options, code)
     call tester%is_true(code == exit_done, 'parts are merged')
     call file%open(stem//'.h5', .false., '', err)
     call tester%no_error(err, 'the merged file is opened')
@@ -222,7 +223,7 @@ contains
       call file%close(err)
     end if
     call options_of(tester, '--merge '//stem//'_1.h5 '//stem//'_2.h5 --hdf5 '//stem//'_2.h5 --quiet', options)
-    call merge_studies('mech9k', options, code)
+    call merge_studies(options, code)
     call tester%is_true(code == exit_usage, 'a part is not written over')
     call remove_file(stem//'.h5')
     call remove_file(stem//'_1.h5')
@@ -240,7 +241,7 @@ contains
       "&time end=0.5, intervals=1 /"//eol//"&parameter name='r', value=0.3, spread=0.003, sets='pair(2).point(1)' /"//eol// &
       "&parameter name='l', value=1, spread=0.004, sets='pair(3).point(1)' /"//eol// &
       "&quantity name='x', of='q4', take='start' /"//eol//"&study kind='latin', runs=10 /"//eol, this)
-    call propagate('mech9k', this%model, this%varied, found, err)
+    call propagate(this%model, this%varied, found, err)
     call tester%no_error(err, 'derivatives of the quantity')
     if (size(found) /= 1) return
     call tester%is_true(found(1)%known .and. found(1)%varies, 'they are known')

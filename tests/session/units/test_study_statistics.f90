@@ -1,5 +1,6 @@
 !> Quantiles and shares of the variance of the runs of a study, for quantities whose distributions are known.
 module test_study_statistics
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_model, only: model_type
   use mech9_main_effects, only: shares_type
@@ -35,7 +36,7 @@ contains
       "&parameter name='a', value=0.3, low=0, high=1, count=3, sets='pair(2).point(1)' /"//eol// &
       "&parameter name='b', value=1, low=0, high=1, count=3, sets='pair(3).point(1)' /"//eol// &
       "&quantity name='s', of='q4', take='max' /"//eol// &
-      "&study kind='"//kind//"'"//trim(merge(', runs=2000', '           ', kind /= 'grid'))//" /"//eol, .true., model)
+      "&study kind='"//kind//"'"//trim(merge(', runs=2000', '           ', kind /= 'grid'))//" /"//eol, kinematics, model)
   end subroutine study
 
   !> s = a + 3 b of independent uniform numbers: shares of 1/10 and 9/10, and a median of 2. Latin hypercubes fill the range evenly,

@@ -1,6 +1,7 @@
 !> The work on a synthesis: a slider-crank that moves its slider as another one does, whose lengths are known. Starts are made in
 !> threads, kept in a file, read back and told.
 module test_synthesis_work
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_design_motion, only: design_motion_type, new_design_motion
   use mech9_diagnostics, only: diagnostics_type
@@ -71,9 +72,9 @@ contains
       "&parameter name='l', value=1, low=0.8, high=1.5, sets='pair(3).point(1)' /"//eol// &
       "&objective kind='function', of='q4', over='q1', file='"//stem//".dat' /"//eol//'&optimum starts=3, seed=5 /'//eol
     call document_from_text(tester, text, document)
-    call model_from_text(tester, text, .true., model)
+    call model_from_text(tester, text, kinematics, model)
     call diagnostics%add_source(document%source, number)
-    call new_varied_document(document, diagnostics%sources, .true., varied)
+    call new_varied_document(document, diagnostics%sources, kinematics, varied)
     call assemble_driven_start(model, plan, start, err)
     call tester%no_error(err, 'the start of the data file')
     call new_synthesis(varied, model, plan, synthesis, err)
@@ -95,7 +96,7 @@ contains
     call starts%file%create(stem//'.h5', model, synthesis, 'a search', .false., err)
     call tester%no_error(err, 'a file for starts')
     call starts%file%publish(err)
-    call starts%begin('mech9k', .true.)
+    call starts%begin(kinematics, .true.)
     call make_in_threads(varied, synthesis, 5, 2, starts)
     call tester%is_true(starts%hand_out() == all_handed_out, 'no start is left')
     call starts%finish(synthesis)

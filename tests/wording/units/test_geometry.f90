@@ -1,5 +1,6 @@
 !> Words about the geometry of chains that cannot close: the odd link or axis is named before the message, with its place.
 module test_geometry
+  use mech9_program_kind, only: dynamics
   use mech9_error, only: error_type, raise, exit_assembly, exit_data
   use mech9_geometry_words, only: explain_geometry
   use mech9_model, only: model_type
@@ -36,7 +37,7 @@ contains
       "&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /"//eol// &
       "&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point="//coupler//",0,0, moving_point=0.8,0,0 /"//eol// &
       "&pair coordinate=4, links=1,4, kind='revolute', axis="//axis//", point=1,0,0, moving_point=0,0,0 /"//eol// &
-      "&initial coordinate=1, position=0 /"//eol, .false., model)
+      "&initial coordinate=1, position=0 /"//eol, dynamics, model)
     call raise(err, code, 'it does not close')
     call explain_geometry(model%mechanism, err)
     message = err%message

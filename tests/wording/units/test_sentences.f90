@@ -1,6 +1,7 @@
 !> Words for numbers of failures: names of chains and joints, and sentences about choices, couplings, integrations and
 !> derivatives.
 module test_sentences
+  use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_block_names, only: chain_names, names_with_lines, words_of_block
   use mech9_choice_words, only: explain_choice
@@ -84,7 +85,7 @@ contains
     call says(tester, trim(joint_name(joint)), 'universal joint of coordinates 4, 5')
     call model_from_text(tester, '&mechanism links=3, coordinates=4 /'//eol//'&structure cq=1,2,3,4 /'//eol// &
       "&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /"//eol// &
-      "&pair coordinates=2,3,4, links=2,3, kind='spherical' /"//eol, .false., model)
+      "&pair coordinates=2,3,4, links=2,3, kind='spherical' /"//eol, dynamics, model)
     associate (structure => model%mechanism%structure)
       call says(tester, trim(pair_name(structure, 1)), 'pair 1')
       call says(tester, trim(pair_name(structure, 3)), 'the spherical joint of coordinates 2, 3, 4 between links 2 and 3')
