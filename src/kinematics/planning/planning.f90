@@ -6,7 +6,7 @@
 module mech9_planning
   use mech9_kinds, only: wp
   use mech9_tolerances, only: inexact_dimensions, rank_tolerance_for
-  use mech9_planning_tolerances, only: contradicting_rates
+  use mech9_planning_tolerances, only: contradicting_rates, near_guesses
   use mech9_error, only: error_type, raise, exit_structure
   use mech9_planning_failures, only: failure_large_block, failure_undetermined_block, failure_contradictory_inputs
   use mech9_partition, only: partition_type
@@ -15,6 +15,7 @@ module mech9_planning
   use mech9_state, only: state_type
   use mech9_requested, only: requested_type, leave_out_unrequested
   use mech9_spanning_tree, only: lay_out_frames
+  use mech9_geometric_order, only: order_by_geometry
   use mech9_arithmetics, only: set_in_space, set_in_plane, set_blocks_in_planes
   use mech9_frame_motion, only: place_all
   use mech9_planar_layout, only: lay_out_in_plane
@@ -55,8 +56,46 @@ contains
     type(requested_type), intent(in), optional :: requested   !< requested quantities; blocks that do not serve them are left out
     type(plan_type), intent(in), optional :: known   !< the plan in other independent coordinates, for size and properties of loops
     type(generic_position_type) :: generic
+    logical :: missed
+
+    call propose_plan(mechanism, partition, start, plan, state, err, in_space, requested, known)
+    if (allocated(err)) return
+    call assemble_blocks(plan, .not. present(known), state, generic, missed, err)
+    if (missed) then
+      call find_start(mechanism, partition, plan, start, state)
+      call assemble_blocks(plan, .false., state, generic, missed, err)
+    end if
+    if (allocated(err)) return
+    call check_inputs(plan, state, generic, err)
+    if (allocated(err)) return
+    ! a plan with `requested` is made for other independent coordinates of a mechanism that is known to move
+    if (.not. present(requested)) call check_motion(plan, state, err)
+    if (allocated(err)) return
+    if (.not. is_true(in_space) .and. .not. plan%planar%used) call plan_blocks_in_planes(plan, state, err)
+    if (present(requested)) call leave_out_unrequested(plan, requested)
+    call find_constants(plan)
+  end subroutine make_plan
+
+  !> The value of an argument that may be absent; false then.
+  pure logical function is_true(argument)
+    logical, intent(in), optional :: argument   !< the argument
+
+    is_true = .false.
+    if (present(argument)) is_true = argument
+  end function is_true
+
+  !> Lay out frames, loops and blocks by structure and ranks, before any block is assembled.
+  subroutine propose_plan(mechanism, partition, start, plan, state, err, in_space, requested, known)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates, and the order of computation
+    real(wp), intent(in) :: start(:)        !< (M) values of the independent coordinates, guesses of the others [rad, m]
+    type(plan_type), intent(out) :: plan   !< the plan with the proposed blocks
+    type(state_type), intent(out) :: state  !< with the coordinates of the start
+    type(error_type), allocatable, intent(out) :: err   !< allocated if the blocks cannot determine all coordinates
+    logical, intent(in), optional :: in_space   !< use spatial arithmetic even where planar arithmetic is possible
+    type(requested_type), intent(in), optional :: requested   !< requested quantities; blocks that do not serve them are left out
+    type(plan_type), intent(in), optional :: known   !< the plan in other independent coordinates
     logical, allocatable :: ranked(:), complete(:)
-    logical :: spatial
 
     if (present(known)) then
       call lay_out_frames(mechanism, partition, start, plan, known%length)
@@ -75,25 +114,35 @@ contains
     if (allocated(err)) return
     call set_in_space(plan)
     if (present(requested)) call leave_out_unrequested(plan, requested)
-    spatial = .false.
-    if (present(in_space)) spatial = in_space
-    if (.not. spatial) then
+    if (.not. is_true(in_space)) then
       call lay_out_in_plane(plan)
       call set_in_plane(plan)
     end if
     state = new_state(plan)
     state%q = start
-    call assemble_blocks(plan, state, generic, err)
-    if (allocated(err)) return
-    call check_inputs(plan, state, generic, err)
-    if (allocated(err)) return
-    ! a plan with `requested` is made for other independent coordinates of a mechanism that is known to move
-    if (.not. present(requested)) call check_motion(plan, state, err)
-    if (allocated(err)) return
-    if (.not. spatial .and. .not. plan%planar%used) call plan_blocks_in_planes(plan, state, err)
-    if (present(requested)) call leave_out_unrequested(plan, requested)
-    call find_constants(plan)
-  end subroutine make_plan
+  end subroutine propose_plan
+
+  !> Find coordinates from which the blocks close at once, where they do not close near the guesses. The search goes through the
+  !> chains in the order of the geometry, so that it does not depend on the numbers of links and coordinates.
+  subroutine find_start(mechanism, partition, plan, start, state)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates
+    type(plan_type), intent(in) :: plan             !< the plan with the proposed blocks
+    real(wp), intent(in) :: start(:)                !< (M) values of the independent coordinates, guesses of the others [rad, m]
+    type(state_type), intent(inout) :: state        !< gets the closed position, or the guesses where none was found
+    type(partition_type) :: ordered
+    type(plan_type) :: other
+    type(state_type) :: position
+    type(generic_position_type) :: generic
+    type(error_type), allocatable :: err
+    logical :: missed
+
+    state%q = start
+    call order_by_geometry(mechanism, partition, plan, start, ordered)
+    call propose_plan(mechanism, ordered, start, other, position, err)
+    if (.not. allocated(err)) call assemble_blocks(other, .false., position, generic, missed, err)
+    if (.not. allocated(err)) state%q = position%q
+  end subroutine find_start
 
   !> Plan the planar blocks of an assembled mechanism in planar arithmetic. The blocks were found and assembled in space, where
   !> blocks of different arithmetics can be joined.
@@ -137,10 +186,12 @@ contains
   end subroutine propose_blocks
 
   !> Assemble the proposed blocks one after the other and join those that prove too small.
-  subroutine assemble_blocks(plan, state, generic, err)
-    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
+  subroutine assemble_blocks(plan, near_only, state, generic, missed, err)
+    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism; gets the blocks, unless they are missed
+    logical, intent(in) :: near_only   !< only closed positions near the guesses count
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(generic_position_type), intent(inout) :: generic   !< a generic position, as far as it was made
+    type(generic_position_type), intent(out) :: generic   !< a generic position, as far as it was made
+    logical, intent(out) :: missed   !< a block does not close near the guesses, where only such positions count
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(block_type), allocatable :: blocks(:)
     type(state_type) :: trial
@@ -149,6 +200,7 @@ contains
 
     allocate (blocks(size(plan%blocks)))
     n = 0
+    missed = .false.
     complete = .true.
     do b = 1, size(plan%blocks)
       if (complete) then
@@ -160,8 +212,8 @@ contains
         call count_block(plan, blocks(n))
         call split_loops(blocks(n), plan)
       end if
-      call assemble_next(plan, blocks(:n), state, generic, complete, err)
-      if (allocated(err)) return
+      call assemble_next(plan, blocks(:n), near_only, state, generic, complete, missed, err)
+      if (allocated(err) .or. missed) return
     end do
     plan%blocks = blocks(:n)
     if (complete) return
@@ -171,22 +223,29 @@ contains
   end subroutine assemble_blocks
 
   !> Assemble the last block on the closed blocks before it, and find whether all its coordinates are determined.
-  subroutine assemble_next(plan, blocks, state, generic, complete, err)
+  subroutine assemble_next(plan, blocks, near_only, state, generic, complete, missed, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: blocks(:)   !< the blocks so far; the last one is to be assembled
+    logical, intent(in) :: near_only   !< only a closed position near the guesses counts
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(generic_position_type), intent(inout) :: generic   !< a generic position, as far as it was made
     logical, intent(out) :: complete   !< the block determines all its coordinates
+    logical, intent(out) :: missed   !< the block does not close near the guesses, where only such a position counts
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(block_work_type) :: work
     type(assembly_outcome_type) :: outcome
+    real(wp) :: guess(plan%n_coordinates)
     logical :: closed
 
     complete = .false.
+    missed = .false.
+    guess = state%q
     associate (block => blocks(size(blocks)))
       work = new_block_work(block)
-      call assemble_block(plan, block, state, work, .true., outcome, err)
+      call assemble_block(plan, block, state, work, .not. near_only, outcome, err)
       if (allocated(err)) return
+      if (near_only) missed = .not. outcome%closed .or. any(abs(state%q - guess) > near_guesses*plan%unit_of)
+      if (missed) return
       if (.not. outcome%closed) then
         call assemble_by_other_starts(plan, blocks, outcome, state, err)
         if (allocated(err)) return

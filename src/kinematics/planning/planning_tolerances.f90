@@ -5,7 +5,8 @@ module mech9_planning_tolerances
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: contradicting_rates, one_point, lesser_share, lesser_share_near
+  public :: contradicting_rates, one_point, lesser_share, lesser_share_near, equal_features, &
+    near_guesses
 
   !> Least residual of the rate equations, for independent rates of about one, that shows that these contradict each other.
   real(wp), parameter :: contradicting_rates = 1.0e-7_wp
@@ -16,4 +17,9 @@ module mech9_planning_tolerances
   real(wp), parameter :: lesser_share = 0.5_wp
   !> ... or below this part near a singular position, for which the held angle may be the reason. The greatest share is above 0.2.
   real(wp), parameter :: lesser_share_near = 0.8_wp
+  !> Features of pairs that differ by less are equal when pairs are put in order: far above round-off, far below what is drawn.
+  real(wp), parameter :: equal_features = 1.0e-7_wp
+  !> Closed positions up to this far from the guesses, in units of the coordinates, are those that the guesses mean: other
+  !> assemblies are farther away, unless they are about to meet.
+  real(wp), parameter :: near_guesses = 0.3_wp
 end module mech9_planning_tolerances
