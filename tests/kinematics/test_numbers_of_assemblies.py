@@ -1,4 +1,4 @@
-"""Closed positions of random mechanisms do not depend on the numbers of links and coordinates, nor on the order
+"""Closed positions and positions of rest of random mechanisms do not depend on the numbers of links and coordinates, nor on the order
 of groups.
 
 Compares the program with itself: a fault that does not depend on numbers passes.
@@ -12,7 +12,7 @@ import pytest
 import families
 from data_file import write
 from force_files import family_groups, with_coordinates, with_links
-from mech9_cases import run
+from mech9_cases import read_table, run
 
 # Round-off over the conditioning of positions, which may be 1e-4 in random mechanisms; other assemblies differ by more than 1e-3.
 SAME = 1e-7
@@ -47,6 +47,15 @@ def assembled(mech9k, folder, groups):
     """The coordinates at the start; none where the chains do not close."""
     listed = answer(mech9k, folder, groups, '--check').partition('assembled at the start:')[2]
     return [float(value) for value in re.findall(r'^  q\d+ +(\S+)$', listed, re.M)]
+
+
+def resting(mech9d, folder, groups):
+    """The coordinates of the equilibrium; none where there is none."""
+    text = answer(mech9d, folder, groups, '--equilibrium')
+    if not text:
+        return []
+    table = read_table(text)
+    return [table[f'q{k}'][0] for k in range(1, 1 + sum(re.fullmatch(r'q\d+', name) is not None for name in table))]
 
 
 def same_place(found, expected, revolute):
@@ -88,3 +97,19 @@ def test_assemblies_in_other_numbers(checks, mech9k, tmp_path, name, with_guesse
             found = [found[new[k] - 1] for k in range(len(new))] if found else []
             checks.true(same_place(found, place, revolute), f'{name} {member}: the same position in other numbers', (found, place))
     checks.true(closed > 0, f'{name}: some chains close', closed)
+
+
+@pytest.mark.parametrize('name', ['five-bars', '3-RRR platforms', 'two spatial loops'])
+def test_rests_in_other_numbers(checks, mech9d, tmp_path, name):
+    for member in range(MEMBERS):
+        rng = np.random.default_rng((30, list(FAMILIES).index(name), member))
+        groups = [(group, items) for group, items in family_groups(FAMILIES[name], rng) if group not in ('drive', 'time')]
+        cq = next(items['cq'] for group, items in groups if group == 'structure')
+        groups += [('initial', {'coordinate': [k], 'position': [float(rng.uniform(-1, 1))]}) for k in cq]
+        revolute = [items['kind'][0] == 'revolute' for group, items in groups if group == 'pair']
+        place = resting(mech9d, tmp_path, groups)
+        for _ in range(3):
+            other, new = numbered_anew(rng, groups)
+            found = resting(mech9d, tmp_path, other)
+            found = [found[new[k] - 1] for k in range(len(new))] if found else []
+            checks.true(same_place(found, place, revolute), f'{name} {member}: the same rest in other numbers', (found, place))

@@ -51,7 +51,26 @@ contains
     if (allocated(err)) return
     if (size(found%resting%free) > 0) call settle(mechanism, found%resting, err)
     if (.not. allocated(err)) call linearise(mechanism, partition, found, err)
+    if (allocated(err)) call name_chains(plan, err)
   end subroutine find_equilibrium
+
+  !> Give a failure of a singular block the numbers of chains in the order of the data file, since the search has an order of its own.
+  pure subroutine name_chains(plan, err)
+    type(plan_type), intent(in) :: plan        !< the plan in the order of the data file
+    type(error_type), intent(inout) :: err     !< any failure
+    integer, allocatable :: chains(:)
+    integer :: b, i
+
+    if (.not. (allocated(err%failure%chains) .and. allocated(err%failure%coordinates))) return
+    allocate (chains(0))
+    do b = 1, size(plan%blocks)
+      associate (block => plan%blocks(b))
+        if (any([(any(block%coordinates == err%failure%coordinates(i)), i=1, size(err%failure%coordinates))])) &
+          chains = [chains, block%chains]
+      end associate
+    end do
+    if (size(chains) > 0) err%failure%chains = chains
+  end subroutine name_chains
 
   !> All equilibria to which an assembled position and random ones lead, sorted by their coordinates. The random positions are
   !> the same in every run. Fails as find_equilibrium does, but with exit_assembly and exit_singular only where none is found.

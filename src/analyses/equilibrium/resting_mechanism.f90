@@ -12,7 +12,7 @@ module mech9_resting_mechanism
   use mech9_polynomial_law, only: polynomial_law_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type, copy_state
-  use mech9_planning, only: make_plan
+  use mech9_resting_plan, only: plan_by_geometry
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_linearisation, only: linearisation_type, new_linearisation, find_forces, find_matrix, by_position
   use mech9_clusters, only: clusters_type, find_clusters
@@ -253,7 +253,7 @@ contains
     type(error_type), allocatable :: failure
 
     call resting%partition%with_independent(mechanism%structure, independent, partition)
-    call make_plan(mechanism, partition, resting%state%q, plan, position, failure, in_space=.true., known=resting%plan)
+    call plan_by_geometry(mechanism, partition, resting%plan, resting%state%q, plan, position, failure)
     if (allocated(failure)) return
     if (any(abs(position%q - resting%state%q) > same_position*plan%unit_of)) return
     position%t = resting%state%t

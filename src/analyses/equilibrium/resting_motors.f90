@@ -12,9 +12,10 @@ module mech9_resting_motors
   use mech9_pid_motor, only: pid_motor_type
   use mech9_motor_states, only: start_motors, find_limits, find_action
   use mech9_partition, only: partition_type, driven_coordinate
-  use mech9_plan, only: plan_type, copy_plan
+  use mech9_plan, only: plan_type
   use mech9_state, only: state_type, copy_state
   use mech9_planning, only: make_plan
+  use mech9_resting_plan, only: plan_by_geometry
   use mech9_motion_variation, only: vary_motion
   use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, copy_resting
   implicit none
@@ -62,11 +63,12 @@ contains
         is_held(motor%coordinate) = .true.
       end select
     end do
-    call copy_plan(plan, held_plan)
-    call copy_state(assembled, position)
-    if (.not. any(is_held)) return
     where (is_held) held%kind = driven_coordinate
-    call make_plan(mechanism, held, q, held_plan, position, err, in_space=.true.)
+    ! setpoints may be far from the assembled position, which the plan of closed positions does not expect
+    if (any(is_held)) call make_plan(mechanism, held, q, held_plan, position, err, in_space=.true.)
+    if (allocated(err)) return
+    if (any(is_held)) q = position%q
+    call plan_by_geometry(mechanism, held, plan, q, held_plan, position, err)
     if (allocated(err)) return
     position%t = assembled%t
     where (partition%kind == driven_coordinate)
@@ -106,7 +108,7 @@ contains
     end do
     call copy_state(resting%state, state)
     if (is_held) then
-      call make_plan(mechanism, partition, resting%state%q, plan, state, err, in_space=.true.)
+      call plan_by_geometry(mechanism, partition, resting%plan, resting%state%q, plan, state, err)
       if (allocated(err)) return
       state%t = resting%state%t
       where (partition%kind == driven_coordinate)
