@@ -10,6 +10,8 @@ module mech9_checking
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_mobility_report, only: mobility_report_type, report_mobility
+  use mech9_start_path, only: start_way_type
+  use mech9_start_way_text, only: start_way_text
   use mech9_task, only: task_type
   use mech9_structure_text, only: print_mobility_report
   use mech9_draft_text, only: draft_text_type
@@ -69,6 +71,7 @@ contains
     type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: start
+    type(start_way_type) :: way
     type(draft_text_type) :: written
     type(diagnostics_type) :: diagnostics
     type(fault_type), allocatable :: faults(:)
@@ -78,9 +81,10 @@ contains
     call read_draft(conversation%interview%draft, conversation%draft_path, task%program, model, written, diagnostics)
     otherwise = 'guesses'
     if (.not. diagnostics%failed()) then
-      call task%assemble(model, plan, start, err)
+      call task%assemble(model, plan, start, err, way)
       if (.not. allocated(err)) then
         call tell_start(conversation, model, plan, start)
+        if (way%interrupted) call conversation%say('Note: '//start_way_text(model%mechanism, way)//'.')
         call conversation%interview%step()
         return
       end if

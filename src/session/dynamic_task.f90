@@ -18,10 +18,12 @@ module mech9_dynamic_task
   use mech9_facts, only: facts_type
   use mech9_results, only: results_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
+  use mech9_start_path, only: start_way_type
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation
   use mech9_accuracy, only: find_accuracy
   use mech9_row_source, only: row_source_type, signal_interruption_type, new_row_source
   use mech9_recording, only: recording_outcome_type, record
+  use mech9_start_way_text, only: print_start_way
   use mech9_explained_assembly, only: assemble_free_start, assemble_driven_start
   use mech9_kinematic_task, only: work_driven
   use mech9_dynamic_report, only: print_dynamic_report, save_dynamic_report, print_coefficients, &
@@ -46,17 +48,18 @@ contains
   end function dynamic_task
 
   !> Make the plan and assemble the mechanism at the start.
-  subroutine assemble(self, model, plan, state, err)
+  subroutine assemble(self, model, plan, state, err, way)
     class(dynamic_task_type), intent(in) :: self        !< the dynamic task
     type(model_type), intent(in) :: model           !< the model
     type(plan_type), intent(out) :: plan                !< the plan of the mechanism
     type(state_type), intent(out) :: state              !< position and motion of the mechanism
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(start_way_type), intent(out) :: way            !< how the start was reached from the drawn position
 
     if (model%is_driven()) then
-      call assemble_driven_start(model, plan, state, err)
+      call assemble_driven_start(model, plan, state, err, way)
     else
-      call assemble_free_start(model, plan, state, err)
+      call assemble_free_start(model, plan, state, err, way)
     end if
   end subroutine assemble
 
@@ -72,6 +75,7 @@ contains
     type(model_type), target :: used
     type(plan_type) :: plan
     type(state_type) :: start
+    type(start_way_type) :: way
     type(picture_requests_type) :: pictures
     type(free_simulation_type), allocatable, target :: simulation
     type(error_type), allocatable :: err
@@ -90,7 +94,7 @@ contains
     used = model
     allocate (simulation)   ! too large for a small stack
     call read_picture_requests(options, model, pictures, err)
-    if (.not. allocated(err)) call assemble_free_start(model, plan, start, err)
+    if (.not. allocated(err)) call assemble_free_start(model, plan, start, err, way)
     if (.not. allocated(err)) &
       call new_free_simulation(used, plan, start, simulation, err, &
                                pictures%any_wanted() .or. model%request%output%with_derivatives())
@@ -98,12 +102,12 @@ contains
       if (options%has('check')) call print_given(model, .true.)
       call diagnostics%add_error(err)
     else if (answers_only(options)) then
-      call print_check(options, pictures, model, plan, simulation%requested, start, diagnostics)
+      call print_check(options, pictures, model, plan, simulation%requested, start, way, diagnostics)
       if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, plan, simulation%coefficients)
       if (options%has('check')) call check_motion(model, variable, simulation, err)
       if (allocated(err)) call diagnostics%add_error(err)
     else
-      call carry_out(options, pictures, used, variable, plan, start, simulation, diagnostics, reported, kept)
+      call carry_out(options, pictures, used, variable, plan, start, way, simulation, diagnostics, reported, kept)
     end if
     call simulation%close()
   end subroutine work
@@ -127,13 +131,14 @@ contains
   end subroutine check_motion
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, model, variable, plan, start, simulation, diagnostics, reported, kept)
+  subroutine carry_out(options, pictures, model, variable, plan, start, way, simulation, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options                    !< the command line
     type(picture_requests_type), intent(in) :: pictures               !< the pictures of the mechanism that are requested
     type(model_type), intent(inout), target :: model                  !< of the simulation; gets the tolerances for an accuracy
     class(variable_model_type), intent(inout), target :: variable     !< the model as a function of its parameters
     type(plan_type), intent(in) :: plan                               !< the plan of the mechanism
     type(state_type), intent(in) :: start                             !< assembled position
+    type(start_way_type), intent(in) :: way                           !< how the start was reached from the drawn position
     type(free_simulation_type), intent(inout), target :: simulation   !< to be started
     type(diagnostics_type), intent(inout) :: diagnostics              !< gets the errors
     logical, intent(out) :: reported                                  !< the run has written the report
@@ -156,6 +161,7 @@ contains
       return
     end if
     call begin_run(options, pictures, model, plan, simulation%requested, source, results, diagnostics, ready)
+    if (.not. options%has('quiet')) call print_start_way(error_unit, model%mechanism, way)
     reported = ready .and. options%has('report')
     if (.not. ready) return
     if (simulation%with_error) &

@@ -13,6 +13,8 @@ module mech9_equilibrium_task
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
+  use mech9_start_path, only: start_way_type
+  use mech9_start_way_text, only: print_start_way
   use mech9_explained_assembly, only: assemble_free_start
   use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_equilibria, only: find_equilibrium, find_equilibria
@@ -61,6 +63,7 @@ contains
     type(equilibrium_type), allocatable :: list(:)
     type(plan_type) :: plan
     type(state_type) :: start
+    type(start_way_type) :: way
     type(picture_requests_type) :: pictures
     type(force_record_type) :: forces
     type(error_type), allocatable :: err, interruption
@@ -68,7 +71,8 @@ contains
     reported = .false.
     allocate (list(0))
     if (options%has('animate')) call read_picture_requests(options, model, pictures, err)
-    if (.not. allocated(err)) call assemble_in_space(model, plan, start, err)
+    if (.not. allocated(err)) call assemble_in_space(model, plan, start, way, err)
+    if (.not. (allocated(err) .or. options%has('quiet'))) call print_start_way(error_unit, model%mechanism, way)
     if (.not. allocated(err) .and. options%has('verbose')) call print_making(model, plan)
     if (.not. allocated(err)) call search(options, model, plan, start, list, err)
     if (is_interruption(err) .and. size(list) > 0) call move_alloc(err, interruption)
@@ -106,10 +110,11 @@ contains
   end subroutine print_making
 
   !> Plan and closed position at the start, in space, with the motion of the driven coordinates.
-  subroutine assemble_in_space(model, plan, start, err)
+  subroutine assemble_in_space(model, plan, start, way, err)
     type(model_type), intent(in) :: model               !< the model
     type(plan_type), intent(out) :: plan                !< the plan of the mechanism
     type(state_type), intent(out) :: start              !< the closed position
+    type(start_way_type), intent(out) :: way            !< how it was reached from the drawn position
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plan_type) :: own_plan
     type(state_type) :: own_start
@@ -119,7 +124,7 @@ contains
       call raise(err, exit_data, 'every independent coordinate is driven, so that none can come to rest; leave out a &drive')
       return
     end if
-    call assemble_free_start(model, own_plan, own_start, err)
+    call assemble_free_start(model, own_plan, own_start, err, way)
     if (allocated(err)) return
     call make_plan(model%mechanism, model%problem%partition, own_start%q, plan, start, err, in_space=.true.)
     if (allocated(err)) return

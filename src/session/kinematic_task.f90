@@ -13,6 +13,7 @@ module mech9_kinematic_task
   use mech9_state, only: state_type
   use mech9_requested, only: requested_by_results
   use mech9_driven_motion, only: set_inputs
+  use mech9_start_path, only: start_way_type
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
   use mech9_row_source, only: row_source_type, new_row_source
   use mech9_law_times, only: check_times_of_laws
@@ -23,6 +24,7 @@ module mech9_kinematic_task
   use mech9_results, only: results_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_recording, only: recording_outcome_type, record
+  use mech9_start_way_text, only: print_start_way
   use mech9_explained_assembly, only: assemble_driven_start
   use mech9_kinematic_report, only: print_kinematic_report, save_kinematic_report, kinematic_facts
   implicit none
@@ -45,14 +47,15 @@ contains
   end function kinematic_task
 
   !> Make the plan and assemble the mechanism at the start.
-  subroutine assemble(self, model, plan, state, err)
+  subroutine assemble(self, model, plan, state, err, way)
     class(kinematic_task_type), intent(in) :: self      !< the kinematic task
     type(model_type), intent(in) :: model           !< the model
     type(plan_type), intent(out) :: plan                !< the plan of the mechanism
     type(state_type), intent(out) :: state              !< position and motion of the mechanism
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(start_way_type), intent(out) :: way            !< how the start was reached from the drawn position
 
-    call assemble_driven_start(model, plan, state, err)
+    call assemble_driven_start(model, plan, state, err, way)
   end subroutine assemble
 
   !> Make the plan, assemble the mechanism, and run unless only an answer is requested.
@@ -79,6 +82,7 @@ contains
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
     type(plan_type) :: plan
     type(state_type) :: start
+    type(start_way_type) :: way
     type(picture_requests_type) :: pictures
     type(driven_simulation_type), allocatable, target :: simulation
     type(error_type), allocatable :: err
@@ -88,7 +92,7 @@ contains
       call check_times_of_laws(model, with_masses .or. model%request%output%with_forces(), diagnostics)
     if (diagnostics%failed()) return
     call read_picture_requests(options, model, pictures, err)
-    if (.not. allocated(err)) call assemble_driven_start(model, plan, start, err)
+    if (.not. allocated(err)) call assemble_driven_start(model, plan, start, err, way)
     if (allocated(err)) then
       if (options%has('check')) call print_given(model, with_masses)
       call diagnostics%add_error(err)
@@ -97,7 +101,7 @@ contains
     if (answers_only(options)) then
       call print_check(options, pictures, model, plan, &
                        requested_by_results(model%mechanism, model%request%output, pictures%any_wanted()), start, &
-                       diagnostics)
+                       way, diagnostics)
       if (options%has('range')) call print_ranges(output_unit, model, plan, start)
       if (options%has('check')) call check_motion(model, variable, plan, start, err)
       if (options%has('cam') .and. .not. allocated(err)) &
@@ -107,7 +111,7 @@ contains
     end if
     allocate (simulation)   ! too large for a small stack
     call new_driven_simulation(model, plan, start, simulation, pictures%any_wanted(), with_masses)
-    call carry_out(options, pictures, model, variable, plan, simulation, diagnostics, reported, kept)
+    call carry_out(options, pictures, model, variable, plan, way, simulation, diagnostics, reported, kept)
   end subroutine work_driven
 
   !> Fail in a check where a run would fail: at a start from which the motion cannot begin, or at drives without values
@@ -135,12 +139,13 @@ contains
   end subroutine check_motion
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, model, variable, plan, simulation, diagnostics, reported, kept)
+  subroutine carry_out(options, pictures, model, variable, plan, way, simulation, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options                      !< the command line
     type(picture_requests_type), intent(in) :: pictures                 !< the pictures of the mechanism that are requested
     type(model_type), intent(in), target :: model                           !< the model
     class(variable_model_type), intent(inout), target :: variable               !< the model as a function of its parameters
     type(plan_type), intent(in) :: plan                                 !< the plan of the mechanism
+    type(start_way_type), intent(in) :: way                             !< how the start was reached from the drawn position
     type(driven_simulation_type), intent(inout), target :: simulation   !< to be started
     type(diagnostics_type), intent(inout) :: diagnostics                !< gets the errors
     logical, intent(out) :: reported                                    !< the run has written the report
@@ -162,6 +167,7 @@ contains
       return
     end if
     call begin_run(options, pictures, model, plan, simulation%requested, source, results, diagnostics, ready)
+    if (.not. options%has('quiet')) call print_start_way(error_unit, model%mechanism, way)
     reported = ready .and. options%has('report')
     if (.not. ready) return
     call kinematic_facts(simulation%plan, outcome, simulation%driven, facts)

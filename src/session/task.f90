@@ -25,6 +25,8 @@ module mech9_task
   use mech9_held_text, only: print_held
   use mech9_parameter_text, only: print_parameters, print_parameter_notes
   use mech9_check_notes, only: print_notes
+  use mech9_start_path, only: start_way_type
+  use mech9_start_way_text, only: print_start_way
   use mech9_plan_text, only: print_plan
   use mech9_force_text, only: print_uniqueness, print_undetermined, print_forceless
   use mech9_force_record, only: force_record_type, reacting_pairs
@@ -44,13 +46,14 @@ module mech9_task
 
   abstract interface
     !> Make the plan and assemble the mechanism at the start.
-    subroutine assemble_interface(self, model, plan, state, err)
-      import :: task_type, model_type, plan_type, state_type, error_type
+    subroutine assemble_interface(self, model, plan, state, err, way)
+      import :: task_type, model_type, plan_type, state_type, error_type, start_way_type
       class(task_type), intent(in) :: self                !< the task
       type(model_type), intent(in) :: model           !< the model
       type(plan_type), intent(out) :: plan                !< the plan of the mechanism
       type(state_type), intent(out) :: state              !< position and motion of the mechanism
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+      type(start_way_type), intent(out) :: way            !< how the start was reached from the drawn position
     end subroutine assemble_interface
 
     !> Carry out the options. Errors are added to `diagnostics`, which knows the places in the data file.
@@ -77,13 +80,14 @@ contains
   end function answers_only
 
   !> Carry out --check, --plan, --branches and --graph, and --sketch beside them.
-  subroutine print_check(options, pictures, model, plan, requested, start, diagnostics)
+  subroutine print_check(options, pictures, model, plan, requested, start, way, diagnostics)
     type(command_line_type), intent(in) :: options         !< the command line
     type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
     type(model_type), intent(in) :: model              !< the model
     type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
     type(requested_type), intent(in) :: requested          !< the requested part of the motion
     type(state_type), intent(in) :: start                  !< assembled position
+    type(start_way_type), intent(in) :: way                !< how the start was reached from the drawn position
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
     type(mobility_report_type) :: report
     type(error_type), allocatable :: err
@@ -99,6 +103,7 @@ contains
     if (options%has('graph')) call draw_graph(options, model, plan, diagnostics)
     if (options%has('check')) then
       call print_given(model, pictures%with_masses)
+      call print_start_way(output_unit, model%mechanism, way)
       call print_start(model, start)
       call print_forces(model, plan, start)
     end if

@@ -6,7 +6,7 @@ module mech9_driven_simulation
   use mech9_motion_view, only: motion_view_type
   use mech9_plan, only: plan_type, copy_plan
   use mech9_state, only: state_type, copy_state
-  use mech9_planning, only: make_plan
+  use mech9_start_path, only: start_way_type, assemble_start
   use mech9_requested, only: requested_by_results, add_forces, leave_out_unrequested
   use mech9_driven_motion, only: driven_motion_type, set_inputs
   use mech9_driven_counts, only: driven_counts_type, keep_counts, return_to_counts
@@ -47,17 +47,18 @@ module mech9_driven_simulation
 contains
 
   !> The plan, and the closed position at the start of the motion.
-  subroutine assemble_driven(model, plan, state, err)
+  subroutine assemble_driven(model, plan, state, err, way)
     type(model_type), intent(in) :: model           !< the model, with a drive for each independent coordinate
     type(plan_type), intent(out) :: plan                !< the plan of the mechanism
     type(state_type), intent(out) :: state              !< the closed position
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(start_way_type), intent(out), optional :: way  !< how the start was reached from the drawn position
     real(wp), dimension(size(model%mechanism%pairs)) :: q, dq, ddq
 
     q = model%problem%initial%position
     call set_inputs(model%problem%drives, model%request%time%start, q, dq, ddq, err)
     if (allocated(err)) return
-    call make_plan(model%mechanism, model%problem%partition, q, plan, state, err)
+    call assemble_start(model, q, plan, state, err, way)
     state%t = model%request%time%start
   end subroutine assemble_driven
 

@@ -10,7 +10,7 @@ module mech9_free_simulation
   use mech9_plan, only: plan_type, copy_plan
   use mech9_state, only: state_type, copy_state
   use mech9_block_equations, only: largest_gap
-  use mech9_planning, only: make_plan
+  use mech9_start_path, only: start_way_type, assemble_start
   use mech9_branch_stepping, only: set_inputs
   use mech9_requested, only: requested_by_results, add_forces, leave_out_unrequested, request_planned
   use mech9_conditioning, only: conditioning_type
@@ -62,11 +62,12 @@ contains
 
   !> The plan, and the closed position at the start: positions and rates of the free coordinates as given, those of driven ones by
   !> their drives. Free coordinates at rest need no velocity.
-  subroutine assemble_free(model, plan, state, err)
+  subroutine assemble_free(model, plan, state, err, way)
     type(model_type), intent(in) :: model           !< the model
     type(plan_type), intent(out) :: plan                !< the plan of the mechanism
     type(state_type), intent(out) :: state              !< the closed position, with the rates of independent coordinates
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(start_way_type), intent(out), optional :: way  !< how the start was reached from the drawn position
     real(wp), dimension(size(model%mechanism%pairs)) :: q, dq, ddq
     integer :: k
 
@@ -79,7 +80,7 @@ contains
     end do
     q = model%problem%initial%position
     call set_inputs(model%problem%drives, model%request%time%start, q, dq, ddq, err)
-    if (.not. allocated(err)) call make_plan(model%mechanism, model%problem%partition, q, plan, state, err)
+    if (.not. allocated(err)) call assemble_start(model, q, plan, state, err, way)
     if (allocated(err)) return
     state%t = model%request%time%start
     state%dq(plan%free) = model%problem%initial%velocity(plan%free)

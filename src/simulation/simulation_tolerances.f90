@@ -7,7 +7,13 @@ module mech9_simulation_tolerances
   private
   public :: largest_closure, hidden_part, trusted_closing, trusted_between_steps, doubtful_conditioning, &
     worthwhile_improvement, regular_conditioning, refused_conditioning, short_way, locked, locked_together, &
-    round_off_of_jumps, steepest_slope, third_derivative_step
+    round_off_of_jumps, steepest_slope, third_derivative_step, drawn_near_by
+
+  ! The start.
+
+  !> Coordinates of a position that is drawn closed change by less than this, in their units, when its chains are closed exactly:
+  !> points with three digits are off by 1e-3 of the size.
+  real(wp), parameter :: drawn_near_by = 0.05_wp
 
   ! Closed chains.
 

@@ -9,7 +9,7 @@ module mech9_resting_mechanism
   use mech9_mechanism, only: mechanism_type
   use mech9_partition, only: partition_type, free_coordinate, driven_coordinate
   use mech9_law, only: drive_slot_type
-  use mech9_polynomial_law, only: polynomial_law_type
+  use mech9_straight_drives, only: straight_drives
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type, copy_state
   use mech9_resting_plan, only: plan_by_geometry
@@ -146,18 +146,13 @@ contains
     type(resting_type), intent(in) :: resting                      !< the mechanism at rest
     real(wp), intent(in) :: step(:)                                !< (n) of the free coordinates, in their units
     type(drive_slot_type), allocatable, intent(out) :: drives(:)   !< of all independent coordinates
-    type(polynomial_law_type) :: drive
-    integer :: i, j, k
+    real(wp) :: distances(resting%plan%n_coordinates)
 
-    allocate (drives(size(resting%plan%independent)))
-    do i = 1, size(drives)
-      k = resting%plan%independent(i)
-      drive%coordinate = k
-      drive%coefficients = [resting%state%q(k), 0.0_wp]
-      j = findloc(resting%free, k, dim=1)
-      if (j > 0) drive%coefficients(2) = step(j)*resting%plan%unit_of(k)
-      allocate (drives(i)%drive, source=drive)
-    end do
+    distances = 0.0_wp
+    distances(resting%free) = step*resting%plan%unit_of(resting%free)
+    associate (independent => resting%plan%independent)
+      call straight_drives(independent, resting%state%q(independent), distances(independent), drives)
+    end associate
   end subroutine drive_step
 
   !> The least conditioning of any block.

@@ -5,7 +5,7 @@ module mech9_planning_tolerances
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: contradicting_rates, one_point, lesser_share, lesser_share_near, equal_features, &
+  public :: contradicting_rates, one_point, lesser_share, lesser_share_near, equal_features, drawn_gap, &
     near_guesses
 
   !> Least residual of the rate equations, for independent rates of about one, that shows that these contradict each other.
@@ -19,6 +19,8 @@ module mech9_planning_tolerances
   real(wp), parameter :: lesser_share_near = 0.8_wp
   !> Features of pairs that differ by less are equal when pairs are put in order: far above round-off, far below what is drawn.
   real(wp), parameter :: equal_features = 1.0e-7_wp
+  !> Chains that are open by less than this part of the mechanism's size were drawn closed: points have three digits at least.
+  real(wp), parameter :: drawn_gap = 1.0e-3_wp
   !> Closed positions up to this far from the guesses, in units of the coordinates, are those that the guesses mean: other
   !> assemblies are farther away, unless they are about to meet.
   real(wp), parameter :: near_guesses = 0.3_wp

@@ -4,6 +4,7 @@ module mech9_explained_assembly
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_start_path, only: start_way_type
   use mech9_driven_simulation, only: assemble_driven
   use mech9_free_simulation, only: assemble_free
   use mech9_geometry_words, only: explain_geometry
@@ -14,24 +15,26 @@ module mech9_explained_assembly
 contains
 
   !> Plan and closed position at the start of a driven motion.
-  subroutine assemble_driven_start(model, plan, state, err)
+  subroutine assemble_driven_start(model, plan, state, err, way)
     type(model_type), intent(in) :: model              !< the model, with a drive for each independent coordinate
     type(plan_type), intent(out) :: plan               !< the plan of the mechanism
     type(state_type), intent(out) :: state             !< the closed position
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
+    type(start_way_type), intent(out), optional :: way !< how the start was reached from the drawn position
 
-    call assemble_driven(model, plan, state, err)
+    call assemble_driven(model, plan, state, err, way)
     call explain_geometry(model%mechanism, err)
   end subroutine assemble_driven_start
 
   !> Plan and closed position at the start of a free motion, with the rates of the independent coordinates.
-  subroutine assemble_free_start(model, plan, state, err)
+  subroutine assemble_free_start(model, plan, state, err, way)
     type(model_type), intent(in) :: model              !< the model
     type(plan_type), intent(out) :: plan               !< the plan of the mechanism
     type(state_type), intent(out) :: state             !< the closed position and these rates
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
+    type(start_way_type), intent(out), optional :: way !< how the start was reached from the drawn position
 
-    call assemble_free(model, plan, state, err)
+    call assemble_free(model, plan, state, err, way)
     call explain_geometry(model%mechanism, err)
   end subroutine assemble_free_start
 end module mech9_explained_assembly
