@@ -65,6 +65,37 @@ def check_similar(checks, drawn, true, first, second, why):
                     f'{drawn[name]} instead of {expected}')
 
 
+# a slider-crank whose slide is pressed back: the forces of the rod, and of the pin at the right end, point to the right
+PRESSED = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1,0,0, moving_point=0,0,0 /
+&pair coordinate=4, links=1,4, kind='prismatic', axis=1,0,0 /
+&drive coordinate=1, kind='polynomial', coefficients=1, 6 /
+&load kind='force', link=4, force=-400,0,0 /
+&time start=0, end=1, intervals=12 /
+&output force_arrows=.true. /
+"""
+
+
+def test_arrows_of_forces_are_in_the_picture(checks, mech9k, tmp_path):
+    """The tips of all arrows are inside, in a sketch and in each frame of a page that shows the run."""
+    data = tmp_path / 'pressed.nml'
+    data.write_text(PRESSED, encoding='utf-8')
+    run(mech9k, data, '--sketch', 'pressed.svg', '--animate', 'film.svg', '--quiet', folder=tmp_path)
+    for name in ('pressed.svg', 'film.svg'):
+        svg = ElementTree.parse(tmp_path / name).getroot()
+        _, _, width, height = map(float, svg.get('viewBox').split())
+        arrows = [group for group in svg.iter(SVG + 'g') if 'force' in group.get('class', '').split()]
+        checks.true(len(arrows) == 4, f'{name}: four arrows', len(arrows))
+        ways = [part for arrow in arrows for element in arrow.iter()
+                for part in [element.get('d', ''), *element.get('values', '').split(';')] if part.startswith('M')]
+        places = np.concatenate([corners_of(way) for way in ways])
+        checks.true(places[:, 0].min() >= 0 and places[:, 0].max() <= width and places[:, 1].min() >= 0
+                    and places[:, 1].max() <= height, f'{name}: the arrows are inside {width} x {height}',
+                    [places.min(axis=0), places.max(axis=0)])
+
+
 @pytest.mark.parametrize('why, options', (('with a run', []), ('without a run', ['--check'])), ids=('run', 'check'))
 def test_fig1_is_drawn_where_it_is(checks, mech9k, tmp_path, why, options):
     path = tmp_path / 'fig1.svg'

@@ -13,7 +13,7 @@ module mech9_force_arrows
   use mech9_scene, only: scene_type, segments, in_force
   implicit none
   private
-  public :: take_arrows, add_force_arrows
+  public :: find_tips, take_arrows, add_force_arrows
 
   !> Length of the longest arrow, as a part of the mechanism's size.
   real(wp), parameter :: longest = 0.22_wp
@@ -22,17 +22,51 @@ module mech9_force_arrows
 
 contains
 
+  !> The tips of all arrows; none where a film has no forces.
+  subroutine find_tips(mechanism, film, size_drawn, tips)
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(film_type), intent(in) :: film                    !< poses, values and forces at the outputs of the run
+    real(wp), intent(in) :: size_drawn                     !< the mechanism's size [m]
+    real(wp), allocatable, intent(out) :: tips(:, :, :)    !< (3,pairs,frames) in the system of link 1 [m]
+    type(pair_axes_type), allocatable :: axes(:)
+    real(wp) :: scale
+    integer :: i, frame
+
+    if (.not. allocated(film%forces)) then
+      allocate (tips(3, 0, 0))
+      return
+    end if
+    allocate (tips(3, size(film%force_pairs), film%n_frames))
+    axes = pair_axes(mechanism%pairs)
+    scale = 0.0_wp
+    if (maxval(abs(film%forces)) > 0.0_wp) scale = longest*size_drawn/sqrt(maxval(sum(film%forces**2, 1)))
+    do frame = 1, film%n_frames
+      do i = 1, size(film%force_pairs)
+        tips(:, i, frame) = foot_of(film, axes(film%force_pairs(i)), frame) + scale*film%forces(:, i, frame)
+      end do
+    end do
+  end subroutine find_tips
+
+  !> The place in a frame where the force of a pair acts on its moving link, in the system of link 1 [m].
+  pure function foot_of(film, axes, frame) result(foot)
+    type(film_type), intent(in) :: film        !< poses at the outputs of the run
+    type(pair_axes_type), intent(in) :: axes   !< axis and points of the pair
+    integer, intent(in) :: frame               !< number of the frame
+    real(wp) :: foot(3)
+
+    foot = film%position(frame, axes%links(2), axes%points(:, 2))
+  end function foot_of
+
   !> The film with three more links for each arrow: its tip and its barbs.
-  subroutine take_arrows(mechanism, film, size_drawn, projection, with_arrows)
+  subroutine take_arrows(mechanism, film, tips, projection, with_arrows)
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     type(film_type), intent(in) :: film               !< poses, values and forces at the outputs of the run
-    real(wp), intent(in) :: size_drawn                !< the mechanism's size [m]
+    real(wp), intent(in) :: tips(:, :, :)             !< (3,pairs,frames) tips of the arrows [m]
     type(projection_type), intent(in) :: projection   !< from space to the page
     type(film_type), intent(out) :: with_arrows       !< the film with more links
     type(pair_axes_type), allocatable :: axes(:)
     real(wp), allocatable :: r(:, :, :, :), p(:, :, :)
-    real(wp) :: scale
-    integer :: i, k, n, frame
+    integer :: i, n, frame
 
     n = size(film%p, 2)
     with_arrows = film
@@ -40,14 +74,11 @@ contains
     r(:, :, :n, :) = film%r
     p(:, :n, :) = film%p
     axes = pair_axes(mechanism%pairs)
-    scale = 0.0_wp
-    if (maxval(abs(film%forces)) > 0.0_wp) scale = longest*size_drawn/sqrt(maxval(sum(film%forces**2, 1)))
     do frame = 1, film%n_frames
       do i = 1, size(film%force_pairs)
-        k = film%force_pairs(i)
         r(:, :, n + 3*i - 2:n + 3*i, frame) = spread(identity, 3, 3)
-        call place_arrow(film%position(frame, axes(k)%links(2), axes(k)%points(:, 2)), scale*film%forces(:, i, frame), &
-                         projection, p(:, n + 3*i - 2:n + 3*i, frame))
+        call place_arrow(foot_of(film, axes(film%force_pairs(i)), frame), tips(:, i, frame), projection, &
+                         p(:, n + 3*i - 2:n + 3*i, frame))
       end do
     end do
     call move_alloc(r, with_arrows%r)
@@ -55,14 +86,15 @@ contains
   end subroutine take_arrows
 
   !> The tip and the ends of the barbs of one arrow; the barbs lie across the view.
-  pure subroutine place_arrow(foot, way, projection, places)
+  pure subroutine place_arrow(foot, tip, projection, places)
     real(wp), intent(in) :: foot(3)                  !< its beginning, in the system of link 1 [m]
-    real(wp), intent(in) :: way(3)                   !< from there to its tip [m]
+    real(wp), intent(in) :: tip(3)                   !< its end [m]
     type(projection_type), intent(in) :: projection  !< from space to the page
     real(wp), intent(out) :: places(3, 3)            !< of the tip and the ends of the barbs [m]
-    real(wp) :: along(3), across(3), length
+    real(wp) :: way(3), along(3), across(3), length
 
-    places = spread(foot + way, 2, 3)
+    places = spread(tip, 2, 3)
+    way = tip - foot
     if (.not. norm2(way) > 0.0_wp) return
     along = unit(way)
     across = cross(projection%view%toward, along)

@@ -7,7 +7,7 @@ module mech9_picture_requests
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_force_arrows, only: take_arrows, add_force_arrows
+  use mech9_force_arrows, only: find_tips, take_arrows, add_force_arrows
   use mech9_film, only: film_type, new_film
   use mech9_view, only: view_type, read_view
   use mech9_skeleton, only: skeleton_type, make_skeleton
@@ -150,14 +150,16 @@ contains
     type(projection_type) :: projection
     type(scene_type) :: scene
     type(film_type) :: shown
+    real(wp), allocatable :: tips(:, :, :)
     logical :: page
 
     page = moving .and. kind_of(path) == 'html'
-    call fit_projection(model%mechanism, film, skeleton, view, page .and. .not. planar, projection)
+    call find_tips(model%mechanism, film, skeleton%size, tips)
+    call fit_projection(model%mechanism, film, skeleton, view, page .and. .not. planar, tips, projection)
     call make_scene(model%mechanism, film, skeleton, projection, planar, self%with_masses, scene)
     shown = film
     if (allocated(film%forces)) then
-      call take_arrows(model%mechanism, film, skeleton%size, projection, shown)
+      call take_arrows(model%mechanism, film, tips, projection, shown)
       call add_force_arrows(model%mechanism, shown, scene)
     end if
     if (.not. moving) then

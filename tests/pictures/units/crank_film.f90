@@ -60,7 +60,7 @@ contains
     call make_skeleton(model%mechanism, film, skeleton)
     call place_slides(model%mechanism, film, skeleton)
     call choose_view(model%mechanism, film, skeleton, view, planar)
-    call fit_projection(model%mechanism, film, skeleton, view, .false., projection)
+    call fit_projection(model%mechanism, film, skeleton, view, .false., reshape([real(wp) ::], [3, 0, 0]), projection)
     call make_scene(model%mechanism, film, skeleton, projection, planar, .false., scene)
   end subroutine set_scene
 end module crank_film
