@@ -70,6 +70,9 @@ contains
     call check_curves(tester, 'q1,P.x', [1, 1], [2, 5])
     call check_curves(tester, 'P.x:P.y', [5], [6])
     call check_curves(tester, 'q1,P.x:P.y,t:dq1', [1, 5, 1], [2, 6, 4])
+    ! the names behind a pair are drawn over its first column, too
+    call check_curves(tester, 'q1:P.x,P.y', [2, 2], [5, 6])
+    call check_curves(tester, 'q2,q1:P.x,P.y,t:dq1,q2', [1, 2, 2, 1, 1], [3, 5, 6, 4, 3])
     call check_curves(tester, ' q1 , P.x : P.y ', [1, 5], [2, 6])
     call check_curves(tester, 'q1:q1', [2], [2])
     ! a point may be named so that its columns hold a comma or a colon
@@ -133,7 +136,7 @@ contains
     type(error_type), allocatable :: err
 
     call set_columns(names, units)
-    call read_plot_request('q1,q2,P.x,dq1,P.x:P.y,a:q12.x,closure', names, request, err)
+    call read_plot_request('q1,q2,P.x,dq1,P.x:P.y,a:q12.x,t:closure', names, request, err)
     call tester%is_true(all(panels_of(request%curves, names, units) == [1, 2, 2, 3, 4, 4, 5]), &
                         'equal units share a panel, over time and over a column; the closure stands alone')
     call tester%is_true(axis_label([2], names, units) == 'q1 [rad]', 'the label of one column is its name and unit')

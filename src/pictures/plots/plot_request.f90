@@ -1,9 +1,10 @@
 !> The request for a plot: the argument of --plot, read against the columns of the results.
 !>
-!>     [TARGET:]NAME,NAME:NAME,...
+!>     [TARGET:]NAME,NAME:NAME,NAME,...
 !>
-!> A single name is drawn over time; of a pair of names the second is drawn over the first. TARGET is the file of the
-!> picture (.svg, .png or .pdf), or `term` for the terminal. Without names the coordinates are drawn.
+!> Of a pair of names the second is drawn over the first, and so are the single names behind it, up to the next pair. Single names
+!> before all pairs are drawn over time. TARGET is the file of the picture (.svg, .png or .pdf), or `term` for the terminal.
+!> Without names the coordinates are drawn.
 module mech9_plot_request
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type, nearest_name
@@ -124,12 +125,13 @@ contains
     end do
   end subroutine take_coordinates
 
-  !> A curve is read, written as NAME or NAME:NAME, and `at` moves behind it.
+  !> A curve is read, written as NAME or NAME:NAME, and `at` moves behind it. A single name is drawn over the column of the
+  !> curve before it.
   pure subroutine take_curve(text, names, at, curve, err)
     character(len=*), intent(in) :: text               !< the argument of --plot
     type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
     integer, intent(inout) :: at                       !< place in `text` where the curve begins; afterwards the place behind it
-    type(curve_type), intent(out) :: curve             !< numbers of the two columns
+    type(curve_type), intent(inout) :: curve           !< numbers of the two columns; before, those of the curve before it
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
     call take_name(text, names, at, curve%y, err)
