@@ -100,6 +100,26 @@ def test_plot_of_a_function(cases):
     check.near(value/read_table(text_of(cases.path('designs.dat')))['value'][0], 1, 1e-7, 'function: their squares are the value')
 
 
+def test_numbers_of_many_poses(cases):
+    """Fifty poses close to each other: the numbers that are written do not cover each other, and the first and the last one are there."""
+    check = cases.checks
+    part = np.linspace(0, 1, 50)
+    np.savetxt(cases.path('poses.dat'), np.transpose([2.2*part, 2 + 0.9*np.sin(1.7*part), 20 - 45*part]))
+    text = text_of(os.path.join(TREE, 'examples', 'three_poses', 'three_poses.nml')).replace('starts=20', 'starts=1')
+    done = cases.search(text, '--plot', cases.path('fit.svg') + ':', why='poses')
+    shown = blocks_of(text_of(cases.path('fit.gp')))['numbers1'][:, 2]
+    check.true(shown[0] == 1 and shown[-1] == 50 and 10 < len(shown) < 40, 'poses: first and last one', shown)
+    if 'gnuplot is not here' in done.stderr:
+        return
+    # numbers are written in a font of 10 px, whose digits are at most 7 px wide
+    places = [(float(x), float(y), number) for x, y, number in
+              re.findall(r'translate\(([-\d.]+),([-\d.]+)\)"[^>]*font-size="10.00"[^>]*>\s*<text>\s*(\d+)</text>', text_of(cases.path('fit.svg')))]
+    check.equal([float(number) for _, _, number in places], list(shown), 'poses: the numbers of the picture')
+    covered = [(a, b) for i, a in enumerate(places) for b in places[:i]
+               if abs(a[0] - b[0]) < 3.5*(len(a[2]) + len(b[2])) and abs(a[1] - b[1]) < 10]
+    check.equal(covered, [], 'poses: no number covers another one')
+
+
 def test_plots_of_a_path_in_space(cases):
     """A path in space has three planes."""
     text = text_of(os.path.join(TREE, 'examples', 'rsur', 'rsur.nml')).replace('axis=1,0,0, point=0.3', 'axis=1,0,0.01, point=0.3')

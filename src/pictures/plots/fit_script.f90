@@ -25,6 +25,8 @@ module mech9_fit_script
   character, parameter :: line_end = achar(10)
   !> Most targets that are numbered in a plane, and along a function, where their order can be seen.
   integer, parameter :: most_in_plane = 60, most_of_function = 12
+  !> Room of a digit, and the height of a number [px]; the parts of a picture or panel that axes and legend leave to a plot.
+  real(wp), parameter :: digit = 9.0_wp, line_height = 15.0_wp, free_part(2) = [0.75_wp, 0.6_wp]
   !> Length of a direction in parts of the size of the targets.
   real(wp), parameter :: arrow = 0.08_wp
 
@@ -45,7 +47,7 @@ contains
     text = '# gnuplot '//printable(script)//' draws '//printable(picture)//line_end//'set encoding utf8'//line_end// &
            picture_terminal(picture, width, height)//line_end//'set output '//quoted_path(picture)//line_end//plot_style()
     do i = 1, size(panels)
-      text = text//blocks_of(i, panels(i))
+      text = text//blocks_of(i, panels(i))//numbers_of(i, panels(i), [real(wp) :: width/across, height/down])
     end do
     if (size(panels) == 1) then
       text = text//'set title '//quoted_lines(lines)//line_end
@@ -86,7 +88,7 @@ contains
     name = '$'//kind//to_text(i)
   end function name_of
 
-  !> The numbers of a panel: the curve; the targets with their directions and numbers, and so the places reached; the gaps between
+  !> The data of a panel: the curve; the targets with their directions and numbers, and so the places reached; the gaps between
   !> both.
   pure function blocks_of(i, panel) result(text)
     integer, intent(in) :: i                      !< number of the panel
@@ -107,6 +109,51 @@ contains
                                                          [m, 4]))// &
            block_of(name_of('gaps', i), reshape([panel%targets(:, :2), panel%reached(:, :2) - panel%targets(:, :2)], [m, 4]))
   end function blocks_of
+
+  !> The numbers that are written beside targets, with their places.
+  pure function numbers_of(i, panel, sides) result(text)
+    integer, intent(in) :: i                      !< number of the panel
+    type(fit_panel_type), intent(in) :: panel     !< the panel
+    real(wp), intent(in) :: sides(2)              !< width and height of the panel [px]
+    character(len=:), allocatable :: text
+    integer, allocatable :: shown(:)
+
+    text = ''
+    if (.not. is_numbered(panel)) return
+    shown = numbers_with_room(panel, sides)
+    text = block_of(name_of('numbers', i), reshape([panel%targets(shown, :2), real(shown, wp)], [size(shown), 3]))
+  end function numbers_of
+
+  !> Whether the targets of a panel are numbered.
+  pure logical function is_numbered(panel)
+    type(fit_panel_type), intent(in) :: panel     !< the panel
+
+    is_numbered = .not. panel%is_error .and. &
+                  size(panel%targets, 1) <= merge(most_in_plane, most_of_function, panel%equal_scales)
+  end function is_numbered
+
+  !> The targets whose numbers do not cover each other: the first and the last one before those between.
+  pure function numbers_with_room(panel, sides) result(shown)
+    type(fit_panel_type), intent(in) :: panel     !< the panel
+    real(wp), intent(in) :: sides(2)              !< width and height of the panel [px]
+    integer, allocatable :: shown(:)
+    logical :: has_room(size(panel%targets, 1))
+    real(wp) :: places(size(panel%targets, 1), 2), ends(2, 2), scale(2)
+    integer :: i, k, m
+
+    m = size(panel%targets, 1)
+    ends = reshape([ends_of(panel, 1), ends_of(panel, 2)], [2, 2])
+    scale = free_part*sides/max(ends(2, :) - ends(1, :), tiny(1.0_wp))
+    if (panel%equal_scales) scale = minval(scale)
+    places = panel%targets(:, :2)*spread(scale, 1, m)
+    has_room = .false.
+    do k = 1, m
+      i = modulo(k - 2, m) + 1
+      has_room(i) = all(abs(places(:, 1) - places(i, 1)) >= digit*len(to_text(m)) .or. &
+                        abs(places(:, 2) - places(i, 2)) >= line_height .or. .not. has_room)
+    end do
+    shown = pack([(i, i=1, m)], has_room)
+  end function numbers_with_room
 
   !> The commands for the axes of a panel.
   pure function axes_of(panel) result(text)
@@ -154,9 +201,9 @@ contains
     if (any(abs(panel%targets(:, 3:)) > 0.0_wp)) &
       text = text//next//name_of('reached', i)//' using 1:2:3:4 with vectors nohead lw 2 lc rgb '''//first_colour//''' notitle'// &
              next//name_of('targets', i)//' using 1:2:3:4 with vectors nohead lw 2 lc rgb '''//second_colour//''' notitle'
-    if (size(panel%targets, 1) <= merge(most_in_plane, most_of_function, panel%equal_scales)) &
-      text = text//next//name_of('targets', i)// &
-             ' using 1:2:(sprintf(''%.0f'', $5)) with labels offset character 1,0.5 font '',10'' tc rgb ''#404040'' notitle'
+    if (is_numbered(panel)) &
+      text = text//next//name_of('numbers', i)// &
+             ' using 1:2:(sprintf(''%.0f'', $3)) with labels offset character 1,0.5 font '',10'' tc rgb ''#404040'' notitle'
     text = text//line_end
   end function curves_of
 end module mech9_fit_script
