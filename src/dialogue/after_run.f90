@@ -49,29 +49,30 @@ contains
     integer, intent(out) :: next                             !< over, again, changing or answering
     character(len=:), allocatable, intent(out) :: request    !< the answer that is wanted: options of the command line
     type(string_type), allocatable :: words(:)
-    character(len=:), allocatable :: line, word, rest, usual, prompt
+    character(len=:), allocatable :: line, word, rest, prompt
     logical :: done, with_rest, with_study
 
     with_rest = conversation%program == dynamics
     with_study = conversation%interview%draft%count_of('study') > 0
     call words_here(kept, with_rest, words)
-    prompt = '  show, plot, compare, change, run or done ['
-    if (with_rest) prompt = '  show, plot, compare, equilibrium, modes, change, run or done ['
+    prompt = '  show, plot, compare, change, run or done'
+    if (with_rest) prompt = '  show, plot, compare, equilibrium, modes, change, run or done'
     if (with_study) prompt = prompt(:index(prompt, 'change') - 1)//'study, '//prompt(index(prompt, 'change'):)
     request = ''
+    if (changed) prompt = prompt//' [run]'
     rest = ''
-    usual = 'done'
-    if (changed) usual = 'run'
     next = over
     do
-      call conversation%listen(prompt//usual//']: ', words, line)
+      call conversation%listen(prompt//': ', words, line)
       if (conversation%state /= going) return
-      if (line == '') line = usual
+      if (line == '' .and. changed) line = 'run'
       line = line(:min(len(line), longest_line))
       word = lower(line(:scan(line//' ', ' ') - 1))
       rest = trim(adjustl(line(len(word) + 1:)))
       if (word == 'show' .or. word == 'plot') rest = with_points(kept, rest)
       select case (word)
+      case ('')
+        call conversation%say('done ends; ? tells more.')
       case ('done')
         return
       case ('?', 'help')
@@ -110,7 +111,7 @@ contains
     character(len=*), intent(in) :: number                   !< the text behind it: a number of random starts, or nothing
     character(len=:), allocatable, intent(out) :: request    !< the options, with blanks between
 
-    request = '--'//word
+    request = '--'//word//' --no-write'
     if (number == '') return
     if (word == 'equilibrium' .and. verify(number, '0123456789') == 0) then
       request = request//' --starts '//number

@@ -1,5 +1,6 @@
 !> The run at the end of a conversation, and what follows it: looking at results, changes, further runs.
 module mech9_running
+  use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_program_kind, only: program_names
   use mech9_error, only: error_type
   use mech9_text, only: string_type
@@ -7,6 +8,7 @@ module mech9_running
   use mech9_command_line, only: command_line_type, parse_command_line
   use mech9_system, only: catch_interrupts, asked_to_end
   use mech9_kept_rows, only: kept_rows_type
+  use mech9_rows_text, only: all_rows_text
   use mech9_task, only: task_type
   use mech9_session, only: run_file
   use mech9_conversation, only: conversation_type, going, finished
@@ -75,6 +77,7 @@ contains
     type(string_type), allocatable :: words(:)
     type(command_line_type) :: options
     type(error_type), allocatable :: err
+    type(kept_rows_type) :: found
     character(len=:), allocatable :: file
     integer :: i, code
 
@@ -93,7 +96,8 @@ contains
     if (allocated(err)) then
       call conversation%say(err%message)
     else
-      call run_file(task, options, file, code)
+      call run_file(task, options, file, code, found)
+      if (found%count > 0) write (error_unit, '(a)', advance='no') all_rows_text(found)
     end if
   end subroutine answer
 

@@ -81,7 +81,7 @@ contains
     type(error_type), allocatable :: err
 
     if (asks_for_equilibrium(options)) then
-      call find_rest(options, model, diagnostics, reported)
+      call find_rest(options, model, diagnostics, reported, kept)
       return
     end if
     if (model%is_driven()) then

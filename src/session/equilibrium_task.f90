@@ -22,6 +22,7 @@ module mech9_equilibrium_task
   use mech9_film, only: film_type, new_film
   use mech9_columns, only: columns_type
   use mech9_table, only: table_type
+  use mech9_kept_rows, only: kept_rows_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_record, only: write_provenance, write_structure, write_coordinates
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
@@ -55,11 +56,12 @@ contains
   end function asks_for_equilibrium
 
   !> Find the equilibria, and write what is asked of them.
-  subroutine find_rest(options, model, diagnostics, reported)
+  subroutine find_rest(options, model, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in) :: model                   !< the model
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< the report is written
+    type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows of the table, too
     type(equilibrium_type), allocatable :: list(:)
     type(plan_type) :: plan
     type(state_type) :: start
@@ -80,7 +82,7 @@ contains
       if (.not. options%has('quiet')) call print_findings(error_unit, options%number('starts', 0), list, &
                                                             allocated(interruption))
       if (.not. options%has('modes')) call judge_forces(options, model, list(1), forces)
-      call write_results(options, model, list, forces, diagnostics%sources(1)%text, err)
+      call write_results(options, model, list, forces, diagnostics%sources(1)%text, err, kept)
     end if
     if (allocated(interruption)) call diagnostics%add_error(interruption)
     if (.not. allocated(err) .and. options%has('mode')) call show_mode(options, model, pictures, list(1), err)
@@ -187,13 +189,14 @@ contains
   end subroutine judge_forces
 
   !> Write table, HDF5 file, and file of matrices.
-  subroutine write_results(options, model, list, forces, data_text, err)
+  subroutine write_results(options, model, list, forces, data_text, err, kept)
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in) :: model                   !< the model
     type(equilibrium_type), intent(inout) :: list(:)        !< the equilibria; the first one has the modes
     type(force_record_type), intent(in) :: forces           !< with the components that are unique
     character(len=*), intent(in) :: data_text               !< text of the data file
     type(error_type), allocatable, intent(out) :: err       !< allocated if a file cannot be written
+    type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows of the table, too
     type(columns_type) :: columns
     real(wp), allocatable :: rows(:, :)
 
@@ -205,6 +208,10 @@ contains
       call rows_of_equilibria(model, columns, list, rows, err)
     end if
     if (allocated(err)) return
+    if (present(kept)) then
+      call kept%begin(model%mechanism%title, columns%names(:columns%count), columns%units(:columns%count), size(rows, 2))
+      call kept%take(rows)
+    end if
     call write_table(options, model, columns, rows, err)
     if (.not. allocated(err) .and. options%has('hdf5')) &
       call write_hdf5(options, model, list, columns, rows, forces, data_text, err)

@@ -35,7 +35,7 @@ POINTS_OF_FIG1 = [('point 1, name', 'P'), ('link: ', '5'), ('position', '1 0.3 0
                   ('point 2, name', 'Q'), ('link: ', '3'), ('position', '1.6 1.2 0'), ('point 3, name', '')]
 TIME = [('start (s)', ''), ('end (s)', ''), ('intervals', '')]
 RESULTS = [('nly if you want', ''), ('table [', '')]
-END = [('Enter if all is right', ''), ('[both]', ''), ('data file [', ''), ('run or done [done]', '')]
+END = [('Enter if all is right', ''), ('[both]', ''), ('data file [', ''), ('run or done: ', 'done')]
 
 FIG1_TO_THE_END = MECHANISM + BY_PAIRS + pairs(False) + MOTION + POINTS_OF_FIG1 + TIME + RESULTS
 FIG1 = FIG1_TO_THE_END + END
