@@ -8,7 +8,7 @@ module mech9_closing
   use mech9_same_file, only: same_file
   use mech9_diagnostics, only: diagnostics_type, printable
   use mech9_model, only: model_type
-  use mech9_answer, only: yes_or_no
+  use mech9_answer, only: yes_or_no, wants_quotes
   use mech9_draft, only: draft_type, unquoted
   use mech9_draft_text, only: draft_text_type
   use mech9_draft_check, only: fault_type, read_draft, faults_of
@@ -141,6 +141,11 @@ contains
                               ' FILE runs it again.')
         cycle
       end if
+      if (wants_quotes(path)) then
+        call conversation%say('A name of a file is asked for; write one that has blanks in quotes.')
+        cycle
+      end if
+      path = unquoted(path)
       if (path == '') path = conversation%data_path
       if (path /= printable(path)) then
         call conversation%say('This is not the name of a file.')

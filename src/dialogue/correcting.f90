@@ -255,8 +255,9 @@ contains
       here = label_of(interview%due())
       call entry_meant(interview%draft, what, group, place, name)
       found = group /= ''
+      if (found) found = interview%draft%find(group, place) > 0 .and. (name == '' .or. interview%draft%has(group, place, name))
       if (.not. found) then
-        call conversation%say('That is nothing that can be removed; list shows the numbers of the answers.')
+        call conversation%say('There is no such answer to remove; list shows the numbers of the answers.')
         return
       end if
       if (name == '') then
@@ -270,6 +271,7 @@ contains
         ! without its drive a coordinate is free, and begins at a position and a rate that are asked for
         if (interview%return_to == '') interview%return_to = here
         call interview%step()
+        interview%adding = interview%return_to /= ''
       end if
     end associate
     call conversation%keep()

@@ -107,6 +107,15 @@ def test_cut_off_anywhere(talks, tmp_path, program, steps, stem):
         talks.checks.true(path.exists() and text_of(path) == expected, f'{stem} cut after {cut} answers: the same data file')
 
 
+RESTING = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&initial coordinate=1, position=1 /
+&body link=2, mass=1, centre=0,-0.5,0 /
+&gravity acceleration=0,-9.81,0 /
+&time end=1, intervals=10 /
+"""
+
+
 @needs_terminal
 @pytest.mark.parametrize('program, steps, stem', (('mech9k', scripts.with_errors(scripts.FIG1), 'fig_1'),
                                                   ('mech9d', scripts.PENDULUM, 'simple_pendulum')), ids=('fig1', 'pendulum'))
@@ -284,6 +293,37 @@ def test_nothing_changed_nothing_kept(talks, folder):
     talks.checks.equal(sorted(os.listdir(folder)), ['p.nml'], 'nothing changed, nothing kept')
 
 
+def test_nothing_more_is_needed(talks, folder):
+    """A data file that runs is asked for nothing that it may leave out, such as the velocity of a coordinate at rest."""
+    with open(os.path.join(folder, 'p.nml'), 'w', encoding='utf-8') as file:
+        file.write(RESTING)
+    steps = [('all is right', 'time end = 2'), ('all is right', ''), ('[both]', 'save'), ('data file [p.nml]', '')]
+    talks.pipe(talks.mech9d, steps, 'a coordinate at rest', arguments=('--edit', 'p.nml'), folder=folder)
+    text = text_of(os.path.join(folder, 'p.nml'))
+    talks.checks.true('velocity' not in text and 'end=2' in text, 'a coordinate at rest: nothing is added', text)
+
+
+def test_nothing_to_remove(talks, folder):
+    """Only what is there is removed."""
+    with open(os.path.join(folder, 'p.nml'), 'w', encoding='utf-8') as file:
+        file.write(RESTING)
+    said = 'no such answer to remove'
+    steps = [('all is right', 'remove time foo'), (said, 'remove initial 1 velocity'), (said, 'remove solver'), (said, 'remove gravity 2'),
+             (said, 'remove gravity'), ('Removed.', 'quit')]
+    talks.pipe(talks.mech9d, steps, 'nothing to remove', arguments=('--edit', 'p.nml'), folder=folder)
+
+
+def test_names_of_files_with_blanks(talks, folder):
+    """Words that are no name of a file do not become one; such a name with blanks stands in quotes."""
+    with open(os.path.join(folder, 'p.nml'), 'w', encoding='utf-8') as file:
+        file.write(RESTING)
+    said = 'in quotes'
+    steps = [('all is right', 'output table = no table please'), (said, "'my table.dat'"), ('all is right', ''), ('[both]', 'both'),
+             ('data file [p.nml]', 'time end = 2'), (said, "'my crank.nml'"), ('run or done: ', 'done')]
+    talks.pipe(talks.mech9d, steps, 'names with blanks', arguments=('--edit', 'p.nml'), folder=folder)
+    talks.checks.equal(sorted(os.listdir(folder)), ['my crank.nml', 'my table.dat', 'p.nml'], 'names with blanks: the files')
+
+
 def test_file_that_exists(talks, folder):
     """It is overwritten only on request."""
     shutil.copy(EXAMPLE['simple_pendulum'], os.path.join(folder, 'p.nml'))
@@ -347,7 +387,7 @@ def test_drives_and_motors(talks, folder):
         file.write(ARM)
     steps = [('all is right', 'remove initial 1'), ('Removed.', 'add drive'), ('drive 1, coordinate', '7'),
              ('there is no coordinate 7', '1'), ('kind', 'har'), ('mean', ''), ('amplitude', '0.5'),
-             ('angular_frequency', '3'), ('phase', ''), ('velocity', ''), ('all is right', 'add motor'), ('motor 1, coordinate', '1'),
+             ('angular_frequency', '3'), ('phase', ''), ('all is right', 'add motor'), ('motor 1, coordinate', '1'),
              ('has the drive', '2'), ('kind', 'dc'), ('voltage', '12'), ('resistance', '0'), ("'resistance' must be", '0.6'),
              ('inductance', '0.01'), ('constant', '0.3'), ('all is right', ''), ('[both]', 'save'),
              ('data file [arm.nml]', '')]
@@ -540,11 +580,11 @@ def test_unsaved_runs(talks, folder):
     """The end of a conversation says which file holds what was run, and what was changed since."""
     to_run = [*scripts.PENDULUM_TO_THE_END, ('all is right', ''), ('[both]', '?'), ('save writes your answers', 'run')]
     draft = 'simple_pendulum.draft.nml'
-    steps = [*to_run, ('run or done [done]', 'done'), ('No data file is saved; what was typed is kept in ' + draft, '')]
+    steps = [*to_run, ('run or done: ', 'done'), ('No data file is saved; what was typed is kept in ' + draft, '')]
     talks.pipe(talks.mech9d, steps, 'run, not saved', folder=folder)
     talks.checks.equal(sorted(os.listdir(folder)), ['simple_pendulum.dat', draft], 'as it says')
     steps = [('all is right', ''), ('[both]', ''), ('data file [', ''), ('run or done', 'time intervals = 7'),
-             ('[run]', 'run'), ('run or done [done]', ''), ('The changes are saved in simple_pendulum.nml', '')]
+             ('[run]', 'run'), ('run or done: ', 'done'), ('The changes are saved in simple_pendulum.nml', '')]
     talks.pipe(talks.mech9d, steps, 'changed, run again', folder=folder, arguments=('--resume', draft))
     talks.checks.true('intervals=7' in text_of(os.path.join(folder, 'simple_pendulum.nml')), 'as it says')
     steps = [('all is right', ''), ('[both]', ''), ('data file [', ''), ('run or done', 'time intervals = 9'),

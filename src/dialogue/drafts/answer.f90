@@ -13,7 +13,7 @@ module mech9_answer
   use mech9_short_answers, only: full_form
   implicit none
   private
-  public :: read_answer, yes_or_no
+  public :: read_answer, yes_or_no, wants_quotes
 
   !> Longer answers are refused.
   integer, parameter :: longest_answer = 100000
@@ -39,6 +39,10 @@ contains
       problem = 'there is a control character in it; type it again'
       return
     end if
+    if (names_file(row) .and. wants_quotes(line)) then
+      problem = 'a name of a file is asked for; write one that has blanks in quotes'
+      return
+    end if
     written = full_form(row, line)
     if (row%type == 'text' .and. scan(line, '''"') /= 1) then
       if (row%high > 1) then
@@ -50,6 +54,21 @@ contains
     if (row%type == 'logical') written = switch_text(line)
     call read_values(row, written, text, problem)
   end subroutine read_answer
+
+  !> Whether a row of the table of names is about a file.
+  pure logical function names_file(row)
+    type(item_row_type), intent(in) :: row   !< row of the table of names for the question
+
+    names_file = row%name == 'file' .or. (row%group == 'output' .and. &
+                                          any(row%name == [character(len=9) :: 'table', 'hdf5', 'sketch', 'animation']))
+  end function names_file
+
+  !> Whether a text has blanks and no quotes: words that may mean anything rather than the name of a file.
+  pure logical function wants_quotes(line)
+    character(len=*), intent(in) :: line     !< the answer, without blanks around it
+
+    wants_quotes = index(line, ' ') > 0 .and. scan(line, '''"') /= 1
+  end function wants_quotes
 
   !> Values in full form are read and checked against a row of the grammar.
   pure subroutine read_values(row, written, text, problem)

@@ -146,7 +146,8 @@ contains
       case ('parameter')
         is_needed = is_needed .or. is_for_study(draft, question%place, trim(row%name))
       case ('initial')
-        if (row%name /= 'coordinate' .and. outline%structure_known) &
+        ! a coordinate without a velocity starts at rest
+        if (row%name == 'position' .and. outline%structure_known) &
           is_needed = is_independent(outline, draft%number('initial', question%place, 'coordinate'))
       end select
     end associate
