@@ -82,9 +82,6 @@ contains
         name = ''
         if (tree%child(e, 'child') > 0) name = tree%content(tree%child(e, 'child'))
         call frames%add(tree, e, own, scoped(prefix, name), scoped(prefix, name), prefix, err)
-      case ('frame')
-        name = scoped(prefix, tree%attribute(e, 'attached_to'))
-        call frames%add(tree, e, own, name, name, prefix, err)
       case ('model')
         call frames%add(tree, e, own, prefix//model_frame, scoped(own//'::', canonical_of(tree, e)), prefix, err)
         n = frames%count
@@ -95,7 +92,30 @@ contains
       end select
       e = tree%next_sibling(e)
     end do
+    call list_elements(tree, model, prefix, frames, err)
   end subroutine list_scope
+
+  !> List the elements <frame> of a model, whose links, joints and models are listed. Fails where one has the name of another part.
+  subroutine list_elements(tree, model, prefix, frames, err)
+    type(xml_tree_type), intent(in) :: tree              !< the document
+    integer, intent(in) :: model                         !< number of the element <model>
+    character(len=*), intent(in) :: prefix               !< names of the models around its frames, each with :: behind it
+    type(sdf_frames_type), intent(inout) :: frames       !< gets its frames
+    type(error_type), allocatable, intent(inout) :: err  !< the failure
+    character(len=:), allocatable :: own, holder
+    integer :: e
+
+    e = tree%child(model, 'frame')
+    do while (e > 0 .and. .not. allocated(err))
+      own = prefix//tree%attribute(e, 'name')
+      if (frames%find(own) > 0) &
+        call tree%fail(e, "the frame '"//own//"' has the name of a link, joint, model or frame beside it; "// &
+                       'give it another name', err)
+      holder = scoped(prefix, tree%attribute(e, 'attached_to'))
+      call frames%add(tree, e, own, holder, holder, prefix, err)
+      e = tree%next_named(e, 'frame')
+    end do
+  end subroutine list_elements
 
   !> The name of the link, or of the model in it, that a model's own frame is attached to.
   function canonical_of(tree, model) result(name)
@@ -163,7 +183,7 @@ contains
     n = n + 1
     self%count = n
     self%names(n)%text = name
-    ! of two frames of one name the later one counts
+    ! of a link and a joint of one name the later one counts
     call self%numbers%set(name, n)
     self%parents(n)%text = parent
     self%holders(n)%text = holder

@@ -21,7 +21,16 @@ CASES = {
     'three frames': (SDF.format('<pose relative_to="e">0 0 0 0 0 0</pose>', '<frame name="e" attached_to="f"/><frame name="f" attached_to="g"/>'
                                 '<frame name="g"><pose relative_to="h"/></frame><frame name="h" attached_to="f"/>', ''),
                      "the frame 'f' stands in itself, by way of 'g', by way of 'h'\n")}
-KEPT = {'a range of one number': URDF.format('', '<limit lower="1" upper="1"/>'), 'no limit above': SDF.format('', '', '<limit><lower>2</lower></limit>'),
+TAKEN = "has the name of a link, joint, model or frame beside it"
+CASES |= {
+    'a frame named like a link before it': (SDF.format('', '<frame name="a"/>', ''), "robot.xml:2:1: the frame 'a' " + TAKEN),
+    'a frame named like a joint behind it': (SDF.format('', '<frame name="j"/>', ''), "robot.xml:2:1: the frame 'j' " + TAKEN),
+    'two frames of one name': (SDF.format('', '<frame name="f"/>\n<frame name="f"/>', ''), "robot.xml:3:1: the frame 'f' " + TAKEN),
+    'a frame named like a model': (SDF.format('', '<frame name="b"/><model name="b"><link name="a"/></model>', ''), "robot.xml:2:1: the frame 'b' " + TAKEN),
+    'a frame in a nested model': (SDF.format('', '<model name="b"><link name="a"/>\n<frame name="a"/></model>', ''),
+                                  "robot.xml:3:1: the frame 'b::a' " + TAKEN)}
+KEPT = {'a frame named like a link of another model': SDF.format('', '<frame name="c"/><model name="b"><link name="c"/></model>', ''),
+        'a range of one number': URDF.format('', '<limit lower="1" upper="1"/>'), 'no limit above': SDF.format('', '', '<limit><lower>2</lower></limit>'),
         'a range that limits nothing': MJCF.format('range="2 1" limited="false"')}
 
 
