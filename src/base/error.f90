@@ -7,7 +7,7 @@ module mech9_error
   use mech9_failure, only: failure_type, integration_stop_type
   implicit none
   private
-  public :: error_type, place_type, raise, add_place
+  public :: error_type, place_type, place_words, raise, add_place
   public :: exit_done, exit_internal, exit_usage, exit_data, exit_structure, exit_assembly
   public :: exit_singular, exit_integrator, exit_file, exit_interrupted
 
@@ -23,10 +23,11 @@ module mech9_error
   integer, parameter :: exit_file = 8            !< a file cannot be read or written
   integer, parameter :: exit_interrupted = 130   !< the user interrupted the run
 
-  !> A place in the data file; line 0 means none.
+  !> A place in the data file or in a setting; line 0 means none.
   type :: place_type
     integer :: line = 0
     integer :: column = 0
+    integer :: source = 1   !< the text that it is in: 1 is the data file, others are settings of --set in their order
   end type place_type
 
   !> A failure: its kind, its message and its place.
@@ -44,6 +45,15 @@ module mech9_error
   end interface raise
 
 contains
+
+  !> A place in words, as "line 12", or "an option --set".
+  pure function place_words(place) result(words)
+    type(place_type), intent(in) :: place   !< where something stands
+    character(len=16) :: words
+
+    words = 'an option --set'
+    if (place%source == 1) write (words, '(a, i0)') 'line ', place%line
+  end function place_words
 
   !> Make a failure that has a message.
   pure subroutine raise_message(err, code, message, place)

@@ -2,7 +2,7 @@
 module mech9_drive_check
   use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
+  use mech9_error, only: error_type, place_words
   use mech9_text, only: to_text
   use mech9_model, only: model_type
   use mech9_pair, only: pair_guide_type
@@ -112,7 +112,7 @@ contains
         if (.not. allocated(model%problem%drives(j)%drive)) cycle
         if (model%problem%drives(j)%drive%coordinate /= k) cycle
         call diagnostics%add(span_of(document%groups(numbers(i)), 'coordinate', 1), 'coordinate '//to_text(k)//' has the drive '// &
-                             'of line '//to_text(model%problem%drives(j)%drive%place%line)//', which sets its motion, so that '// &
+                             'of '//trim(place_words(model%problem%drives(j)%drive%place))//', which sets its motion, so that '// &
                              'a motor has no effect; leave one of the two out')
         exit
       end do
@@ -214,7 +214,7 @@ contains
     unit = 1.0_wp
     if (allocated(model%mechanism%pairs(drive%coordinate)%pair)) unit = unit_of(model%mechanism, drive%coordinate)
     call diagnostics%add(span_of(group, name, 1), 'the '//name//' of coordinate '//to_text(drive%coordinate)// &
-                         ' at the start is '//to_text(driven/unit)//' by its drive in line '//to_text(drive%place%line)// &
+                         ' at the start is '//to_text(driven/unit)//' by its drive in '//trim(place_words(drive%place))// &
                          ', not '//to_text(given/unit)//'; leave the initial value out, or correct the drive')
   end subroutine compare
 end module mech9_drive_check

@@ -58,7 +58,7 @@ contains
     has_vectors = any([has_name(data%structure, 'nrg'), has_name(data%structure, 'nws'), &
                        has_name(data%structure, 'rdw'), has_name(data%structure, 'nrw')])
     if (.not. has_vectors .and. .not. has_name(data%structure, 'cq')) &
-      call diagnostics%add(data%structure%span, 'the independent coordinates are missing: give &structure cq = ... '// &
+      call diagnostics%add(data%structure%span, 'nothing tells the independent coordinates: give &structure cq = ... '// &
                            '(or nrg, nws and rdw)')
     if (has_name(data%structure, 'c')) then
       call from_matrix(document, data, structure, independent, diagnostics)

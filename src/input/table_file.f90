@@ -4,7 +4,7 @@
 !> line of names may stand before the first point.
 module mech9_table_file
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, place_type
+  use mech9_error, only: error_type, place_type, place_words
   use mech9_text, only: to_text, lower, starts_with
   use mech9_counted, only: counted
   use mech9_source, only: source_type, span_type, read_source
@@ -166,7 +166,8 @@ contains
 
     place = diagnostics%place(asked_at)
     pair = 'a pair'
-    if (place%line > 0) pair = 'the pair in line '//to_text(place%line)//' of '//printable(diagnostics%sources(1)%name)
+    if (place%line > 0 .and. place%source == 1) &
+      pair = 'the pair in '//trim(place_words(place))//' of '//printable(diagnostics%sources(1)%name)
     call diagnostics%add(span_type(number, 0, 0), 'a smooth curve needs at least '//to_text(fewest_points)// &
                          ' points, and the file has '//to_text(n)//'; '//pair//' follows it')
   end subroutine report_few_points

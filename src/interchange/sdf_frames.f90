@@ -261,7 +261,7 @@ contains
   end function circle
 
   !> The number of a link of a robot, or of the link to which a frame is attached; 0: there is none.
-  integer function find_link(self, robot, prefix, name) result(link)
+  pure integer function find_link(self, robot, prefix, name) result(link)
     class(sdf_frames_type), intent(in) :: self  !< the frames
     type(robot_type), intent(in) :: robot       !< the robot with its links
     character(len=*), intent(in) :: prefix      !< names of the models around the element that names it

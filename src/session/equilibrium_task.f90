@@ -2,7 +2,7 @@
 module mech9_equilibrium_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp, pi
-  use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_interrupted
+  use mech9_error, only: error_type, raise, add_place, exit_usage, exit_data, exit_interrupted
   use mech9_text, only: to_text
   use mech9_dynamics_failures, only: failure_no_inertia
   use mech9_json, only: json_type
@@ -123,7 +123,8 @@ contains
     integer :: i, k
 
     if (.not. any(model%problem%partition%kind == free_coordinate)) then
-      call raise(err, exit_data, 'every independent coordinate is driven, so that none can come to rest; leave out a &drive')
+      call raise(err, exit_data, 'every independent coordinate is driven, so that none can come to rest; leave out a &drive', &
+                 model%problem%drives(1)%drive%place)
       return
     end if
     call assemble_free_start(model, own_plan, own_start, err, way)
@@ -156,7 +157,7 @@ contains
       allocate (one(1))
       call find_equilibrium(model%mechanism, model%problem%partition, plan, start, one(1), err)
     end if
-    if (.not. allocated(err) .and. .not. options%has('equilibrium')) call need_inertia(one(1), err)
+    if (.not. allocated(err) .and. .not. options%has('equilibrium')) call need_inertia(model, one(1), err)
     if (.not. allocated(err) .or. is_interruption(err)) call move_alloc(one, list)
     if (allocated(err) .or. .not. options%has('mode')) return
     if (options%number('mode', 1) > list(1)%modes%count) &
@@ -165,13 +166,15 @@ contains
   end subroutine search
 
   !> Fail because modes and linearised equations of motion need the inertia of each free coordinate.
-  subroutine need_inertia(equilibrium, err)
+  subroutine need_inertia(model, equilibrium, err)
+    type(model_type), intent(in) :: model               !< the model
     type(equilibrium_type), intent(in) :: equilibrium   !< the equilibrium
     type(error_type), allocatable, intent(out) :: err   !< allocated if one has none
 
     if (equilibrium%without_inertia == 0) return
     call raise(err, exit_data, failure_no_inertia)
     err%failure%coordinates = [equilibrium%without_inertia]
+    call add_place(err, place=model%mechanism%pairs(equilibrium%without_inertia)%pair%place)
   end subroutine need_inertia
 
   !> Find which components of the forces in pairs are unique, if any are recorded, and say how many are not.

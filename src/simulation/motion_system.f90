@@ -6,7 +6,7 @@
 module mech9_motion_system
   use mech9_kinds, only: wp, long
   use mech9_simulation_tolerances, only: trusted_between_steps, trusted_closing
-  use mech9_error, only: error_type, raise, exit_singular, exit_integrator
+  use mech9_error, only: error_type, raise, add_place, exit_singular, exit_integrator
   use mech9_ode_failures, only: failure_infinite_rate
   use mech9_dynamics_failures, only: failure_no_inertia
   use mech9_force_gradient_failures, only: failure_lost_inertia
@@ -115,7 +115,19 @@ contains
     if (.not. allocated(err)) call system%present(err)
     if (.not. allocated(err)) call check_inertia(system%plan, system%dynamics, system%work, err)
     system%has_inertia = .not. allocated(err)
+    call point_at_pair(model, err)
   end subroutine set_motion_system
+
+  !> Say in which place of the data file the pair is whose coordinate has no inertia.
+  subroutine point_at_pair(model, err)
+    type(model_type), intent(in) :: model                  !< the model
+    type(error_type), allocatable, intent(inout) :: err    !< the failure of its start, or none
+
+    if (.not. allocated(err)) return
+    if (.not. allocated(err%failure)) return
+    if (err%failure%kind == failure_no_inertia) &
+      call add_place(err, place=model%mechanism%pairs(err%failure%coordinates(1))%pair%place)
+  end subroutine point_at_pair
 
   !> Make the scratch for evaluations.
   subroutine make_work(plan, dynamics, work)

@@ -72,10 +72,12 @@ contains
     type(queue_item_type) :: item
     type(random_type) :: random
     integer :: i, k, at
+    logical :: grows
 
     allocate (list(0))
     do i = 1, 1000
-      if (size(list) == 0 .or. random%symmetric() > -0.1_wp) then
+      grows = random%symmetric() > -0.1_wp
+      if (size(list) == 0 .or. grows) then
         item = any_item(random)
         item%what = i
         call queue%push(item)

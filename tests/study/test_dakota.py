@@ -192,7 +192,7 @@ GOOD = standard([('crank', 0.25)], [('far', 1)])
     (GOOD.replace('1 variables', '2 variables'), "params.in:4: the number of functions is expected here"),
     ('\n'.join(GOOD.splitlines()[:3]), 'the file ends before'),
     (GOOD.replace('1 variables', '-1 variables'), 'params.in:1: this is no length of a list'),
-    ('', 'params.in: the file is empty'),
+    ('', 'params.in: the whole file is empty'),
     ('{ }\n', 'params.in:1: a value and a tag are expected'),
     ('{}', 'params.in:1: a value and a tag are expected'),
     ('{', 'params.in:1: a value and a tag are expected'),

@@ -77,7 +77,7 @@ THREE = '0 1 1\n1 1 1.1\n2 1.2 1.3\n'
     ('two at one time', '1 1 1\n1 2 2\n', DONE, FOUND),
     ('not a number', '0 NaN 1\n1 1 1\n', DATA, "'NaN' is not a finite number"),
     ('one target', '0 1 1\n', DATA, 'at least two targets'),
-    ('empty', '', DATA, 'the file is empty'),
+    ('empty', '', DATA, 'the whole file is empty'),
     ('binary', bytes(range(256)), DATA, 'a binary file'),
     ('a line without end', '0 1 1\n' + '1 '*20000, DATA, 'this one has 20000 numbers')),
     ids=('far away', 'very far away', 'beyond squares', 'nearly nothing', 'two at one time', 'not a number', 'one target', 'empty', 'binary',

@@ -2,7 +2,7 @@
 module mech9_linearised_equilibrium
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_data, exit_singular
+  use mech9_error, only: error_type, raise, add_place, exit_data, exit_singular
   use mech9_dynamics_failures, only: failure_no_inertia
   use mech9_simulation_failures, only: failure_gimbal_lock
   use mech9_lapack, only: dsyev
@@ -163,7 +163,7 @@ contains
     call look_elsewhere(mechanism, found%resting, elsewhere, has_inertia, err)
     if (allocated(err)) return
     if (has_inertia) then
-      call refuse_lock(found%resting, massless, find_lock(m, elsewhere), err)
+      call refuse_lock(mechanism, found%resting, massless, find_lock(m, elsewhere), err)
       return
     end if
     vectors = 0.5_wp*(found%resting%stiffness + transpose(found%resting%stiffness))
@@ -175,7 +175,8 @@ contains
   end subroutine judge_statics
 
   !> Fail because coordinates have no inertia in this position alone.
-  subroutine refuse_lock(resting, massless, is_locked, err)
+  subroutine refuse_lock(mechanism, resting, massless, is_locked, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(resting_type), intent(in) :: resting           !< the mechanism at rest
     integer, intent(in) :: massless                     !< place of a coordinate without inertia among the free ones
     logical, intent(in) :: is_locked(:)                 !< (n) the free coordinate can move with others without moving any mass
@@ -188,6 +189,7 @@ contains
     else
       call raise(err, exit_data, failure_no_inertia)
       err%failure%coordinates = [resting%free(massless)]
+      call add_place(err, place=mechanism%pairs(resting%free(massless))%pair%place)
     end if
   end subroutine refuse_lock
 

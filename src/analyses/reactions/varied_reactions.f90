@@ -71,6 +71,7 @@ contains
     if (all(abs(multipliers) <= rank_tolerance_for(motion%plan%data_tolerance))) return
     call raise(err, exit_data, failure_shared_force)
     err%failure%number = maxloc(abs(multipliers), dim=1)
+    err%place = motion%plan%couplings(err%failure%number)%coupling%place
   end subroutine check_couplings
 
   !> Find the derivatives in the present motion, from those of what links require. Fails with exit_singular beside singular

@@ -67,7 +67,7 @@ contains
     end associate
   end subroutine add
 
-  !> Add a failure of another floor; its place is one in the data file.
+  !> Add a failure of another floor; its place is one in the data file or in a setting.
   pure subroutine add_error(self, err)
     class(diagnostics_type), intent(inout) :: self  !< the diagnostics
     type(error_type), intent(in) :: err             !< the failure
@@ -78,8 +78,10 @@ contains
     explained = err
     call explain(explained)
     if (err%place%line > 0 .and. allocated(self%sources)) then
-      byte = self%sources(1)%byte_at(err%place)
-      if (byte > 0) span = span_type(1, byte, byte + word_length(self%sources(1)%text(byte:)) - 1)
+      associate (source => self%sources(err%place%source))
+        byte = source%byte_at(err%place)
+        if (byte > 0) span = span_type(err%place%source, byte, byte + word_length(source%text(byte:)) - 1)
+      end associate
     end if
     call self%add(span, explained%message, err%code)
   end subroutine add_error
@@ -149,12 +151,14 @@ contains
     code = self%kept(1)%code
   end function code
 
-  !> Line and column of a span; line 0 for spans outside the data file.
+  !> Line and column of a span; line 0 for a span that is nowhere.
   pure type(place_type) function place(self, span)
     class(diagnostics_type), intent(in) :: self  !< the diagnostics
     type(span_type), intent(in) :: span          !< bytes of a source
 
-    if (span%source == 1) place = self%sources(1)%place(span%first)
+    if (span%source == 0 .or. span%first == 0) return
+    place = self%sources(span%source)%place(span%first)
+    place%source = span%source
   end function place
 
   !> Length of a text that is cut where it is too long.

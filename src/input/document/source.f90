@@ -86,12 +86,12 @@ contains
     integer :: at
 
     if (len(text) == 0) then
-      call raise(err, exit_data, 'the file is empty')
+      call raise(err, exit_data, 'the whole file is empty')
       return
     end if
     if (len(text) >= 2) then
       if (text(:2) == char(255)//char(254) .or. text(:2) == char(254)//char(255)) then
-        call raise(err, exit_data, 'the file is written in UTF-16; save it as UTF-8 or plain text')
+        call raise(err, exit_data, 'the whole file is written in UTF-16; save it as UTF-8 or plain text')
         return
       end if
     end if

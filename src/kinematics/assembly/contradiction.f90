@@ -95,7 +95,8 @@ contains
     allocate (failure%lines(size(set)), source=0)
     do i = 1, size(set)
       associate (number => plan%closures(set(i))%coupling)
-        if (number > 0) failure%lines(i) = plan%couplings(number)%coupling%place%line
+        if (number == 0) cycle
+        if (plan%couplings(number)%coupling%place%source == 1) failure%lines(i) = plan%couplings(number)%coupling%place%line
       end associate
     end do
   end subroutine name_closures

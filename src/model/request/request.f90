@@ -48,6 +48,7 @@ module mech9_request
     logical :: sensitivities = .false.           !< the derivatives by all parameters have columns
     logical :: gradients = .false.               !< the quantities have derivatives by all parameters, whose columns are not recorded
     type(place_type) :: sensitivities_place      !< place of either request in the data file
+    type(place_type) :: sketch_place, animation_place, view_place   !< of the names of pictures and of the view in the data file
     logical :: force_arrows = .false.            !< pictures show the forces in pairs as arrows
   contains
     procedure :: recorded

@@ -8,7 +8,7 @@ module mech9_mpi_team
                      MPI_Iprobe, MPI_Get_count, MPI_Recv, MPI_Send
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
-  use mech9_error, only: error_type, raise
+  use mech9_error, only: error_type, place_type, raise
   use mech9_clock, only: seconds
   use mech9_pause, only: pause_for
   use mech9_explanation, only: explain
@@ -25,8 +25,9 @@ module mech9_mpi_team
   !> Tags of the messages: numbers of runs from the first process; codes, quantities and texts of runs to it, and the columns of
   !> each run, if they are kept.
   integer, parameter :: of_numbers = 1, of_codes = 2, of_quantities = 3, of_texts = 4, of_rows = 5
-  !> Numbers that are sent of each run beside its quantities: its number, exit code, line, column, and letters of its message.
-  integer, parameter :: codes_per_run = 5
+  !> Numbers that are sent of each run beside its quantities: its number, exit code, line, column and text of its place, and letters
+  !> of its message.
+  integer, parameter :: codes_per_run = 6
   integer, parameter :: batches = 2                     !< for each process at a time
   integer, parameter :: longest_batch = 24              !< runs; two of them are fewer than the runs ahead for each process
   real(wp), parameter :: time_of_batch = 0.005_wp       !< work in a batch [s]
@@ -170,11 +171,10 @@ contains
       run%quantities = quantities(:, i)
       if (allocated(run%failure)) deallocate (run%failure)
       if (codes(2, i) /= 0) then
-        call raise(run%failure, codes(2, i), texts(at + 1:at + codes(5, i)))
-        run%failure%place%line = codes(3, i)
-        run%failure%place%column = codes(4, i)
+        call raise(run%failure, codes(2, i), texts(at + 1:at + codes(6, i)))
+        run%failure%place = place_type(codes(3, i), codes(4, i), codes(5, i))
       end if
-      at = at + codes(5, i)
+      at = at + codes(6, i)
       if (allocated(run%rows)) &
         call MPI_Recv(run%rows, size(run%rows), MPI_DOUBLE_PRECISION, sender, of_rows, MPI_COMM_WORLD, status)
       call runs%take(run)
@@ -224,7 +224,9 @@ contains
         quantities(:, i) = run%quantities
         if (.not. allocated(run%failure)) cycle
         call explain(run%failure)
-        codes(3:, i) = [run%failure%place%line, run%failure%place%column, len(run%failure%message)]
+        associate (place => run%failure%place)
+          codes(3:, i) = [place%line, place%column, place%source, len(run%failure%message)]
+        end associate
         texts = texts//run%failure%message
       end associate
     end do

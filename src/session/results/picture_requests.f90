@@ -2,7 +2,7 @@
 module mech9_picture_requests
   use mech9_kinds, only: wp
   use mech9_program_kind, only: dynamics
-  use mech9_error, only: error_type, raise, exit_usage, exit_data
+  use mech9_error, only: error_type, raise, add_place, exit_usage, exit_data
   use mech9_path, only: ending_of
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
@@ -61,11 +61,13 @@ contains
     if (requests%sketch /= '' .and. kind_of(requests%sketch) /= 'svg') then
       call raise(err, merge(exit_usage, exit_data, options%has('sketch')), "'"//requests%sketch// &
                  "' is no name of a sketch; it must end in .svg")
+      if (.not. options%has('sketch')) call add_place(err, place=model%request%output%sketch_place)
       return
     end if
     if (requests%animation /= '' .and. all(moving_kinds /= kind_of(requests%animation))) then
       call raise(err, merge(exit_usage, exit_data, options%has('animate')), "'"//requests%animation// &
                  "' is no name of a moving picture; it must end in .html, .svg or .gif")
+      if (.not. options%has('animate')) call add_place(err, place=model%request%output%animation_place)
       return
     end if
     if (options%has('view')) then
@@ -74,6 +76,7 @@ contains
     else if (model%request%output%view /= '') then
       allocate (requests%view)
       call read_view(model%request%output%view, exit_data, requests%view, err)
+      call add_place(err, place=model%request%output%view_place)
     end if
   end subroutine read_picture_requests
 

@@ -110,7 +110,8 @@ contains
     type(error_type), allocatable, intent(in) :: stopped   !< why it stopped, if it did
 
     is_pause = allocated(stopped)
-    if (is_pause) is_pause = stopped%code == exit_interrupted .and. .not. interrupted()
+    if (is_pause) is_pause = stopped%code == exit_interrupted
+    if (is_pause) is_pause = .not. interrupted()
   end function is_pause
 
   !> Tell where the motion stands.

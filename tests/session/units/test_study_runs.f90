@@ -139,7 +139,8 @@ contains
     do i = 4, 6
       numbers(i) = runs%hand_out()
     end do
-    call tester%is_true(all(numbers(4:) == [4, 5, 6]) .and. runs%hand_out() == all_handed_out, 'the others')
+    call tester%is_true(all(numbers(4:) == [4, 5, 6]), 'the others')
+    call tester%is_true(runs%hand_out() == all_handed_out, 'and no more')
     do i = 6, 4, -1
       call runs%take(made(i))
     end do
