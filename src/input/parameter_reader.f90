@@ -81,7 +81,11 @@ contains
         call find_number(document, names(i)%text, names(i)%span, has_name(group, 'value'), place, name, diagnostics)
         parameter%targets(i) = parameter_target_type(names(i)%text, name%group, name%number, name%item, name%position, &
                                                      group_place=place%group, item_place=place%item)
-        if (place%group > 0) document%groups(place%group)%items(place%item)%row = place%row
+        if (place%group == 0) cycle
+        document%groups(place%group)%items(place%item)%row = place%row
+        parameter%targets(i)%unit = item_table(place%row)%unit
+        if (has_name(document%groups(place%group), 'coordinate')) &
+          parameter%targets(i)%coordinate = get_integer(document%groups(place%group), 'coordinate')
       end do
     end associate
     call read_each(group, 'factors', parameter%targets%factor, diagnostics)

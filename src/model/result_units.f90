@@ -1,10 +1,13 @@
-!> The units of coordinates in results and messages, which are those of the data file.
+!> The units of coordinates and of parameters in results and messages, which are those of the data file.
 module mech9_result_units
   use mech9_kinds, only: wp
   use mech9_mechanism, only: mechanism_type
+  use mech9_parameter, only: parameter_type, parameter_target_type
   implicit none
   private
-  public :: unit_of, unit_name, force_unit_name
+  public :: unit_of, unit_name, force_unit_name, unit_of_parameter, longest_unit
+
+  integer, parameter :: longest_unit = 24   !< letters of the unit of a parameter
 
 contains
 
@@ -43,4 +46,71 @@ contains
       force_unit_name = merge('N m', 'N  ', mechanism%pairs(k)%pair%angular)
     end if
   end function force_unit_name
+
+  !> Name of the unit of a parameter: that of the numbers that it sets, '1' for plain numbers; empty where they have several units,
+  !> or where it is not known.
+  pure character(len=longest_unit) function unit_of_parameter(mechanism, parameter) result(unit)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(parameter_type), intent(in) :: parameter   !< the parameter
+    integer :: i
+
+    unit = ''
+    do i = 1, size(parameter%targets)
+      if (i == 1) unit = unit_of_target(mechanism, parameter%targets(1))
+      if (unit /= unit_of_target(mechanism, parameter%targets(i))) unit = ''
+    end do
+  end function unit_of_parameter
+
+  !> Name of the unit of a number of the data file; empty where it is not known.
+  pure character(len=longest_unit) function unit_of_target(mechanism, target) result(unit)
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(parameter_target_type), intent(in) :: target      !< the number
+    character(len=3) :: angle
+    integer :: k
+
+    angle = merge('rad', 'deg', abs(mechanism%angle_unit - 1.0_wp) <= 0.0_wp)
+    k = target%coordinate
+    select case (target%unit)
+    case ('')
+      unit = merge('1', ' ', target%group /= 'user')
+    case ('angle')
+      unit = angle
+    case ('angle/s')
+      unit = angle//'/s'
+    case ('m, angle')
+      ! Denavit-Hartenberg parameters: a length, an angle, a length, an angle
+      unit = merge(angle, 'm  ', modulo(target%position, 2) == 0)
+    case ('1, 1/s, ...')
+      unit = per_time('1', target%position - 1)
+    case ('q, q/s, ...')
+      unit = per_time(unit_name(mechanism, k), target%position - 1)
+    case ('q')
+      unit = ''
+      if (k > 0) unit = unit_name(mechanism, k)
+    case ('q/s')
+      unit = per_time(unit_name(mechanism, k), 1)
+    case ('N m/rad/s')
+      unit = ''
+      if (mechanism%pairs(k)%pair%angular) unit = target%unit
+    case ('N or N m')
+      unit = force_unit_name(mechanism, k)
+    case default
+      ! a comma or a blank word stands between units of which the table does not tell the right one
+      unit = target%unit
+      if (scan(unit, ',') > 0 .or. index(unit, ' or ') > 0 .or. index(unit, ' per ') > 0) unit = ''
+    end select
+  end function unit_of_target
+
+  !> A unit per second, per second squared, and so on.
+  pure character(len=longest_unit) function per_time(unit, power) result(text)
+    character(len=*), intent(in) :: unit   !< the unit
+    integer, intent(in) :: power           !< of time, from 0
+    character(len=12) :: number
+
+    text = unit
+    if (power == 0) return
+    write (number, '(i0)') power
+    text = trim(unit)//'/s'
+    if (power > 1) text = trim(unit)//'/s^'//number
+  end function per_time
 end module mech9_result_units

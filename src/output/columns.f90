@@ -41,6 +41,7 @@ module mech9_columns
     integer :: sensitivities = 0            !< how many columns, the last ones, are derivatives by parameters
     type(derivative_columns_type) :: derived    !< those of the motion
     type(string_type), allocatable :: parameters(:)   !< names of these parameters
+    type(string_type), allocatable :: parameter_units(:)   !< their units; empty: not known, '1': plain numbers
     type(poses_type) :: poses               !< columns after the others, if they were requested
     integer :: varied_poses = 0             !< how many derivatives by parameters stand after the poses: of origins and rotations
     integer :: unrecorded = 0               !< how many derivatives by parameters stand after the poses, for quantities alone
@@ -53,6 +54,7 @@ module mech9_columns
     procedure :: fill_motors
     procedure :: append_energies
     procedure :: append_sensitivities
+    procedure :: unit_per
     procedure :: fill_sensitivities
     procedure :: fill_beyond_motion
     procedure :: fill_varied_poses
@@ -226,14 +228,16 @@ contains
 
   !> Append the derivatives of the columns of motion, forces, motors and energies, but for time: those of each column by all
   !> parameters side by side, as they stand in an HDF5 file. Those that are not recorded stand after the poses, without names.
-  pure subroutine append_sensitivities(self, parameters, recorded)
+  pure subroutine append_sensitivities(self, parameters, units, recorded)
     class(columns_type), intent(inout) :: self       !< the columns
     type(string_type), intent(in) :: parameters(:)   !< names of the parameters
+    type(string_type), intent(in) :: units(:)        !< their units; empty: not known, '1': plain numbers
     logical, intent(in) :: recorded                  !< they are in the results
     character(len=:), allocatable :: name, unit
     integer :: p, i
 
     self%parameters = parameters
+    self%parameter_units = units
     self%varied = self%motion - 1 + self%forces() + self%motors + self%energies
     if (.not. recorded) then
       self%unrecorded = size(parameters)*self%varied
@@ -245,11 +249,31 @@ contains
       name = self%names(i)%text
       unit = self%units(i)%text
       do p = 1, size(parameters)
-        call self%append('d('//name//')/d('//parameters(p)%text//')', unit//'/'//parameters(p)%text, &
+        call self%append('d('//name//')/d('//parameters(p)%text//')', self%unit_per(unit, p), &
                          'derivative of '//name//' by '//parameters(p)%text)
       end do
     end do
   end subroutine append_sensitivities
+
+  !> A unit per that of a parameter, or per the parameter where its unit is not known.
+  pure function unit_per(self, unit, parameter) result(text)
+    class(columns_type), intent(in) :: self   !< the columns, with parameters
+    character(len=*), intent(in) :: unit      !< of what has the derivative
+    integer, intent(in) :: parameter          !< number of the parameter
+    character(len=:), allocatable :: text
+
+    associate (of => self%parameter_units(parameter)%text)
+      if (of == '') then
+        text = unit//'/'//self%parameters(parameter)%text
+      else if (of == '1') then
+        text = unit
+      else if (scan(of, ' /^') > 0) then
+        text = unit//'/('//of//')'
+      else
+        text = unit//'/'//of
+      end if
+    end associate
+  end function unit_per
 
   !> The place in a row before the derivatives by parameters.
   pure integer function before_sensitivities(self) result(before)

@@ -112,7 +112,7 @@ contains
     real(wp), intent(in) :: coefficients(:, :)   !< lower triangle
     integer :: p, r
 
-    write (unit, '(a)') 'coefficients of motion at the start:'
+    write (unit, '(a)') 'coefficients of motion (mass matrix) at the start:'
     do p = 1, size(plan%independent)
       do r = p, size(plan%independent)
         write (unit, '(2x,a,es24.16)') 'a('//to_text(plan%independent(p))//','//to_text(plan%independent(r))//') =', &
@@ -266,7 +266,7 @@ contains
       call file%make_scale('dynamics/p')
       call file%put('dynamics/r', plan%independent, 'number of an independent coordinate at the start')
       call file%make_scale('dynamics/r')
-      call file%put('dynamics/coefficients', coefficients, 'coefficients of motion a(p,r) at the start')
+      call file%put('dynamics/coefficients', coefficients, 'coefficients of motion a(p,r), the mass matrix, at the start')
       call file%attach_scales('dynamics/coefficients', ['/dynamics/p', '/dynamics/r'])
     end associate
     call hdf5%begin_events(size(plan%independent))

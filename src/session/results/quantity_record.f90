@@ -297,7 +297,7 @@ contains
             write (unit, '(a)') '  d('//name//')/d('//self%columns%parameters(p)%text//') is not known'
           else
             write (unit, '(a)') '  d('//name//')/d('//self%columns%parameters(p)%text//') = '//to_text(self%gradient(p, i), 12)// &
-              ' '//self%unit_of(i)//'/'//self%columns%parameters(p)%text
+              ' '//self%columns%unit_per(self%unit_of(i), p)
           end if
         end do
       end associate

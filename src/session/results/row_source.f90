@@ -15,6 +15,7 @@ module mech9_row_source
   use mech9_smooth_pieces, only: have_joints
   use mech9_sensitivity, only: sensitivity_type, find_waiting
   use mech9_columns, only: columns_type, kinematic_columns
+  use mech9_result_units, only: unit_of_parameter
   use mech9_film, only: film_type
   use mech9_force_record, only: force_record_type
   use mech9_varied_record, only: varied_record_type
@@ -93,16 +94,17 @@ contains
     class(row_source_type), intent(inout) :: self                   !< the row source
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters; outlives the run
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
-    type(string_type) :: names(size(self%simulation%model%parameters))
+    type(string_type), dimension(size(self%simulation%model%parameters)) :: names, units
     integer :: i
 
     do i = 1, size(names)
       names(i)%text = self%simulation%model%parameters(i)%name
+      units(i)%text = trim(unit_of_parameter(self%simulation%model%mechanism, self%simulation%model%parameters(i)))
     end do
     allocate (self%sensitivity)
     call self%simulation%begin_sensitivity(variable, self%columns%derivatives, self%sensitivity, err)
     if (allocated(err)) return
-    call self%columns%append_sensitivities(names, self%simulation%model%request%output%sensitivities)
+    call self%columns%append_sensitivities(names, units, self%simulation%model%request%output%sensitivities)
     self%wanted = [(i, i=2, self%columns%motion)]
     call self%varied%begin(self%simulation, variable, self%columns, err)
     if (.not. allocated(err) .and. allocated(self%simulation%model%request%quantities)) call find_tangents(self, variable, err)

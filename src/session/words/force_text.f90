@@ -20,8 +20,7 @@ contains
     integer, intent(in) :: unit              !< the output unit
     logical, intent(in) :: recorded(:)       !< (M) pairs whose forces are recorded
     type(uniqueness_type), intent(in) :: unique   !< components and forces that it determines
-    character(len=:), allocatable :: names
-    integer :: i, k
+    integer :: k
 
     call print_couplings(unit, unique)
     if (all(unique%pairs .or. spread(.not. recorded, 1, 6))) then
@@ -30,16 +29,31 @@ contains
     end if
     write (unit, '(a)') 'forces and moments in the pairs: equilibrium does not determine these components, for which those of '// &
       'least norm are given'
-    write (unit, '(a)') '(in the axes of the pair''s frame in its moving link, z along the axis):'
+    write (unit, '(a)') '(x, y, z of the pair''s frame in its moving link, z along its axis; columns are along the axes of link 1):'
     do k = 1, size(recorded)
       if (all(unique%pairs(:, k)) .or. .not. recorded(k)) cycle
-      names = ''
-      do i = 1, 6
-        if (.not. unique%pairs(i, k)) names = names//' '//component_names(i)
-      end do
-      write (unit, '(a)') '  R'//to_text(k)//':'//names
+      write (unit, '(a)') '  pair '//to_text(k)//':'//components_in_words(unique%pairs(:, k))
     end do
   end subroutine print_uniqueness
+
+  !> Components that are not determined, as " force along z, moment about x y".
+  pure function components_in_words(unique) result(words)
+    logical, intent(in) :: unique(6)    !< of the force and the moment
+    character(len=:), allocatable :: words
+    character(len=*), parameter :: axes(3) = ['x', 'y', 'z']
+    integer :: i
+
+    words = ''
+    if (.not. all(unique(:3))) words = ' force along'
+    do i = 1, 3
+      if (.not. unique(i)) words = words//' '//axes(i)
+    end do
+    if (.not. (all(unique(:3)) .or. all(unique(4:)))) words = words//','
+    if (.not. all(unique(4:))) words = words//' moment about'
+    do i = 1, 3
+      if (.not. unique(3 + i)) words = words//' '//axes(i)
+    end do
+  end function components_in_words
 
   !> Print how many components equilibrium does not determine, if there are any.
   subroutine print_undetermined(unit, recorded, unique)

@@ -104,14 +104,17 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(model_type) :: model
     type(columns_type) :: columns
-    type(string_type) :: parameters(2)
+    type(string_type) :: parameters(2), units_of(2)
     integer, allocatable :: order(:)
     integer :: i, found(2)
 
     parameters(1)%text = 'a'
     parameters(2)%text = 'b'
+    units_of(1)%text = 'kg'
+    units_of(2)%text = ''
     call with_output(tester, 'coordinates=1, 4, derivatives=0', model, columns)
-    call columns%append_sensitivities(parameters, .true.)
+    call columns%append_sensitivities(parameters, units_of, .true.)
+    call check_units(tester, columns)
     call tester%is_true(columns%count == 16 .and. columns%width() == 16, 'six columns and time, and twelve derivatives less two')
     do i = 2, 6
       found = columns%derivatives_of(i)
@@ -124,12 +127,26 @@ contains
     call tester%is_true(columns%names(order(7))%text == 'd(q1)/d(a)' .and. columns%names(order(8))%text == 'd(q4)/d(a)', &
                         'the first parameter first')
     call with_output(tester, 'coordinates=1, 4, derivatives=0, poses=.true.', model, columns)
-    call columns%append_sensitivities(parameters, .false.)
+    call columns%append_sensitivities(parameters, units_of, .false.)
     found = columns%derivatives_of(2)
     call tester%is_true(columns%count == 6 .and. all(found == columns%count + columns%poses%width() + [1, 2]), &
                         'derivatives that are not recorded stand behind the poses')
     call tester%is_true(columns%width() == columns%count + columns%poses%width() + 10, 'they have room')
   end subroutine derivatives
+
+  !> Units of derivatives: by a mass, and by a parameter of unknown unit; then by others.
+  subroutine check_units(tester, columns)
+    type(tester_type), intent(inout) :: tester      !< counts the checks
+    type(columns_type), intent(in) :: columns       !< with derivatives
+    type(columns_type) :: others
+
+    call tester%is_true(columns%unit_per('m', 1) == 'm/kg' .and. columns%unit_per('m', 2) == 'm/b', 'a unit, and a name for one')
+    others = columns
+    others%parameter_units(1)%text = '1'
+    others%parameter_units(2)%text = 'N m'
+    call tester%is_true(others%unit_per('rad/s', 1) == 'rad/s' .and. others%unit_per('rad/s', 2) == 'rad/s/(N m)', &
+                        'by a plain number, and by a product')
+  end subroutine check_units
 
   !> At a right angle of the crank the rod lies at sin = -0.3: the slider stands at sqrt(1 - 0.09), and its rate is -0.3 of that of
   !> the crank; the angles are in degrees.
