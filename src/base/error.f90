@@ -48,7 +48,7 @@ contains
 
   !> A place in words, as "line 12", or "an option --set".
   pure function place_words(place) result(words)
-    type(place_type), intent(in) :: place   !< where something stands
+    type(place_type), intent(in) :: place   !< line and column of something
     character(len=16) :: words
 
     words = 'an option --set'

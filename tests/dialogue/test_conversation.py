@@ -107,15 +107,6 @@ def test_cut_off_anywhere(talks, tmp_path, program, steps, stem):
         talks.checks.true(path.exists() and text_of(path) == expected, f'{stem} cut after {cut} answers: the same data file')
 
 
-RESTING = """&structure cq=1 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
-&initial coordinate=1, position=1 /
-&body link=2, mass=1, centre=0,-0.5,0 /
-&gravity acceleration=0,-9.81,0 /
-&time end=1, intervals=10 /
-"""
-
-
 @needs_terminal
 @pytest.mark.parametrize('program, steps, stem', (('mech9k', scripts.with_errors(scripts.FIG1), 'fig_1'),
                                                   ('mech9d', scripts.PENDULUM, 'simple_pendulum')), ids=('fig1', 'pendulum'))
@@ -291,37 +282,6 @@ def test_nothing_changed_nothing_kept(talks, folder):
     shutil.copy(EXAMPLE['simple_pendulum'], os.path.join(folder, 'p.nml'))
     talks.pipe(talks.mech9d, [('all is right', 'quit')], 'quit', arguments=('--edit', 'p.nml'), folder=folder)
     talks.checks.equal(sorted(os.listdir(folder)), ['p.nml'], 'nothing changed, nothing kept')
-
-
-def test_nothing_more_is_needed(talks, folder):
-    """A data file that runs is asked for nothing that it may leave out, such as the velocity of a coordinate at rest."""
-    with open(os.path.join(folder, 'p.nml'), 'w', encoding='utf-8') as file:
-        file.write(RESTING)
-    steps = [('all is right', 'time end = 2'), ('all is right', ''), ('[both]', 'save'), ('data file [p.nml]', '')]
-    talks.pipe(talks.mech9d, steps, 'a coordinate at rest', arguments=('--edit', 'p.nml'), folder=folder)
-    text = text_of(os.path.join(folder, 'p.nml'))
-    talks.checks.true('velocity' not in text and 'end=2' in text, 'a coordinate at rest: nothing is added', text)
-
-
-def test_nothing_to_remove(talks, folder):
-    """Only what is there is removed."""
-    with open(os.path.join(folder, 'p.nml'), 'w', encoding='utf-8') as file:
-        file.write(RESTING)
-    said = 'no such answer to remove'
-    steps = [('all is right', 'remove time foo'), (said, 'remove initial 1 velocity'), (said, 'remove solver'), (said, 'remove gravity 2'),
-             (said, 'remove gravity'), ('Removed.', 'quit')]
-    talks.pipe(talks.mech9d, steps, 'nothing to remove', arguments=('--edit', 'p.nml'), folder=folder)
-
-
-def test_names_of_files_with_blanks(talks, folder):
-    """Words that are no name of a file do not become one; such a name with blanks stands in quotes."""
-    with open(os.path.join(folder, 'p.nml'), 'w', encoding='utf-8') as file:
-        file.write(RESTING)
-    said = 'in quotes'
-    steps = [('all is right', 'output table = no table please'), (said, "'my table.dat'"), ('all is right', ''), ('[both]', 'both'),
-             ('data file [p.nml]', 'time end = 2'), (said, "'my crank.nml'"), ('run or done: ', 'done')]
-    talks.pipe(talks.mech9d, steps, 'names with blanks', arguments=('--edit', 'p.nml'), folder=folder)
-    talks.checks.equal(sorted(os.listdir(folder)), ['my crank.nml', 'my table.dat', 'p.nml'], 'names with blanks: the files')
 
 
 def test_file_that_exists(talks, folder):
