@@ -23,7 +23,7 @@ class Edited:
         self.checks, self.program, self.folder = checks, program, folder
 
     def hears(self, *lines, why):
-        """What is said to each line, the words before the first one left out."""
+        """Everything that a conversation about the data file says to some lines."""
         with open(self.path('p.nml'), 'w', encoding='utf-8') as file:
             file.write(DATA)
         done = run(self.program, '--edit', 'p.nml', folder=self.folder, stdin=''.join(line + '\n' for line in lines))
