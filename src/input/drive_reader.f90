@@ -138,15 +138,18 @@ contains
     class(law_type), allocatable, intent(out) :: law      !< the law
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(polynomial_law_type) :: polynomial
+    type(harmonic_law_type) :: harmonic
 
     select case (name)
     case ('polynomial')
       polynomial%coefficients = unit*get_reals(group, 'coefficients')
       allocate (law, source=polynomial)
     case ('harmonic')
-      allocate (law, source=harmonic_law_type(mean=unit*get_real(group, 'mean'), amplitude=unit*get_real(group, 'amplitude'), &
-                                              angular_frequency=angle_unit*get_real(group, 'angular_frequency'), &
-                                              phase=angle_unit*get_real(group, 'phase')))
+      harmonic%mean = unit*get_real(group, 'mean')
+      harmonic%amplitude = unit*get_real(group, 'amplitude')
+      harmonic%angular_frequency = angle_unit*get_real(group, 'angular_frequency')
+      harmonic%phase = angle_unit*get_real(group, 'phase')
+      allocate (law, source=harmonic)
     case ('table')
       call read_table(document, group, unit, law, diagnostics)
     case ('segments')

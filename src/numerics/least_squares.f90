@@ -67,11 +67,12 @@ contains
     integer, intent(in) :: m                               !< number of equations
     integer, intent(in) :: n                               !< number of unknowns
     type(front_plan_type), intent(in), optional :: fronts  !< of a sparse matrix, which is zero outside their groups
+    type(front_factors_type) :: no_fronts
 
     self%m = m
     self%n = n
     self%by_fronts = .false.
-    self%fronts = front_factors_type()
+    self%fronts = no_fronts
     if (present(fronts)) self%fronts = new_front_factors(fronts)
     if (allocated(self%a)) deallocate (self%a, self%pivot, self%order, self%tau, self%reciprocal, self%norms, &
                                        self%lengths, self%work)
