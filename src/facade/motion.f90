@@ -139,7 +139,7 @@ contains
     call find_accuracy(model, plan, assembled, errors, err, pictures=.true., interruption=interruption)
     if (allocated(err)) return
     do i = 1, size(errors%at)
-      call judge_error(model%request%time%time(i - 1), errors%at(i), errors%allowed, err)
+      call judge_error(model%request%time%time(i - 1), errors%at(i), errors, err)
       if (allocated(err)) return
     end do
     model%request%solver%accuracy = 0.0_wp

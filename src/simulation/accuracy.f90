@@ -4,6 +4,12 @@
 !> the second run, since that of the first is small beside it. (Estimates from the steps alone do not know how the motion itself
 !> enlarges or reduces an error on the way.) The error at the end is nearly proportional to the tolerance: where it is too large,
 !> it tells the tolerances of the next run.
+!>
+!> At the least tolerances of a method the first run has an error that is not small: that of round-off, which adds up over its steps.
+!> A run with twice these tolerances makes other steps and tells it, with a margin since runs by one method share a part of it. Where
+!> this is not small against the accuracy, a run by prince-dormand, which loses least, is the truth. Where no larger tolerances serve,
+!> the run with the least ones is judged, too. Where `auto` cannot have the accuracy by backward differences, prince-dormand makes all
+!> steps. In a very stiff motion it would make too many: then it is neither the truth nor taken.
 module mech9_accuracy
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, exit_interrupted
@@ -11,10 +17,11 @@ module mech9_accuracy
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: point_motion
-  use mech9_integration_methods, only: integration_methods, method_index, least_tolerance, automatic
+  use mech9_integration_methods, only: integration_method_type, integration_methods, method_index, &
+    least_tolerance, automatic, prince_dormand_table
   use mech9_integration_failure, only: check_method
   use mech9_integrator, only: integration_statistics_type
-  use mech9_simulation, only: interruption_type, estimated_errors_type
+  use mech9_simulation, only: simulation_type, interruption_type, estimated_errors_type
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation
   implicit none
   private
@@ -33,61 +40,195 @@ module mech9_accuracy
   real(wp), parameter :: aimed_part = 0.3_wp
   !> Runs that are judged, before the least tolerances are taken.
   integer, parameter :: most_trials = 6
+  !> Tolerances of the run that tells the round-off of another one by the same method, over those of this one.
+  real(wp), parameter :: tolerance_of_other = 2.0_wp
+  !> The error of a run by prince-dormand with the least tolerances, over this difference: it is as large if it is truncation.
+  real(wp), parameter :: of_difference = 2.0_wp
+  !> The same by another method, whose runs share a part of their round-off: six was measured (bdf on the stiff governor).
+  real(wp), parameter :: of_difference_shared = 10.0_wp
+  !> Such an error that is below this part of the allowed one need not be known better.
+  real(wp), parameter :: small_part = 0.1_wp
+  !> Steps of a run by prince-dormand, over those of the run that it is to judge, at most. A step takes some four times as long
+  !> as one of bdf.
+  integer, parameter :: most_steps = 30
 
   !> The course of a run: recorded coordinates and points at the outputs.
   type :: course_type
     integer :: outputs = 0                         !< reached
     logical :: is_implicit = .false.               !< some of its steps were those of an implicit method
+    logical :: is_too_long = .false.               !< it ended since it took more steps than it may
+    integer(long) :: steps = 0                     !< of the integrator
+    real(wp) :: tolerance = 1.0_wp                 !< relative, and absolute [rad, m, per s]
     real(wp), allocatable :: places(:, :)          !< (values, outputs) [rad, m]
-    integer(long) :: evaluations = 0               !< of the accelerations
     type(error_type), allocatable :: failure       !< by which the run ended before the last output
   end type course_type
+
+  !> A search for tolerances.
+  type :: search_type
+    type(model_type), pointer :: model => null()             !< its tolerances and its method change; not owned
+    type(plan_type), pointer :: plan => null()               !< its plan; not owned
+    type(state_type), pointer :: assembled => null()         !< its closed position; not owned
+    logical :: pictures = .false.                            !< the motion of all links is requested
+    class(interruption_type), pointer :: interruption => null()   !< of the user; null: there is none; not owned
+    type(integration_method_type) :: method                  !< makes the steps
+    real(wp) :: least = 0.0_wp                               !< its least tolerance
+    logical :: is_met = .false.                              !< the errors are below the allowed one
+    type(course_type) :: with_least                          !< the run with the least tolerances, as soon as there is one
+    type(course_type) :: truth                               !< the run with small tolerances
+    logical :: is_too_stiff = .false.                        !< prince-dormand would take too many steps
+    real(wp), allocatable :: round_off(:)                    !< (outputs) error of the truth; 0: small beside others [rad, m]
+  end type search_type
+
+  !> A run stops where the user wants it, or after a number of steps.
+  type, extends(interruption_type) :: step_limit_type
+    class(interruption_type), pointer :: of_user => null()   !< null: the user cannot interrupt; not owned
+    integer(long), pointer :: left => null()                 !< steps that are left; not owned
+  contains
+    procedure :: is_wanted
+    procedure :: watch
+  end type step_limit_type
 
 contains
 
   !> Find tolerances by which the motion has the accuracy that its request asks for, and the errors of the run with them. Where
   !> no tolerance gives this accuracy, the errors are those of the least one. Fails where the user interrupts.
   subroutine find_accuracy(model, plan, assembled, errors, err, pictures, interruption)
-    type(model_type), intent(inout) :: model                         !< the model, with an accuracy; gets the tolerances
-    type(plan_type), intent(in) :: plan                              !< its plan
-    type(state_type), intent(in) :: assembled                        !< its closed position, with the independent rates
+    type(model_type), intent(inout) :: model                         !< with an accuracy; gets the tolerances, and perhaps another method
+    type(plan_type), intent(in), target :: plan                      !< its plan
+    type(state_type), intent(in), target :: assembled                !< its closed position, with the independent rates
     type(estimated_errors_type), intent(out) :: errors               !< of the run with these tolerances
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     logical, intent(in), optional :: pictures                        !< the motion of all links is requested; not unless given
-    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the runs shall stop
+    class(interruption_type), intent(in), optional, target :: interruption   !< is asked whether the runs shall stop
     type(model_type), target :: varied
-    type(course_type) :: truth, judged
-    real(wp) :: tolerance, control, least
-    integer :: method, trial
+    type(search_type) :: search
+    integer :: method
 
     varied = model
     varied%request%solver%accuracy = 0.0_wp
     call check_method(model%request%solver%method, method, err)
     if (allocated(err)) return
-    least = least_tolerance(integration_methods(method))
-    if (integration_methods(method)%family == automatic) &
-      least = least_tolerance(integration_methods(method_index('prince-dormand')))
+    search%model => varied
+    search%plan => plan
+    search%assembled => assembled
+    if (present(pictures)) search%pictures = pictures
+    if (present(interruption)) search%interruption => interruption
+    search%method = integration_methods(method)
+    search%least = least_tolerance(search%method)
+    if (search%method%family == automatic) search%least = least_tolerance(best_method())
     errors%allowed = model%request%solver%accuracy
-    tolerance = min(loosest, max(0.1_wp*errors%allowed, 10.0_wp*least))
-    control = 1.0_wp
-    do trial = 1, most_trials
-      if (control > largest_part*tolerance .and. control > least) then
-        control = max(control_part*tolerance, least)
-        call run(varied, plan, assembled, control, truth, errors, err, pictures, interruption)
-        if (allocated(err)) return
-        if (truth%is_implicit) least = least_tolerance(integration_methods(method))
-        tolerance = max(tolerance, 10.0_wp*least)
+    call find_tolerance(search, errors, err)
+    if (allocated(err)) return
+    if (.not. search%is_met .and. search%with_least%is_implicit .and. search%method%family == automatic) then
+      if (search%is_too_stiff) then
+        errors%limit_of_steps = most_steps
+      else
+        search%method = best_method()
+        search%least = least_tolerance(search%method)
+        search%with_least = search%truth
+        call find_tolerance(search, errors, err)
       end if
-      call run(varied, plan, assembled, tolerance, judged, errors, err, pictures, interruption)
-      if (allocated(err)) return
-      call compare(truth, judged, errors)
-      model%request%solver%relative_tolerance = tolerance
-      model%request%solver%absolute_tolerance = tolerance
-      if (maxval(errors%at) <= certain_part*errors%allowed .or. tolerance <= 10.0_wp*least) return
-      tolerance = max(10.0_wp*least, next_tolerance(tolerance, maxval(errors%at), errors%allowed))
-      if (trial == most_trials - 1) tolerance = 10.0_wp*least
-    end do
+    end if
+    model%request%solver%method = errors%method
+    model%request%solver%relative_tolerance = errors%tolerance
+    model%request%solver%absolute_tolerance = errors%tolerance
   end subroutine find_accuracy
+
+  !> The method that loses least by round-off.
+  pure type(integration_method_type) function best_method()
+    best_method = integration_methods(method_index('prince-dormand'))
+  end function best_method
+
+  !> Find the tolerances by the method of the search, and the errors of the run with them.
+  subroutine find_tolerance(search, errors, err)
+    type(search_type), intent(inout) :: search             !< by one method; a truth that is known already stays
+    type(estimated_errors_type), intent(inout) :: errors   !< with the allowed one; get method, tolerance and errors
+    type(error_type), allocatable, intent(out) :: err      !< allocated if the user interrupts
+    type(course_type) :: judged
+    real(wp) :: tolerance
+    integer :: trial
+
+    errors%method = trim(search%method%name)
+    tolerance = min(loosest, max(0.1_wp*errors%allowed, 10.0_wp*search%least))
+    do trial = 1, most_trials
+      if (trial == most_trials) tolerance = search%least
+      if (search%truth%tolerance > max(largest_part*tolerance, search%least)) then
+        call find_truth(search, max(control_part*tolerance, search%least), errors, err)
+        if (allocated(err)) return
+      end if
+      if (tolerance <= 10.0_wp*search%least) exit
+      call run(search, search%method, tolerance, judged, errors, err)
+      if (allocated(err)) return
+      call judge(search, judged, certain_part*errors%allowed, errors)
+      if (search%is_met) return
+      tolerance = next_tolerance(tolerance, maxval(errors%at), errors%allowed)
+    end do
+    call judge(search, search%with_least, errors%allowed, errors)
+  end subroutine find_tolerance
+
+  !> The errors of a run, with the round-off of the truth.
+  subroutine judge(search, judged, largest, errors)
+    type(search_type), intent(inout) :: search             !< with the truth
+    type(course_type), intent(in) :: judged                !< the run
+    real(wp), intent(in) :: largest                        !< error by which the accuracy is met [rad, m]
+    type(estimated_errors_type), intent(inout) :: errors   !< get tolerance and errors
+
+    call compare(search%truth, judged, errors)
+    errors%at = errors%at + search%round_off(:size(errors%at))
+    errors%tolerance = judged%tolerance
+    search%is_met = maxval(errors%at) <= largest
+  end subroutine judge
+
+  !> The run that stands for the truth. With the least tolerances it has an error by round-off. Where this counts, prince-dormand's run
+  !> is the truth, unless it takes too many steps.
+  subroutine find_truth(search, tolerance, errors, err)
+    type(search_type), intent(inout) :: search             !< gets this run and its round-off
+    real(wp), intent(in) :: tolerance                      !< relative, and absolute [rad, m, per s]
+    type(estimated_errors_type), intent(inout) :: errors   !< counts the work
+    type(error_type), allocatable, intent(out) :: err      !< allocated if the user interrupts
+    type(course_type) :: best
+
+    call run(search, search%method, tolerance, search%truth, errors, err)
+    if (allocated(err)) return
+    if (allocated(search%round_off)) deallocate (search%round_off)
+    allocate (search%round_off(search%truth%outputs), source=0.0_wp)
+    if (search%truth%is_implicit) search%least = least_tolerance(search%method)
+    if (tolerance > search%least) return
+    search%with_least = search%truth
+    if (search%method%family == automatic .and. .not. search%truth%is_implicit .or. &
+        search%method%table == prince_dormand_table) then
+      call find_round_off(search, best_method(), of_difference, errors, err)
+      return
+    end if
+    call find_round_off(search, search%method, of_difference_shared, errors, err)
+    if (allocated(err)) return
+    if (maxval(search%round_off) <= small_part*errors%allowed) return
+    call run(search, best_method(), least_tolerance(best_method()), best, errors, err, most_steps*search%with_least%steps)
+    if (allocated(err)) return
+    search%is_too_stiff = best%is_too_long
+    if (search%is_too_stiff) return
+    search%truth = best
+    call find_round_off(search, best_method(), of_difference, errors, err)
+  end subroutine find_truth
+
+  !> The round-off of the truth, from another run by the same method.
+  subroutine find_round_off(search, method, factor, errors, err)
+    type(search_type), intent(inout) :: search             !< with the truth; gets its round-off
+    type(integration_method_type), intent(in) :: method    !< by which it was run
+    real(wp), intent(in) :: factor                         !< error over difference
+    type(estimated_errors_type), intent(inout) :: errors   !< counts the work
+    type(error_type), allocatable, intent(out) :: err      !< allocated if the user interrupts
+    type(course_type) :: other
+    type(estimated_errors_type) :: differences
+    integer :: i
+
+    call run(search, method, tolerance_of_other*least_tolerance(method), other, errors, err)
+    if (allocated(err)) return
+    call compare(search%truth, other, differences)
+    search%truth%outputs = size(differences%at)
+    if (allocated(differences%failure)) search%truth%failure = differences%failure
+    search%round_off = [(factor*maxval(differences%at(:i)), i=1, size(differences%at))]
+  end subroutine find_round_off
 
   !> A smaller tolerance, from the error of a run. One that is much too large says little about the next one.
   pure real(wp) function next_tolerance(tolerance, error, allowed)
@@ -99,47 +240,76 @@ contains
   end function next_tolerance
 
   !> Run the motion with a tolerance. A failure of the motion itself stays in the course; an interruption ends all runs.
-  subroutine run(model, plan, assembled, tolerance, course, errors, err, pictures, interruption)
-    type(model_type), intent(inout), target :: model                 !< gets the tolerance
-    type(plan_type), intent(in) :: plan                              !< its plan
-    type(state_type), intent(in) :: assembled                        !< its closed position, with the independent rates
-    real(wp), intent(in) :: tolerance                                !< relative, and absolute [rad, m, per s]
-    type(course_type), intent(out) :: course                         !< of the run
-    type(estimated_errors_type), intent(inout) :: errors             !< counts the work
-    type(error_type), allocatable, intent(out) :: err                !< allocated if the user interrupts
-    logical, intent(in), optional :: pictures                        !< the motion of all links is requested; not unless given
-    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the run shall stop
+  subroutine run(search, method, tolerance, course, errors, err, steps_allowed)
+    type(search_type), intent(in) :: search                !< whose model gets method and tolerance
+    type(integration_method_type), intent(in) :: method    !< of the run
+    real(wp), intent(in) :: tolerance                      !< relative, and absolute [rad, m, per s]
+    type(course_type), intent(out) :: course               !< of the run
+    type(estimated_errors_type), intent(inout) :: errors   !< counts the work
+    type(error_type), allocatable, intent(out) :: err      !< allocated if the user interrupts
+    integer(long), intent(in), optional :: steps_allowed   !< after these the run ends; any number if absent
     type(free_simulation_type), target :: simulation
     type(integration_statistics_type) :: counts
-    integer :: i, n
+    type(step_limit_type) :: limit
+    integer(long), target :: left
+    integer :: i
 
-    model%request%solver%relative_tolerance = tolerance
-    model%request%solver%absolute_tolerance = tolerance
-    n = size(model%mechanism%pairs)
-    allocate (course%places(count(model%request%output%recorded(n)) + 3*size(model%mechanism%points), &
-                            0:model%request%time%intervals))
-    call new_free_simulation(model, plan, assembled, simulation, course%failure, pictures)
-    simulation%with_energies = .false.
-    simulation%with_conditioning = .false.
-    do i = 0, model%request%time%intervals
-      if (allocated(course%failure)) exit
-      if (i == 0) then
-        call simulation%start(course%failure, interruption)
-      else
-        call simulation%advance(model%request%time%time(i), course%failure)
-      end if
-      if (allocated(course%failure)) exit
-      call take_places(model, simulation, course%places(:, i))
-      course%outputs = i + 1
-    end do
+    course%tolerance = tolerance
+    left = huge(left)
+    if (present(steps_allowed)) left = steps_allowed
+    limit%left => left
+    limit%of_user => search%interruption
+    associate (model => search%model)
+      model%request%solver%method = trim(method%name)
+      model%request%solver%relative_tolerance = tolerance
+      model%request%solver%absolute_tolerance = tolerance
+      allocate (course%places(count(model%request%output%recorded(size(model%mechanism%pairs))) + 3*size(model%mechanism%points), &
+                              0:model%request%time%intervals))
+      call new_free_simulation(model, search%plan, search%assembled, simulation, course%failure, search%pictures)
+      simulation%with_energies = .false.
+      simulation%with_conditioning = .false.
+      do i = 0, model%request%time%intervals
+        if (allocated(course%failure)) exit
+        if (i == 0) then
+          call simulation%start(course%failure, limit)
+        else
+          call simulation%advance(model%request%time%time(i), course%failure)
+        end if
+        if (allocated(course%failure)) exit
+        call take_places(model, simulation, course%places(:, i))
+        course%outputs = i + 1
+      end do
+    end associate
     counts = simulation%motion%statistics()
     course%is_implicit = counts%implicit_steps > 0
+    course%steps = counts%steps
     errors%runs = errors%runs + 1
     errors%evaluations = errors%evaluations + counts%rate_evaluations
     call simulation%close()
     if (.not. allocated(course%failure)) return
-    if (course%failure%code == exit_interrupted) call move_alloc(course%failure, err)
+    if (course%failure%code /= exit_interrupted) return
+    course%is_too_long = left < 0
+    if (.not. course%is_too_long) call move_alloc(course%failure, err)
   end subroutine run
+
+  !> Whether the user wants a run to stop, or its steps are used up. The runs ask before each step.
+  logical function is_wanted(self)
+    class(step_limit_type), intent(in) :: self   !< the limit
+
+    is_wanted = .false.
+    if (associated(self%of_user)) is_wanted = self%of_user%is_wanted()
+    if (is_wanted) return
+    self%left = self%left - 1
+    is_wanted = self%left < 0
+  end function is_wanted
+
+  !> Let the user's interruption see where a run stands.
+  subroutine watch(self, simulation)
+    class(step_limit_type), intent(in) :: self             !< the limit
+    class(simulation_type), intent(inout) :: simulation    !< the run
+
+    if (associated(self%of_user)) call self%of_user%watch(simulation)
+  end subroutine watch
 
   !> The recorded coordinates and points of the present position.
   subroutine take_places(model, simulation, places)

@@ -21,6 +21,7 @@ module mech9_simulation
   type, abstract :: interruption_type
   contains
     procedure(wanted_interface), deferred :: is_wanted
+    procedure :: watch => watch_nothing
   end type interruption_type
 
   !> The work that a motion took since its start. Driven motions have no evaluations, free ones no halvings and crossings.
@@ -52,6 +53,10 @@ module mech9_simulation
   !> Errors at the outputs of a motion, as other runs of it tell (mech9_accuracy).
   type :: estimated_errors_type
     real(wp) :: allowed = 0.0_wp              !< largest error that is allowed [rad, m]
+    real(wp) :: tolerance = 0.0_wp            !< of the motion, relative and absolute [rad, m, per s]
+    character(len=:), allocatable :: method   !< of the motion
+    !> Steps of bdf have these errors, and prince-dormand would take more than so many times their number; 0: it was not tried.
+    integer :: limit_of_steps = 0
     real(wp), allocatable :: at(:)            !< at the outputs, from the start on, as far as these runs led [rad, m]
     type(error_type), allocatable :: failure  !< of one of these runs, which ended before the last output
     integer :: runs = 0                       !< how many they were
@@ -262,22 +267,25 @@ contains
       return
     end if
     self%error = self%errors%at(self%positions + 1)
-    call judge_error(self%t, self%error, self%errors%allowed, err)
+    call judge_error(self%t, self%error, self%errors, err)
     if (.not. allocated(err)) self%largest_error = max(self%largest_error, self%error)
   end subroutine take_error
 
   !> Fail where an error is larger than is allowed.
-  pure subroutine judge_error(t, error, allowed, err)
-    real(wp), intent(in) :: t                           !< time of the position [s]
-    real(wp), intent(in) :: error                       !< its estimated error [rad, m]
-    real(wp), intent(in) :: allowed                     !< largest error that is allowed [rad, m]
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+  pure subroutine judge_error(t, error, errors, err)
+    real(wp), intent(in) :: t                             !< time of the position [s]
+    real(wp), intent(in) :: error                         !< its estimated error [rad, m]
+    type(estimated_errors_type), intent(in) :: errors     !< of the motion, with the allowed one
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
 
-    if (error <= allowed) return
+    if (error <= errors%allowed) return
     call raise(err, exit_integrator, failure_accuracy)
     err%failure%t = t
     err%failure%deviation = error
-    err%failure%tolerance = allowed
+    err%failure%tolerance = errors%allowed
+    err%failure%name = errors%method
+    err%failure%values = reshape([errors%tolerance], [1, 1])
+    err%failure%limit = errors%limit_of_steps
   end subroutine judge_error
 
   !> Keep the energies of the present position, and how far their sum goes from the start.
@@ -293,15 +301,22 @@ contains
 
   !> Fail with exit_interrupted where the motion shall stop.
   subroutine stop_if_interrupted(self, t, err)
-    class(simulation_type), intent(in) :: self          !< the simulation
+    class(simulation_type), intent(inout) :: self       !< the simulation
     real(wp), intent(in) :: t                           !< time that comes next [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     if (.not. allocated(self%interruption)) return
+    call self%interruption%watch(self)
     if (.not. self%interruption%is_wanted()) return
     call raise(err, exit_interrupted, failure_interrupted)
     err%failure%t = t
   end subroutine stop_if_interrupted
+
+  !> See where a motion stands, before it is asked whether it shall stop. Interruptions look at nothing unless they say so.
+  subroutine watch_nothing(self, simulation)
+    class(interruption_type), intent(in) :: self            !< the interruption
+    class(simulation_type), intent(inout) :: simulation     !< the motion
+  end subroutine watch_nothing
 
   !> The work done so far.
   function statistics(self)

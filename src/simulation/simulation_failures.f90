@@ -14,7 +14,8 @@ module mech9_simulation_failures
   !> The user interrupted a motion: t (that comes next).
   integer, parameter :: failure_interrupted = 1003
   !> A motion cannot be as accurate as was asked for: t (of the first position that is not), deviation (estimated error
-  !> there), tolerance (allowed error).
+  !> there), tolerance (allowed error), name (of the method), values (tolerance of its steps), limit (prince-dormand would take more than so
+  !> many times the steps of the method; 0: it was not tried).
   integer, parameter :: failure_accuracy = 1004
   !> The chains of a position are open by more than is allowed: t, gap, tolerance (allowed [m]), size.
   integer, parameter :: failure_open_position = 1005

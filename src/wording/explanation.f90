@@ -319,12 +319,31 @@ contains
              to_text(failure%values(2, 1), 10)//' m. Start elsewhere on the curve, end the motion earlier, or give points of a '// &
              'longer curve'
     case (failure_accuracy)
-      text = 'the motion is not as accurate as was asked for at t = '//to_text(failure%t, 10)//' s: with the least '// &
-             'tolerances its error is about '//to_text(failure%deviation, 2)//', and '// &
-             to_text(failure%tolerance, 2)//' is allowed (rad, m). Round-off alone makes such an error, where the motion '// &
-             'enlarges it enough: it may be chaotic. End before this time, or ask for a larger accuracy'
+      text = accuracy_text(failure)
     end select
   end subroutine explain_simulation
+
+  !> An accuracy that no tolerances give, with the reason and the remedies.
+  pure function accuracy_text(failure) result(text)
+    type(failure_type), intent(in) :: failure   !< of this kind
+    character(len=:), allocatable :: text
+    character(len=:), allocatable :: size
+
+    size = 'is about '
+    if (failure%limit > 0) size = 'may be '
+    text = 'the motion is not as accurate as was asked for at t = '//to_text(failure%t, 10)//' s: with the least tolerances '// &
+           'of '//failure%name//', '//to_text(failure%values(1, 1), 2)//', its error '//size//to_text(failure%deviation, 2)// &
+           ', and '//to_text(failure%tolerance, 2)//' is allowed (rad, m). Round-off makes such an error in many steps, or '// &
+           'where the motion enlarges it: it may be chaotic. '
+    if (failure%limit > 0) text = text//'The motion is stiff: prince-dormand, which has less round-off than bdf, would take '// &
+                                  'more than '//to_text(failure%limit)//' times as many steps. '
+    if (failure%name == 'auto' .or. failure%name == 'prince-dormand') then
+      text = text//'End '
+    else
+      text = text//'Take the method ''auto'', which may have less round-off, end '
+    end if
+    text = text//'before this time, or ask for a larger accuracy'
+  end function accuracy_text
 
   !> A search for equilibria that was interrupted, or finds none: the forces that are left, by coordinate.
   pure subroutine explain_equilibrium(failure, text)

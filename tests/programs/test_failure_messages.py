@@ -419,9 +419,12 @@ def free_cases():
          [f'{stops}0 s: the equations of an implicit step cannot be solved. Look for a force that jumps there; or try another '
           'method']),
         ('accuracy', swings, settings(accuracy='1e-17'), INTEGRATOR,
-         ['the motion is not as accurate as was asked for at t = 0 s: with the least tolerances its error is about ',
-          ', and 1e-17 is allowed (rad, m). Round-off alone makes such an error, where the motion enlarges it enough: it may be '
+         ['the motion is not as accurate as was asked for at t = 0 s: with the least tolerances of auto, 1e-14, its error is about ',
+          ', and 1e-17 is allowed (rad, m). Round-off makes such an error in many steps, or where the motion enlarges it: it may be '
           'chaotic. End before this time, or ask for a larger accuracy']),
+        ('accuracy_of_bdf', swings, settings(accuracy='1e-17', method="'bdf'"), INTEGRATOR,
+         ['with the least tolerances of bdf, 3.3e-11, its error is about ', ". Take the method 'auto', which may have less round-off, "
+          'end before this time, or ask for a larger accuracy']),
         # it grows as exp(1000 t), up to 1e308 at 0.71 s
         ('infinite_rate', SPRING.format(-1e6, 0, 0, 10), (), INTEGRATOR,
          [stops, ': the motion of coordinate 1 is not finite: this motion, or a force, grows beyond all bounds. Look for a spring, a '

@@ -98,6 +98,56 @@ def test_chaotic_motion_ends_in_time(checks, mech9d):
     checks.true(np.max(error) <= 5e-6, 'no row is wrong', np.max(error))
 
 
+# two slides on springs, of 1000 and 1 rad/s: x = cos(1000 t), y = cos(t); {} more of the first spring
+SLIDES = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=1,3, kind='prismatic', axis=0,1,0 /
+&body link=2, mass=1 /
+&body link=3, mass=1 /
+&load kind='coordinate', coordinate=1, stiffness=1e6 {}/
+&load kind='coordinate', coordinate=2, stiffness=1 /
+&initial coordinate=1, position=1, velocity=0 /
+&initial coordinate=2, position=1, velocity=0 /
+&time end={}, intervals={} /
+"""
+
+
+def test_accuracy_beyond_implicit_round_off(checks, mech9d, tmp_path):
+    """A few steps of bdf do not set the least tolerances of a motion that prince-dormand can follow: 1e-8 in 3000 rad."""
+    path = tmp_path / 'slides.nml'
+    path.write_text(SLIDES.format('', 3, 30), encoding='utf-8')
+    table = table_of(mech9d, path, '--set', 'solver.accuracy=1e-8')
+    error = np.maximum(np.abs(table['q1'] - np.cos(1000 * table['t'])), np.abs(table['q2'] - np.cos(table['t'])))
+    checks.equal(len(error), 31, 'all rows are there')
+    checks.true(np.max(error) <= 1e-8, 'the accuracy is kept', np.max(error))
+    checks.true(np.all(error <= table['error'] + 1e-12), 'no estimate is too small', np.max(error - table['error']))
+
+
+def test_accuracy_near_the_round_off_of_bdf(checks, mech9d):
+    """The stiff governor at 1e-10, which is what bdf loses by round-off on the way: prince-dormand tells it, or makes the steps.
+    The truth is another method's, whose own error is a tenth of the accuracy."""
+    data, _ = MOTIONS[STIFF]
+    common = ['--set', 'time.end=5.0', '--set', 'time.intervals=100']
+    names = 'q1', 'q2', 'q3', 'q4'
+    truth = table_of(mech9d, data, *common, '--set', "solver.method='verner'", '--set', 'solver.relative_tolerance=1e-13',
+                     '--set', 'solver.absolute_tolerance=1e-13')
+    for method in 'auto', 'bdf':
+        table = table_of(mech9d, data, *common, '--set', f"solver.method='{method}'", '--set', 'solver.accuracy=1e-10')
+        errors = np.max([np.abs(table[name] - truth[name]) for name in names], axis=0)
+        checks.true(np.max(errors) <= 1.1e-10, f'{method}: the accuracy is kept', np.max(errors))
+        checks.true(np.max(errors - table['error']) <= 1e-11, f'{method}: no estimate is too small', np.max(errors - table['error']))
+
+
+def test_accuracy_of_a_very_stiff_motion_is_refused_with_the_reason(checks, mech9d, tmp_path):
+    """A damper that holds a slide by 1e6/s: prince-dormand would need a million steps a second."""
+    path = tmp_path / 'stiff.nml'
+    path.write_text(SLIDES.format(', damping=1e6', 2, 4), encoding='utf-8')
+    done = run(mech9d, os.fspath(path), '--table', '-', '--set', 'solver.accuracy=1e-13')
+    checks.equal(done.returncode, 7, 'it is refused by the code of the integrator')
+    checks.true('its error may be ' in done.stderr and 'prince-dormand, which has less round-off than bdf, would take more than 30 '
+                'times as many steps' in done.stderr, 'it names the stiffness', done.stderr)
+
+
 PENDULUM = os.path.join(EXAMPLES, 'pendulum', 'pendulum.nml')
 
 
