@@ -14,6 +14,7 @@ module mech9_recording
   use mech9_progress, only: progress_type
   use mech9_simulation, only: standing_type
   use mech9_standing_text, only: standing_text
+  use mech9_waiting_words, only: first_words_after
   implicit none
   private
   public :: recording_outcome_type, record
@@ -23,9 +24,6 @@ module mech9_recording
   integer, parameter :: rows_together = 256
   !> Time after which computed rows are written even if there are fewer, so that a killed run does not lose them [s].
   real(wp), parameter :: longest_wait = 0.25_wp
-
-  !> Time without a new row after which the user is told where the motion stands [s]; the next time comes after twice as long.
-  real(wp), parameter :: first_words_after = 10.0_wp
 
   !> The outcome of a recording.
   type :: recording_outcome_type

@@ -9,6 +9,7 @@ module mech9_row_source
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_clock, only: pacer_type
+  use mech9_waiting_words, only: waiting_words_type
   use mech9_simulation, only: simulation_type, interruption_type, standing_type
   use mech9_batch_products, only: batch_size
   use mech9_tangent, only: tangent_type, find_tangent
@@ -56,8 +57,10 @@ module mech9_row_source
   !> A motion stops where the user interrupts the program, or for a pause.
   type, extends(interruption_type) :: signal_interruption_type
     type(pacer_type), pointer :: pause => null()   !< not owned; where it is associated, a motion stops when this is due
+    type(waiting_words_type), pointer :: words => null()   !< not owned; where they are associated, they tell of the motion
   contains
     procedure :: is_wanted
+    procedure :: watch
   end type signal_interruption_type
 
 contains
@@ -390,4 +393,12 @@ contains
     is_wanted = interrupted()
     if (.not. is_wanted .and. associated(self%pause)) is_wanted = self%pause%due()
   end function is_wanted
+
+  !> Let the words tell where a motion stands, if there are any.
+  subroutine watch(self, simulation)
+    class(signal_interruption_type), intent(in) :: self     !< the interruption
+    class(simulation_type), intent(inout) :: simulation     !< the motion
+
+    if (associated(self%words)) call self%words%look(simulation)
+  end subroutine watch
 end module mech9_row_source
