@@ -241,7 +241,7 @@ contains
 
   !> Run the motion with a tolerance. A failure of the motion itself stays in the course; an interruption ends all runs.
   subroutine run(search, method, tolerance, course, errors, err, steps_allowed)
-    type(search_type), intent(in) :: search                !< whose model gets method and tolerance
+    type(search_type), intent(in) :: search                !< its model gets method and tolerance
     type(integration_method_type), intent(in) :: method    !< of the run
     real(wp), intent(in) :: tolerance                      !< relative, and absolute [rad, m, per s]
     type(course_type), intent(out) :: course               !< of the run

@@ -22,7 +22,7 @@ module mech9_free_simulation
   use mech9_motion_coefficients, only: find_coefficients
   use mech9_integrated_motion, only: integrated_motion_type
   use mech9_limit_passing, only: stop_at_limits
-  use mech9_stopped_motion, only: name_cause, name_cause_at_start
+  use mech9_stopped_motion, only: name_cause, name_cause_at_start, stall_watch_type, name_singular_chains
   use mech9_variable_model, only: variable_model_type
   use mech9_sensitivity, only: sensitivity_type, new_given_sensitivity
   use mech9_varied_motion, only: varied_motion_type
@@ -37,6 +37,7 @@ module mech9_free_simulation
     real(wp), allocatable :: coefficients(:, :)   !< a_pr at the start, lower triangle [kg m^2, kg m, kg]
     real(wp) :: end = 0.0_wp                      !< steps go to this time at most, unless a later one is asked for [s]
     logical, private :: steps_onto = .false.      !< no step may go beyond the time that is asked for
+    type(stall_watch_type), private :: stall      !< tells whether steps stay short
   contains
     procedure :: begin
     procedure :: go_to
@@ -244,6 +245,7 @@ contains
     call raise(err, exit_singular, failure_lost_angles)
     err%failure%t = t
     err%failure%coordinates = self%motion%angles%replaced_coordinates()
+    call name_singular_chains(self%motion%system, t, doubtful_conditioning, err)
   end subroutine stand_at
 
   !> One accepted step towards t, with a change of coordinates before it where that helps. It may go beyond, but near
@@ -253,8 +255,8 @@ contains
     real(wp), intent(in) :: t                            !< time to go to [s]
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(error_type), allocatable :: failure
-    real(wp) :: target, farthest
-    logical :: changed, is_regular
+    real(wp) :: target, farthest, from
+    logical :: changed, is_regular, stalls
 
     if (self%motion%system%interval%is_end(self%motion%t)) call self%motion%pass_joint(err)
     if (.not. allocated(err)) call self%change_angles(err)
@@ -270,6 +272,7 @@ contains
       motion%system%refuse_below = merge(refused_conditioning, 0.0_wp, is_regular)
       target = t
       farthest = t
+      from = motion%t
       if (motion%conditioning_here > regular_conditioning .and. .not. self%steps_onto .and. &
         (self%end - t)*(t - motion%t) > 0.0_wp) &
         farthest = self%end
@@ -282,6 +285,10 @@ contains
         motion%conditioning_here = motion%system%conditioning()
         call motion%dense_output%add(motion%system, motion%t, motion%y)
         call stop_at_limits(motion, err)
+        associate (time => self%model%request%time)
+          call self%stall%note(abs(motion%t - from), abs(time%end - time%start), motion%conditioning_here, stalls)
+        end associate
+        if (stalls .and. .not. allocated(err)) call self%stall%name_stall(motion%system, motion%t, motion%y, err)
         return
       end if
     end associate

@@ -5,7 +5,8 @@ module mech9_simulation_failures
   public :: failure_not_started, failure_backwards, failure_interrupted, failure_accuracy, failure_open_position, &
     failure_lost_link, failure_no_initial_position, failure_singular_start_block, failure_singular_step, &
     failure_unclosed_step, failure_other_branch, failure_drive_jumps, failure_driven_dead_point, failure_gimbal_lock, &
-    failure_lost_angles, failure_jump_sensitivity, failure_angles_sensitivity, last_simulation_failure
+    failure_lost_angles, failure_jump_sensitivity, failure_angles_sensitivity, &
+    failure_loaded_lock, failure_singular_passing, last_simulation_failure
 
   !> A motion is to advance before its start.
   integer, parameter :: failure_not_started = 1001
@@ -44,5 +45,11 @@ module mech9_simulation_failures
   integer, parameter :: failure_jump_sensitivity = 1016
   !> Other angles are integrated in place of those of the data file, whose derivatives are not known: t.
   integer, parameter :: failure_angles_sensitivity = 1017
-  integer, parameter :: last_simulation_failure = failure_angles_sensitivity
+  !> A ball joint comes to gimbal lock in angles that cannot be replaced: coordinates, others (those of them that loads read or
+  !> move; none: a drive or a coupling does), t.
+  integer, parameter :: failure_loaded_lock = 1018
+  !> Closed chains come to a singular position that the motion does not pass, whatever coordinates are independent: chains,
+  !> coordinates, t.
+  integer, parameter :: failure_singular_passing = 1019
+  integer, parameter :: last_simulation_failure = failure_singular_passing
 end module mech9_simulation_failures

@@ -7,6 +7,7 @@ module mech9_simulation_tolerances
   private
   public :: largest_closure, hidden_part, trusted_closing, trusted_between_steps, doubtful_conditioning, &
     worthwhile_improvement, regular_conditioning, refused_conditioning, short_way, locked, locked_together, &
+    short_part, long_part, many_short, nearly_singular, surely_singular, least_part, nearly_locked, &
     round_off_of_jumps, steepest_slope, third_derivative_step, drawn_near_by
 
   ! The start.
@@ -51,6 +52,19 @@ module mech9_simulation_tolerances
   real(wp), parameter :: locked = 1.0e-6_wp
   !> Coordinates have a part in gimbal lock that is at least this part of the largest.
   real(wp), parameter :: locked_together = 0.1_wp
+
+  ! Motions that need ever shorter steps.
+
+  !> Steps are short below this part of the longest one of the motion, or of a step that is this part of its duration.
+  real(wp), parameter :: short_part = 1.0e-3_wp, long_part = 1.0e-2_wp
+  !> So many short steps in a row ask for their cause. A motion that passes a singular position at a distance needs far fewer: steps in
+  !> proportion to the distance, some ten for each power of ten.
+  integer, parameter :: many_short = 1000
+  !> Conditioning of closed chains below which these are the cause, if it is also below this part of their best one in the motion:
+  !> motions that did not come on had some 1e-5. Some began there: below the second number their best one does not count.
+  real(wp), parameter :: nearly_singular = 1.0e-3_wp, surely_singular = 1.0e-5_wp, least_part = 0.1_wp
+  !> Distance of a ball joint from gimbal lock below which this is the cause [rad]: such motions stood at some 1e-4.
+  real(wp), parameter :: nearly_locked = 1.0e-3_wp
 
   ! Drives and outputs.
 

@@ -7,13 +7,19 @@
 !> singular, although each coordinate has inertia. Its entries are divided by the roots of the diagonal ones, so that units do
 !> not matter. Long chains have nearly singular matrices everywhere; so the least singular value counts against that of the
 !> start.
+!>
+!> Short steps alone are no failure: an impact or a stiff spring needs them for some time. But a motion that does not leave them
+!> while its closed chains are nearly singular, or while a ball joint is in gimbal lock in angles that cannot be replaced, does not leave
+!> them at all: round-off over the distance from such a position decides about each step.
 module mech9_stopped_motion
   use mech9_kinds, only: wp
-  use mech9_simulation_tolerances, only: locked, locked_together, doubtful_conditioning
+  use mech9_simulation_tolerances, only: locked, locked_together, doubtful_conditioning, short_part, long_part, &
+    many_short, nearly_singular, surely_singular, least_part, nearly_locked
   use mech9_error, only: error_type, raise, exit_singular, exit_integrator
   use mech9_ode_failures, only: failure_infinite_rate
   use mech9_dynamics_failures, only: failure_no_inertia, failure_singular_block
-  use mech9_simulation_failures, only: failure_gimbal_lock, failure_singular_start_block, failure_driven_dead_point
+  use mech9_simulation_failures, only: failure_gimbal_lock, failure_singular_start_block, failure_driven_dead_point, &
+    failure_loaded_lock, failure_singular_passing
   use mech9_masks, only: numbers_of
   use mech9_lapack, only: dgesvd
   use mech9_model, only: model_type
@@ -25,14 +31,116 @@ module mech9_stopped_motion
   use mech9_integrated_vector, only: coordinate_of
   use mech9_motor_states, only: coordinate_of_motor
   use mech9_motion_system, only: motion_system_type
+  use mech9_held_rods, only: held_angle
+  use mech9_rotation, only: cross
   use mech9_motion_coefficients, only: find_coefficients
   implicit none
   private
-  public :: name_cause, name_cause_at_start, find_lock
+  public :: name_cause, name_cause_at_start, find_lock, stall_watch_type, name_singular_chains
+
+  !> The steps of a motion.
+  type :: stall_watch_type
+    real(wp), private :: long = 0.0_wp      !< a long step of the motion [s]
+    real(wp), private :: best = 0.0_wp      !< best conditioning of all steps
+    integer, private :: n_short = 0         !< short steps in a row
+  contains
+    procedure :: note
+    procedure :: name_stall
+  end type stall_watch_type
 
 contains
 
-  !> Complete the failure of an integration: the coordinate whose motion is not finite, or gimbal lock, if that is its cause.
+  !> Note a step. `stalls` tells that many steps in a row were short; they are counted anew then.
+  pure subroutine note(self, step, duration, conditioning, stalls)
+    class(stall_watch_type), intent(inout) :: self   !< the steps so far
+    real(wp), intent(in) :: step                     !< length of the last one [s]
+    real(wp), intent(in) :: duration                 !< of the whole motion [s]
+    real(wp), intent(in) :: conditioning             !< of its closed chains at the end of the step
+    logical, intent(out) :: stalls                   !< the cause should be looked for
+
+    self%long = max(self%long, step, long_part*duration)
+    self%best = max(self%best, conditioning)
+    self%n_short = merge(self%n_short + 1, 0, step < short_part*self%long)
+    stalls = self%n_short >= many_short
+    if (stalls) self%n_short = 0
+  end subroutine note
+
+  !> Name the cause of many short steps; none is named where the steps may become longer again.
+  subroutine name_stall(self, system, t, y, err)
+    class(stall_watch_type), intent(in) :: self         !< the steps so far
+    type(motion_system_type), intent(inout) :: system   !< the system; it is moved to the end of the last step
+    real(wp), intent(in) :: t                           !< end of the last step [s]
+    real(wp), intent(in) :: y(:)                        !< the vector there
+    type(error_type), allocatable, intent(out) :: err   !< allocated where the motion cannot leave the position
+
+    call system%move_to(t, y, err)
+    if (allocated(err)) return
+    call name_locked_joint(system, t, err)
+    if (allocated(err)) return
+    call name_singular_chains(system, t, max(surely_singular, min(nearly_singular, least_part*self%best)), err)
+  end subroutine name_stall
+
+  !> Fail where closed chains are nearly singular, by the worst conditioned block.
+  subroutine name_singular_chains(system, t, least, err)
+    type(motion_system_type), intent(inout) :: system         !< the system at the position
+    real(wp), intent(in) :: t                                 !< the time [s]
+    real(wp), intent(in) :: least                             !< conditioning below which they are
+    type(error_type), allocatable, intent(inout) :: err       !< any; another one where chains are singular
+    real(wp) :: conditioning(size(system%work%blocks))
+    integer :: b
+
+    if (size(conditioning) == 0) return
+    conditioning = [(system%work%blocks(b)%equations%conditioning(), b=1, size(conditioning))]
+    b = minloc(conditioning, dim=1)
+    if (conditioning(b) > least) return
+    call raise(err, exit_singular, failure_singular_passing)
+    err%failure%chains = system%plan%blocks(b)%chains
+    err%failure%coordinates = system%plan%blocks(b)%coordinates
+    err%failure%t = t
+  end subroutine name_singular_chains
+
+  !> Fail where a ball joint is in gimbal lock in its present angles.
+  subroutine name_locked_joint(system, t, err)
+    type(motion_system_type), intent(in) :: system        !< the system at the position
+    real(wp), intent(in) :: t                             !< the time [s]
+    type(error_type), allocatable, intent(inout) :: err   !< stays as it is without gimbal lock
+    logical :: loaded(system%plan%n_coordinates)
+    integer :: i, j, k(3)
+
+    if (.not. allocated(system%model%mechanism%structure%joints)) return
+    do j = 1, size(system%model%mechanism%structure%joints)
+      associate (joint => system%model%mechanism%structure%joints(j))
+        if (joint%kind /= 'spherical') cycle
+        k = joint%numbers(:3)
+      end associate
+      if (sine_between(system, k(1), k(3)) > nearly_locked) cycle
+      loaded = .false.
+      associate (loads => system%model%mechanism%loads)
+        do i = 1, size(loads)
+          if (.not. loads(i)%load%is_idle()) call loads(i)%load%mark_coordinates(loaded)
+        end do
+      end associate
+      call raise(err, exit_singular, failure_loaded_lock)
+      err%failure%coordinates = k
+      err%failure%others = pack(k, loaded(k))
+      err%failure%t = t
+      return
+    end do
+  end subroutine name_locked_joint
+
+  !> The sine of the angle between the axes of two coordinates.
+  pure real(wp) function sine_between(system, a, b)
+    type(motion_system_type), intent(in) :: system   !< the system, frames in place
+    integer, intent(in) :: a                         !< number of a coordinate
+    integer, intent(in) :: b                         !< number of the other one
+
+    associate (axes => system%state%axis_w, plan => system%plan)
+      sine_between = norm2(cross(axes(:, plan%step_of(a)), axes(:, plan%step_of(b))))
+    end associate
+  end function sine_between
+
+  !> Complete the failure of an integration: the coordinate whose motion is not finite, gimbal lock, or singular chains, if that is its
+  !> cause.
   subroutine name_cause(system, t, y, at_start, failure)
     type(motion_system_type), intent(inout) :: system             !< the system; it may be moved to the end of the last step
     real(wp), intent(in) :: t                                     !< end of the last step [s]
@@ -52,7 +160,11 @@ contains
     associate (places => system%plan%free_places)
       is_locked = find_lock(system%work%coefficients(places, places), at_start(places, places))
     end associate
-    if (any(is_locked)) call refuse_lock(pack(system%plan%free, is_locked), t, failure)
+    if (any(is_locked)) then
+      call refuse_lock(pack(system%plan%free, is_locked), t, failure)
+    else if (.not. is_of_kind(failure, failure_infinite_rate)) then
+      call name_singular_chains(system, t, surely_singular, failure)
+    end if
   end subroutine name_cause
 
   !> Complete the failure of a start: a singular block, or gimbal lock where it seems that a coordinate has no inertia. Open
@@ -91,7 +203,7 @@ contains
   end function is_of_kind
 
   !> Replace the failure of an integration by a dead point of the drives, if that is its cause: the worst conditioned block with the
-  !> driven coordinates that would not be chosen if they were free.
+  !> driven coordinates that would not be chosen if they were free. Angles of rods that the program holds are no drives of the user.
   subroutine name_dead_point(system, t, y, failure)
     type(motion_system_type), intent(inout) :: system         !< the system; it may be moved to the end of the last step
     real(wp), intent(in) :: t                                 !< end of the last step [s]
@@ -108,7 +220,8 @@ contains
     call system%move_to(t, y, err)
     if (allocated(err)) return
     call best_independent(system%plan, system%state, chosen, without_drives=.true.)
-    dead = numbers_of(system%plan%driven .and. .not. chosen)
+    dead = numbers_of(system%plan%driven .and. .not. chosen .and. &
+                      [(held_angle(system%model, [b]) == 0, b=1, system%plan%n_coordinates)])
     conditioning = [(system%work%blocks(b)%equations%conditioning(), b=1, size(conditioning))]
     b = minloc(conditioning, dim=1)
     if (size(dead) == 0 .or. conditioning(b) > doubtful_conditioning) return

@@ -23,7 +23,7 @@ module mech9_explanation
   use mech9_simulation_failures, only: failure_singular_start_block, failure_singular_step, failure_unclosed_step, &
     failure_other_branch, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
     failure_interrupted, failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
-    failure_driven_dead_point, failure_lost_link
+    failure_driven_dead_point, failure_lost_link, failure_loaded_lock, failure_singular_passing
   use mech9_reaction_failures, only: failure_unbalanced
   use mech9_equilibrium_failures, only: failure_no_equilibrium, failure_interrupted_starts
   use mech9_block_names, only: chain_names, words_of_block
@@ -263,6 +263,13 @@ contains
       text = 'the motion comes to gimbal lock at t = '//to_text(failure%t, 10)//' s: there coordinates '// &
              to_text(failure%coordinates)//' can move together without moving any mass, so that the forces do not determine '// &
              'their accelerations. Turn about the axes in another order, or give the links between them inertia'
+    case (failure_loaded_lock)
+      text = loaded_lock_text(failure)
+    case (failure_singular_passing)
+      text = words_of_block(failure%chains, failure%coordinates)//trim(merge(' comes', ' come ', size(failure%chains) == 1))// &
+             ' to a singular position at t = '// &
+             to_text(failure%t, 10)//' s, in which some links can move in several ways, so that it is not certain how the '// &
+             'motion goes on. End before this time, begin beside it, or change the dimensions'
     case (failure_lost_angles)
       text = 'coordinates '//to_text(failure%coordinates)//' cannot be continued through gimbal lock at t = '// &
              to_text(failure%t, 10)//' s; lower the tolerances, or turn about the axes in another order'
@@ -286,6 +293,23 @@ contains
              'grows beyond all bounds'
     end select
   end subroutine explain_equations
+
+  !> A ball joint in gimbal lock whose angles cannot be replaced.
+  pure function loaded_lock_text(failure) result(text)
+    type(failure_type), intent(in) :: failure   !< of this kind
+    character(len=:), allocatable :: text
+
+    text = 'the ball joint of coordinates '//to_text(failure%coordinates)//' comes to gimbal lock at t = '// &
+           to_text(failure%t, 10)//' s: its first and its third axis are parallel there. '
+    if (size(failure%others) > 0) then
+      text = text//'A load on coordinate '//to_text(failure%others)//' determines no torque in this position. Let it act '// &
+             'between links'
+    else
+      text = text//'Other angles cannot take their place, since a drive or a coupling needs these. Drive or couple other '// &
+             'coordinates'
+    end if
+    text = text//', or turn about the axes in another order'
+  end function loaded_lock_text
 
   !> Simulations that cannot begin or go on.
   pure subroutine explain_simulation(failure, text)

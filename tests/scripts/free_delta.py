@@ -12,15 +12,36 @@ FALL = """&time end=0.33, intervals=33 /
 """
 
 
-def delta(spin, independent='1,2,3', more=''):
-    """The robot of the gallery without drives, with rods of 0.1 kg whose moment of inertia about their own axes is `spin`."""
+BALL = r"coordinates=(\d+,\d+,\d+), links=(\d+),(\d+), kind='spherical', point=(\S*) /"
+
+
+def let_rods_hang(text):
+    """Ball joints at the platform, link 5, vertically below those at the arms."""
+    above = {}
+
+    def move(ball):
+        numbers, first, second, point = ball.groups()
+        rod = max(int(first), int(second))
+        if '5' in (first, second):
+            point = ','.join([*above[rod].split(',')[:2], '-0.64'])
+        else:
+            above[rod] = point
+        return f"coordinates={numbers}, links={first},{second}, kind='spherical', point={point} /"
+
+    return re.sub(BALL, move, text)
+
+
+def delta(spin, independent='1,2,3', more='', vertical=False):
+    """The robot of the gallery without drives, with rods of 0.1 kg whose moment of inertia about their own axes is `spin`. With
+    `vertical` the platform is so wide that all rods are vertical at home."""
     text = text_of(os.path.join(TREE, 'examples', 'delta_robot', 'delta_robot.nml'))
     text = re.sub(r'&(drive|time|output).*?/\n', '', text, flags=re.S).replace('cq=1,2,3', 'cq=' + independent)
     if 'coordinate=40' in more:
         text = text.replace('links=11, coordinates=39', 'links=12, coordinates=40')
-    balls = re.findall(r"coordinates=\d+,\d+,\d+, links=(\d+),(\d+), kind='spherical', point=(\S*) /", text)
+    if vertical:
+        text = let_rods_hang(text)
     ends = {}
-    for first, second, point in balls:
+    for _, first, second, point in re.findall(BALL, text):
         rod = max(int(first), int(second)) if max(int(first), int(second)) > 5 else None
         ends.setdefault(rod, []).append(np.array([float(x) for x in point.split(',')]))
     for rod, (a, b) in ends.items():

@@ -157,6 +157,14 @@ def test_accuracy_beyond_round_off_is_refused(checks, mech9d):
     checks.true('at t = 0 s' in done.stderr, 'at the start', done.stderr)
 
 
+def test_a_method_that_loses_more_is_named(checks, mech9d):
+    done = run(mech9d, PENDULUM, '--table', '-', '--set', 'solver.accuracy=1e-17', '--set', "solver.method='bdf'")
+    checks.equal(done.returncode, 7, 'less than round-off is refused')
+    checks.true("with the least tolerances of bdf, 3.3e-11, its error is about " in done.stderr
+                and "Take the method 'auto', which may have less round-off, end before this time" in done.stderr, 'it names another method',
+                done.stderr)
+
+
 def test_negative_accuracy_is_refused(checks, mech9d):
     done = run(mech9d, PENDULUM, '--set', 'solver.accuracy=-1')
     checks.equal(done.returncode, 3, 'an accuracy is not negative')
