@@ -54,7 +54,7 @@ module mech9_columns
     procedure :: fill_motors
     procedure :: append_energies
     procedure :: append_sensitivities
-    procedure :: unit_per
+    procedure :: find_unit_per
     procedure :: fill_sensitivities
     procedure :: fill_beyond_motion
     procedure :: fill_varied_poses
@@ -233,7 +233,7 @@ contains
     type(string_type), intent(in) :: parameters(:)   !< names of the parameters
     type(string_type), intent(in) :: units(:)        !< their units; empty: not known, '1': plain numbers
     logical, intent(in) :: recorded                  !< they are in the results
-    character(len=:), allocatable :: name, unit
+    character(len=:), allocatable :: name, unit, per_parameter
     integer :: p, i
 
     self%parameters = parameters
@@ -249,18 +249,19 @@ contains
       name = self%names(i)%text
       unit = self%units(i)%text
       do p = 1, size(parameters)
-        call self%append('d('//name//')/d('//parameters(p)%text//')', self%unit_per(unit, p), &
+        call self%find_unit_per(unit, p, per_parameter)
+        call self%append('d('//name//')/d('//parameters(p)%text//')', per_parameter, &
                          'derivative of '//name//' by '//parameters(p)%text)
       end do
     end do
   end subroutine append_sensitivities
 
   !> A unit per that of a parameter, or per the parameter where its unit is not known.
-  pure function unit_per(self, unit, parameter) result(text)
-    class(columns_type), intent(in) :: self   !< the columns, with parameters
-    character(len=*), intent(in) :: unit      !< of what has the derivative
-    integer, intent(in) :: parameter          !< number of the parameter
-    character(len=:), allocatable :: text
+  pure subroutine find_unit_per(self, unit, parameter, text)
+    class(columns_type), intent(in) :: self                !< the columns, with parameters
+    character(len=*), intent(in) :: unit                   !< of what has the derivative
+    integer, intent(in) :: parameter                       !< number of the parameter
+    character(len=:), allocatable, intent(out) :: text     !< the unit of the derivative
 
     associate (of => self%parameter_units(parameter)%text)
       if (of == '') then
@@ -273,7 +274,7 @@ contains
         text = unit//'/'//of
       end if
     end associate
-  end function unit_per
+  end subroutine find_unit_per
 
   !> The place in a row before the derivatives by parameters.
   pure integer function before_sensitivities(self) result(before)

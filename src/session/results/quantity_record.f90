@@ -286,6 +286,7 @@ contains
   subroutine print_quantities(self, unit)
     class(quantity_record_type), intent(in) :: self   !< the record
     integer, intent(in) :: unit                       !< Fortran unit to write to
+    character(len=:), allocatable :: per_parameter
     integer :: i, p
 
     if (self%is_empty() .or. .not. self%is_finished) return
@@ -296,8 +297,9 @@ contains
           if (ieee_is_nan(self%gradient(p, i))) then
             write (unit, '(a)') '  d('//name//')/d('//self%columns%parameters(p)%text//') is not known'
           else
+            call self%columns%find_unit_per(self%unit_of(i), p, per_parameter)
             write (unit, '(a)') '  d('//name//')/d('//self%columns%parameters(p)%text//') = '//to_text(self%gradient(p, i), 12)// &
-              ' '//self%columns%unit_per(self%unit_of(i), p)
+              ' '//per_parameter
           end if
         end do
       end associate

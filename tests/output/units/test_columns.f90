@@ -140,13 +140,27 @@ contains
     type(columns_type), intent(in) :: columns       !< with derivatives
     type(columns_type) :: others
 
-    call tester%is_true(columns%unit_per('m', 1) == 'm/kg' .and. columns%unit_per('m', 2) == 'm/b', 'a unit, and a name for one')
     others = columns
+    call check_unit(tester, others, 'm', 1, 'm/kg')
+    call check_unit(tester, others, 'm', 2, 'm/b')
     others%parameter_units(1)%text = '1'
     others%parameter_units(2)%text = 'N m'
-    call tester%is_true(others%unit_per('rad/s', 1) == 'rad/s' .and. others%unit_per('rad/s', 2) == 'rad/s/(N m)', &
-                        'by a plain number, and by a product')
+    call check_unit(tester, others, 'rad/s', 1, 'rad/s')
+    call check_unit(tester, others, 'rad/s', 2, 'rad/s/(N m)')
   end subroutine check_units
+
+  !> The unit of a derivative by a parameter.
+  subroutine check_unit(tester, columns, unit, parameter, expected)
+    type(tester_type), intent(inout) :: tester      !< counts the checks
+    type(columns_type), intent(in) :: columns       !< with derivatives
+    character(len=*), intent(in) :: unit            !< of what has the derivative
+    integer, intent(in) :: parameter                !< number of the parameter
+    character(len=*), intent(in) :: expected        !< unit of the derivative
+    character(len=:), allocatable :: text
+
+    call columns%find_unit_per(unit, parameter, text)
+    call tester%is_true(text == expected, 'unit of a derivative: '//text)
+  end subroutine check_unit
 
   !> At a right angle of the crank the rod lies at sin = -0.3: the slider stands at sqrt(1 - 0.09), and its rate is -0.3 of that of
   !> the crank; the angles are in degrees.
