@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mech9_cases import TREE, read_table, run, table_of, text_of
-from terminal import Terminal, needs_terminal
+from pseudo_terminal import Terminal, needs_terminal
 
 PROMPT = 'show, plot, compare, change, run or done'
 PROMPT_OF_DYNAMICS = 'show, plot, compare, equilibrium, modes, change, run or done'

@@ -9,9 +9,9 @@ import tempfile
 import pytest
 
 import dialogue_scripts as scripts
-from dialogue import Talk, answers_of, first_missing, piped
+from conversations import Talk, answers_of, first_missing, piped
 from mech9_cases import TREE, read_table, run, text_of
-from terminal import needs_terminal
+from pseudo_terminal import needs_terminal
 
 DONE, USAGE, DATA, FILE, INTERRUPTED = 0, 2, 3, 8, 130
 EXAMPLE = {'fig_1': os.path.join(TREE, 'examples', 'fig1', 'fig1.nml'),

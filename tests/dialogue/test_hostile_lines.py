@@ -13,7 +13,7 @@ import tempfile
 import pytest
 
 from mech9_cases import PATIENCE, TREE
-from terminal import Terminal, needs_terminal, random_keys
+from pseudo_terminal import Terminal, needs_terminal, random_keys
 
 LINES, PER_SESSION, MOST_SESSIONS = 10000, 500, 300
 BLOCK = 4096     # bytes that the program may have taken from its input without having asked for them

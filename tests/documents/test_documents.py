@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from documents import blocks_of, check_commands, check_document
+from document_checks import blocks_of, check_commands, check_document
 from mech9_cases import TREE, text_of
 
 DOCUMENTS = sorted({os.path.relpath(path, TREE) for pattern in ('*.md', 'docs/**/*.md')

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from documents import check_commands, check_document
+from document_checks import check_commands, check_document
 from mech9_cases import TREE
 
 DOCUMENTS = ['examples/README.md'] + sorted(os.path.relpath(path, TREE) for path in glob.glob(os.path.join(TREE, 'examples', '*', 'README.md')))

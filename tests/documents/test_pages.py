@@ -6,7 +6,7 @@ import subprocess
 import pytest
 
 from mech9_cases import PATIENCE, run
-from terminal import Terminal, needs_terminal
+from pseudo_terminal import Terminal, needs_terminal
 
 BOTH = pytest.mark.parametrize('name', ('mech9k', 'mech9d'))
 

@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from dialogue import piped
+from conversations import piped
 from mech9_cases import PATIENCE, TREE, run, text_of
 
 try:

@@ -10,7 +10,7 @@ import time
 import pytest
 
 from mech9_cases import PATIENCE
-from terminal import available
+from pseudo_terminal import available
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import time
 import pytest
 
 from mech9_cases import PATIENCE
-from terminal import Terminal, needs_terminal, random_keys
+from pseudo_terminal import Terminal, needs_terminal, random_keys
 
 LEFT, UP, DOWN, DELETE, HOME = '\x1b[D', '\x1b[A', '\x1b[B', '\x1b[3~', '\x01'
 

@@ -59,6 +59,14 @@ def test_root(checks, names):
     checks.equal({name.split('/')[0] for name in names} - ROOT, set(), 'nothing else stands at the root')
 
 
+def test_modules_of_scripts(checks, names):
+    """Python may take a folder of tests for a module of its name."""
+    folders = {name.split('/')[1] for name in names if re.match(r'tests/\w+/', name)}
+    modules = {os.path.basename(name)[:-3] for name in names if re.match(r'tests/scripts/\w+\.py$', name)}
+    checks.true(len(folders) > 20 and len(modules) > 10, 'folders and modules were found')
+    checks.equal(folders & modules, set(), 'no module has the name of a folder')
+
+
 def test_no_paths_of_one_machine(checks, texts):
     for name, text in texts.items():
         found = [f'{number}: {line}' for number, line in enumerate(text.splitlines(), 1) if MACHINE_PATH.search(line)]

@@ -6,7 +6,7 @@ answer the line that is typed then.
 import re
 
 from mech9_cases import run
-from terminal import Terminal
+from pseudo_terminal import Terminal
 
 
 def answers_of(steps):
