@@ -264,7 +264,7 @@ contains
              to_text(failure%coordinates)//' can move together without moving any mass, so that the forces do not determine '// &
              'their accelerations. Turn about the axes in another order, or give the links between them inertia'
     case (failure_loaded_lock)
-      text = loaded_lock_text(failure)
+      call explain_loaded_lock(failure, text)
     case (failure_singular_passing)
       text = words_of_block(failure%chains, failure%coordinates)//trim(merge(' comes', ' come ', size(failure%chains) == 1))// &
              ' to a singular position at t = '// &
@@ -295,9 +295,9 @@ contains
   end subroutine explain_equations
 
   !> A ball joint in gimbal lock whose angles cannot be replaced.
-  pure function loaded_lock_text(failure) result(text)
-    type(failure_type), intent(in) :: failure   !< of this kind
-    character(len=:), allocatable :: text
+  pure subroutine explain_loaded_lock(failure, text)
+    type(failure_type), intent(in) :: failure                 !< of this kind
+    character(len=:), allocatable, intent(inout) :: text      !< the message
 
     text = 'the ball joint of coordinates '//to_text(failure%coordinates)//' comes to gimbal lock at t = '// &
            to_text(failure%t, 10)//' s: its first and its third axis are parallel there. '
@@ -309,7 +309,7 @@ contains
              'coordinates'
     end if
     text = text//', or turn about the axes in another order'
-  end function loaded_lock_text
+  end subroutine explain_loaded_lock
 
   !> Simulations that cannot begin or go on.
   pure subroutine explain_simulation(failure, text)
@@ -343,14 +343,14 @@ contains
              to_text(failure%values(2, 1), 10)//' m. Start elsewhere on the curve, end the motion earlier, or give points of a '// &
              'longer curve'
     case (failure_accuracy)
-      text = accuracy_text(failure)
+      call explain_accuracy(failure, text)
     end select
   end subroutine explain_simulation
 
   !> An accuracy that no tolerances give, with the reason and the remedies.
-  pure function accuracy_text(failure) result(text)
-    type(failure_type), intent(in) :: failure   !< of this kind
-    character(len=:), allocatable :: text
+  pure subroutine explain_accuracy(failure, text)
+    type(failure_type), intent(in) :: failure                 !< of this kind
+    character(len=:), allocatable, intent(inout) :: text      !< the message
     character(len=:), allocatable :: size
 
     size = 'is about '
@@ -367,7 +367,7 @@ contains
       text = text//'Take the method ''auto'', which may have less round-off, end '
     end if
     text = text//'before this time, or ask for a larger accuracy'
-  end function accuracy_text
+  end subroutine explain_accuracy
 
   !> A search for equilibria that was interrupted, or finds none: the forces that are left, by coordinate.
   pure subroutine explain_equilibrium(failure, text)
