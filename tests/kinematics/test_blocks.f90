@@ -121,7 +121,7 @@ contains
                           'a long row is divided into its four-bars')
       end do
       print '(2(a,f7.4),a)', 'plans of rows: ', seconds(1), ' s, ten times as long: ', seconds(2), ' s'
-      call test%is_true(seconds(2) < 40.0_wp*seconds(1) + 0.05_wp, 'plans of long rows take a time that grows linearly')
+      call test%is_true(seconds(2) < 25.0_wp*seconds(1) + 0.05_wp, 'plans of long rows take a time that grows linearly')
     end do
   end subroutine long_rows
 

@@ -234,17 +234,18 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(block_work_type) :: work
     type(assembly_outcome_type) :: outcome
-    real(wp) :: guess(plan%n_coordinates)
+    real(wp) :: guess(size(blocks(size(blocks))%coordinates))
     logical :: closed
 
     complete = .false.
     missed = .false.
-    guess = state%q
     associate (block => blocks(size(blocks)))
+      guess = state%q(block%coordinates)   ! no other coordinate changes here
       work = new_block_work(block)
       call assemble_block(plan, block, state, work, .not. near_only, outcome, err)
       if (allocated(err)) return
-      if (near_only) missed = .not. outcome%closed .or. any(abs(state%q - guess) > near_guesses*plan%unit_of)
+      if (near_only) missed = .not. outcome%closed .or. &
+                              any(abs(state%q(block%coordinates) - guess) > near_guesses*plan%unit_of(block%coordinates))
       if (missed) return
       if (.not. outcome%closed) then
         call assemble_by_other_starts(plan, blocks, outcome, state, err)
