@@ -167,7 +167,7 @@ contains
     reported = ready .and. options%has('report')
     if (.not. ready) return
     if (simulation%with_error) then
-      call words%start('mech9d', 'that tells the accuracy', options%has('quiet'))
+      call words%start(model%program, 'no row yet', 'a run that tells the accuracy', options%has('quiet'), with_progress=.true.)
       call find_accuracy(model, plan, start, simulation%errors, err, pictures%any_wanted(), signal_interruption_type(words=words))
       call words%finish()
     end if

@@ -12,7 +12,7 @@ module mech9_driven_angles
   use mech9_plan, only: plan_type, copy_plan
   use mech9_state, only: state_type, copy_state
   use mech9_requested, only: requested_type
-  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
+  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance, angles_in_doubt
   use mech9_ball_angles, only: ball_angles_type
   implicit none
   private
@@ -20,6 +20,8 @@ module mech9_driven_angles
 
   !> Most halvings of a step over which angles cannot be continued.
   integer, parameter :: most_halvings = 60
+  !> Steps of a motion after which it pauses.
+  integer, parameter :: steps_at_once = 1000
 
 contains
 
@@ -45,29 +47,29 @@ contains
     call show_angles(plan, angles, driven, err)
   end subroutine begin_with_angles
 
-  !> Go on to a time, as `advance` does.
-  subroutine advance_with_angles(model, requested, plan, t, driven, angles, err)
+  !> Go on towards a time, as `advance` does: as far as the same angles lead, and not by more than many steps.
+  subroutine advance_with_angles(model, requested, plan, t, driven, angles, reached, err)
     type(model_type), intent(in) :: model                  !< the model
     type(requested_type), intent(in) :: requested          !< the part of the motion that is worked out
     type(plan_type), intent(inout) :: plan                 !< as the motion executes it
     real(wp), intent(in) :: t                              !< time to go to [s]
     type(driven_motion_type), intent(inout) :: driven      !< the driven motion
     type(ball_angles_type), intent(inout) :: angles        !< of the ball joints
+    logical, intent(out) :: reached                        !< the motion is at this time
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    logical :: reached
 
-    do
-      if (angles%in_use()) then
-        call advance_short(plan, t, driven, angles, reached, err)
-      else
-        call advance(angles%held%drives, plan, driven, t, err)
-        reached = .not. driven%paused
-      end if
-      if (allocated(err)) exit
-      if (driven%paused) call change_angles(model, requested, plan, driven, angles, err)
-      if (allocated(err) .or. reached) exit
-    end do
-    if (.not. allocated(err)) call show_angles(plan, angles, driven, err)
+    if (angles%in_use()) then
+      call advance_short(plan, t, driven, angles, reached, err)
+    else
+      call advance(angles%held%drives, plan, driven, t, err, steps_at_once)
+      reached = .not. driven%paused
+    end if
+    if (allocated(err)) return
+    if (driven%paused) then
+      if (angles_in_doubt(driven)) call change_angles(model, requested, plan, driven, angles, err)
+    else if (reached) then
+      call show_angles(plan, angles, driven, err)
+    end if
   end subroutine advance_with_angles
 
   !> Go on towards a time, as far as the angles of the data file can be continued at once.
@@ -97,7 +99,6 @@ contains
       call copy_driven_motion(before, driven)
       h = 0.5_wp*h
     end do
-    driven%positions = before%positions
     call angles%continue_to(driven%state)
   end subroutine advance_short
 
@@ -137,7 +138,6 @@ contains
     call copy_plan(changed_plan, plan)
     call start_driven_motion(angles%held%drives, plan, changed, t, driven, err, before%derivatives)
     if (allocated(err)) return
-    driven%positions = before%positions - 1
     driven%steps = before%steps
     driven%iterations = before%iterations
     driven%halvings = before%halvings

@@ -17,7 +17,7 @@ module mech9_driven_simulation
   use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_generalized_forces, only: show_state
   use mech9_energy, only: kinetic_energy, potential_energy
-  use mech9_simulation, only: simulation_type, simulation_statistics_type
+  use mech9_simulation, only: simulation_type, simulation_statistics_type, standing_type
   implicit none
   private
   public :: driven_simulation_type, new_driven_simulation, assemble_driven
@@ -39,6 +39,7 @@ module mech9_driven_simulation
     procedure :: present_closure
     procedure :: watch_conditioning
     procedure :: energies
+    procedure :: standing
     procedure :: count_work
     procedure :: keep_work
     procedure :: return_to_work
@@ -92,13 +93,19 @@ contains
     call begin_with_angles(self%model, self%requested, self%plan, self%assembled, t, self%driven, self%angles, err)
   end subroutine begin
 
-  !> The position at time t, on the same branch.
+  !> The position at time t, on the same branch. Whether the motion shall stop is asked after many steps, too.
   subroutine go_to(self, t, err)
     class(driven_simulation_type), intent(inout) :: self   !< the simulation
     real(wp), intent(in) :: t                              !< time to go to [s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    logical :: reached
 
-    call advance_with_angles(self%model, self%requested, self%plan, t, self%driven, self%angles, err)
+    do
+      call advance_with_angles(self%model, self%requested, self%plan, t, self%driven, self%angles, reached, err)
+      if (reached .or. allocated(err)) return
+      call self%stop_if_interrupted(self%driven%predictor%t, err)
+      if (allocated(err)) return
+    end do
   end subroutine go_to
 
   !> The plan and the present state.
@@ -160,6 +167,20 @@ contains
     kinetic = kinetic_energy(self%model%mechanism, self%plan, self%driven%state)
     potential = potential_energy(self%model%mechanism, self%plan, self%driven%state, self%view)
   end subroutine energies
+
+  !> The place of the motion: the end of the last step.
+  type(standing_type) function standing(self)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation
+
+    standing%t = self%t
+    if (.not. self%started) return
+    associate (driven => self%driven)
+      standing%t = driven%predictor%t
+      if (driven%reach < huge(driven%reach)) standing%step = driven%reach
+      if (size(driven%state%dq) > 0) standing%fastest = maxloc(abs(driven%state%dq)/self%plan%unit_of, dim=1)
+      if (standing%fastest > 0) standing%rate = driven%state%dq(standing%fastest)
+    end associate
+  end function standing
 
   !> Steps of branch stepping, and their work.
   subroutine count_work(self, statistics)

@@ -40,6 +40,28 @@ def interrupt(process):
     process.wait(timeout=60)
 
 
+# a four-bar whose crank makes 1.6e9 turns from one output to the next
+ENDLESS = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.05,0,0 /
+&pair coordinate=3, links=1,4, kind='revolute', axis=0,0,1, point=0.2,0,0 /
+&pair coordinate=4, links=3,4, kind='revolute', axis=0,0,1, point=0.2,0.2,0 /
+&drive coordinate=1, kind='polynomial', coefficients=0,1e6 /
+&time end=2e4, intervals=2 /
+&parameter name='rate', sets='drive(1).coefficients(2)', low=1e6, high=2e6, count=3 /
+&quantity name='top', take='max', of='q4' /
+&study kind='grid' /
+&objective kind='quantity', of='top', goal=0.1 /
+"""
+# options, and the words before the place
+WITHOUT_ROWS = {
+    'a driven motion': ([], r'no new row for 1\d s: the motion'),
+    'a study': (['--study'], r'no result of run 1 after 1\d s: it'),
+    'a search': (['--optimize', '--starts', '1'], None),
+    'a silent run': (['--quiet'], None),
+}
+
+
 def test_a_motion_that_makes_no_progress_says_where_it_stands(checks, mech9d, tmp_path):
     path = tmp_path / 'stuck.nml'
     path.write_text(STUCK, encoding='utf-8')
@@ -95,6 +117,36 @@ def test_runs_for_an_accuracy_say_where_they_stand(checks, mech9d, tmp_path):
             finally:
                 interrupt(process)
         checks.equal(process.returncode, 130, 'the user interrupts it')
+
+
+def test_long_ways_between_two_outputs_say_where_they_stand(checks, mech9k, tmp_path):
+    """All at once, because each waits ten seconds. Each ends soon after the user has interrupted it, though no output comes."""
+    path = tmp_path / 'endless.nml'
+    path.write_text(ENDLESS, encoding='utf-8')
+    processes, said = {}, dict.fromkeys(WITHOUT_ROWS, '')
+    started = time.monotonic()
+    try:
+        for k, (name, (options, _)) in enumerate(WITHOUT_ROWS.items()):
+            with open(tmp_path / f'words{k}', 'w', encoding='utf-8') as words:
+                processes[name] = subprocess.Popen([mech9k, os.fspath(path), '--table', f'{k}.dat', *options], cwd=tmp_path, stderr=words)
+        while time.monotonic() < started + 100:
+            said = {name: text_of(tmp_path / f'words{k}') for k, name in enumerate(WITHOUT_ROWS)}
+            if all(' is at t = ' in said[name] for name, (_, words) in WITHOUT_ROWS.items() if words):
+                break
+            time.sleep(0.5)
+    finally:
+        for process in processes.values():
+            process.send_signal(signal.SIGINT)
+        for process in processes.values():
+            process.wait(timeout=60)
+    for name, (_, words) in WITHOUT_ROWS.items():
+        checks.equal(processes[name].returncode, 130, f'{name}: the user interrupts it')
+        if words:
+            checks.true(re.search(rf'mech9k: {words} is at t = \S+ s, in steps of \S+ s; q1 moves fastest, at [12]e6 rad/s\n', said[name])
+                        is not None, f'{name}: a line says where it stands', said[name])
+    checks.equal(said['a silent run'], '', 'a silent run says nothing')
+    rows = [line for line in text_of(tmp_path / '0.dat').splitlines() if line.split()[0][:1].isdigit()]
+    checks.equal(len(rows), 1, 'the row at the start is in the table')
 
 
 @pytest.mark.parametrize('load', LOADS)

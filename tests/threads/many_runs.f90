@@ -104,7 +104,7 @@ contains
     integer :: i
 
     call new_varied_document(document, diagnostics%sources, kinematics, varied)
-    call maker%begin(model, varied)
+    call maker%begin(model, varied, quiet=.true.)
     allocate (rows(1 + size(model%parameters) + size(model%request%quantities), model%request%study%runs))
     do i = 1, size(rows, 2)
       call maker%make(i, made)
@@ -142,7 +142,7 @@ contains
     end if
     call assemble_driven(present, plan, start, err)
     if (.not. allocated(err)) call new_synthesis(searched, present, plan, synthesis, err)
-    if (.not. allocated(err)) call check_synthesis(varied, model, start, synthesis, err)
+    if (.not. allocated(err)) call check_synthesis(varied, model, start, .true., synthesis, err)
     if (allocated(err)) return
     allocate (rows(1 + size(synthesis%space%varied), model%request%optimum%starts), source=0.0_wp)
     do i = 1, size(rows, 2)

@@ -31,6 +31,8 @@ module mech9_exact_fit
   integer(long), parameter :: most_work = 60000
   !> Positions that are recorded between two targets.
   real(wp), parameter :: most_parts = 1.0e4_wp
+  !> Steps of a motion after which the fit asks whether the user has interrupted.
+  integer, parameter :: steps_at_once = 1000
 
   !> The unknowns are the parameters, each as a part of its range, and the gaps between free times, as parts of the run. A residual
   !> group belongs to each target, and the last ones hold the differences of quantities from their goals.
@@ -251,22 +253,23 @@ contains
     if (self%near%used) call record_position(self%start, 0, q_start, self%near)
     do i = 1, size(order)
       if (.not. allocated(err)) call go_on(self, self%times(order(i)), order(i), driven, err)
-      if (allocated(err)) exit
+      if (allocated(err) .or. self%was_cut) exit
       ! the design has no value if its motion does not come to the end of the run
       if (ends_before(driven, self%end)) exit
       self%q(:, order(i)) = driven%state%q
       call difference(self%targets(order(i)), self%design%plan, self%design, driven%state, r(:, order(i)))
     end do
-    has_value = .not. (allocated(err) .or. ends_before(driven, self%end))
+    has_value = .not. (allocated(err) .or. self%was_cut .or. ends_before(driven, self%end))
     if (has_value) call go_on(self, self%end, 0, driven, err)
-    if (allocated(err)) has_value = .false.
+    if (allocated(err) .or. self%was_cut) has_value = .false.
     self%work = self%work + driven%steps + driven%halvings
     do i = 1, size(self%cranks)
       if (has_value) call follow_turn(self%design, q_start, self%cranks(i), has_value, self%work)
     end do
   end subroutine follow_targets
 
-  !> Follow the branch to a time, and record positions on the way, so near to each other that no drive moves far between them.
+  !> Follow the branch to a time, and record positions on the way, so near to each other that no drive moves far between them. After
+  !> an interruption by the user the motion is not there, and the fit `was_cut`.
   subroutine go_on(self, t, target, driven, err)
     class(exact_fit_type), intent(inout) :: self            !< the fit; gets the positions
     real(wp), intent(in) :: t                               !< the time [s]
@@ -287,10 +290,14 @@ contains
       end do
     end if
     do i = 1, n
-      if (.not. allocated(err)) &
-        call advance(self%design%drives, self%design%plan, driven, merge(t, from + (t - from)*i/n, i == n), err)
-      if (.not. allocated(err) .and. self%near%used) &
-        call record_position(driven%state%t, merge(target, 0, i == n), driven%state%q, self%near)
+      do
+        call advance(self%design%drives, self%design%plan, driven, merge(t, from + (t - from)*i/n, i == n), err, steps_at_once)
+        if (allocated(err)) return
+        if (.not. driven%paused) exit
+        call self%note_interruption()
+        if (self%was_cut) return
+      end do
+      if (self%near%used) call record_position(driven%state%t, merge(target, 0, i == n), driven%state%q, self%near)
     end do
   end subroutine go_on
 

@@ -14,7 +14,6 @@ module mech9_driven_counts
     integer(long) :: steps = 0                        !< accepted steps
     integer(long) :: halvings = 0                     !< refused steps
     integer(long) :: iterations = 0                   !< of Newton's method in all blocks
-    integer(long) :: positions = 0                    !< outputs
     integer(long) :: crossings = 0                    !< singular positions that were passed
     real(wp) :: worst_closure = 0.0_wp                !< largest closure error at any output [m]
     type(conditioning_type) :: conditioning           !< worst conditioning of all outputs
@@ -31,7 +30,6 @@ contains
     counts%steps = driven%steps
     counts%halvings = driven%halvings
     counts%iterations = driven%iterations
-    counts%positions = driven%positions
     counts%crossings = driven%crossings
     counts%worst_closure = driven%worst_closure
     counts%conditioning = driven%conditioning
@@ -46,7 +44,6 @@ contains
     driven%steps = counts%steps
     driven%halvings = counts%halvings
     driven%iterations = counts%iterations
-    driven%positions = counts%positions
     driven%crossings = counts%crossings
     driven%worst_closure = counts%worst_closure
     driven%conditioning = counts%conditioning

@@ -24,8 +24,7 @@ module mech9_driven_motion
   use mech9_block_equations, only: largest_gap
   implicit none
   private
-  public :: driven_motion_type, ball_angles_in_use_type, start_driven_motion, advance, ends_before, set_inputs
-
+  public :: driven_motion_type, ball_angles_in_use_type, start_driven_motion, advance, ends_before, set_inputs, angles_in_doubt
 
   !> The angles by which a ball joint moves at present.
   type :: ball_angles_in_use_type
@@ -39,7 +38,6 @@ module mech9_driven_motion
     type(branch_crossing_type) :: crossing        !< the motion through a crossing ahead
     logical, allocatable :: slides(:)             !< (blocks) a dependent coordinate of the block slides
     real(wp), allocatable :: clear_until(:)       !< (blocks) time up to which no special position was found [s]
-    integer(long) :: positions = 0                !< number of outputs
     integer(long) :: crossings = 0                !< number of crossings that were passed
     type(conditioning_type) :: conditioning       !< worst conditioning of all outputs
     real(wp) :: closure = 0.0_wp                  !< largest closure error at the last output [m]
@@ -48,7 +46,7 @@ module mech9_driven_motion
     type(ball_angles_in_use_type), allocatable :: angles(:)   !< of the ball joints whose angles can be replaced; may be missing
     type(held_rod_type), allocatable :: rods(:)   !< rods one of whose angles is held; may be missing
     logical :: stops_short = .false.              !< a motion that ends stops where its end is found, and does not go on up to it
-    logical :: paused = .false.                   !< the motion waits for other angles of a ball joint, short of the time to go to
+    logical :: paused = .false.                   !< the motion waits short of the time to go to, at the end of a step
   end type driven_motion_type
 
 contains
@@ -92,7 +90,7 @@ contains
       call accept_start(driven%branch_stepper_type)
     end if
     allocate (driven%clear_until(size(plan%blocks)), source=t)
-    call count_output(plan, driven)
+    call judge_output(plan, driven)
   end subroutine start_driven_motion
 
   !> Find the rates of a block that starts in a singular position. Fails unless exactly one branch leads through it.
@@ -165,17 +163,22 @@ contains
 
   !> Go on to a time on the same branch; the state then has position, rates and accelerations there. Fails with exit_singular
   !> where the motion cannot go on; the state is then the last one that was reached. Where the angles of a ball joint come near
-  !> to their singular position, or another angle of a rod should be held, the motion is `paused` at the end of a step.
-  subroutine advance(drives, plan, driven, t, err)
+  !> to their singular position, or another angle of a rod should be held, or many steps were taken, the motion is `paused` at the
+  !> end of a step.
+  subroutine advance(drives, plan, driven, t, err, most_steps)
     type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(driven_motion_type), intent(inout) :: driven   !< the driven motion
     real(wp), intent(in) :: t   !< time to go to [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    integer, intent(in), optional :: most_steps   !< steps after which the motion pauses; any number unless given
     real(wp) :: direction
+    integer(long) :: last_step
     integer :: refused_by
     logical :: stuck
 
+    last_step = huge(last_step)
+    if (present(most_steps)) last_step = driven%steps + most_steps
     driven%paused = .false.
     do while (abs(t - driven%predictor%t) > 0.0_wp)
       direction = sign(1.0_wp, t - driven%predictor%t)
@@ -204,11 +207,13 @@ contains
       end if
       call look_ahead_if_near(drives, plan, driven, direction, err)
       if (allocated(err)) exit
+      driven%paused = driven%steps >= last_step .and. abs(t - driven%predictor%t) > 0.0_wp
+      if (driven%paused) exit
     end do
     if (allocated(err)) then
       call restore_last_position(driven%branch_stepper_type)
-    else
-      call count_output(plan, driven)
+    else if (.not. driven%paused) then
+      call judge_output(plan, driven)
     end if
   end subroutine advance
 
@@ -320,16 +325,15 @@ contains
     call fail_at_end(drives, plan, driven, err)
   end subroutine end_motion
 
-  !> Count an output, and keep its closure error and conditioning.
-  subroutine count_output(plan, driven)
+  !> Keep the closure error and the conditioning of an output.
+  subroutine judge_output(plan, driven)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(driven_motion_type), intent(inout) :: driven   !< the driven motion
 
-    driven%positions = driven%positions + 1
     driven%closure = largest_gap(plan, driven%state)
     driven%worst_closure = max(driven%worst_closure, driven%closure)
     call driven%conditioning%update_by_pivots(driven%state%t, driven%work)
-  end subroutine count_output
+  end subroutine judge_output
 
   !> Fail where and why the motion cannot go on, and keep the independent coordinates there.
   subroutine fail_at_end(drives, plan, driven, err)

@@ -62,10 +62,11 @@ contains
   end subroutine agree_by_mpi
 
   !> Hand out runs to the other processes and make some, until all are made.
-  subroutine lead_by_mpi(self, model, varied, runs)
+  subroutine lead_by_mpi(self, model, varied, quiet, runs)
     class(mpi_team_type), intent(in) :: self              !< the processes
     type(model_type), intent(in) :: model                 !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
+    logical, intent(in) :: quiet                          !< nothing is said of a run that takes long
     type(study_runs_type), intent(inout) :: runs          !< about to begin
     type(run_maker_type) :: maker
     type(made_run_type) :: run
@@ -73,7 +74,7 @@ contains
     integer :: number, batch, other
     real(wp) :: begun
 
-    call maker%begin(model, varied)
+    call maker%begin(model, varied, quiet)
     waiting = 0
     batch = 1
     do
@@ -182,16 +183,17 @@ contains
   end subroutine take_batch
 
   !> Make the runs that the first process hands out, until it has no more.
-  subroutine follow_by_mpi(self, model, varied)
+  subroutine follow_by_mpi(self, model, varied, quiet)
     class(mpi_team_type), intent(in) :: self              !< the processes
     type(model_type), intent(in) :: model                 !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
+    logical, intent(in) :: quiet                          !< nothing is said of a run that takes long
     type(run_maker_type) :: maker
     type(MPI_Status) :: status
     integer :: numbers(longest_batch), n
     logical :: arrived
 
-    call maker%begin(model, varied)
+    call maker%begin(model, varied, quiet)
     do
       do
         call MPI_Iprobe(0, of_numbers, MPI_COMM_WORLD, arrived, status)

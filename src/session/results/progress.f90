@@ -26,6 +26,7 @@ module mech9_progress
     procedure :: start
     procedure :: update
     procedure :: clear
+    procedure :: say
     procedure :: finish
   end type progress_type
 
@@ -77,6 +78,18 @@ contains
     end if
     self%shown = .false.
   end subroutine clear
+
+  !> Write a sentence in place of the line; the line may be that of another progress on the same terminal.
+  subroutine say(self, sentence)
+    class(progress_type), intent(inout) :: self   !< the progress
+    character(len=*), intent(in) :: sentence      !< the sentence
+    integer :: status
+
+    self%shown = self%active
+    call self%clear()
+    write (error_unit, '(a)', iostat=status) sentence
+    flush (error_unit, iostat=status)
+  end subroutine say
 
   !> Remove the line for good.
   subroutine finish(self)

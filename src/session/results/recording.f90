@@ -2,7 +2,6 @@
 module mech9_recording
   use mech9_program_kind, only: program_names
   use mech9_kinds, only: wp
-  use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type, exit_interrupted
   use mech9_clock, only: seconds, pacer_type
   use mech9_system, only: interrupted
@@ -89,8 +88,7 @@ contains
       deallocate (stopped)
       call progress%update(part_done(source, model))
       if (quiet .or. clock - last_row < words_after) cycle
-      call progress%clear()
-      call tell_standing(source, model, int(clock - last_row))
+      call tell_standing(source, model, int(clock - last_row), progress)
       words_after = 2.0_wp*words_after
     end do
     source%pause => null()
@@ -113,17 +111,16 @@ contains
   end function is_pause
 
   !> Tell where the motion stands.
-  subroutine tell_standing(source, model, waited)
+  subroutine tell_standing(source, model, waited, progress)
     type(row_source_type), intent(inout) :: source   !< computes the rows
     type(model_type), intent(in) :: model            !< the model
     integer, intent(in) :: waited                    !< time without a new row [s]
+    type(progress_type), intent(inout) :: progress   !< of the recording
     type(standing_type) :: standing
-    integer :: status
 
     standing = source%standing()
-    write (error_unit, '(a)') program_names(model%program)//': no new row for '//to_text(waited)//' s: the motion is at '// &
-      standing_text(model, standing)
-    flush (error_unit, iostat=status)
+    call progress%say(program_names(model%program)//': no new row for '//to_text(waited)//' s: the motion is at '// &
+                      standing_text(model, standing))
   end subroutine tell_standing
 
   !> The part of the run's time that is over.

@@ -35,6 +35,7 @@ module mech9_row_source
     type(quantity_record_type) :: quantities   !< of the whole run
     type(tangent_type), allocatable, private :: tangents(:)   !< (P) of the constants, where quantities need those of joints of laws
     type(pacer_type), pointer :: pause => null()   !< the motion stops, to go on with the same row, where this is due; not owned
+    type(waiting_words_type), pointer :: words => null()   !< not owned; where they are associated, they tell of the motion
     integer, private :: waiting = 0                !< rows that wait for their derivatives, in the order of time
     integer, private :: outputs = 0                !< how many of them are outputs
     logical, private :: is_output(batch_size) = .true.   !< each of them is an output, not a row between two outputs
@@ -162,7 +163,7 @@ contains
       if (.not. self%quantities%is_empty()) call visit_between(self, t, rows, count, err)
       if (.not. allocated(err)) call self%simulation%advance(t, err)
     else
-      call self%simulation%start(err, signal_interruption_type(self%pause))
+      call self%simulation%start(err, signal_interruption_type(self%pause, self%words))
     end if
     if (.not. allocated(err)) call fill_row(self, rows(:, count + self%outputs + 1), err)
     if (.not. allocated(err)) then

@@ -1,11 +1,10 @@
-!> Words while no row can follow, since other runs of a motion come first: how far the present one is on a terminal, and a line after
-!> ten seconds.
+!> Words while nothing new can be shown, since a run goes on: a line after ten seconds tells where its motion is.
 module mech9_waiting_words
-  use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_clock, only: seconds, pacer_type
   use mech9_progress, only: progress_type
+  use mech9_program_kind, only: program_names
   use mech9_simulation, only: simulation_type
   use mech9_standing_text, only: standing_text
   implicit none
@@ -17,13 +16,14 @@ module mech9_waiting_words
   !> Interval at which a run is looked at [s].
   real(wp), parameter :: look_every = 0.25_wp
 
-  !> The words of one program on runs whose rows are not recorded.
+  !> The words on runs whose rows are not recorded.
   type :: waiting_words_type
     private
-    character(len=:), allocatable :: label   !< name of the program
-    character(len=:), allocatable :: reason  !< purpose of the runs, as: that tells the accuracy
-    logical :: quiet = .false.               !< nothing is to be said
-    real(wp) :: started = 0.0_wp             !< [s]
+    character(len=:), allocatable :: missing   !< the result that is missing, as: no row yet
+    character(len=:), allocatable :: subject   !< the run, as: a run that tells the accuracy
+    logical :: quiet = .true.                  !< nothing is to be said
+    logical :: with_progress = .false.         !< a terminal shows how far the run is
+    real(wp) :: started = 0.0_wp               !< [s]
     real(wp) :: words_after = first_words_after   !< time from the start to the next line [s]
     type(pacer_type) :: pacer
     type(progress_type) :: progress
@@ -36,19 +36,23 @@ module mech9_waiting_words
 contains
 
   !> Begin to wait.
-  subroutine start(self, label, reason, quiet)
+  subroutine start(self, program, missing, subject, quiet, with_progress)
     class(waiting_words_type), intent(inout) :: self   !< the words
-    character(len=*), intent(in) :: label              !< name of the program
-    character(len=*), intent(in) :: reason             !< purpose of the runs, as: that tells the accuracy
+    integer, intent(in) :: program                     !< kinematics or dynamics
+    character(len=*), intent(in) :: missing            !< the result that is missing, as: no row yet
+    character(len=*), intent(in) :: subject            !< the run, as: a run that tells the accuracy
     logical, intent(in) :: quiet                       !< nothing is to be said
+    logical, intent(in) :: with_progress               !< a terminal shows how far the run is
 
-    self%label = label
-    self%reason = reason
     self%quiet = quiet
+    if (quiet) return
+    self%missing = missing
+    self%subject = subject
+    self%with_progress = with_progress
     self%started = seconds()
     self%words_after = first_words_after
     call self%pacer%start(look_every)
-    call self%progress%start(label, quiet)
+    call self%progress%start(program_names(program), .false.)
   end subroutine start
 
   !> Look at a run before one of its steps; the call is cheap enough for each of them.
@@ -56,25 +60,24 @@ contains
     class(waiting_words_type), intent(inout) :: self       !< the words
     class(simulation_type), intent(inout) :: simulation    !< the run
     real(wp) :: part, waited
-    integer :: status
 
     if (self%quiet .or. .not. simulation%started) return
     if (.not. self%pacer%due()) return
-    associate (standing => simulation%standing(), time => simulation%model%request%time)
-      part = 0.0_wp
-      if (abs(time%end - time%start) > 0.0_wp) part = (standing%t - time%start)/(time%end - time%start)
-      call self%progress%update(part, 'of a run '//self%reason)
+    associate (model => simulation%model, standing => simulation%standing())
+      associate (time => model%request%time)
+        part = 0.0_wp
+        if (abs(time%end - time%start) > 0.0_wp) part = (standing%t - time%start)/(time%end - time%start)
+      end associate
+      if (self%with_progress) call self%progress%update(part, 'of '//self%subject)
       waited = seconds() - self%started
       if (waited < self%words_after) return
-      call self%progress%clear()
-      write (error_unit, '(a)') self%label//': no row yet after '//to_text(int(waited))//' s: a run '//self%reason// &
-        ' is at '//standing_text(simulation%model, standing)
-      flush (error_unit, iostat=status)
+      call self%progress%say(program_names(model%program)//': '//self%missing//' after '//to_text(int(waited))//' s: '// &
+                             self%subject//' is at '//standing_text(model, standing))
       self%words_after = 2.0_wp*self%words_after
     end associate
   end subroutine look
 
-  !> Rows follow, or nothing does.
+  !> The result is there, or there will be none.
   subroutine finish(self)
     class(waiting_words_type), intent(inout) :: self   !< the words
 

@@ -14,6 +14,7 @@ module mech9_dakota_task
   use mech9_row_source, only: row_source_type
   use mech9_quantity_record, only: quantity_record_type
   use mech9_design_run, only: run_design, find_quantities
+  use mech9_waiting_words, only: waiting_words_type
   use mech9_design_gradient, only: find_design_gradient
   use mech9_dakota_file, only: dakota_request_type, read_dakota, write_dakota_failure, write_dakota_results
   implicit none
@@ -118,7 +119,7 @@ contains
 
     present = model%parameters%value
     present(parameters) = request%values
-    call run_at(model%program, varied, present, request%wants(gradients), numbers, gradient, failure)
+    call run_at(varied, present, request%wants(gradients), quiet, numbers, gradient, failure)
     if (.not. allocated(failure)) &
       call check_numbers(request, numbers(quantities), gradient(parameters(request%by), quantities), failure)
     if (allocated(failure)) then
@@ -156,25 +157,27 @@ contains
   end subroutine check_numbers
 
   !> Make a run with values of the parameters.
-  subroutine run_at(program, varied, values, with_gradient, numbers, gradient, err)
-    integer, intent(in) :: program                          !< kinematics or dynamics
+  subroutine run_at(varied, values, with_gradient, quiet, numbers, gradient, err)
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
     real(wp), intent(in) :: values(:)                       !< (parameters) in the units of the file
     logical, intent(in) :: with_gradient                    !< derivatives are taken
+    logical, intent(in) :: quiet                            !< nothing is said of a run that takes long
     real(wp), intent(out) :: numbers(:)                     !< (quantities)
     real(wp), intent(out) :: gradient(:, :)                 !< (parameters,quantities)
     type(error_type), allocatable, intent(out) :: err       !< allocated if the run failed
     type(model_type), target :: model
     type(row_source_type) :: source
+    type(waiting_words_type), target :: words
 
     numbers = 0.0_wp
     gradient = 0.0_wp
     call varied%at(values, model, err)
     if (allocated(err)) return
+    call words%start(model%program, 'no result yet', 'the run', quiet, with_progress=.false.)
     if (with_gradient) then
-      call find_design_gradient(model, varied, numbers, gradient, err)
+      call find_design_gradient(model, varied, numbers, gradient, err, words)
     else
-      call run_design(model, source, numbers, err)
+      call run_design(model, source, numbers, err, words=words)
     end if
   end subroutine run_at
 end module mech9_dakota_task

@@ -13,6 +13,7 @@ module mech9_design_gradient
   use mech9_accuracy, only: find_accuracy
   use mech9_explained_assembly, only: assemble_driven_start, assemble_free_start
   use mech9_row_source, only: row_source_type, signal_interruption_type, new_row_source
+  use mech9_waiting_words, only: waiting_words_type
   implicit none
   private
   public :: find_design_gradient
@@ -20,38 +21,43 @@ module mech9_design_gradient
 contains
 
   !> Make the motion of a model and take its quantities and their derivatives. Fails as a run with derivatives would.
-  subroutine find_design_gradient(model, variable, numbers, gradient, err)
+  subroutine find_design_gradient(model, variable, numbers, gradient, err, words)
     type(model_type), intent(inout), target :: model        !< with quantities; gets the tolerances where an accuracy is requested
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
     real(wp), intent(out) :: numbers(:)                     !< (quantities)
     real(wp), intent(out) :: gradient(:, :)                 !< (parameters,quantities); NaN where a number has no derivative
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(waiting_words_type), intent(inout), optional, target :: words   !< tell where a long run is, started; none unless given
+    type(waiting_words_type), pointer :: waiting
     type(driven_simulation_type), target :: driven
     type(free_simulation_type), target :: free
     type(plan_type) :: plan
     type(state_type) :: start
 
+    waiting => null()
+    if (present(words)) waiting => words
     model%request%output%gradients = .true.
     if (model%is_driven()) then
       call assemble_driven_start(model, plan, start, err)
       if (allocated(err)) return
       call new_driven_simulation(model, plan, start, driven, .false., model%program == dynamics)
-      call take_gradient(model, plan, start, variable, driven, numbers, gradient, err)
+      call take_gradient(model, plan, start, variable, driven, waiting, numbers, gradient, err)
     else
       call assemble_free_start(model, plan, start, err)
       if (.not. allocated(err)) call new_free_simulation(model, plan, start, free, err, .true.)
-      if (.not. allocated(err)) call take_gradient(model, plan, start, variable, free, numbers, gradient, err)
+      if (.not. allocated(err)) call take_gradient(model, plan, start, variable, free, waiting, numbers, gradient, err)
       call free%close()
     end if
   end subroutine find_design_gradient
 
   !> Go through all outputs of a simulation with its derivatives.
-  subroutine take_gradient(model, plan, start, variable, simulation, numbers, gradient, err)
+  subroutine take_gradient(model, plan, start, variable, simulation, words, numbers, gradient, err)
     type(model_type), intent(inout), target :: model                !< the model; gets the tolerances where an accuracy is requested
     type(plan_type), intent(in) :: plan                             !< its plan
     type(state_type), intent(in) :: start                           !< its assembled position
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
     class(simulation_type), intent(inout), target :: simulation     !< about to start
+    type(waiting_words_type), pointer, intent(in) :: words          !< tell where a long run is; may be null
     real(wp), intent(out) :: numbers(:)                             !< (quantities)
     real(wp), intent(out) :: gradient(:, :)                         !< (parameters,quantities); NaN where a number has no derivative
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
@@ -64,9 +70,10 @@ contains
     select type (simulation)
     type is (free_simulation_type)
       if (simulation%with_error) &
-        call find_accuracy(model, plan, start, simulation%errors, err, interruption=signal_interruption_type())
+        call find_accuracy(model, plan, start, simulation%errors, err, interruption=signal_interruption_type(words=words))
       if (allocated(err)) return
     end select
+    source%words => words
     call source%go_through(err)
     if (allocated(err)) return
     call source%quantities%finish()

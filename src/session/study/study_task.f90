@@ -55,7 +55,7 @@ contains
     if (present(team) .and. .not. allocated(err)) then
       if (.not. team%is_first) then
         call agree_on(team, err)
-        if (.not. allocated(err)) call team%follow(used, varied)
+        if (.not. allocated(err)) call team%follow(used, varied, options%has('quiet'))
         reported = .true.
         return
       end if
@@ -183,9 +183,9 @@ contains
     if (present(team)) threads = team%processes
     call runs%begin(model, runs_ahead*threads, options%has('plot'), quiet)
     if (present(team)) then
-      call team%lead(model, varied, runs)
+      call team%lead(model, varied, quiet, runs)
     else
-      call make_in_threads(model, varied, threads, runs)
+      call make_in_threads(model, varied, threads, quiet, runs)
     end if
     call runs%finish(err)
     kept = .true.
@@ -194,7 +194,7 @@ contains
     allocate (propagation(0))
     if (.not. allocated(err) .and. runs%statistics%drawn .and. runs%sums%done > 0 .and. &
         .not. (quiet .and. .not. options%has('report'))) &
-      call propagate(model, varied, propagation, without_shares)
+      call propagate(model, varied, quiet, propagation, without_shares)
     if (.not. quiet) call print_study(error_unit, model, quantities, runs%sums, runs%statistics, propagation, clock)
     if (.not. quiet .and. allocated(without_shares)) &
       write (error_unit, '(a)') 'note: no shares by derivatives: '//without_shares%message

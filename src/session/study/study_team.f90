@@ -29,20 +29,22 @@ module mech9_study_team
     end subroutine agree
 
     !> Hand out runs to the other processes and make some, until all are made. The first process calls it.
-    subroutine lead(self, model, varied, runs)
+    subroutine lead(self, model, varied, quiet, runs)
       import :: study_team_type, model_type, variable_model_type, study_runs_type
       class(study_team_type), intent(in) :: self            !< the processes
       type(model_type), intent(in) :: model                 !< the model with the values of the data file
       class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
+      logical, intent(in) :: quiet                          !< nothing is said of a run that takes long
       type(study_runs_type), intent(inout) :: runs          !< about to begin
     end subroutine lead
 
     !> Make the runs that the first process hands out. All other processes call it.
-    subroutine follow(self, model, varied)
+    subroutine follow(self, model, varied, quiet)
       import :: study_team_type, model_type, variable_model_type
       class(study_team_type), intent(in) :: self            !< the processes
       type(model_type), intent(in) :: model                 !< the model with the values of the data file
       class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
+      logical, intent(in) :: quiet                          !< nothing is said of a run that takes long
     end subroutine follow
   end interface
 end module mech9_study_team

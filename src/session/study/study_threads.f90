@@ -31,17 +31,18 @@ contains
   end function threads_of_machine
 
   !> Make all runs. Each thread takes the next one when it has finished one, so that none waits for runs that take long.
-  subroutine make_in_threads(model, varied, threads, runs)
+  subroutine make_in_threads(model, varied, threads, quiet, runs)
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied        !< the model as a function of its parameters
     integer, intent(in) :: threads                          !< how many
+    logical, intent(in) :: quiet                            !< nothing is said of a run that takes long
     type(study_runs_type), intent(inout) :: runs            !< about to begin
     type(run_maker_type), allocatable :: makers(:)
     integer :: i
 
     allocate (makers(threads))
     do i = 1, threads
-      call makers(i)%begin(model, varied)
+      call makers(i)%begin(model, varied, quiet)
     end do
     !$omp parallel do num_threads(threads) schedule(static, 1) default(shared) private(i)
     do i = 1, threads

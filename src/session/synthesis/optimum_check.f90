@@ -27,10 +27,11 @@ module mech9_optimum_check
 contains
 
   !> Report what no search can find, and prepare the runs for quantities.
-  subroutine check_synthesis(variable, model, start, synthesis, err)
+  subroutine check_synthesis(variable, model, start, quiet, synthesis, err)
     class(variable_model_type), intent(in) :: variable      !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(state_type), intent(in) :: start                   !< its assembled position
+    logical, intent(in) :: quiet                            !< nothing is said of a run that takes long
     type(synthesis_type), intent(inout) :: synthesis        !< gets the runs
     type(error_type), allocatable, intent(out) :: err       !< allocated if no search can be made
     type(quantity_record_type) :: quantities
@@ -47,7 +48,7 @@ contains
     asked%request%quantities = model%request%quantities(used_quantities(model))
     call find_quantities(asked, quantities, err)
     if (allocated(err)) return
-    call new_run_evaluator(variable, model, evaluator)
+    call new_run_evaluator(variable, model, quiet, evaluator)
     allocate (synthesis%space%evaluator, source=evaluator)
   end subroutine check_synthesis
 

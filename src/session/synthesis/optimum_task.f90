@@ -67,7 +67,7 @@ contains
     end if
     if (.not. allocated(err)) call assemble_driven_start(present, plan, start, err)
     if (.not. allocated(err)) call new_synthesis(searched, present, plan, synthesis, err)
-    if (.not. allocated(err)) call check_synthesis(variable, model, start, synthesis, err)
+    if (.not. allocated(err)) call check_synthesis(variable, model, start, options%has('quiet'), synthesis, err)
     if (.not. allocated(err)) call open_starts(options, document, model, synthesis, starts, err)
     if (allocated(err)) then
       call explain(err)

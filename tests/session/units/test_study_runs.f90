@@ -100,7 +100,7 @@ contains
 
     call prepare(tester, grid, this)
     call tester%is_true(this%model%is_driven() .and. size(used_quantities(this%model)) == 0, 'a driven study')
-    call maker%begin(this%model, this%varied)
+    call maker%begin(this%model, this%varied, quiet=.true.)
     do i = 6, 1, -1
       call maker%make(i, made)
       call tester%is_true(made%number == i .and. made%exit_code == exit_done, 'a run that went to its end')
@@ -123,7 +123,7 @@ contains
 
     call prepare(tester, grid, this)
     call begin(tester, this, 'a.nml --study --table '//stem//'.dat', 3, runs)
-    call maker%begin(this%model, this%varied)
+    call maker%begin(this%model, this%varied, quiet=.true.)
     do i = 1, 6
       call maker%make(i, made(i))
     end do
@@ -183,7 +183,7 @@ contains
       type(error_type), allocatable :: err
 
       call begin(tester, this, 'a.nml --study --table '//stem//'.dat', 2*n, runs)
-      call make_in_threads(this%model, this%varied, n, runs)
+      call make_in_threads(this%model, this%varied, n, .true., runs)
       call runs%finish(err)
       call tester%no_error(err, 'a study in threads')
       call text_of_file(tester, stem//'.dat', text)
@@ -204,10 +204,10 @@ contains
 
     call prepare(tester, grid, this)
     call begin(tester, this, 'a.nml --study --part 1/2 --hdf5 '//stem//'_1.h5', 2, first)
-    call make_in_threads(this%model, this%varied, 1, first)
+    call make_in_threads(this%model, this%varied, 1, .true., first)
     call first%finish(err)
     call begin(tester, this, 'a.nml --study --part 2/2 --hdf5 '//stem//'_2.h5', 2, second)
-    call make_in_threads(this%model, this%varied, 1, second)
+    call make_in_threads(this%model, this%varied, 1, .true., second)
     call second%finish(err)
     call tester%is_true(first%sums%done == 3 .and. second%sums%done == 3, 'three runs each')
     call options_of(tester, '--merge '//stem//'_1.h5 '//stem//'_2.h5 --hdf5 '//stem//'.h5 --quiet', options)
@@ -242,7 +242,7 @@ contains
       "&time end=0.5, intervals=1 /"//eol//"&parameter name='r', value=0.3, spread=0.003, sets='pair(2).point(1)' /"//eol// &
       "&parameter name='l', value=1, spread=0.004, sets='pair(3).point(1)' /"//eol// &
       "&quantity name='x', of='q4', take='start' /"//eol//"&study kind='latin', runs=10 /"//eol, this)
-    call propagate(this%model, this%varied, found, err)
+    call propagate(this%model, this%varied, .true., found, err)
     call tester%no_error(err, 'derivatives of the quantity')
     if (size(found) /= 1) return
     call tester%is_true(found(1)%known .and. found(1)%varies, 'they are known')
