@@ -26,7 +26,7 @@ set_target_properties(by_property PROPERTIES INTERPROCEDURAL_OPTIMIZATION ON)
 
 
 def configure(folder, build, *options):
-    done = subprocess.run(['cmake', '-S', folder, '-B', build, *options], capture_output=True, text=True, check=False)
+    done = subprocess.run(['cmake', '-G', 'Ninja', '-S', folder, '-B', build, *options], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 
 

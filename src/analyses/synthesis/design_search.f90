@@ -209,7 +209,11 @@ contains
     first = minloc((seen%times - seen%exact%start)*sign(1.0_wp, seen%exact%end - seen%exact%start), dim=1, &
                    mask=seen%targets%turned == 0)
     q = space%model%problem%initial%position
-    q(seen%relaxed%dependent) = y(:size(y, 1) - 1, first)*space%plan%unit_of(seen%relaxed%dependent)
+    associate (dependent => seen%relaxed%dependent)
+      do i = 1, size(dependent)
+        q(dependent(i)) = y(i, first)*space%plan%unit_of(dependent(i))
+      end do
+    end associate
     associate (file => (space%values(space%varied) - space%low)/(space%high - space%low))
       call find_moving(space, seen%exact, seen%design, seen%times(first), y(size(y, 1), seen%exact%free%target), &
                        reshape([x_start, min(max(file, 0.0_wp), 1.0_wp)], [size(x), 2]), x, q, came)

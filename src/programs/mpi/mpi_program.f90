@@ -1,6 +1,7 @@
 !> A program of several processes, from the words of its command line to its exit code. It makes studies and nothing else.
 module mech9_mpi_program
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use, intrinsic :: ieee_exceptions, only: ieee_usual, ieee_get_halting_mode, ieee_set_halting_mode, ieee_set_flag
   use mpi_f08, only: MPI_COMM_WORLD, MPI_INTEGER, MPI_Init, MPI_Finalize, MPI_Comm_rank, MPI_Comm_size, MPI_Bcast
   use mech9_program_kind, only: program_names
   use mech9_error, only: error_type, raise, exit_usage
@@ -22,7 +23,7 @@ contains
     integer :: code, rank
 
     call leave_quit_alone()
-    call MPI_Init()
+    call begin_mpi()
     call MPI_Comm_rank(MPI_COMM_WORLD, rank)
     ! the other processes come to the same messages as the first one
     if (rank > 0) call fall_silent()
@@ -31,6 +32,17 @@ contains
     call MPI_Finalize()
     call exit_program(code)
   end subroutine run_mpi_program
+
+  !> Begin to use MPI. A build that traps invalid operations must not do so within the start of MPI, where libraries make some.
+  subroutine begin_mpi()
+    logical :: traps(size(ieee_usual))
+
+    call ieee_get_halting_mode(ieee_usual, traps)
+    call ieee_set_halting_mode(ieee_usual, .false.)
+    call MPI_Init()
+    call ieee_set_flag(ieee_usual, .false.)
+    call ieee_set_halting_mode(ieee_usual, traps)
+  end subroutine begin_mpi
 
   !> Let the output of this process go nowhere.
   subroutine fall_silent()
