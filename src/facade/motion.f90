@@ -133,10 +133,12 @@ contains
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the runs shall stop
     type(estimated_errors_type) :: errors
+    class(interruption_type), allocatable :: asked
     integer :: i
 
     if (.not. model%request%solver%accuracy > 0.0_wp) return
-    call find_accuracy(model, plan, assembled, errors, err, pictures=.true., interruption=interruption)
+    if (present(interruption)) allocate (asked, source=interruption)
+    call find_accuracy(model, plan, assembled, errors, err, pictures=.true., interruption=asked)
     if (allocated(err)) return
     do i = 1, size(errors%at)
       call judge_error(model%request%time%time(i - 1), errors%at(i), errors, err)

@@ -21,8 +21,8 @@ module mech9_dynamic_task
   use mech9_start_path, only: start_way_type
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation
   use mech9_accuracy, only: find_accuracy
-  use mech9_row_source, only: row_source_type, signal_interruption_type, new_row_source
-  use mech9_waiting_words, only: waiting_words_type
+  use mech9_row_source, only: row_source_type, new_row_source
+  use mech9_signal_interruption, only: signal_interruption_type
   use mech9_recording, only: recording_outcome_type, record
   use mech9_start_way_text, only: print_start_way
   use mech9_explained_assembly, only: assemble_free_start, assemble_driven_start
@@ -149,7 +149,7 @@ contains
     type(facts_type) :: facts
     type(hdf5_sink_type), pointer :: hdf5
     type(recording_outcome_type) :: outcome
-    type(waiting_words_type), target :: words
+    type(signal_interruption_type), target :: interruption
     type(error_type), allocatable :: err
     logical :: ready
 
@@ -167,9 +167,10 @@ contains
     reported = ready .and. options%has('report')
     if (.not. ready) return
     if (simulation%with_error) then
-      call words%start(model%program, 'no row yet', 'a run that tells the accuracy', options%has('quiet'), with_progress=.true.)
-      call find_accuracy(model, plan, start, simulation%errors, err, pictures%any_wanted(), signal_interruption_type(words=words))
-      call words%finish()
+      call interruption%words%start(model%program, 'no row yet', 'a run that tells the accuracy', options%has('quiet'), &
+                                    with_progress=.true.)
+      call find_accuracy(model, plan, start, simulation%errors, err, pictures%any_wanted(), interruption)
+      call interruption%words%finish()
     end if
     call dynamic_facts(model, plan, outcome, simulation, facts)
     call results%write_facts(facts)

@@ -33,7 +33,7 @@ module mech9_equilibrium_task
   use mech9_force_record, only: force_record_type, reacting_pairs
   use mech9_equilibrium_words, only: print_findings
   use mech9_force_text, only: print_undetermined, print_forceless
-  use mech9_row_source, only: signal_interruption_type
+  use mech9_signal_interruption, only: signal_interruption_type
   use mech9_requested, only: requested_by_results
   use mech9_structure_text, only: print_structure, print_mobility
   use mech9_plan_text, only: print_plan

@@ -99,7 +99,7 @@ contains
     type(estimated_errors_type), intent(out) :: errors               !< of the run with these tolerances
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     logical, intent(in), optional :: pictures                        !< the motion of all links is requested; not unless given
-    class(interruption_type), intent(in), optional, target :: interruption   !< is asked whether the runs shall stop
+    class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the runs shall stop
     type(model_type), target :: varied
     type(search_type) :: search
     integer :: method
@@ -305,7 +305,7 @@ contains
 
   !> Let the user's interruption see where a run stands.
   subroutine watch(self, simulation)
-    class(step_limit_type), intent(in) :: self             !< the limit
+    class(step_limit_type), intent(inout) :: self          !< the limit
     class(simulation_type), intent(inout) :: simulation    !< the run
 
     if (associated(self%of_user)) call self%of_user%watch(simulation)

@@ -21,6 +21,7 @@ module mech9_simulation
   type, abstract :: interruption_type
   contains
     procedure(wanted_interface), deferred :: is_wanted
+    procedure :: begin_run => begin_nothing
     procedure :: watch => watch_nothing
   end type interruption_type
 
@@ -312,9 +313,14 @@ contains
     err%failure%t = t
   end subroutine stop_if_interrupted
 
+  !> Learn that a run begins, which may need several motions. Interruptions do nothing then unless they say so.
+  subroutine begin_nothing(self)
+    class(interruption_type), intent(inout) :: self   !< the interruption
+  end subroutine begin_nothing
+
   !> See where a motion stands, before it is asked whether it shall stop. Interruptions look at nothing unless they say so.
   subroutine watch_nothing(self, simulation)
-    class(interruption_type), intent(in) :: self            !< the interruption
+    class(interruption_type), intent(inout) :: self         !< the interruption
     class(simulation_type), intent(inout) :: simulation     !< the motion
   end subroutine watch_nothing
 

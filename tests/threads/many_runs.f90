@@ -104,7 +104,7 @@ contains
     integer :: i
 
     call new_varied_document(document, diagnostics%sources, kinematics, varied)
-    call maker%begin(model, varied, quiet=.true.)
+    call maker%begin(model, varied)
     allocate (rows(1 + size(model%parameters) + size(model%request%quantities), model%request%study%runs))
     do i = 1, size(rows, 2)
       call maker%make(i, made)

@@ -15,6 +15,7 @@ module mech9_mpi_team
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_study_values, only: values_of_run
+  use mech9_signal_interruption, only: signal_interruption_type
   use mech9_run_maker, only: run_maker_type, made_run_type
   use mech9_study_runs, only: study_runs_type, all_handed_out, wait_for_others
   use mech9_study_team, only: study_team_type
@@ -74,7 +75,7 @@ contains
     integer :: number, batch, other
     real(wp) :: begun
 
-    call maker%begin(model, varied, quiet)
+    call maker%begin(model, varied)
     waiting = 0
     batch = 1
     do
@@ -87,7 +88,7 @@ contains
         cycle
       end if
       begun = seconds()
-      call maker%make(number, run)
+      call make(maker, number, model%program, quiet, run)
       batch = int(min(real(longest_batch, wp), max(1.0_wp, time_of_batch/max(seconds() - begun, tiny(begun)))))
       call runs%take(run)
     end do
@@ -193,7 +194,7 @@ contains
     integer :: numbers(longest_batch), n
     logical :: arrived
 
-    call maker%begin(model, varied, quiet)
+    call maker%begin(model, varied)
     do
       do
         call MPI_Iprobe(0, of_numbers, MPI_COMM_WORLD, arrived, status)
@@ -203,15 +204,30 @@ contains
       call MPI_Get_count(status, MPI_INTEGER, n)
       call MPI_Recv(numbers, n, MPI_INTEGER, 0, of_numbers, MPI_COMM_WORLD, status)
       if (n == 0) exit
-      call make_batch(maker, numbers(:n), size(model%request%quantities))
+      call make_batch(maker, numbers(:n), size(model%request%quantities), model%program, quiet)
     end do
   end subroutine follow_by_mpi
 
+  !> Make a run, and tell where it is if it takes long.
+  subroutine make(maker, number, program, quiet, run)
+    type(run_maker_type), intent(inout) :: maker   !< of this process
+    integer, intent(in) :: number                  !< of the run
+    integer, intent(in) :: program                 !< kinematics or dynamics
+    logical, intent(in) :: quiet                   !< nothing is said of a run that takes long
+    type(made_run_type), intent(out) :: run        !< the run
+    type(signal_interruption_type) :: interruption
+
+    call interruption%words%start(program, 'no result of run '//to_text(number), 'it', quiet, with_progress=.false.)
+    call maker%make(number, run, interruption)
+  end subroutine make
+
   !> Make the runs of a batch, and send their results to the first process.
-  subroutine make_batch(maker, numbers, n_quantities)
+  subroutine make_batch(maker, numbers, n_quantities, program, quiet)
     type(run_maker_type), intent(inout) :: maker   !< of this process
     integer, intent(in) :: numbers(:)              !< of the runs
     integer, intent(in) :: n_quantities            !< how many quantities a run has
+    integer, intent(in) :: program                 !< kinematics or dynamics
+    logical, intent(in) :: quiet                   !< nothing is said of a run that takes long
     type(made_run_type) :: made(size(numbers))
     integer :: codes(codes_per_run, size(numbers)), i
     real(wp) :: quantities(n_quantities, size(numbers))
@@ -221,7 +237,7 @@ contains
     codes = 0
     do i = 1, size(numbers)
       associate (run => made(i))
-        call maker%make(numbers(i), run)
+        call make(maker, numbers(i), program, quiet, run)
         codes(:2, i) = [run%number, run%exit_code]
         quantities(:, i) = run%quantities
         if (.not. allocated(run%failure)) cycle

@@ -13,6 +13,7 @@ module mech9_recording
   use mech9_progress, only: progress_type
   use mech9_simulation, only: standing_type
   use mech9_standing_text, only: standing_text
+  use mech9_signal_interruption, only: signal_interruption_type
   use mech9_waiting_words, only: first_words_after
   implicit none
   private
@@ -48,6 +49,7 @@ contains
     type(progress_type) :: progress
     type(pacer_type) :: pacer
     type(pacer_type), pointer :: pause
+    type(signal_interruption_type), target :: interruption
     real(wp), allocatable :: rows(:, :)
     real(wp) :: clock, last_row, words_after
     integer :: next, count
@@ -62,7 +64,8 @@ contains
     call pacer%start(longest_wait)
     allocate (pause)
     call pause%start(longest_wait)
-    source%pause => pause
+    interruption%pause => pause
+    source%interruption => interruption
     last_row = clock
     words_after = first_words_after
     held_back = .false.
@@ -91,7 +94,7 @@ contains
       call tell_standing(source, model, int(clock - last_row), progress)
       words_after = 2.0_wp*words_after
     end do
-    source%pause => null()
+    source%interruption => null()
     deallocate (pause)
     call progress%finish()
     if (.not. (allocated(stopped) .or. allocated(err) .or. source%quantities%is_empty())) call source%quantities%finish()

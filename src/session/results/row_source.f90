@@ -3,13 +3,10 @@ module mech9_row_source
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type
-  use mech9_system, only: interrupted
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_clock, only: pacer_type
-  use mech9_waiting_words, only: waiting_words_type
   use mech9_simulation, only: simulation_type, interruption_type, standing_type
   use mech9_batch_products, only: batch_size
   use mech9_tangent, only: tangent_type, find_tangent
@@ -23,7 +20,7 @@ module mech9_row_source
   use mech9_quantity_record, only: quantity_record_type
   implicit none
   private
-  public :: row_source_type, signal_interruption_type, new_row_source, find_columns
+  public :: row_source_type, new_row_source, find_columns
 
   type :: row_source_type
     class(simulation_type), pointer, private :: simulation => null()   !< not owned
@@ -34,8 +31,7 @@ module mech9_row_source
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
     type(quantity_record_type) :: quantities   !< of the whole run
     type(tangent_type), allocatable, private :: tangents(:)   !< (P) of the constants, where quantities need those of joints of laws
-    type(pacer_type), pointer :: pause => null()   !< the motion stops, to go on with the same row, where this is due; not owned
-    type(waiting_words_type), pointer :: words => null()   !< not owned; where they are associated, they tell of the motion
+    class(interruption_type), pointer :: interruption => null()   !< stops the motion, which may go on then; not owned
     integer, private :: waiting = 0                !< rows that wait for their derivatives, in the order of time
     integer, private :: outputs = 0                !< how many of them are outputs
     logical, private :: is_output(batch_size) = .true.   !< each of them is an output, not a row between two outputs
@@ -54,15 +50,6 @@ module mech9_row_source
     procedure :: go_through
     procedure :: add_sensitivities
   end type row_source_type
-
-  !> A motion stops where the user interrupts the program, or for a pause.
-  type, extends(interruption_type) :: signal_interruption_type
-    type(pacer_type), pointer :: pause => null()   !< not owned; where it is associated, a motion stops when this is due
-    type(waiting_words_type), pointer :: words => null()   !< not owned; where they are associated, they tell of the motion
-  contains
-    procedure :: is_wanted
-    procedure :: watch
-  end type signal_interruption_type
 
 contains
 
@@ -162,8 +149,10 @@ contains
     if (self%simulation%started) then
       if (.not. self%quantities%is_empty()) call visit_between(self, t, rows, count, err)
       if (.not. allocated(err)) call self%simulation%advance(t, err)
+    else if (associated(self%interruption)) then
+      call self%simulation%start(err, self%interruption)
     else
-      call self%simulation%start(err, signal_interruption_type(self%pause, self%words))
+      call self%simulation%start(err)
     end if
     if (.not. allocated(err)) call fill_row(self, rows(:, count + self%outputs + 1), err)
     if (.not. allocated(err)) then
@@ -386,20 +375,4 @@ contains
       call self%film%take(self%simulation%model%mechanism, plan, state, row)
     end if
   end subroutine film_row
-
-  !> Whether the user has interrupted the program, or a pause is due.
-  logical function is_wanted(self)
-    class(signal_interruption_type), intent(in) :: self   !< asks the operating system
-
-    is_wanted = interrupted()
-    if (.not. is_wanted .and. associated(self%pause)) is_wanted = self%pause%due()
-  end function is_wanted
-
-  !> Let the words tell where a motion stands, if there are any.
-  subroutine watch(self, simulation)
-    class(signal_interruption_type), intent(in) :: self     !< the interruption
-    class(simulation_type), intent(inout) :: simulation     !< the motion
-
-    if (associated(self%words)) call self%words%look(simulation)
-  end subroutine watch
 end module mech9_row_source

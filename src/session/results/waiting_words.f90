@@ -29,6 +29,7 @@ module mech9_waiting_words
     type(progress_type) :: progress
   contains
     procedure :: start
+    procedure :: begin_run
     procedure :: look
     procedure :: finish
   end type waiting_words_type
@@ -49,11 +50,19 @@ contains
     self%missing = missing
     self%subject = subject
     self%with_progress = with_progress
+    call self%progress%start(program_names(program), .false.)
+    call self%begin_run()
+  end subroutine start
+
+  !> Begin to wait for another run.
+  subroutine begin_run(self)
+    class(waiting_words_type), intent(inout) :: self   !< the words
+
+    if (self%quiet) return
     self%started = seconds()
     self%words_after = first_words_after
     call self%pacer%start(look_every)
-    call self%progress%start(program_names(program), .false.)
-  end subroutine start
+  end subroutine begin_run
 
   !> Look at a run before one of its steps; the call is cheap enough for each of them.
   subroutine look(self, simulation)

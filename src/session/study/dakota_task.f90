@@ -14,7 +14,7 @@ module mech9_dakota_task
   use mech9_row_source, only: row_source_type
   use mech9_quantity_record, only: quantity_record_type
   use mech9_design_run, only: run_design, find_quantities
-  use mech9_waiting_words, only: waiting_words_type
+  use mech9_signal_interruption, only: signal_interruption_type
   use mech9_design_gradient, only: find_design_gradient
   use mech9_dakota_file, only: dakota_request_type, read_dakota, write_dakota_failure, write_dakota_results
   implicit none
@@ -167,17 +167,17 @@ contains
     type(error_type), allocatable, intent(out) :: err       !< allocated if the run failed
     type(model_type), target :: model
     type(row_source_type) :: source
-    type(waiting_words_type), target :: words
+    type(signal_interruption_type) :: interruption
 
     numbers = 0.0_wp
     gradient = 0.0_wp
     call varied%at(values, model, err)
     if (allocated(err)) return
-    call words%start(model%program, 'no result yet', 'the run', quiet, with_progress=.false.)
+    call interruption%words%start(model%program, 'no result yet', 'the run', quiet, with_progress=.false.)
     if (with_gradient) then
-      call find_design_gradient(model, varied, numbers, gradient, err, words)
+      call find_design_gradient(model, varied, numbers, gradient, err, interruption)
     else
-      call run_design(model, source, numbers, err, words=words)
+      call run_design(model, source, numbers, err, interruption=interruption)
     end if
   end subroutine run_at
 end module mech9_dakota_task

@@ -7,13 +7,12 @@ module mech9_design_gradient
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_simulation, only: simulation_type
+  use mech9_simulation, only: simulation_type, interruption_type
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation
   use mech9_accuracy, only: find_accuracy
   use mech9_explained_assembly, only: assemble_driven_start, assemble_free_start
-  use mech9_row_source, only: row_source_type, signal_interruption_type, new_row_source
-  use mech9_waiting_words, only: waiting_words_type
+  use mech9_row_source, only: row_source_type, new_row_source
   implicit none
   private
   public :: find_design_gradient
@@ -21,46 +20,44 @@ module mech9_design_gradient
 contains
 
   !> Make the motion of a model and take its quantities and their derivatives. Fails as a run with derivatives would.
-  subroutine find_design_gradient(model, variable, numbers, gradient, err, words)
+  subroutine find_design_gradient(model, variable, numbers, gradient, err, interruption)
     type(model_type), intent(inout), target :: model        !< with quantities; gets the tolerances where an accuracy is requested
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
     real(wp), intent(out) :: numbers(:)                     !< (quantities)
     real(wp), intent(out) :: gradient(:, :)                 !< (parameters,quantities); NaN where a number has no derivative
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    type(waiting_words_type), intent(inout), optional, target :: words   !< tell where a long run is, started; none unless given
-    type(waiting_words_type), pointer :: waiting
+    class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
     type(driven_simulation_type), target :: driven
     type(free_simulation_type), target :: free
     type(plan_type) :: plan
     type(state_type) :: start
 
-    waiting => null()
-    if (present(words)) waiting => words
+    if (present(interruption)) call interruption%begin_run()
     model%request%output%gradients = .true.
     if (model%is_driven()) then
       call assemble_driven_start(model, plan, start, err)
       if (allocated(err)) return
       call new_driven_simulation(model, plan, start, driven, .false., model%program == dynamics)
-      call take_gradient(model, plan, start, variable, driven, waiting, numbers, gradient, err)
+      call take_gradient(model, plan, start, variable, driven, numbers, gradient, err, interruption)
     else
       call assemble_free_start(model, plan, start, err)
       if (.not. allocated(err)) call new_free_simulation(model, plan, start, free, err, .true.)
-      if (.not. allocated(err)) call take_gradient(model, plan, start, variable, free, waiting, numbers, gradient, err)
+      if (.not. allocated(err)) call take_gradient(model, plan, start, variable, free, numbers, gradient, err, interruption)
       call free%close()
     end if
   end subroutine find_design_gradient
 
   !> Go through all outputs of a simulation with its derivatives.
-  subroutine take_gradient(model, plan, start, variable, simulation, words, numbers, gradient, err)
+  subroutine take_gradient(model, plan, start, variable, simulation, numbers, gradient, err, interruption)
     type(model_type), intent(inout), target :: model                !< the model; gets the tolerances where an accuracy is requested
     type(plan_type), intent(in) :: plan                             !< its plan
     type(state_type), intent(in) :: start                           !< its assembled position
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
     class(simulation_type), intent(inout), target :: simulation     !< about to start
-    type(waiting_words_type), pointer, intent(in) :: words          !< tell where a long run is; may be null
     real(wp), intent(out) :: numbers(:)                             !< (quantities)
     real(wp), intent(out) :: gradient(:, :)                         !< (parameters,quantities); NaN where a number has no derivative
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
+    class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
     type(row_source_type) :: source
 
     call new_row_source(simulation, source)
@@ -70,11 +67,12 @@ contains
     select type (simulation)
     type is (free_simulation_type)
       if (simulation%with_error) &
-        call find_accuracy(model, plan, start, simulation%errors, err, interruption=signal_interruption_type(words=words))
+        call find_accuracy(model, plan, start, simulation%errors, err, interruption=interruption)
       if (allocated(err)) return
     end select
-    source%words => words
+    if (present(interruption)) source%interruption => interruption
     call source%go_through(err)
+    source%interruption => null()
     if (allocated(err)) return
     call source%quantities%finish()
     numbers = source%quantities%numbers

@@ -9,8 +9,7 @@ module mech9_run_maker
   use mech9_variable_model, only: variable_model_type
   use mech9_study_values, only: values_of_run
   use mech9_row_source, only: row_source_type
-  use mech9_waiting_words, only: waiting_words_type
-  use mech9_text, only: to_text
+  use mech9_simulation, only: interruption_type
   use mech9_columns, only: columns_type
   use mech9_design_run, only: run_design, columns_of_runs
   implicit none
@@ -32,7 +31,6 @@ module mech9_run_maker
     type(study_type) :: study
     type(parameter_type), allocatable :: parameters(:)
     class(variable_model_type), allocatable :: varied            !< the model as a function of its parameters
-    logical :: quiet = .false.                                   !< nothing is said of a run that takes long
     integer :: n_quantities = 0
     integer :: n_columns = 0                                     !< of the rows that are kept; 0: none are kept
     integer :: n_outputs = 0                                     !< rows of a run
@@ -45,15 +43,13 @@ module mech9_run_maker
 contains
 
   !> Prepare a maker for the runs of a study.
-  subroutine begin(self, model, varied, quiet)
+  subroutine begin(self, model, varied)
     class(run_maker_type), intent(out) :: self              !< the maker
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied        !< the model as a function of its parameters; copied
-    logical, intent(in) :: quiet                            !< nothing is said of a run that takes long
     type(columns_type) :: columns
 
     self%study = model%request%study
-    self%quiet = quiet
     self%parameters = model%parameters
     self%n_quantities = size(model%request%quantities)
     allocate (self%varied, source=varied)
@@ -72,13 +68,13 @@ contains
   end function shape_of_rows
 
   !> Make a run. Its numbers depend on the number of the run alone, not on the runs that were made before.
-  subroutine make(self, number, run)
+  subroutine make(self, number, run, interruption)
     class(run_maker_type), intent(inout) :: self   !< the maker
     integer, intent(in) :: number                  !< of the run in the whole study, from 1
     type(made_run_type), intent(out) :: run        !< the run, which may have failed
+    class(interruption_type), intent(inout), optional :: interruption   !< is asked whether the run shall stop
     type(model_type), target :: model
     type(row_source_type) :: source
-    type(waiting_words_type), target :: words
 
     run%number = number
     allocate (run%values(size(self%parameters)))
@@ -87,10 +83,7 @@ contains
     if (self%n_columns > 0) &
       allocate (run%rows(self%n_columns, self%n_outputs), source=ieee_value(1.0_wp, ieee_quiet_nan))
     call self%varied%at(run%values, model, run%failure)
-    if (.not. allocated(run%failure)) then
-      call words%start(model%program, 'no result of run '//to_text(number), 'it', self%quiet, with_progress=.false.)
-      call run_design(model, source, run%quantities, run%failure, run%rows, words)
-    end if
+    if (.not. allocated(run%failure)) call run_design(model, source, run%quantities, run%failure, run%rows, interruption)
     if (.not. allocated(run%failure)) return
     run%exit_code = run%failure%code
     run%quantities = ieee_value(1.0_wp, ieee_quiet_nan)

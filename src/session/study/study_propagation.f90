@@ -8,7 +8,7 @@ module mech9_study_propagation
   use mech9_model, only: model_type
   use mech9_parameter, only: parameter_type
   use mech9_variable_model, only: variable_model_type
-  use mech9_waiting_words, only: waiting_words_type
+  use mech9_signal_interruption, only: signal_interruption_type
   use mech9_design_gradient, only: find_design_gradient
   implicit none
   private
@@ -33,7 +33,7 @@ contains
     type(propagation_type), allocatable, intent(out) :: found(:)       !< (quantities) none where it fails
     type(error_type), allocatable, intent(out) :: err                  !< allocated if it failed, with a sentence
     type(model_type), target :: mean
-    type(waiting_words_type), target :: words
+    type(signal_interruption_type) :: interruption
     real(wp) :: numbers(size(model%request%quantities)), values(size(model%parameters))
     real(wp) :: gradient(size(model%parameters), size(model%request%quantities))
     integer :: i
@@ -43,8 +43,8 @@ contains
     values = [(mean_of(model%parameters(i)), i=1, size(values))]
     call varied%at(values, mean, err)
     if (.not. allocated(err)) then
-      call words%start(model%program, 'no derivatives at the means yet', 'their run', quiet, with_progress=.false.)
-      call find_design_gradient(mean, varied, numbers, gradient, err, words)
+      call interruption%words%start(model%program, 'no derivatives at the means yet', 'their run', quiet, with_progress=.false.)
+      call find_design_gradient(mean, varied, numbers, gradient, err, interruption)
     end if
     if (allocated(err)) then
       call explain(err)

@@ -7,6 +7,8 @@ module mech9_study_threads
   use mech9_pause, only: pause_for
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
+  use mech9_text, only: to_text
+  use mech9_signal_interruption, only: signal_interruption_type
   use mech9_run_maker, only: run_maker_type, made_run_type
   use mech9_study_runs, only: study_runs_type, all_handed_out, wait_for_others
   implicit none
@@ -42,20 +44,23 @@ contains
 
     allocate (makers(threads))
     do i = 1, threads
-      call makers(i)%begin(model, varied, quiet)
+      call makers(i)%begin(model, varied)
     end do
     !$omp parallel do num_threads(threads) schedule(static, 1) default(shared) private(i)
     do i = 1, threads
-      call make_until_done(makers(i), runs)
+      call make_until_done(makers(i), model%program, quiet, runs)
     end do
     !$omp end parallel do
   end subroutine make_in_threads
 
   !> Make one run after the other until all are handed out. One thread at a time asks for a number and gives its run back.
-  subroutine make_until_done(maker, runs)
+  subroutine make_until_done(maker, program, quiet, runs)
     type(run_maker_type), intent(inout) :: maker   !< of this thread
+    integer, intent(in) :: program                 !< kinematics or dynamics
+    logical, intent(in) :: quiet                   !< nothing is said of a run that takes long
     type(study_runs_type), intent(inout) :: runs   !< of all threads
     type(made_run_type) :: run
+    type(signal_interruption_type) :: interruption
     integer :: number
 
     do
@@ -68,7 +73,8 @@ contains
       if (number == wait_for_others) then
         call pause_for(short_wait)
       else
-        call maker%make(number, run)
+        call interruption%words%start(program, 'no result of run '//to_text(number), 'it', quiet, with_progress=.false.)
+        call maker%make(number, run, interruption)
       end if
     end do
   end subroutine make_until_done

@@ -19,6 +19,7 @@ module mech9_optimum_check
   use mech9_synthesis, only: synthesis_type
   use mech9_closed_search, only: is_least_squares
   use mech9_transmission, only: has_transmission_angle
+  use mech9_signal_interruption, only: signal_interruption_type
   use mech9_run_evaluator, only: run_evaluator_type, new_run_evaluator, used_quantities
   implicit none
   private
@@ -36,6 +37,7 @@ contains
     type(error_type), allocatable, intent(out) :: err       !< allocated if no search can be made
     type(quantity_record_type) :: quantities
     type(run_evaluator_type) :: evaluator
+    type(signal_interruption_type) :: interruption
     type(model_type) :: asked
 
     if (model%program == dynamics) call check_forced(model, err)
@@ -48,7 +50,8 @@ contains
     asked%request%quantities = model%request%quantities(used_quantities(model))
     call find_quantities(asked, quantities, err)
     if (allocated(err)) return
-    call new_run_evaluator(variable, model, quiet, evaluator)
+    call interruption%words%start(model%program, 'no result of a run of the search', 'it', quiet, with_progress=.false.)
+    call new_run_evaluator(variable, model, interruption, evaluator)
     allocate (synthesis%space%evaluator, source=evaluator)
   end subroutine check_synthesis
 

@@ -8,7 +8,7 @@ module mech9_run_evaluator
   use mech9_variable_model, only: variable_model_type
   use mech9_quantity_evaluator, only: quantity_evaluator_type
   use mech9_row_source, only: row_source_type
-  use mech9_waiting_words, only: waiting_words_type
+  use mech9_simulation, only: interruption_type
   use mech9_design_gradient, only: find_design_gradient
   use mech9_design_run, only: run_design
   implicit none
@@ -22,28 +22,26 @@ module mech9_run_evaluator
     integer, allocatable :: varied(:)                     !< numbers of the parameters that are varied
     real(wp), allocatable :: low(:)                       !< least value of each
     real(wp), allocatable :: high(:)                      !< largest value of each
-    logical :: quiet = .false.                            !< nothing is said of a run that takes long
+    class(interruption_type), allocatable :: interruption !< is asked whether a run shall stop
   contains
     procedure :: evaluate
   end type run_evaluator_type
 
   !> Step of differences, as a part of the range of a parameter: round-off and truncation are then about equal.
   real(wp), parameter :: step_part = 3.0e-5_wp
-  !> The result that is missing while a run takes long.
-  character(len=*), parameter :: missing_run = 'no result of a run of the search'
 
 contains
 
   !> Prepare an evaluator. It has a model of its own, so that each thread can have a copy.
-  subroutine new_run_evaluator(variable, model, quiet, evaluator)
+  subroutine new_run_evaluator(variable, model, interruption, evaluator)
     class(variable_model_type), intent(in) :: variable      !< the model as a function of its parameters; copied
     type(model_type), intent(in) :: model                   !< the model with its objectives and limits
-    logical, intent(in) :: quiet                            !< nothing is said of a run that takes long
+    class(interruption_type), intent(in) :: interruption    !< is asked whether a run shall stop; copied
     type(run_evaluator_type), intent(out) :: evaluator      !< ready
     integer :: i
 
     allocate (evaluator%variable, source=variable)
-    evaluator%quiet = quiet
+    allocate (evaluator%interruption, source=interruption)
     evaluator%used = used_quantities(model)
     evaluator%varied = pack([(i, i=1, size(model%parameters))], model%parameters%has_range)
     evaluator%low = model%parameters(evaluator%varied)%low
@@ -117,14 +115,12 @@ contains
     logical, intent(out) :: has_value                  !< they exist
     type(model_type), target :: model
     type(row_source_type) :: source
-    type(waiting_words_type), target :: words
     type(error_type), allocatable :: err
 
     numbers = 0.0_wp
     call make_model(self, values, q, model, has_value)
     if (.not. has_value) return
-    call words%start(model%program, missing_run, 'it', self%quiet, with_progress=.false.)
-    call run_design(model, source, numbers, err, words=words)
+    call run_design(model, source, numbers, err, interruption=self%interruption)
     has_value = .not. allocated(err)
     if (has_value) has_value = all(ieee_is_finite(numbers))
   end subroutine take_numbers
@@ -137,7 +133,6 @@ contains
     real(wp), intent(out) :: slopes(:, :)              !< (parameters,used) NaN where a derivative is not known
     type(model_type), target :: model
     type(error_type), allocatable :: err
-    type(waiting_words_type), target :: words
     real(wp) :: numbers(size(self%used))
     logical :: made
 
@@ -145,8 +140,7 @@ contains
     call make_model(self, values, q, model, made)
     if (.not. made) return
     model%request%output%gradients = .true.
-    call words%start(model%program, missing_run, 'it', self%quiet, with_progress=.false.)
-    call find_design_gradient(model, self%variable, numbers, slopes, err, words)
+    call find_design_gradient(model, self%variable, numbers, slopes, err, self%interruption)
     if (allocated(err)) slopes = ieee_value(1.0_wp, ieee_quiet_nan)
   end subroutine take_gradient
 

@@ -100,7 +100,7 @@ contains
 
     call prepare(tester, grid, this)
     call tester%is_true(this%model%is_driven() .and. size(used_quantities(this%model)) == 0, 'a driven study')
-    call maker%begin(this%model, this%varied, quiet=.true.)
+    call maker%begin(this%model, this%varied)
     do i = 6, 1, -1
       call maker%make(i, made)
       call tester%is_true(made%number == i .and. made%exit_code == exit_done, 'a run that went to its end')
@@ -123,7 +123,7 @@ contains
 
     call prepare(tester, grid, this)
     call begin(tester, this, 'a.nml --study --table '//stem//'.dat', 3, runs)
-    call maker%begin(this%model, this%varied, quiet=.true.)
+    call maker%begin(this%model, this%varied)
     do i = 1, 6
       call maker%make(i, made(i))
     end do
