@@ -17,6 +17,7 @@ module mech9_kinematic_report
   use mech9_force_record, only: reacting_pairs
   use mech9_uniqueness, only: uniqueness_type
   use mech9_quantity_record, only: quantity_record_type
+  use mech9_quantity_results, only: report_quantities
   use mech9_run_words, only: duration, each, begin_report, add_structure, add_uniqueness
   implicit none
   private
@@ -110,7 +111,7 @@ contains
     call begin_report(json, model, diagnostics, table_path)
     call kinematic_facts(plan, outcome, driven, facts)
     call facts%to_json(json)
-    call quantities%to_json(json)
+    call report_quantities(quantities, json)
     if (allocated(unique)) call add_uniqueness(json, reacting_pairs(model), unique)
     call add_structure(json, model, plan)
     call json%end_object()

@@ -8,6 +8,7 @@ module mech9_task
   use mech9_kept_rows, only: kept_rows_type
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
+  use mech9_quantity_results, only: write_quantities, print_quantities
   use mech9_result_units, only: unit_of
   use mech9_masks, only: numbers_of
   use mech9_film, only: film_type, new_film
@@ -206,7 +207,7 @@ contains
     hdf5 => results%hdf5()
     if (.not. (ready .and. associated(hdf5))) return
     call write_uniqueness(hdf5%file, source%columns, source%forces)
-    if (.not. source%quantities%is_empty()) call source%quantities%to_hdf5(hdf5%file, again=.false.)
+    if (.not. source%quantities%is_empty()) call write_quantities(source%quantities, hdf5%file, again=.false.)
   end subroutine begin_run
 
   !> Close the results of a run, draw the mechanism, and print which files were written.
@@ -222,10 +223,10 @@ contains
 
     hdf5 => results%hdf5()
     if (associated(hdf5) .and. .not. source%quantities%is_empty()) &
-      call source%quantities%to_hdf5(hdf5%file, again=.true.)
+      call write_quantities(source%quantities, hdf5%file, again=.true.)
     call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
-    if (.not. options%has('quiet')) call source%quantities%print(error_unit)
+    if (.not. options%has('quiet')) call print_quantities(error_unit, source%quantities)
     call results%print_words(error_unit, options%has('quiet'))
     if (allocated(source%forces%unique) .and. .not. options%has('quiet')) &
       call print_undetermined(error_unit, reacting_pairs(model), source%forces%unique)

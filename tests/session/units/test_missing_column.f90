@@ -3,7 +3,7 @@ module test_missing_column
   use mech9_program_kind, only: kinematics
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type, kinematic_columns
-  use mech9_missing_column, only: remedy_of_missing
+  use mech9_missing_column, only: find_remedy
   use mech9_small_models, only: slider_crank, eol
   use mech9_text_models, only: model_from_text
   use mech9_testing, only: tester_type
@@ -35,7 +35,7 @@ contains
     call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol// &
       "&time end=1, intervals=4 /"//eol//"&output "//output//" /"//eol, kinematics, model)
     columns = kinematic_columns(model%mechanism, model%request%output)
-    remedy = remedy_of_missing(name, model, columns)
+    call find_remedy(name, model, columns, remedy)
     call tester%is_true(remedy == expected, 'the remedy of '//name//' with '//output//': "'//remedy//'"')
   end subroutine remedies
 

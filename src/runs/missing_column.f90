@@ -6,33 +6,33 @@ module mech9_missing_column
   use mech9_columns, only: columns_type
   implicit none
   private
-  public :: remedy_of_missing
+  public :: find_remedy
 
 contains
 
   !> The end of a message about a column that is not recorded: the setting that records it, or the column that may be meant.
-  function remedy_of_missing(name, model, columns) result(remedy)
+  subroutine find_remedy(name, model, columns, remedy)
     character(len=*), intent(in) :: name          !< heading of the column
     type(model_type), intent(in) :: model         !< the model
     type(columns_type), intent(in) :: columns     !< of the run
-    character(len=:), allocatable :: remedy
+    character(len=:), allocatable, intent(out) :: remedy   !< the end of the message; '' where there is none
 
-    remedy = remedy_of_motion(name, model)
-    if (remedy == '') remedy = remedy_of_force(name, model)
-    if (remedy == '') remedy = remedy_of_pair(name, model)
-    if (remedy == '') remedy = remedy_of_coupling(name, model, columns)
+    call find_remedy_of_motion(name, model, remedy)
+    if (remedy == '') call find_remedy_of_force(name, model, remedy)
+    if (remedy == '') call find_remedy_of_pair(name, model, remedy)
+    if (remedy == '') call find_remedy_of_coupling(name, model, columns, remedy)
     if (remedy == '' .and. name == 'conditioning') remedy = set_in_output('conditioning=.true.')
     if (remedy == '' .and. any(name == [character(len=11) :: 'E.kinetic', 'E.potential', 'E.total'])) then
       remedy = '; mech9d alone records energies'
       if (.not. model%request%output%energies) remedy = set_in_output('energies=.true.')
     end if
-    if (remedy == '') remedy = nearest_column(name, columns)
-  end function remedy_of_missing
+    if (remedy == '') call find_nearest(name, columns, remedy)
+  end subroutine find_remedy
 
   !> The words for a setting of &output.
   pure function set_in_output(setting) result(words)
     character(len=*), intent(in) :: setting   !< the setting, as it stands in a data file
-    character(len=:), allocatable :: words
+    character(len=len(setting) + 17) :: words
 
     words = '; set '//setting//' in &output'
   end function set_in_output
@@ -51,10 +51,10 @@ contains
   end function number_after
 
   !> For coordinates and points, and their derivatives.
-  function remedy_of_motion(name, model) result(remedy)
+  subroutine find_remedy_of_motion(name, model, remedy)
     character(len=*), intent(in) :: name      !< heading of the column
     type(model_type), intent(in) :: model     !< the model
-    character(len=:), allocatable :: remedy
+    character(len=:), allocatable, intent(out) :: remedy   !< the end of the message; '' where there is none
     character(len=3), parameter :: orders(0:2) = ['q  ', 'dq ', 'ddq']
     character(len=1), parameter :: point_orders(2) = ['v', 'a']
     logical :: recorded(size(model%mechanism%pairs))
@@ -81,13 +81,13 @@ contains
         end do
       end do
     end associate
-  end function remedy_of_motion
+  end subroutine find_remedy_of_motion
 
   !> For forces of drives.
-  function remedy_of_force(name, model) result(remedy)
+  subroutine find_remedy_of_force(name, model, remedy)
     character(len=*), intent(in) :: name      !< heading of the column
     type(model_type), intent(in) :: model     !< the model
-    character(len=:), allocatable :: remedy
+    character(len=:), allocatable, intent(out) :: remedy   !< the end of the message; '' where there is none
     integer :: k
 
     remedy = ''
@@ -98,13 +98,13 @@ contains
     else
       remedy = set_in_output('drive_forces=.true.')
     end if
-  end function remedy_of_force
+  end subroutine find_remedy_of_force
 
   !> For forces and moments in pairs.
-  function remedy_of_pair(name, model) result(remedy)
+  subroutine find_remedy_of_pair(name, model, remedy)
     character(len=*), intent(in) :: name      !< heading of the column
     type(model_type), intent(in) :: model     !< the model
-    character(len=:), allocatable :: remedy
+    character(len=:), allocatable, intent(out) :: remedy   !< the end of the message; '' where there is none
     integer :: k, point, first
 
     remedy = ''
@@ -121,14 +121,14 @@ contains
     else
       remedy = '; pair '//to_text(k)//' is not among reaction_pairs in &output'
     end if
-  end function remedy_of_pair
+  end subroutine find_remedy_of_pair
 
   !> For forces of couplings.
-  function remedy_of_coupling(name, model, columns) result(remedy)
+  subroutine find_remedy_of_coupling(name, model, columns, remedy)
     character(len=*), intent(in) :: name          !< heading of the column
     type(model_type), intent(in) :: model         !< the model
     type(columns_type), intent(in) :: columns     !< of the run
-    character(len=:), allocatable :: remedy
+    character(len=:), allocatable, intent(out) :: remedy   !< the end of the message; '' where there is none
     integer :: i, k, n
 
     remedy = ''
@@ -149,13 +149,13 @@ contains
       if (remedy /= '') remedy = remedy//', with reactions=.true. in &output'
       if (remedy == '') remedy = set_in_output('reactions=.true.')
     end if
-  end function remedy_of_coupling
+  end subroutine find_remedy_of_coupling
 
   !> The recorded column with the nearest heading.
-  function nearest_column(name, columns) result(remedy)
+  subroutine find_nearest(name, columns, remedy)
     character(len=*), intent(in) :: name          !< heading that is not recorded
     type(columns_type), intent(in) :: columns     !< of the run
-    character(len=:), allocatable :: remedy
+    character(len=:), allocatable, intent(out) :: remedy   !< the end of the message; '' where there is none
     character(len=len(name) + 8) :: known(columns%count)
     integer :: i
 
@@ -168,5 +168,5 @@ contains
     else
       remedy = '; columns are the headings of the table, and &output decides which there are'
     end if
-  end function nearest_column
+  end subroutine find_nearest
 end module mech9_missing_column

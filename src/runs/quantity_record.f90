@@ -1,8 +1,7 @@
 !> The quantities of a run: their columns, the times between outputs that they need, and their numbers at its end.
 module mech9_quantity_record
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text, string_type
   use mech9_error, only: error_type, raise, exit_data
   use mech9_quantity, only: quantity_type
   use mech9_model, only: model_type
@@ -10,10 +9,7 @@ module mech9_quantity_record
   use mech9_tracked_quantity, only: tracked_quantity_type
   use mech9_quantity_pieces, only: quantity_pieces_type
   use mech9_columns, only: columns_type
-  use mech9_missing_column, only: remedy_of_missing
-  use mech9_facts, only: facts_type
-  use mech9_json, only: json_type
-  use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_missing_column, only: find_remedy
   implicit none
   private
   public :: quantity_record_type
@@ -24,8 +20,8 @@ module mech9_quantity_record
     real(wp), allocatable :: numbers(:)                      !< NaN before the end of the run
     real(wp), allocatable :: gradient(:, :)                  !< (P,quantities) derivatives of the numbers by the parameters, if the
                                                              !< run has them; NaN before its end and where there is none
-    logical, private :: is_finished = .false.                !< the numbers are known
-    type(columns_type), private :: columns
+    logical :: is_finished = .false.                         !< the numbers are known
+    type(columns_type) :: columns                            !< of the run
     type(quantity_pieces_type), private :: pieces            !< between outputs
   contains
     procedure :: begin
@@ -38,10 +34,6 @@ module mech9_quantity_record
     procedure :: take_output
     procedure :: finish
     procedure :: unit_of
-    procedure :: find_facts
-    procedure :: print => print_quantities
-    procedure :: to_json
-    procedure :: to_hdf5
   end type quantity_record_type
 
 contains
@@ -101,12 +93,14 @@ contains
     type(columns_type), intent(in) :: columns               !< of the run
     integer, intent(out) :: column                          !< its number
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    character(len=:), allocatable :: remedy
 
     do column = 1, columns%count
       if (columns%names(column)%text == quantity%column) return
     end do
+    call find_remedy(quantity%column, model, columns, remedy)
     call raise(err, exit_data, 'quantity '''//quantity%name//''' is of column '''//quantity%column//''', which is not recorded'// &
-               remedy_of_missing(quantity%column, model, columns), quantity%place)
+               remedy, quantity%place)
   end subroutine find_column
 
   !> Whether there are no quantities.
@@ -239,97 +233,4 @@ contains
       unit = unit//' s'
     end if
   end function unit_of
-
-  !> The quantities as facts, for the HDF5 file.
-  subroutine find_facts(self, facts)
-    class(quantity_record_type), intent(in) :: self   !< the record
-    type(facts_type), intent(out) :: facts            !< the quantities; NaN before the end of the run
-    integer :: i
-
-    if (self%is_empty()) return
-    do i = 1, size(self%tracked)
-      call facts%add(self%quantities(i)%name, self%numbers(i), trim(self%quantities(i)%take)//' of '//self%quantities(i)%column, &
-                     self%unit_of(i))
-    end do
-  end subroutine find_facts
-
-  !> Write the quantities to the HDF5 file, with their derivatives by the parameters: before the run, when they are NaN, and again
-  !> after it.
-  subroutine to_hdf5(self, file, again)
-    class(quantity_record_type), intent(in) :: self   !< the record
-    type(hdf5_file_type), intent(inout) :: file       !< the open file
-    logical, intent(in) :: again                      !< the file has them already, and they are written over
-    type(facts_type) :: facts
-    type(string_type) :: names(size(self%quantities))
-    integer :: i
-
-    call self%find_facts(facts)
-    call facts%to_hdf5(file, 'quantities', again)
-    if (.not. self%has_gradient()) return
-    if (.not. again) then
-      do i = 1, size(names)
-        names(i)%text = self%quantities(i)%name
-      end do
-      call file%put('quantity', names, 'name of the quantity')
-      call file%make_scale('quantity')
-      if (self%columns%sensitivities == 0) then
-        call file%put('parameter', self%columns%parameters, 'name of the parameter')
-        call file%make_scale('parameter')
-      end if
-    end if
-    call file%put('quantities/gradient', self%gradient, 'derivatives of the quantities by the parameters', &
-                  'unit of the quantity per unit of the parameter in the data file')
-    if (.not. again) call file%attach_scales('quantities/gradient', ['/quantity ', '/parameter'])
-  end subroutine to_hdf5
-
-  !> Print a line for each quantity, and for each of its derivatives, after a run that went to its end.
-  subroutine print_quantities(self, unit)
-    class(quantity_record_type), intent(in) :: self   !< the record
-    integer, intent(in) :: unit                       !< Fortran unit to write to
-    character(len=:), allocatable :: per_parameter
-    integer :: i, p
-
-    if (self%is_empty() .or. .not. self%is_finished) return
-    do i = 1, size(self%tracked)
-      associate (name => self%quantities(i)%name)
-        write (unit, '(a)') name//' = '//to_text(self%numbers(i), 12)//' '//self%unit_of(i)
-        do p = 1, size(self%gradient, 1)
-          if (ieee_is_nan(self%gradient(p, i))) then
-            write (unit, '(a)') '  d('//name//')/d('//self%columns%parameters(p)%text//') is not known'
-          else
-            call self%columns%find_unit_per(self%unit_of(i), p, per_parameter)
-            write (unit, '(a)') '  d('//name//')/d('//self%columns%parameters(p)%text//') = '//to_text(self%gradient(p, i), 12)// &
-              ' '//per_parameter
-          end if
-        end do
-      end associate
-    end do
-  end subroutine print_quantities
-
-  !> The quantities as a list in a report:
-  !> [{"name": "stroke", "value": 0.6, "unit": "m", "gradient": [{"parameter": "crank", "value": 2.0}]}, ...]
-  subroutine to_json(self, json)
-    class(quantity_record_type), intent(in) :: self   !< the record
-    type(json_type), intent(inout) :: json            !< the report, inside its object
-    integer :: i, p
-
-    if (self%is_empty()) return
-    call json%begin_array('quantities')
-    do i = 1, size(self%tracked)
-      call json%begin_object()
-      call json%add('name', self%quantities(i)%name)
-      call json%add('value', self%numbers(i))
-      call json%add('unit', self%unit_of(i))
-      if (self%has_gradient()) call json%begin_array('gradient')
-      do p = 1, size(self%gradient, 1)
-        call json%begin_object()
-        call json%add('parameter', self%columns%parameters(p)%text)
-        call json%add('value', self%gradient(p, i))
-        call json%end_object()
-      end do
-      if (self%has_gradient()) call json%end_array()
-      call json%end_object()
-    end do
-    call json%end_array()
-  end subroutine to_json
 end module mech9_quantity_record
