@@ -2,9 +2,10 @@
 module mech9_sundials_7
   use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_int, c_int32_t
   use fsundials_core_mod, only: FSUNContext_Create, FSUNContext_Free, FSUNContext_ClearErrHandlers, &
-    FSUNContext_SetLogger, SUN_COMM_NULL, &
+    FSUNContext_SetLogger, &
     N_Vector, FN_VGetArrayPointer, FN_VDestroy, SUNMatrix, FSUNMatDestroy, &
     SUNLinearSolver, FSUNLinSolFree, SUNNonlinearSolver, FSUNNonlinSolFree
+  use mech9_no_communicator, only: no_communicator
   implicit none
   private
   public :: N_Vector, FN_VGetArrayPointer, FN_VDestroy, SUNMatrix, FSUNMatDestroy
@@ -26,7 +27,7 @@ contains
     integer(c_int), intent(out) :: flag   !< 0 when all is well
     type(c_ptr) :: no_logger
 
-    flag = FSUNContext_Create(SUN_COMM_NULL, context)
+    flag = FSUNContext_Create(no_communicator, context)
     if (flag /= 0) return
     flag = FSUNContext_ClearErrHandlers(context)
     if (flag /= 0) return
