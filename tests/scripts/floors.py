@@ -10,13 +10,13 @@ from mech9_cases import TREE
 FLOORS = ['base', 'system', 'numerics', 'numerics/minima', 'spatial', 'structure', 'model/couplings', 'model/laws', 'model/request', 'model',
           'sampling', 'user', 'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
           'ode', 'dynamics', 'dynamics/planning', 'dynamics/variations', 'analyses/sensitivity', 'dynamics/sensitivity', 'simulation',
-          'analyses/reactions', 'analyses/equilibrium', 'analyses/planar_runs', 'analyses/synthesis', 'analyses', 'wording', 'runs', 'input/document', 'input', 'output',
+          'analyses/reactions', 'analyses/equilibrium', 'analyses/planar_runs', 'analyses', 'wording', 'runs', 'synthesis', 'input/document', 'input', 'output',
           'pictures/plots', 'pictures/scene',
           'pictures/films', 'terminal', 'session/command', 'session/words', 'facade', 'session/results', 'session/study', 'session/synthesis', 'session',
           'dialogue/drafts',
           'interchange/xml', 'interchange', 'dialogue',
           'programs/mpi', 'programs']
-WITHOUT_WORDS = ('numerics', 'spatial', 'kinematics/', 'ode', 'dynamics', 'simulation', 'analyses/')   # they fail with numbers, see src/wording
+WITHOUT_WORDS = ('numerics', 'spatial', 'kinematics/', 'ode', 'dynamics', 'simulation', 'analyses/', 'synthesis')   # they fail with numbers, see src/wording
 MODULE = re.compile(r'^\s*module\s+(?!procedure\b|subroutine\b|function\b)(\w+)\s*$', re.I | re.M)
 USE = re.compile(r'^\s*use\b\s*(?:,\s*(?:non_)?intrinsic\s*)?(?:::)?\s*([\w@]+)\s*(,\s*only\s*:)?', re.I | re.M)
 PARENT = re.compile(r'^\s*submodule\s*\(\s*(\w+)', re.I | re.M)

@@ -111,6 +111,30 @@ def test_position_at_the_start(cases):
     is_recovered(cases, designs, dict(u=4, h=1 - 1.5 + 9.81*1.5**2/2), 'dropped', value=1e-18, tolerance=EXACT)
 
 
+def test_differences_in_place_of_derivatives_are_told(cases):
+    """A push rises from a time that is searched to the end of its period, where it jumps: derivatives by this time are refused. The speed
+    at the end is the mean of the push, a half, times its length."""
+    push = SOLVER + """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&body link=2, mass=1 /
+&load kind='force', link=2, force=1,0,0, law='segments', times=0,0.1,0.3, values=0,0,1, laws='dwell','harmonic', period=0.3 /
+&initial coordinate=1, position=0, velocity=0 /
+&time end=0.3, intervals=10 /
+&parameter name='begin', sets='load(1).times(2)', low=0.05, high=0.25 /
+&quantity name='speed', of='dq1', take='end' /
+&objective kind='quantity', of='speed', goal=0.05 /
+&optimum starts=2 /
+"""
+    designs, _, said = cases.search(push, 'push')
+    is_recovered(cases, designs, dict(begin=0.2), 'push', value=1e-14, tolerance=1e-5)
+    cases.checks.true("note: the search takes differences of runs in place of derivatives of the quantities: derivatives by the parameter 'begin' "
+                      'are not computed: it sets numbers of a law by which' in said, 'the reason is told', said)
+    _, _, said = cases.search(push, 'push, without words', '--quiet')
+    cases.checks.equal(said, '', '--quiet leaves it out')
+    _, _, said = cases.search(BALANCED, 'counterweight')
+    cases.checks.true('note:' not in said, 'nothing is said where derivatives are known', said)
+
+
 def test_counterweight_of_a_lever(cases):
     """A lever stays where it is with a counterweight of equal moment."""
     designs, _, _ = cases.search(BALANCED, 'counterweight')

@@ -20,7 +20,7 @@ module mech9_optimum_check
   use mech9_closed_search, only: is_least_squares
   use mech9_transmission, only: has_transmission_angle
   use mech9_signal_interruption, only: signal_interruption_type
-  use mech9_run_evaluator, only: run_evaluator_type, new_run_evaluator, used_quantities
+  use mech9_run_evaluator, only: new_run_evaluator, used_quantities
   implicit none
   private
   public :: check_synthesis
@@ -36,7 +36,6 @@ contains
     type(synthesis_type), intent(inout) :: synthesis        !< gets the runs
     type(error_type), allocatable, intent(out) :: err       !< allocated if no search can be made
     type(quantity_record_type) :: quantities
-    type(run_evaluator_type) :: evaluator
     type(signal_interruption_type) :: interruption
     type(model_type) :: asked
 
@@ -51,8 +50,8 @@ contains
     call find_quantities(asked, quantities, err)
     if (allocated(err)) return
     call interruption%words%start(model%program, 'no result of a run of the search', 'it', quiet, with_progress=.false.)
-    call new_run_evaluator(variable, model, interruption, evaluator)
-    allocate (synthesis%space%evaluator, source=evaluator)
+    allocate (synthesis%space%evaluator)
+    call new_run_evaluator(variable, model, interruption, synthesis%space%evaluator)
   end subroutine check_synthesis
 
   !> Report objectives and limits that are about motions which drives alone determine.

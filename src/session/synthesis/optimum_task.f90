@@ -24,7 +24,7 @@ module mech9_optimum_task
   use mech9_optimum_check, only: check_synthesis
   use mech9_optimum_results, only: open_starts, write_results, table_of
   use mech9_optimum_pictures, only: optimum_pictures_type
-  use mech9_optimum_words, only: print_optimum, save_optimum_report
+  use mech9_optimum_words, only: print_differences, print_optimum, save_optimum_report
   implicit none
   private
   public :: work_on_optimum
@@ -74,6 +74,7 @@ contains
       call diagnostics%add_error(err)
       return
     end if
+    if (.not. options%has('quiet')) call print_differences(error_unit, start, synthesis)
     call make_starts(options, searched, model, synthesis, starts, err)
     call synthesis%keep_verified()
     if (.not. options%has('quiet')) call print_optimum(error_unit, model, synthesis, seconds() - clock)

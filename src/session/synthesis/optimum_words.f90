@@ -4,6 +4,8 @@ module mech9_optimum_words
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_error, only: error_type
+  use mech9_explanation, only: explain
+  use mech9_state, only: state_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
   use mech9_json, only: json_type
@@ -11,9 +13,28 @@ module mech9_optimum_words
   use mech9_synthesis, only: synthesis_type
   implicit none
   private
-  public :: print_optimum, history_of_design, save_optimum_report
+  public :: print_differences, print_optimum, history_of_design, save_optimum_report
 
 contains
+
+  !> Print a note where a search will take differences of runs in place of derivatives.
+  subroutine print_differences(unit, start, synthesis)
+    integer, intent(in) :: unit                         !< Fortran unit to write to
+    type(state_type), intent(in) :: start               !< the closed position of the data file
+    type(synthesis_type), intent(inout) :: synthesis    !< makes runs for quantities, if it needs any
+    type(error_type), allocatable :: err
+    logical :: known
+
+    if (.not. allocated(synthesis%space%evaluator)) return
+    call synthesis%space%evaluator%judge_gradient(synthesis%space%values, start%q, known, err)
+    if (known) return
+    if (allocated(err)) then
+      call explain(err)
+      write (unit, '(a)') 'note: the search takes differences of runs in place of derivatives of the quantities: '//err%message
+    else
+      write (unit, '(a)') 'note: the search takes differences of runs where derivatives of the quantities are not known'
+    end if
+  end subroutine print_differences
 
   !> Print how the search went, and the best design.
   subroutine print_optimum(unit, model, synthesis, time)

@@ -176,7 +176,7 @@ contains
     call make_plan(alone%model%mechanism, alone%model%problem%partition, optimum%q, alone%plan, start, err)
     if (allocated(err)) return
     alone%model%request = self%space%model%request
-    if (allocated(self%space%evaluator)) alone%evaluator = self%space%evaluator
+    if (allocated(self%space%evaluator)) allocate (alone%evaluator, source=self%space%evaluator)
     alone%values = all
     alone%varied = self%space%varied
     alone%low = self%space%low

@@ -16,7 +16,7 @@ module mech9_design_space
   use mech9_counted_random, only: uniform_at
   use mech9_mechanism_constants, only: gather_constants, align_axes, constants_of_coordinate, constants_of_pose
   use mech9_tangent, only: tangent_type, find_tangent
-  use mech9_quantity_evaluator, only: quantity_evaluator_type
+  use mech9_run_evaluator, only: run_evaluator_type
   implicit none
   private
   public :: design_space_type, design_type, new_design_space, new_design, place_design, place_drives, find_tangents, &
@@ -38,7 +38,7 @@ module mech9_design_space
     real(wp), allocatable :: slopes(:, :)           !< (constants,varied) their derivatives, where they are affine
     type(tangent_type), allocatable :: tangents(:)  !< (varied) the same as tangents
     integer :: drives_at = 0                        !< number of constants before those of the drives
-    class(quantity_evaluator_type), allocatable :: evaluator   !< makes the runs from which quantities are taken
+    type(run_evaluator_type), allocatable :: evaluator   !< makes the runs from which quantities are taken
   contains
     procedure :: moves_drives
   end type design_space_type
@@ -224,7 +224,7 @@ contains
   end function moves_drives
 
   !> A design that is not placed yet.
-  pure subroutine new_design(space, design)
+  subroutine new_design(space, design)
     type(design_space_type), intent(in) :: space   !< the designs
     type(design_type), intent(out) :: design       !< with the numbers of the data file
     integer :: i

@@ -6,7 +6,6 @@ module mech9_run_evaluator
   use mech9_model, only: model_type
   use mech9_objective, only: quantity_objective, quantity_limit
   use mech9_variable_model, only: variable_model_type
-  use mech9_quantity_evaluator, only: quantity_evaluator_type
   use mech9_row_source, only: row_source_type
   use mech9_simulation, only: interruption_type
   use mech9_design_gradient, only: find_design_gradient
@@ -15,7 +14,8 @@ module mech9_run_evaluator
   private
   public :: run_evaluator_type, new_run_evaluator, used_quantities
 
-  type, extends(quantity_evaluator_type) :: run_evaluator_type
+  !> Makes the runs of designs.
+  type :: run_evaluator_type
     private
     class(variable_model_type), allocatable :: variable   !< the model as a function of its parameters
     integer, allocatable :: used(:)                       !< numbers of the quantities of objectives and limits
@@ -24,7 +24,9 @@ module mech9_run_evaluator
     real(wp), allocatable :: high(:)                      !< largest value of each
     class(interruption_type), allocatable :: interruption !< is asked whether a run shall stop
   contains
-    procedure :: evaluate
+    procedure :: find_numbers
+    procedure :: find_gradient
+    procedure :: judge_gradient
   end type run_evaluator_type
 
   !> Step of differences, as a part of the range of a parameter: round-off and truncation are then about equal.
@@ -61,29 +63,58 @@ contains
     end associate
   end function used_quantities
 
-  !> The quantities of a design over a run that starts in an assembly, and their derivatives.
-  subroutine evaluate(self, values, q, with_gradient, numbers, gradient, has_value)
+  !> The quantities of a design over a run that starts in an assembly.
+  subroutine find_numbers(self, values, q, numbers, has_value)
     class(run_evaluator_type), intent(inout) :: self   !< makes the run
     real(wp), intent(in) :: values(:)                  !< of all parameters, in the units of the data file
     real(wp), intent(in) :: q(:)                       !< (M) coordinates at the start of the run [rad, m]
-    logical, intent(in) :: with_gradient               !< derivatives are asked for
     real(wp), intent(out) :: numbers(:)                !< (quantities) in the units of the results; 0 where nothing uses them
-    real(wp), intent(out) :: gradient(:, :)            !< (parameters,quantities) their derivatives
-    logical, intent(out) :: has_value                  !< all numbers and derivatives exist
-    real(wp) :: taken(size(self%used)), slopes(size(values), size(self%used))
-    logical :: unknown(size(values))
+    logical, intent(out) :: has_value                  !< all numbers exist
+    real(wp) :: taken(size(self%used))
 
     numbers = 0.0_wp
-    gradient = 0.0_wp
     call take_numbers(self, values, q, taken, has_value)
-    if (.not. has_value) return
-    numbers(self%used) = taken
-    if (.not. with_gradient) return
-    call take_gradient(self, values, q, slopes)
+    if (has_value) numbers(self%used) = taken
+  end subroutine find_numbers
+
+  !> The derivatives of the quantities of a design by all parameters. Those that are not known are differences of runs.
+  subroutine find_gradient(self, values, q, gradient, has_value)
+    class(run_evaluator_type), intent(inout) :: self   !< makes the runs
+    real(wp), intent(in) :: values(:)                  !< of all parameters, in the units of the data file
+    real(wp), intent(in) :: q(:)                       !< (M) coordinates at the start of the run [rad, m]
+    real(wp), intent(out) :: gradient(:, :)            !< (parameters,quantities) 0 where nothing uses them, and for parameters held
+    logical, intent(out) :: has_value                  !< all derivatives exist
+    real(wp) :: slopes(size(values), size(self%used))
+    type(error_type), allocatable :: failure
+    logical :: unknown(size(values))
+
+    gradient = 0.0_wp
+    call take_gradient(self, values, q, slopes, failure)
     unknown = any(ieee_is_nan(slopes), dim=2)
-    call take_differences(self, values, q, taken, unknown, slopes, has_value)
+    has_value = .true.
+    if (any(unknown(self%varied))) call take_differences(self, values, q, unknown, slopes, has_value)
+    where (ieee_is_nan(slopes)) slopes = 0.0_wp
     gradient(:, self%used) = slopes
-  end subroutine evaluate
+  end subroutine find_gradient
+
+  !> Tell whether derivatives of the quantities are known. Fails with the reason where a design has quantities, and its run with
+  !> derivatives fails.
+  subroutine judge_gradient(self, values, q, known, err)
+    class(run_evaluator_type), intent(inout) :: self    !< makes the runs
+    real(wp), intent(in) :: values(:)                   !< of all parameters, in the units of the data file
+    real(wp), intent(in) :: q(:)                        !< (M) coordinates at the start of the run [rad, m]
+    logical, intent(out) :: known                       !< the derivatives by all varied parameters, or the design has no quantities
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: slopes(size(values), size(self%used)), numbers(size(self%used))
+    logical :: has_value
+
+    call take_gradient(self, values, q, slopes, err)
+    known = .not. any(ieee_is_nan(slopes(self%varied, :)))
+    if (.not. allocated(err)) return
+    call take_numbers(self, values, q, numbers, has_value)
+    known = .not. has_value
+    if (known) deallocate (err)
+  end subroutine judge_gradient
 
   !> The model of a design that starts in an assembly.
   subroutine make_model(self, values, q, model, made)
@@ -126,13 +157,13 @@ contains
   end subroutine take_numbers
 
   !> The derivatives of the quantities as far as they are known.
-  subroutine take_gradient(self, values, q, slopes)
+  subroutine take_gradient(self, values, q, slopes, failure)
     class(run_evaluator_type), intent(inout) :: self   !< makes the run
     real(wp), intent(in) :: values(:)                  !< of all parameters
     real(wp), intent(in) :: q(:)                       !< (M) coordinates at the start [rad, m]
     real(wp), intent(out) :: slopes(:, :)              !< (parameters,used) NaN where a derivative is not known
+    type(error_type), allocatable, intent(out) :: failure   !< of the run with derivatives, if it failed
     type(model_type), target :: model
-    type(error_type), allocatable :: err
     real(wp) :: numbers(size(self%used))
     logical :: made
 
@@ -140,24 +171,26 @@ contains
     call make_model(self, values, q, model, made)
     if (.not. made) return
     model%request%output%gradients = .true.
-    call find_design_gradient(model, self%variable, numbers, slopes, err, self%interruption)
-    if (allocated(err)) slopes = ieee_value(1.0_wp, ieee_quiet_nan)
+    call find_design_gradient(model, self%variable, numbers, slopes, failure, self%interruption)
+    if (allocated(failure)) slopes = ieee_value(1.0_wp, ieee_quiet_nan)
   end subroutine take_gradient
 
   !> Differences of the quantities by the varied parameters whose derivatives are not known.
-  subroutine take_differences(self, values, q, numbers, unknown, slopes, has_value)
+  subroutine take_differences(self, values, q, unknown, slopes, has_value)
     class(run_evaluator_type), intent(inout) :: self   !< makes the runs
     real(wp), intent(in) :: values(:)                  !< of all parameters
     real(wp), intent(in) :: q(:)                       !< (M) coordinates at the start [rad, m]
-    real(wp), intent(in) :: numbers(:)                 !< (used) the quantities there
     logical, intent(in) :: unknown(:)                  !< (parameters) a derivative by this parameter is not known
-    real(wp), intent(inout) :: slopes(:, :)            !< (parameters,used) gets the differences; 0 for parameters that are held
+    real(wp), intent(inout) :: slopes(:, :)            !< (parameters,used) gets the differences
     logical, intent(out) :: has_value                  !< they exist
-    real(wp) :: step, moved(size(values)), beside(size(numbers), 2), difference(size(numbers))
+    real(wp) :: step, moved(size(values))
+    real(wp), dimension(size(self%used)) :: numbers, difference
+    real(wp) :: beside(size(self%used), 2)
     integer :: i, k
     logical :: one_sided
 
-    has_value = .true.
+    call take_numbers(self, values, q, numbers, has_value)
+    if (.not. has_value) return
     do i = 1, size(self%varied)
       k = self%varied(i)
       if (.not. unknown(k)) cycle
@@ -175,6 +208,5 @@ contains
       if (one_sided) difference = (4.0_wp*beside(:, 1) - 3.0_wp*numbers - beside(:, 2))/(2.0_wp*step)
       where (ieee_is_nan(slopes(k, :))) slopes(k, :) = difference
     end do
-    where (ieee_is_nan(slopes)) slopes = 0.0_wp
   end subroutine take_differences
 end module mech9_run_evaluator

@@ -128,7 +128,7 @@ contains
     type(residual_values_type), intent(inout) :: values     !< gets the residuals
     logical, intent(out) :: has_value                       !< the residuals have a value here
     type(error_type), allocatable :: err
-    real(wp) :: q_start(size(self%q_start)), quantities(size(self%quantities)), gradient(size(self%gradient, 1), size(quantities))
+    real(wp) :: q_start(size(self%q_start)), quantities(size(self%quantities))
 
     if (with_derivatives) then
       call self%has_derivatives(values, has_value)
@@ -151,7 +151,7 @@ contains
       values%r = 0.0_wp
       call follow_targets(self, q_start, values%r, has_value)
       if (has_value .and. self%with_quantities) &
-        call space%evaluator%evaluate(all_values(space, self%design%x), q_start, .false., quantities, gradient, has_value)
+        call space%evaluator%find_numbers(all_values(space, self%design%x), q_start, quantities, has_value)
     end associate
     ! a run for quantities may have been interrupted
     if (.not. has_value) then
@@ -344,8 +344,7 @@ contains
       if (has_value) call differentiate_target(self, g, values%by_x(:, :, g), has_value)
     end do
     if (.not. (has_value .and. self%with_quantities)) return
-    call self%space%evaluator%evaluate(all_values(self%space, self%design%x), self%q_start, .true., self%quantities, &
-                                       self%gradient, has_value)
+    call self%space%evaluator%find_gradient(all_values(self%space, self%design%x), self%q_start, self%gradient, has_value)
     do g = 1, size(self%goals)
       associate (objective => self%space%model%request%objectives(self%goals(g)))
         values%by_x(row_of_goal(self, g), :self%varied, group_of_goal(self, g)) &
