@@ -203,5 +203,7 @@ def test_ctrl_c_ends_all_processes(cases, mech9k_mpi):
 
 def test_the_program_for_one_process_is_free_of_mpi(checks, build, mech9k):
     mpi_of(build)
-    libraries = run('ldd', mech9k).stdout
-    checks.true('libmpi' not in libraries, 'the program for one process is free of MPI', libraries)
+    # SUNDIALS 7 of Debian needs MPI itself
+    done = run(build.settings['CMAKE_READELF'], '--dynamic', mech9k)
+    checks.equal(done.returncode, 0, f'the libraries of the program are listed; {done.stderr}')
+    checks.true('libm.so' in done.stdout and 'libmpi' not in done.stdout, 'the program for one process is free of MPI', done.stdout)

@@ -44,11 +44,12 @@ def test_programs_of_other_projects(checks, tmp_path, lto):
     (user / 'lib' / 'libmech9.a').write_bytes(b'!<arch>\n')
     (user / 'main.c').write_text('int main(void) { return 0; }\n', encoding='utf-8')
     (user / 'CMakeLists.txt').write_text(PROJECT.format(targets=package / 'mech9Targets.cmake'), encoding='utf-8')
-    configure(user, tmp_path / 'out', '-G', 'Unix Makefiles')
+    configure(user, tmp_path / 'out')
     options = {}
     for name in ('plain', 'asked', 'by_property'):
-        rule = (tmp_path / 'out' / 'CMakeFiles' / f'{name}.dir' / 'link.txt').read_text(encoding='utf-8')
-        options[name] = re.findall(r'-f(?:no-)?lto\S*', rule)
+        done = subprocess.run(['ninja', '-C', tmp_path / 'out', '-t', 'commands', name], capture_output=True, text=True, check=True)
+        link = done.stdout.splitlines()[-1]
+        options[name] = re.findall(r'-f(?:no-)?lto\S*', link)
     checks.equal(options['plain'], ['-fno-lto'] if lto == 'ON' else [], f'MECH9_LTO={lto}: a program that asks nothing')
     checks.equal(options['asked'], ['-flto'], f'MECH9_LTO={lto}: one that asks')
     checks.true('-fno-lto' not in options['by_property'] and options['by_property'], f'MECH9_LTO={lto}: one that asks by its property', options)
