@@ -11,6 +11,7 @@ module mech9_checking
   use mech9_state, only: state_type
   use mech9_mobility_report, only: mobility_report_type, report_mobility
   use mech9_start_path, only: start_way_type
+  use mech9_explained_assembly, only: assemble_model
   use mech9_start_way_text, only: start_way_text
   use mech9_task, only: task_type
   use mech9_structure_text, only: print_mobility_report
@@ -81,7 +82,7 @@ contains
     call read_draft(conversation%interview%draft, conversation%draft_path, task%program, model, written, diagnostics)
     otherwise = 'guesses'
     if (.not. diagnostics%failed()) then
-      call task%assemble(model, plan, start, err, way)
+      call assemble_model(model, plan, start, err, way)
       if (.not. allocated(err)) then
         call tell_start(conversation, model, plan, start)
         if (way%interrupted) call conversation%say('Note: '//start_way_text(model%mechanism, way)//'.')

@@ -11,14 +11,11 @@ module mech9_motion
   use mech9_state, only: state_type
   use mech9_frame_motion, only: point_motion
   use mech9_simulation, only: simulation_type, simulation_statistics_type, interruption_type, &
-    coordinate_change_type, estimated_errors_type, judge_error
+    coordinate_change_type, judge_error
   use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan, is_made_for
   use mech9_reactions, only: reactions_type, new_reactions, find_reactions
-  use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
-  use mech9_free_simulation, only: free_simulation_type, new_free_simulation
-  use mech9_accuracy, only: find_accuracy
   use mech9_explanation, only: explain
-  use mech9_explained_assembly, only: assemble_driven_start, assemble_free_start
+  use mech9_model_motion, only: model_motion_type
   use mech9_checked_mechanism, only: checked_mechanism_type
   implicit none
   private
@@ -60,35 +57,8 @@ contains
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
 
-    call start_driven(self, mechanism, .false., err, interruption)
+    call start_motion(self, mechanism, kinematics, err, interruption)
   end subroutine start_kinematics
-
-  !> Start a motion that drives determine.
-  subroutine start_driven(self, mechanism, with_masses, err, interruption)
-    class(motion_type), intent(inout) :: self                        !< the motion; one that it held is closed
-    type(checked_mechanism_type), intent(in) :: mechanism            !< with a drive for each independent coordinate
-    logical, intent(in) :: with_masses                               !< bodies count, for energies
-    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
-    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
-    type(driven_simulation_type), allocatable :: simulation
-    type(plan_type) :: plan
-    type(state_type) :: assembled
-
-    call self%close()
-    allocate (simulation, self%model)
-    call mechanism%take(kinematics, self%model, err)
-    if (.not. allocated(err)) call assemble_driven_start(self%model, plan, assembled, err)
-    if (.not. allocated(err)) then
-      call new_driven_simulation(self%model, plan, assembled, simulation, .true., with_masses)
-      call simulation%start(err, interruption)
-    end if
-    call mechanism%point_at(err)
-    if (allocated(err)) then
-      call self%close()
-    else
-      call move_alloc(simulation, self%simulation)
-    end if
-  end subroutine start_driven
 
   !> Start a motion under forces from the initial positions and rates of the free coordinates. Those with drives move as these
   !> say; where all are driven nothing is integrated. Fails as start_kinematics does, with exit_data also where a free coordinate
@@ -98,52 +68,56 @@ contains
     type(checked_mechanism_type), intent(in) :: mechanism            !< with bodies, loads and gravity
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
-    type(free_simulation_type), allocatable :: simulation
-    type(plan_type) :: plan
-    type(state_type) :: assembled
+
+    call start_motion(self, mechanism, dynamics, err, interruption)
+  end subroutine start_dynamics
+
+  !> Start a motion of a program.
+  subroutine start_motion(self, mechanism, program, err, interruption)
+    class(motion_type), intent(inout) :: self                        !< the motion; one that it held is closed
+    type(checked_mechanism_type), intent(in) :: mechanism            !< the mechanism
+    integer, intent(in) :: program                                   !< kinematics or dynamics
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
+    type(model_motion_type) :: motion
 
     call self%close()
-    allocate (simulation, self%model)
-    call mechanism%take(dynamics, self%model, err)
-    if (.not. allocated(err)) then
-      if (self%model%is_driven()) then
-        call start_driven(self, mechanism, .true., err, interruption)
-        return
-      end if
-    end if
-    if (.not. allocated(err)) call assemble_free_start(self%model, plan, assembled, err)
-    if (.not. allocated(err)) call take_accuracy(self%model, plan, assembled, err, interruption)
-    if (.not. allocated(err)) call new_free_simulation(self%model, plan, assembled, simulation, err, pictures=.true.)
-    if (.not. allocated(err)) call simulation%start(err, interruption)
+    allocate (self%model)
+    call mechanism%take(program, self%model, err)
+    if (.not. allocated(err)) call motion%assemble(self%model, err)
+    if (.not. allocated(err)) call motion%prepare(self%model, err, pictures=.true.)
+    if (.not. allocated(err)) call take_accuracy(motion, self%model, err, interruption)
+    if (.not. allocated(err)) call motion%simulation%start(err, interruption)
     call mechanism%point_at(err)
     if (allocated(err)) then
-      call simulation%close()
+      call motion%close()
       call self%close()
     else
-      call move_alloc(simulation, self%simulation)
+      call move_alloc(motion%simulation, self%simulation)
     end if
-  end subroutine start_dynamics
+  end subroutine start_motion
 
   !> Find the tolerances for an accuracy, if one is asked for. It holds at the outputs of &time, and times between them have
   !> errors like theirs. Fails where it cannot be had.
-  subroutine take_accuracy(model, plan, assembled, err, interruption)
-    type(model_type), intent(inout) :: model                         !< gets the tolerances; the accuracy is met then
-    type(plan_type), intent(in) :: plan                              !< its plan
-    type(state_type), intent(in) :: assembled                        !< its closed position, with the independent rates
+  subroutine take_accuracy(motion, model, err, interruption)
+    type(model_motion_type), intent(inout) :: motion                 !< prepared; its positions are not judged any more
+    type(model_type), intent(inout) :: model                         !< its model; gets the tolerances; the accuracy is met then
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the runs shall stop
-    type(estimated_errors_type) :: errors
     class(interruption_type), allocatable :: asked
     integer :: i
 
-    if (.not. model%request%solver%accuracy > 0.0_wp) return
+    if (.not. motion%simulation%with_error) return
     if (present(interruption)) allocate (asked, source=interruption)
-    call find_accuracy(model, plan, assembled, errors, err, pictures=.true., interruption=asked)
+    call motion%find_tolerances(model, err, .true., asked)
     if (allocated(err)) return
-    do i = 1, size(errors%at)
-      call judge_error(model%request%time%time(i - 1), errors%at(i), errors, err)
-      if (allocated(err)) return
-    end do
+    associate (errors => motion%simulation%errors)
+      do i = 1, size(errors%at)
+        call judge_error(model%request%time%time(i - 1), errors%at(i), errors, err)
+        if (allocated(err)) return
+      end do
+    end associate
+    motion%simulation%with_error = .false.
     model%request%solver%accuracy = 0.0_wp
   end subroutine take_accuracy
 

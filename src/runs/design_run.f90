@@ -4,13 +4,8 @@ module mech9_design_run
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_model, only: model_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
   use mech9_simulation, only: simulation_type, interruption_type
-  use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
-  use mech9_free_simulation, only: free_simulation_type, new_free_simulation
-  use mech9_accuracy, only: find_accuracy
-  use mech9_explained_assembly, only: assemble_driven_start, assemble_free_start
+  use mech9_model_motion, only: model_motion_type
   use mech9_row_source, only: row_source_type, new_row_source, find_columns
   use mech9_columns, only: columns_type
   use mech9_force_record, only: force_record_type
@@ -30,25 +25,14 @@ contains
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     real(wp), intent(inout), optional :: rows(:, :)       !< (columns,outputs) gets the columns of all outputs that are reached
     class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
-    type(driven_simulation_type), target :: driven
-    type(free_simulation_type), target :: free
-    type(plan_type) :: plan
-    type(state_type) :: start
+    type(model_motion_type), target :: motion
 
     if (present(interruption)) call interruption%begin_run()
-    if (model%is_driven()) then
-      call assemble_driven_start(model, plan, start, err)
-      if (allocated(err)) return
-      call new_driven_simulation(model, plan, start, driven, .false., model%program == dynamics)
-      call take_quantities(model, driven, source, numbers, err, rows, interruption)
-    else
-      call assemble_free_start(model, plan, start, err)
-      if (.not. allocated(err)) call new_free_simulation(model, plan, start, free, err)
-      if (.not. allocated(err) .and. free%with_error) &
-        call find_accuracy(model, plan, start, free%errors, err, interruption=interruption)
-      if (.not. allocated(err)) call take_quantities(model, free, source, numbers, err, rows, interruption)
-      call free%close()
-    end if
+    call motion%assemble(model, err)
+    if (.not. allocated(err)) call motion%prepare(model, err)
+    if (.not. allocated(err)) call motion%find_tolerances(model, err, interruption=interruption)
+    if (.not. allocated(err)) call take_quantities(motion%simulation, source, numbers, err, rows, interruption)
+    call motion%close()
   end subroutine run_design
 
   !> Find the columns of the quantities that the runs of a model will have. Fails with exit_data where one is not recorded.
@@ -73,8 +57,7 @@ contains
   end subroutine columns_of_runs
 
   !> Go through all outputs of a simulation.
-  subroutine take_quantities(model, simulation, source, numbers, err, rows, interruption)
-    type(model_type), intent(in) :: model                          !< the model
+  subroutine take_quantities(simulation, source, numbers, err, rows, interruption)
     class(simulation_type), intent(inout), target :: simulation    !< about to start
     type(row_source_type), intent(inout) :: source                 !< rows of the run; made anew
     real(wp), intent(out) :: numbers(:)                            !< (quantities)

@@ -10,31 +10,23 @@ module mech9_explained_assembly
   use mech9_geometry_words, only: explain_geometry
   implicit none
   private
-  public :: assemble_driven_start, assemble_free_start
+  public :: assemble_model
 
 contains
 
-  !> Plan and closed position at the start of a driven motion.
-  subroutine assemble_driven_start(model, plan, state, err, way)
-    type(model_type), intent(in) :: model              !< the model, with a drive for each independent coordinate
+  !> Plan and closed position at the start of a model's motion; where coordinates are free, with the rates of the independent ones.
+  subroutine assemble_model(model, plan, state, err, way)
+    type(model_type), intent(in) :: model              !< the model
     type(plan_type), intent(out) :: plan               !< the plan of the mechanism
     type(state_type), intent(out) :: state             !< the closed position
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(start_way_type), intent(out), optional :: way !< how the start was reached from the drawn position
 
-    call assemble_driven(model, plan, state, err, way)
+    if (model%is_driven()) then
+      call assemble_driven(model, plan, state, err, way)
+    else
+      call assemble_free(model, plan, state, err, way)
+    end if
     call explain_geometry(model%mechanism, err)
-  end subroutine assemble_driven_start
-
-  !> Plan and closed position at the start of a free motion, with the rates of the independent coordinates.
-  subroutine assemble_free_start(model, plan, state, err, way)
-    type(model_type), intent(in) :: model              !< the model
-    type(plan_type), intent(out) :: plan               !< the plan of the mechanism
-    type(state_type), intent(out) :: state             !< the closed position and these rates
-    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
-    type(start_way_type), intent(out), optional :: way !< how the start was reached from the drawn position
-
-    call assemble_free(model, plan, state, err, way)
-    call explain_geometry(model%mechanism, err)
-  end subroutine assemble_free_start
+  end subroutine assemble_model
 end module mech9_explained_assembly

@@ -9,8 +9,6 @@ module mech9_dynamic_task
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_kept_rows, only: kept_rows_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
   use mech9_equilibrium_task, only: asks_for_equilibrium, find_rest
   use mech9_law_times, only: check_times_of_laws
   use mech9_task, only: task_type, answers_only, print_check, print_given, begin_run, end_run
@@ -18,14 +16,12 @@ module mech9_dynamic_task
   use mech9_facts, only: facts_type
   use mech9_results, only: results_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
-  use mech9_start_path, only: start_way_type
-  use mech9_free_simulation, only: free_simulation_type, new_free_simulation
-  use mech9_accuracy, only: find_accuracy
+  use mech9_free_simulation, only: free_simulation_type
+  use mech9_model_motion, only: model_motion_type
   use mech9_row_source, only: row_source_type, new_row_source
   use mech9_signal_interruption, only: signal_interruption_type
   use mech9_recording, only: recording_outcome_type, record
   use mech9_start_way_text, only: print_start_way
-  use mech9_explained_assembly, only: assemble_free_start, assemble_driven_start
   use mech9_kinematic_task, only: work_driven
   use mech9_dynamic_report, only: print_dynamic_report, save_dynamic_report, print_coefficients, &
                                    dynamic_facts, write_dynamics, write_events
@@ -35,7 +31,6 @@ module mech9_dynamic_task
 
   type, extends(task_type) :: dynamic_task_type
   contains
-    procedure :: assemble
     procedure :: work
   end type dynamic_task_type
 
@@ -48,22 +43,6 @@ contains
     task%program = dynamics
   end function dynamic_task
 
-  !> Make the plan and assemble the mechanism at the start.
-  subroutine assemble(self, model, plan, state, err, way)
-    class(dynamic_task_type), intent(in) :: self        !< the dynamic task
-    type(model_type), intent(in) :: model           !< the model
-    type(plan_type), intent(out) :: plan                !< the plan of the mechanism
-    type(state_type), intent(out) :: state              !< position and motion of the mechanism
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(start_way_type), intent(out) :: way            !< how the start was reached from the drawn position
-
-    if (model%is_driven()) then
-      call assemble_driven_start(model, plan, state, err, way)
-    else
-      call assemble_free_start(model, plan, state, err, way)
-    end if
-  end subroutine assemble
-
   !> Make the plan, assemble the mechanism, compute its state at the start, and run unless only an answer is requested.
   subroutine work(self, options, model, variable, diagnostics, reported, kept)
     class(dynamic_task_type), intent(in) :: self            !< the dynamic task
@@ -74,11 +53,9 @@ contains
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
     type(model_type), target :: used
-    type(plan_type) :: plan
-    type(state_type) :: start
-    type(start_way_type) :: way
+    type(model_motion_type), target :: motion
     type(picture_requests_type) :: pictures
-    type(free_simulation_type), allocatable, target :: simulation
+    type(free_simulation_type), pointer :: simulation
     type(error_type), allocatable :: err
 
     if (asks_for_equilibrium(options)) then
@@ -86,31 +63,30 @@ contains
       return
     end if
     if (model%is_driven()) then
-      call work_driven(.true., options, model, variable, diagnostics, reported, kept)
+      call work_driven(options, model, variable, diagnostics, reported, kept)
       return
     end if
     reported = .false.
     if (options%has('check') .or. .not. answers_only(options)) call check_times_of_laws(model, .true., diagnostics)
     if (diagnostics%failed()) return
     used = model
-    allocate (simulation)   ! too large for a small stack
     call read_picture_requests(options, model, pictures, err)
-    if (.not. allocated(err)) call assemble_free_start(model, plan, start, err, way)
+    if (.not. allocated(err)) call motion%assemble(used, err)
     if (.not. allocated(err)) &
-      call new_free_simulation(used, plan, start, simulation, err, &
-                               pictures%any_wanted() .or. model%request%output%with_derivatives())
+      call motion%prepare(used, err, pictures%any_wanted() .or. model%request%output%with_derivatives())
     if (allocated(err)) then
       if (options%has('check')) call print_given(model, .true.)
       call diagnostics%add_error(err)
     else if (answers_only(options)) then
-      call print_check(options, pictures, model, plan, simulation%requested, start, way, diagnostics)
-      if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, plan, simulation%coefficients)
+      simulation => motion%free()
+      call print_check(options, pictures, model, motion%plan, simulation%requested, motion%start, motion%way, diagnostics)
+      if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, motion%plan, simulation%coefficients)
       if (options%has('check')) call check_motion(model, variable, simulation, err)
       if (allocated(err)) call diagnostics%add_error(err)
     else
-      call carry_out(options, pictures, used, variable, plan, start, way, simulation, diagnostics, reported, kept)
+      call carry_out(options, pictures, used, variable, motion, diagnostics, reported, kept)
     end if
-    call simulation%close()
+    call motion%close()
   end subroutine work
 
   !> Fail in a check where a run would fail at its start.
@@ -132,18 +108,16 @@ contains
   end subroutine check_motion
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, model, variable, plan, start, way, simulation, diagnostics, reported, kept)
+  subroutine carry_out(options, pictures, model, variable, motion, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options                    !< the command line
     type(picture_requests_type), intent(in) :: pictures               !< the pictures of the mechanism that are requested
     type(model_type), intent(inout), target :: model                  !< of the simulation; gets the tolerances for an accuracy
     class(variable_model_type), intent(inout), target :: variable     !< the model as a function of its parameters
-    type(plan_type), intent(in) :: plan                               !< the plan of the mechanism
-    type(state_type), intent(in) :: start                             !< assembled position
-    type(start_way_type), intent(in) :: way                           !< how the start was reached from the drawn position
-    type(free_simulation_type), intent(inout), target :: simulation   !< to be started
+    type(model_motion_type), intent(inout), target :: motion          !< prepared
     type(diagnostics_type), intent(inout) :: diagnostics              !< gets the errors
     logical, intent(out) :: reported                                  !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept             !< gets the rows as well, for a look at them after the run
+    type(free_simulation_type), pointer :: simulation
     type(row_source_type), allocatable :: source
     type(results_type), target :: results
     type(facts_type) :: facts
@@ -153,38 +127,39 @@ contains
     type(error_type), allocatable :: err
     logical :: ready
 
+    simulation => motion%free()
     allocate (source)
     call new_row_source(simulation, source)
-    call source%forces%judge(model, plan, start)
+    call source%forces%judge(model, motion%plan, motion%start)
     reported = .false.
     if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
       return
     end if
-    call begin_run(options, pictures, model, plan, simulation%requested, source, results, diagnostics, ready)
-    if (.not. options%has('quiet')) call print_start_way(error_unit, model%mechanism, way)
+    call begin_run(options, pictures, model, motion%plan, simulation%requested, source, results, diagnostics, ready)
+    if (.not. options%has('quiet')) call print_start_way(error_unit, model%mechanism, motion%way)
     reported = ready .and. options%has('report')
     if (.not. ready) return
     if (simulation%with_error) then
       call interruption%words%start(model%program, 'no row yet', 'a run that tells the accuracy', options%has('quiet'), &
                                     with_progress=.true.)
-      call find_accuracy(model, plan, start, simulation%errors, err, pictures%any_wanted(), interruption)
+      call motion%find_tolerances(model, err, pictures%any_wanted(), interruption)
       call interruption%words%finish()
     end if
-    call dynamic_facts(model, plan, outcome, simulation, facts)
+    call dynamic_facts(model, motion%plan, outcome, simulation, facts)
     call results%write_facts(facts)
     hdf5 => results%hdf5()
-    if (associated(hdf5)) call write_dynamics(hdf5, plan, simulation)
+    if (associated(hdf5)) call write_dynamics(hdf5, motion%plan, simulation)
     if (.not. allocated(err)) call record(source, model, results, options%has('quiet'), outcome, err, kept)
     if (.not. options%has('quiet')) call print_dynamic_report(error_unit, results%table_path, outcome, simulation)
     if (allocated(err)) call diagnostics%add_error(err)
-    call dynamic_facts(model, plan, outcome, simulation, facts)
+    call dynamic_facts(model, motion%plan, outcome, simulation, facts)
     call results%write_facts(facts, diagnostics%code())
     if (associated(hdf5)) call write_events(hdf5, simulation)
     call end_run(options, pictures, model, source, results, diagnostics)
     if (.not. reported) return
-    call save_dynamic_report(options%argument('report'), model, plan, results%table_path, diagnostics, &
+    call save_dynamic_report(options%argument('report'), model, motion%plan, results%table_path, diagnostics, &
                              outcome, simulation, err, source%forces%unique, source%quantities)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out

@@ -15,7 +15,7 @@ module mech9_equilibrium_task
   use mech9_planning, only: make_plan
   use mech9_start_path, only: start_way_type
   use mech9_start_way_text, only: print_start_way
-  use mech9_explained_assembly, only: assemble_free_start
+  use mech9_explained_assembly, only: assemble_model
   use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_equilibria, only: find_equilibrium, find_equilibria
   use mech9_mode_shapes, only: position_in_vibration
@@ -127,7 +127,7 @@ contains
                  model%problem%drives(1)%drive%place)
       return
     end if
-    call assemble_free_start(model, own_plan, own_start, err, way)
+    call assemble_model(model, own_plan, own_start, err, way)
     if (allocated(err)) return
     call make_plan(model%mechanism, model%problem%partition, own_start%q, plan, start, err, in_space=.true.)
     if (allocated(err)) return

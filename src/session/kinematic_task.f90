@@ -1,7 +1,7 @@
 !> The work of mech9k on a mechanism, and that of mech9d where all independent coordinates are driven.
 module mech9_kinematic_task
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
-  use mech9_program_kind, only: kinematics
+  use mech9_program_kind, only: kinematics, dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
@@ -9,12 +9,10 @@ module mech9_kinematic_task
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_kept_rows, only: kept_rows_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
   use mech9_requested, only: requested_by_results
   use mech9_driven_motion, only: set_inputs
-  use mech9_start_path, only: start_way_type
-  use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
+  use mech9_driven_simulation, only: driven_simulation_type
+  use mech9_model_motion, only: model_motion_type
   use mech9_row_source, only: row_source_type, new_row_source
   use mech9_law_times, only: check_times_of_laws
   use mech9_task, only: task_type, answers_only, print_check, print_given, begin_run, end_run
@@ -25,7 +23,6 @@ module mech9_kinematic_task
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_recording, only: recording_outcome_type, record
   use mech9_start_way_text, only: print_start_way
-  use mech9_explained_assembly, only: assemble_driven_start
   use mech9_kinematic_report, only: print_kinematic_report, save_kinematic_report, kinematic_facts
   implicit none
   private
@@ -33,7 +30,6 @@ module mech9_kinematic_task
 
   type, extends(task_type) :: kinematic_task_type
   contains
-    procedure :: assemble
     procedure :: work
   end type kinematic_task_type
 
@@ -46,18 +42,6 @@ contains
     task%program = kinematics
   end function kinematic_task
 
-  !> Make the plan and assemble the mechanism at the start.
-  subroutine assemble(self, model, plan, state, err, way)
-    class(kinematic_task_type), intent(in) :: self      !< the kinematic task
-    type(model_type), intent(in) :: model           !< the model
-    type(plan_type), intent(out) :: plan                !< the plan of the mechanism
-    type(state_type), intent(out) :: state              !< position and motion of the mechanism
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(start_way_type), intent(out) :: way            !< how the start was reached from the drawn position
-
-    call assemble_driven_start(model, plan, state, err, way)
-  end subroutine assemble
-
   !> Make the plan, assemble the mechanism, and run unless only an answer is requested.
   subroutine work(self, options, model, variable, diagnostics, reported, kept)
     class(kinematic_task_type), intent(in) :: self          !< the kinematic task
@@ -68,68 +52,62 @@ contains
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
 
-    call work_driven(.false., options, model, variable, diagnostics, reported, kept)
+    call work_driven(options, model, variable, diagnostics, reported, kept)
   end subroutine work
 
   !> The work on a mechanism whose independent coordinates are all driven.
-  subroutine work_driven(with_masses, options, model, variable, diagnostics, reported, kept)
-    logical, intent(in) :: with_masses                      !< bodies count, and energies are recorded
+  subroutine work_driven(options, model, variable, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in), target :: model               !< the model
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
-    type(plan_type) :: plan
-    type(state_type) :: start
-    type(start_way_type) :: way
+    type(model_motion_type), target :: motion
     type(picture_requests_type) :: pictures
-    type(driven_simulation_type), allocatable, target :: simulation
     type(error_type), allocatable :: err
 
     reported = .false.
     if (options%has('check') .or. options%has('cam') .or. .not. answers_only(options)) &
-      call check_times_of_laws(model, with_masses .or. model%request%output%with_forces(), diagnostics)
+      call check_times_of_laws(model, model%program == dynamics .or. model%request%output%with_forces(), diagnostics)
     if (diagnostics%failed()) return
     call read_picture_requests(options, model, pictures, err)
-    if (.not. allocated(err)) call assemble_driven_start(model, plan, start, err, way)
+    if (.not. allocated(err)) call motion%assemble(model, err)
     if (allocated(err)) then
-      if (options%has('check')) call print_given(model, with_masses)
+      if (options%has('check')) call print_given(model, model%program == dynamics)
       call diagnostics%add_error(err)
       return
     end if
     if (answers_only(options)) then
-      call print_check(options, pictures, model, plan, &
-                       requested_by_results(model%mechanism, model%request%output, pictures%any_wanted()), start, &
-                       way, diagnostics)
-      if (options%has('range')) call print_ranges(output_unit, model, plan, start)
-      if (options%has('check')) call check_motion(model, variable, plan, start, err)
+      call print_check(options, pictures, model, motion%plan, &
+                       requested_by_results(model%mechanism, model%request%output, pictures%any_wanted()), motion%start, &
+                       motion%way, diagnostics)
+      if (options%has('range')) call print_ranges(output_unit, model, motion%plan, motion%start)
+      if (options%has('check')) call check_motion(model, variable, motion, err)
       if (options%has('cam') .and. .not. allocated(err)) &
-        call work_on_cams(options, model, plan, start, diagnostics, reported, err)
+        call work_on_cams(options, model, motion%plan, motion%start, diagnostics, reported, err)
       if (allocated(err)) call diagnostics%add_error(err)
       return
     end if
-    allocate (simulation)   ! too large for a small stack
-    call new_driven_simulation(model, plan, start, simulation, pictures%any_wanted(), with_masses)
-    call carry_out(options, pictures, model, variable, plan, way, simulation, diagnostics, reported, kept)
+    call motion%prepare(model, err, pictures%any_wanted())
+    if (.not. allocated(err)) call carry_out(options, pictures, model, variable, motion, diagnostics, reported, kept)
   end subroutine work_driven
 
   !> Fail in a check where a run would fail: at a start from which the motion cannot begin, or at drives without values
   !> at the end of the time.
-  subroutine check_motion(model, variable, plan, start, err)
+  subroutine check_motion(model, variable, motion, err)
     type(model_type), intent(in), target :: model           !< the model
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
-    type(plan_type), intent(in) :: plan                     !< the plan of the mechanism
-    type(state_type), intent(in) :: start                   !< assembled position
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(driven_simulation_type), allocatable, target :: simulation
+    type(model_motion_type), intent(inout), target :: motion   !< assembled; is started
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(row_source_type), allocatable :: source
     real(wp), dimension(size(model%mechanism%pairs)) :: q, dq, ddq
     real(wp), allocatable :: row(:)
 
-    allocate (simulation, source)
-    call new_driven_simulation(model, plan, start, simulation)
-    call new_row_source(simulation, source)
+    call motion%prepare(model, err)
+    if (allocated(err)) return
+    allocate (source)
+    call new_row_source(motion%simulation, source)
     if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
     if (.not. allocated(err)) call source%begin_quantities(err)
     if (allocated(err)) return
@@ -139,17 +117,16 @@ contains
   end subroutine check_motion
 
   !> The run itself and its report.
-  subroutine carry_out(options, pictures, model, variable, plan, way, simulation, diagnostics, reported, kept)
+  subroutine carry_out(options, pictures, model, variable, motion, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options                      !< the command line
     type(picture_requests_type), intent(in) :: pictures                 !< the pictures of the mechanism that are requested
     type(model_type), intent(in), target :: model                           !< the model
     class(variable_model_type), intent(inout), target :: variable               !< the model as a function of its parameters
-    type(plan_type), intent(in) :: plan                                 !< the plan of the mechanism
-    type(start_way_type), intent(in) :: way                             !< how the start was reached from the drawn position
-    type(driven_simulation_type), intent(inout), target :: simulation   !< to be started
+    type(model_motion_type), intent(inout), target :: motion            !< prepared
     type(diagnostics_type), intent(inout) :: diagnostics                !< gets the errors
     logical, intent(out) :: reported                                    !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept               !< gets the rows as well, for a look at them after the run
+    type(driven_simulation_type), pointer :: simulation
     type(row_source_type), allocatable :: source
     type(results_type), target :: results
     type(facts_type) :: facts
@@ -158,16 +135,17 @@ contains
     logical :: ready
 
     allocate (source)
+    simulation => motion%driven()
     call new_row_source(simulation, source)
-    call source%forces%judge(model, plan, simulation%assembled)
+    call source%forces%judge(model, motion%plan, motion%start)
     reported = .false.
     if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
       return
     end if
-    call begin_run(options, pictures, model, plan, simulation%requested, source, results, diagnostics, ready)
-    if (.not. options%has('quiet')) call print_start_way(error_unit, model%mechanism, way)
+    call begin_run(options, pictures, model, motion%plan, simulation%requested, source, results, diagnostics, ready)
+    if (.not. options%has('quiet')) call print_start_way(error_unit, model%mechanism, motion%way)
     reported = ready .and. options%has('report')
     if (.not. ready) return
     call kinematic_facts(simulation%plan, outcome, simulation%driven, facts)

@@ -41,22 +41,10 @@ module mech9_task
   type, abstract :: task_type
     integer :: program = kinematics   !< or dynamics
   contains
-    procedure(assemble_interface), deferred :: assemble
     procedure(work_interface), deferred :: work
   end type task_type
 
   abstract interface
-    !> Make the plan and assemble the mechanism at the start.
-    subroutine assemble_interface(self, model, plan, state, err, way)
-      import :: task_type, model_type, plan_type, state_type, error_type, start_way_type
-      class(task_type), intent(in) :: self                !< the task
-      type(model_type), intent(in) :: model           !< the model
-      type(plan_type), intent(out) :: plan                !< the plan of the mechanism
-      type(state_type), intent(out) :: state              !< position and motion of the mechanism
-      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-      type(start_way_type), intent(out) :: way            !< how the start was reached from the drawn position
-    end subroutine assemble_interface
-
     !> Carry out the options. Errors are added to `diagnostics`, which knows the places in the data file.
     subroutine work_interface(self, options, model, variable, diagnostics, reported, kept)
       import :: task_type, command_line_type, model_type, variable_model_type, diagnostics_type, kept_rows_type

@@ -13,7 +13,7 @@ module test_design_derivatives
   use mech9_plan, only: plan_type, new_state
   use mech9_state, only: state_type
   use mech9_varied_document, only: varied_document_type, new_varied_document
-  use mech9_explained_assembly, only: assemble_driven_start
+  use mech9_explained_assembly, only: assemble_model
   use mech9_design_space, only: design_space_type, design_type, new_design_space, new_design, place_design, find_tangents
   use mech9_open_position, only: open_position_type, new_open_position, place_at, find_openings, find_derivatives
   use mech9_branch, only: close_near
@@ -121,7 +121,7 @@ contains
     call tester%is_true(.not. diagnostics%failed(), name//': the data file is sound')
     if (diagnostics%failed()) return
     call new_varied_document(document, diagnostics%sources, kinematics, varied)
-    call assemble_driven_start(model, plan, start, err)
+    call assemble_model(model, plan, start, err)
     if (.not. allocated(err)) call new_design_space(varied, model, plan, space, err)
     call tester%no_error(err, name//': there are designs')
     if (allocated(err)) return

@@ -70,6 +70,13 @@ def test_folders_hold_few_files(checks, sources):
         checks.true(0 < len(files) <= MOST_FILES, f'{floor}: at most {MOST_FILES} files', f'it has {len(files)}')
 
 
+def test_motions_begin_on_one_floor(checks, sources):
+    """Whoever runs a model has its motion from the floor of runs (mech9_model_motion)."""
+    for floor, path, text in sources:
+        starts = re.findall(r'^\s*call (new_(?:driven|free)_simulation)', text, re.M)
+        checks.true(not starts or floor == 'runs', f'{path}: simulations are made on the floor of runs', starts)
+
+
 def test_dynamics_depends_on_little_of_kinematics(checks, sources):
     kinematics = os.path.join(TREE, 'src', 'kinematics') + os.sep
     below = sorted(path[len(kinematics):] for path in reached_files(sources, 'dynamics') if path.startswith(kinematics))

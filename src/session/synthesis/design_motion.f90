@@ -7,8 +7,7 @@ module mech9_design_motion
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: point_motion
-  use mech9_explained_assembly, only: assemble_driven_start
-  use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
+  use mech9_model_motion, only: model_motion_type
   use mech9_row_source, only: row_source_type, new_row_source
   use mech9_film, only: film_type, new_film
   implicit none
@@ -17,8 +16,7 @@ module mech9_design_motion
 
   type :: design_motion_type
     class(model_type), allocatable :: model   !< with the values of the design, from the positions of its assembly
-    class(plan_type), allocatable :: plan     !< its plan
-    class(state_type), allocatable :: start   !< assembled
+    type(model_motion_type) :: motion         !< assembled
   contains
     procedure :: visit
     procedure :: make_film
@@ -35,19 +33,19 @@ contains
     type(design_motion_type), intent(out) :: motion           !< about to begin
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
 
-    allocate (motion%model, motion%plan, motion%start)
+    allocate (motion%model)
     call variable%at(values, motion%model, err)
     if (allocated(err)) return
     motion%model%request = model%request
     motion%model%problem%initial%position = q
     motion%model%problem%initial%position_given = .true.
-    call assemble_driven_start(motion%model, motion%plan, motion%start, err)
+    call motion%motion%assemble(motion%model, err)
   end subroutine new_design_motion
 
   !> The places of a point of a link, the direction of the x axis of the link, and the coordinates, at times in their order from the
   !> start of the run on.
   subroutine visit(self, times, link, point, places, directions, q, err)
-    class(design_motion_type), intent(in), target :: self     !< the motion
+    class(design_motion_type), intent(inout), target :: self  !< the motion
     real(wp), intent(in) :: times(:)                          !< (n) times [s]
     integer, intent(in) :: link                               !< number of the link
     real(wp), intent(in) :: point(3)                          !< the point, in the system of the link [m]
@@ -55,19 +53,18 @@ contains
     real(wp), intent(out) :: directions(:, :)                 !< (3,n) directions of the x axis of the link
     real(wp), intent(out) :: q(:, :)                          !< (M,n) coordinates [rad, m]
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
-    type(driven_simulation_type), target :: simulation
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
     real(wp) :: place(3), rate(3), rate2(3)
     real(wp), parameter :: along_x(3) = [1.0_wp, 0.0_wp, 0.0_wp]
     integer :: i
 
-    call new_driven_simulation(self%model, self%plan, self%start, simulation, pictures=.true.)
-    call simulation%start(err)
+    call self%motion%prepare(self%model, err, pictures=.true.)
+    if (.not. allocated(err)) call self%motion%simulation%start(err)
     do i = 1, size(times)
-      if (.not. allocated(err)) call simulation%advance(times(i), err)
+      if (.not. allocated(err)) call self%motion%simulation%advance(times(i), err)
       if (allocated(err)) return
-      call simulation%present(plan, state)
+      call self%motion%simulation%present(plan, state)
       call point_motion(plan, state, link, point, places(:, i), rate, rate2)
       call point_motion(plan, state, link, point + along_x, place, rate, rate2)
       directions(:, i) = place - places(:, i)
@@ -77,25 +74,25 @@ contains
 
   !> Make a film of the run. Points of link 1 are shown with it.
   subroutine make_film(self, shown, film, err)
-    class(design_motion_type), intent(in), target :: self     !< the motion
+    class(design_motion_type), intent(inout), target :: self  !< the motion
     type(model_type), intent(in) :: shown                     !< the model with other points
     type(film_type), intent(out) :: film                      !< of the run
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
-    type(driven_simulation_type), target :: simulation
     type(row_source_type) :: source
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
     real(wp), allocatable :: row(:)
     integer :: i
 
-    call new_driven_simulation(self%model, self%plan, self%start, simulation, pictures=.true.)
-    call new_row_source(simulation, source)
+    call self%motion%prepare(self%model, err, pictures=.true.)
+    if (allocated(err)) return
+    call new_row_source(self%motion%simulation, source)
     allocate (row(source%columns%width()), source=0.0_wp)
     film = new_film(shown%mechanism, shown%problem%partition%independent(), shown%request%time%intervals + 1, source%columns)
     do i = 0, shown%request%time%intervals
       call source%row_at(shown%request%time%time(i), row, err)
       if (allocated(err)) return
-      call simulation%present(plan, state)
+      call self%motion%simulation%present(plan, state)
       call film%take(shown%mechanism, plan, state, row)
     end do
   end subroutine make_film

@@ -29,7 +29,7 @@ contains
   !> Append the panels of an objective: of a path and of poses the plane, or the three planes; of a function its curve and the
   !> differences at the targets.
   subroutine append_panels(motion, synthesis, number, name, panels, err)
-    type(design_motion_type), intent(in), target :: motion           !< of the best design
+    type(design_motion_type), intent(inout), target :: motion        !< of the best design
     type(synthesis_type), intent(in) :: synthesis                    !< with its targets, and its optima, best first
     integer, intent(in) :: number                                    !< of the objective
     character(len=*), intent(in) :: name                             !< of the objective
@@ -59,7 +59,7 @@ contains
 
   !> Visit times in their order.
   subroutine visit(motion, number, times, visited, err)
-    type(design_motion_type), intent(in), target :: motion    !< the motion
+    type(design_motion_type), intent(inout), target :: motion !< the motion
     integer, intent(in) :: number                             !< of the objective
     real(wp), intent(in) :: times(:)                          !< from the start of the run on [s]
     type(visited_type), intent(out) :: visited                !< the design at these times
@@ -78,13 +78,13 @@ contains
     end associate
     visited%times = times
     allocate (visited%places(3, size(times)), visited%directions(3, size(times)))
-    allocate (visited%q(motion%plan%n_coordinates, size(times)))
+    allocate (visited%q(motion%motion%plan%n_coordinates, size(times)))
     call motion%visit(times, link, point, visited%places, visited%directions, visited%q, err)
   end subroutine visit
 
   !> Visit times in any order.
   subroutine visit_unordered(motion, number, times, visited, err)
-    type(design_motion_type), intent(in), target :: motion    !< the motion
+    type(design_motion_type), intent(inout), target :: motion !< the motion
     integer, intent(in) :: number                             !< of the objective
     real(wp), intent(in) :: times(:)                          !< of its targets [s]
     type(visited_type), intent(out) :: visited                !< the design at these times, in their order

@@ -6,10 +6,8 @@ module mech9_optimum_check
   use mech9_error, only: error_type, raise, exit_data
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
-  use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_free_simulation, only: free_simulation_type, new_free_simulation
-  use mech9_explained_assembly, only: assemble_free_start
+  use mech9_model_motion, only: model_motion_type
   use mech9_objective, only: quantity_objective, quantity_limit, transmission_limit, timing_over
   use mech9_result_units, only: unit_of
   use mech9_targets, only: time_at
@@ -79,15 +77,13 @@ contains
     type(model_type), intent(in) :: model                 !< the model with the values of the data file
     type(error_type), allocatable, intent(out) :: err     !< allocated if it cannot
     type(model_type), target :: moving
-    type(free_simulation_type), target :: free
-    type(plan_type) :: plan
-    type(state_type) :: start
+    type(model_motion_type) :: motion
 
     if (model%is_driven()) return
     moving = model
-    call assemble_free_start(moving, plan, start, err)
-    if (.not. allocated(err)) call new_free_simulation(moving, plan, start, free, err)
-    call free%close()
+    call motion%assemble(moving, err)
+    if (.not. allocated(err)) call motion%prepare(moving, err)
+    call motion%close()
   end subroutine check_start
 
   !> Report a method that cannot find what is asked for, or that this build does not have.

@@ -118,7 +118,7 @@ contains
   !> Draw the plots of targets and result.
   subroutine draw_plots(self, motion, synthesis, quiet, diagnostics)
     class(optimum_pictures_type), intent(in) :: self            !< the pictures
-    type(design_motion_type), intent(in), target :: motion      !< of the best design
+    type(design_motion_type), intent(inout), target :: motion   !< of the best design
     type(synthesis_type), intent(in) :: synthesis               !< with its optima, best first
     logical, intent(in) :: quiet                                !< only a picture that could not be made is told
     type(diagnostics_type), intent(inout) :: diagnostics        !< gets the errors
@@ -156,7 +156,7 @@ contains
   !> Make sketch and film of the best design, with its targets.
   subroutine draw_film(self, motion, synthesis, quiet, diagnostics)
     class(optimum_pictures_type), intent(in) :: self            !< the pictures
-    type(design_motion_type), intent(in), target :: motion      !< of the best design
+    type(design_motion_type), intent(inout), target :: motion   !< of the best design
     type(synthesis_type), intent(in) :: synthesis               !< with its targets
     logical, intent(in) :: quiet                                !< nothing is told
     type(diagnostics_type), intent(inout) :: diagnostics        !< gets the errors

@@ -13,7 +13,7 @@ module mech9_optimum_task
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_explained_assembly, only: assemble_driven_start
+  use mech9_explained_assembly, only: assemble_model
   use mech9_explanation, only: explain
   use mech9_user_calls, only: calls_user_procedures
   use mech9_study_threads, only: threads_of_machine
@@ -65,7 +65,7 @@ contains
       searched => held
       call hold_start(present, err)
     end if
-    if (.not. allocated(err)) call assemble_driven_start(present, plan, start, err)
+    if (.not. allocated(err)) call assemble_model(present, plan, start, err)
     if (.not. allocated(err)) call new_synthesis(searched, present, plan, synthesis, err)
     if (.not. allocated(err)) call check_synthesis(variable, model, start, options%has('quiet'), synthesis, err)
     if (.not. allocated(err)) call open_starts(options, document, model, synthesis, starts, err)

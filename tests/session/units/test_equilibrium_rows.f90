@@ -6,7 +6,7 @@ module test_equilibrium_rows
   use mech9_equilibria, only: find_equilibrium
   use mech9_equilibrium_rows, only: columns_of_equilibria, rows_of_equilibria, columns_of_modes, rows_of_modes
   use mech9_error, only: error_type
-  use mech9_explained_assembly, only: assemble_free_start
+  use mech9_explained_assembly, only: assemble_model
   use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
@@ -49,7 +49,7 @@ contains
     type(error_type), allocatable :: err
 
     call model_from_text(tester, data, dynamics, model)
-    call assemble_free_start(model, own_plan, own_start, err)
+    call assemble_model(model, own_plan, own_start, err)
     call tester%no_error(err, 'the start')
     call make_plan(model%mechanism, model%problem%partition, own_start%q, plan, start, err, in_space=.true.)
     call tester%no_error(err, 'the plan in space')

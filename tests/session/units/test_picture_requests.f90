@@ -4,7 +4,7 @@ module test_picture_requests
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_data, exit_usage
   use mech9_command_line, only: command_line_type
-  use mech9_explained_assembly, only: assemble_driven_start
+  use mech9_explained_assembly, only: assemble_model
   use mech9_model, only: model_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_plan, only: plan_type
@@ -121,7 +121,7 @@ contains
     call model_from_text(tester, driven, kinematics, model)
     call options_of(tester, 'a.nml --sketch '//sketch//' --animate '//film, options)
     call read_picture_requests(options, model, requests, err)
-    call assemble_driven_start(model, plan, position, err)
+    call assemble_model(model, plan, position, err)
     call tester%no_error(err, 'the start')
     call requests%save_start(model, plan, position, err)
     call tester%no_error(err, 'the sketch is saved')

@@ -6,7 +6,7 @@ module test_recording
   use mech9_command_line, only: command_line_type
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
   use mech9_error, only: error_type
-  use mech9_explained_assembly, only: assemble_driven_start
+  use mech9_explained_assembly, only: assemble_model
   use mech9_force_record, only: reacting_pairs
   use mech9_hdf5_copying, only: extents_of
   use mech9_hdf5_file, only: hdf5_file_type
@@ -59,7 +59,7 @@ contains
 
     call model_from_text(tester, data, kinematics, model)
     call tester%is_true(all(reacting_pairs(model) .eqv. [.false., .false., .false., .true.]), 'one pair has its forces recorded')
-    call assemble_driven_start(model, plan, start, err)
+    call assemble_model(model, plan, start, err)
     call tester%no_error(err, 'the start')
     allocate (simulation, source)
     call new_driven_simulation(model, plan, start, simulation)
@@ -149,7 +149,7 @@ contains
 
     call model_from_text(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0.2, 3 /"//eol// &
       "&time end=2, intervals=3 /"//eol//"&quantity name='f', of='F1', take='max' /"//eol, kinematics, model)
-    call assemble_driven_start(model, plan, start, err)
+    call assemble_model(model, plan, start, err)
     allocate (simulation, source)
     call new_driven_simulation(model, plan, start, simulation)
     call new_row_source(simulation, source)

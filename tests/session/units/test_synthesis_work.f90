@@ -7,7 +7,7 @@ module test_synthesis_work
   use mech9_diagnostics, only: diagnostics_type
   use mech9_document, only: document_type
   use mech9_error, only: error_type, exit_file
-  use mech9_explained_assembly, only: assemble_driven_start
+  use mech9_explained_assembly, only: assemble_model
   use mech9_fit_panels, only: append_panels
   use mech9_fit_script, only: fit_panel_type, fit_script
   use mech9_hdf5_file, only: hdf5_file_type
@@ -75,7 +75,7 @@ contains
     call model_from_text(tester, text, kinematics, model)
     call diagnostics%add_source(document%source, number)
     call new_varied_document(document, diagnostics%sources, kinematics, varied)
-    call assemble_driven_start(model, plan, start, err)
+    call assemble_model(model, plan, start, err)
     call tester%no_error(err, 'the start of the data file')
     call new_synthesis(varied, model, plan, synthesis, err)
     call tester%no_error(err, 'a synthesis')
