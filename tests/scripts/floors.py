@@ -7,7 +7,7 @@ import re
 
 from mech9_cases import TREE
 
-FLOORS = ['base', 'system', 'numerics', 'numerics/minima', 'spatial', 'structure', 'model/couplings', 'model/laws', 'model/request', 'model',
+FLOORS = ['base', 'system', 'numerics', 'numerics/minima', 'spatial', 'structure', 'model/couplings', 'model/laws', 'model/loads', 'model/request', 'model',
           'sampling', 'user', 'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
           'ode', 'dynamics', 'dynamics/planning', 'dynamics/variations', 'analyses/sensitivity', 'dynamics/sensitivity', 'simulation',
           'analyses/reactions', 'analyses/equilibrium', 'analyses/planar_runs', 'analyses', 'wording', 'runs', 'synthesis', 'input/document', 'input', 'output',
