@@ -1,43 +1,49 @@
-!> The report of mech9d at the end of a run: a few lines for a person, JSON and data sets for programs.
+!> The report of a free motion.
 module mech9_dynamic_report
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_json, only: json_type
   use mech9_facts, only: facts_type
   use mech9_hdf5_sink, only: hdf5_sink_type
-  use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_law_notes, only: print_jumps
+  use mech9_model_motion, only: model_motion_type
   use mech9_recording, only: recording_outcome_type
   use mech9_integration_methods, only: integration_methods
   use mech9_block_solver, only: work_count_type
   use mech9_integrator, only: integration_statistics_type
   use mech9_simulation, only: coordinate_change_type
   use mech9_free_simulation, only: free_simulation_type
-  use mech9_force_record, only: reacting_pairs
-  use mech9_uniqueness, only: uniqueness_type
-  use mech9_quantity_record, only: quantity_record_type
-  use mech9_quantity_results, only: report_quantities
-  use mech9_run_words, only: duration, each, begin_report, add_structure, add_uniqueness
+  use mech9_run_words, only: duration, each
+  use mech9_run_report, only: run_report_type
   implicit none
   private
-  public :: print_dynamic_report, save_dynamic_report, print_coefficients
-  public :: dynamic_facts, write_dynamics, write_events
+  public :: dynamic_report_type, print_coefficients
+
+  type, extends(run_report_type) :: dynamic_report_type
+  contains
+    procedure, nopass :: print => print_report
+    procedure, nopass :: find_facts
+    procedure, nopass :: add_to
+    procedure, nopass :: write_start
+    procedure, nopass :: write_end
+  end type dynamic_report_type
 
 contains
 
   !> The short report of a run.
-  subroutine print_dynamic_report(unit, table_path, outcome, simulation)
-    integer, intent(in) :: unit                               !< the output unit
+  subroutine print_report(unit, motion, table_path, outcome)
+    integer, intent(in) :: unit                               !< Fortran unit to write to
+    type(model_motion_type), intent(inout) :: motion          !< the motion, as far as it went
     character(len=*), intent(in) :: table_path                !< path of the table; '-': standard output; empty: none
     type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
-    type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
+    type(free_simulation_type), pointer :: simulation
     type(integration_statistics_type) :: counts
     integer :: i
 
+    simulation => motion%free()
     counts = simulation%motion%statistics()
     write (unit, '(a)') counted(outcome%rows, 'output')//': '//duration(outcome%seconds_solving)//' to solve, '// &
       duration(outcome%seconds_writing)//' to write'
@@ -58,7 +64,7 @@ contains
     end do
     call print_jumps(unit, simulation%model)
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
-  end subroutine print_dynamic_report
+  end subroutine print_report
 
   !> The steps of the implicit one of two methods.
   pure function by_bdf(counts) result(words)
@@ -123,12 +129,23 @@ contains
   end subroutine print_coefficients
 
   !> The facts about a run, for reports that programs read.
-  subroutine dynamic_facts(model, plan, outcome, simulation, facts)
+  subroutine find_facts(motion, outcome, facts)
+    type(model_motion_type), intent(inout) :: motion          !< the motion, as far as it went
+    type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
+    type(facts_type), intent(out) :: facts                    !< named numbers and texts about the run
+    type(free_simulation_type), pointer :: simulation
+
+    simulation => motion%free()
+    call facts_of(simulation%model, motion%plan, outcome, simulation, facts)
+  end subroutine find_facts
+
+  !> The facts about a free motion.
+  subroutine facts_of(model, plan, outcome, simulation, facts)
     type(model_type), intent(in) :: model                     !< the model
     type(plan_type), intent(in) :: plan                       !< the plan of the mechanism
     type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
     type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
-    type(facts_type), intent(out) :: facts                    !< named numbers and texts about the run
+    type(facts_type), intent(inout) :: facts                  !< named numbers and texts about the run
     type(integration_statistics_type) :: counts
     type(work_count_type) :: work
 
@@ -175,35 +192,18 @@ contains
     end if
     call facts%add('seconds_solving', outcome%seconds_solving, 'time spent solving', 's')
     call facts%add('seconds_writing', outcome%seconds_writing, 'time spent writing', 's')
-  end subroutine dynamic_facts
+  end subroutine facts_of
 
-  !> Write the report as JSON, with structure, coefficients of motion and events.
-  subroutine save_dynamic_report(path, model, plan, table_path, diagnostics, outcome, simulation, err, &
-                                   unique, quantities)
-    character(len=*), intent(in) :: path                      !< of the report
-    type(model_type), intent(in) :: model                     !< the model
-    type(plan_type), intent(in) :: plan                       !< at the start
-    character(len=*), intent(in) :: table_path                !< path of the table; '-': standard output; empty: none
-    type(diagnostics_type), intent(in) :: diagnostics         !< messages and exit code of the run
-    type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
-    type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
-    type(uniqueness_type), allocatable, intent(in) :: unique   !< of forces; not allocated: none are recorded
-    type(quantity_record_type), intent(in) :: quantities   !< of the run
-    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
-    type(json_type) :: json
-    type(facts_type) :: facts
+  !> Add coefficients of motion and events to the report.
+  subroutine add_to(json, motion)
+    type(json_type), intent(inout) :: json              !< the report, inside its object
+    type(model_motion_type), intent(inout) :: motion    !< the motion, as far as it went
+    type(free_simulation_type), pointer :: simulation
 
-    call begin_report(json, model, diagnostics, table_path)
-    call dynamic_facts(model, plan, outcome, simulation, facts)
-    call facts%to_json(json)
-    call add_coefficients(json, plan, simulation%coefficients)
+    simulation => motion%free()
+    call add_coefficients(json, motion%plan, simulation%coefficients)
     call add_events(json, simulation)
-    call report_quantities(quantities, json)
-    if (allocated(unique)) call add_uniqueness(json, reacting_pairs(model), unique)
-    call add_structure(json, model, plan)
-    call json%end_object()
-    call json%save(path, err)
-  end subroutine save_dynamic_report
+  end subroutine add_to
 
   !> Add the coefficients of motion: [{"p": 1, "r": 5, "value": ...}, ...]
   subroutine add_coefficients(json, plan, coefficients)
@@ -251,10 +251,20 @@ contains
   end subroutine add_events
 
   !> Write the coefficients of motion as data sets, and make data sets for events.
-  subroutine write_dynamics(hdf5, plan, simulation)
+  subroutine write_start(hdf5, motion)
+    type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
+    type(model_motion_type), intent(inout) :: motion       !< the motion, prepared
+    type(free_simulation_type), pointer :: simulation
+
+    simulation => motion%free()
+    call write_coefficients(hdf5, motion%plan, simulation)
+  end subroutine write_start
+
+  !> Write the coefficients of motion, and make data sets for events.
+  subroutine write_coefficients(hdf5, plan, simulation)
     type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
     type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
-    type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
+    type(free_simulation_type), intent(in) :: simulation   !< the motion
     real(wp) :: coefficients(size(plan%independent), size(plan%independent))
     integer :: p
 
@@ -271,9 +281,19 @@ contains
       call file%attach_scales('dynamics/coefficients', ['/dynamics/p', '/dynamics/r'])
     end associate
     call hdf5%begin_events(size(plan%independent))
-  end subroutine write_dynamics
+  end subroutine write_coefficients
 
   !> Write the changes of the independent coordinates as data sets.
+  subroutine write_end(hdf5, motion)
+    type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
+    type(model_motion_type), intent(inout) :: motion       !< the motion, as far as it went
+    type(free_simulation_type), pointer :: simulation
+
+    simulation => motion%free()
+    call write_events(hdf5, simulation)
+  end subroutine write_end
+
+  !> Write the events of a motion.
   subroutine write_events(hdf5, simulation)
     type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
     type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went

@@ -1,35 +1,49 @@
-!> The report of a driven motion at the end of a run: a few lines for a person, JSON for a program.
+!> The report of a driven motion.
 module mech9_kinematic_report
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
   use mech9_text, only: to_text
   use mech9_counted, only: counted
-  use mech9_json, only: json_type
   use mech9_facts, only: facts_type
-  use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_block_solver, only: work_count_type, work_of
   use mech9_driven_motion, only: driven_motion_type
   use mech9_block_names, only: words_of_block
   use mech9_law_notes, only: print_jumps
+  use mech9_driven_simulation, only: driven_simulation_type
+  use mech9_model_motion, only: model_motion_type
   use mech9_recording, only: recording_outcome_type
-  use mech9_force_record, only: reacting_pairs
-  use mech9_uniqueness, only: uniqueness_type
-  use mech9_quantity_record, only: quantity_record_type
-  use mech9_quantity_results, only: report_quantities
-  use mech9_run_words, only: duration, each, begin_report, add_structure, add_uniqueness
+  use mech9_run_words, only: duration, each
+  use mech9_run_report, only: run_report_type
   implicit none
   private
-  public :: print_kinematic_report, save_kinematic_report, kinematic_facts
+  public :: kinematic_report_type
+
+  type, extends(run_report_type) :: kinematic_report_type
+  contains
+    procedure, nopass :: print => print_report
+    procedure, nopass :: find_facts
+  end type kinematic_report_type
 
 contains
 
   !> The short report of a run.
-  subroutine print_kinematic_report(unit, model, plan, table_path, outcome, driven)
-    integer, intent(in) :: unit                           !< the output unit
-    type(model_type), intent(in) :: model             !< the model
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+  subroutine print_report(unit, motion, table_path, outcome)
+    integer, intent(in) :: unit                           !< Fortran unit to write to
+    type(model_motion_type), intent(inout) :: motion      !< the motion, as far as it went
+    character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
+    type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
+    type(driven_simulation_type), pointer :: simulation
+
+    simulation => motion%driven()
+    call print_motion(unit, simulation%model, simulation%plan, table_path, outcome, simulation%driven)
+  end subroutine print_report
+
+  !> Print the lines.
+  subroutine print_motion(unit, model, plan, table_path, outcome, driven)
+    integer, intent(in) :: unit                           !< Fortran unit to write to
+    type(model_type), intent(in) :: model                 !< the model
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism, as it is executed
     character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
     type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
     type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
@@ -54,7 +68,7 @@ contains
       ' calls or more for each evaluation; in Taylor arithmetic it would be one a pair'
     call print_jumps(unit, model)
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
-  end subroutine print_kinematic_report
+  end subroutine print_motion
 
   pure real(wp) function iterations_each(outcome, driven)
     type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
@@ -64,11 +78,22 @@ contains
   end function iterations_each
 
   !> The facts about a run, for reports that programs read.
-  subroutine kinematic_facts(plan, outcome, driven, facts)
+  subroutine find_facts(motion, outcome, facts)
+    type(model_motion_type), intent(inout) :: motion      !< the motion, as far as it went
+    type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
+    type(facts_type), intent(out) :: facts                !< named numbers and texts about the run
+    type(driven_simulation_type), pointer :: simulation
+
+    simulation => motion%driven()
+    call facts_of(simulation%plan, outcome, simulation%driven, facts)
+  end subroutine find_facts
+
+  !> The facts about a driven motion.
+  subroutine facts_of(plan, outcome, driven, facts)
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
     type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
-    type(facts_type), intent(out) :: facts                !< named numbers and texts about the run
+    type(facts_type), intent(inout) :: facts              !< named numbers and texts about the run
     type(work_count_type) :: work
 
     call facts%add('positions', outcome%rows, 'positions computed')
@@ -90,31 +115,5 @@ contains
     call facts%add('acceleration_solutions', work%accelerations, 'blocks solved for their accelerations')
     call facts%add('seconds_solving', outcome%seconds_solving, 'time spent solving', 's')
     call facts%add('seconds_writing', outcome%seconds_writing, 'time spent writing', 's')
-  end subroutine kinematic_facts
-
-  !> Write the report as JSON, with the structure.
-  subroutine save_kinematic_report(path, model, plan, table_path, diagnostics, outcome, driven, err, &
-                                   unique, quantities)
-    character(len=*), intent(in) :: path                  !< of the report
-    type(model_type), intent(in) :: model             !< the model
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
-    type(diagnostics_type), intent(in) :: diagnostics     !< messages and exit code of the run
-    type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
-    type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
-    type(uniqueness_type), allocatable, intent(in) :: unique   !< of forces; not allocated: none are recorded
-    type(quantity_record_type), intent(in) :: quantities   !< of the run
-    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
-    type(json_type) :: json
-    type(facts_type) :: facts
-
-    call begin_report(json, model, diagnostics, table_path)
-    call kinematic_facts(plan, outcome, driven, facts)
-    call facts%to_json(json)
-    call report_quantities(quantities, json)
-    if (allocated(unique)) call add_uniqueness(json, reacting_pairs(model), unique)
-    call add_structure(json, model, plan)
-    call json%end_object()
-    call json%save(path, err)
-  end subroutine save_kinematic_report
+  end subroutine facts_of
 end module mech9_kinematic_report

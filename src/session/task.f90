@@ -8,20 +8,19 @@ module mech9_task
   use mech9_kept_rows, only: kept_rows_type
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
-  use mech9_quantity_results, only: write_quantities, print_quantities
   use mech9_result_units, only: unit_of
-  use mech9_masks, only: numbers_of
-  use mech9_film, only: film_type, new_film
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_requested, only: requested_type
+  use mech9_kinds, only: wp
+  use mech9_driven_motion, only: set_inputs
+  use mech9_model_motion, only: model_motion_type
   use mech9_picture_requests, only: picture_requests_type
-  use mech9_results, only: results_type
-  use mech9_row_source, only: row_source_type
+  use mech9_row_source, only: row_source_type, new_row_source
   use mech9_mobility_report, only: mobility_report_type, report_mobility
   use mech9_assemblies_text, only: print_assemblies
   use mech9_structure_graph, only: save_structure_graph
-  use mech9_structure_text, only: print_structure, print_mobility, print_mobility_report
+  use mech9_structure_text, only: print_mobility, print_mobility_report
   use mech9_geometry_text, only: print_dimensions
   use mech9_held_text, only: print_held
   use mech9_parameter_text, only: print_parameters, print_parameter_notes
@@ -29,14 +28,11 @@ module mech9_task
   use mech9_start_path, only: start_way_type
   use mech9_start_way_text, only: print_start_way
   use mech9_plan_text, only: print_plan
-  use mech9_force_text, only: print_uniqueness, print_undetermined, print_forceless
+  use mech9_force_text, only: print_uniqueness, print_forceless
   use mech9_force_record, only: force_record_type, reacting_pairs
-  use mech9_hdf5_sink, only: hdf5_sink_type
-  use mech9_hdf5_record, only: write_uniqueness
-  use mech9_system, only: asked_to_end
   implicit none
   private
-  public :: task_type, answers_only, print_check, print_given, begin_run, end_run
+  public :: task_type, answers_only, print_check, print_given, check_motion
 
   type, abstract :: task_type
     integer :: program = kinematics   !< or dynamics
@@ -159,100 +155,33 @@ contains
     end if
   end subroutine draw_graph
 
-  !> Print the title of the run and open its results. `ready` is false after an error.
-  subroutine begin_run(options, pictures, model, plan, requested, source, results, diagnostics, ready)
-    type(command_line_type), intent(in) :: options         !< the command line
-    type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
-    type(model_type), intent(in) :: model              !< the model
-    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
-    type(requested_type), intent(in) :: requested          !< the requested part of the motion
-    type(row_source_type), intent(inout) :: source         !< computes the rows; gets a film where pictures are wanted
-    type(results_type), intent(out), target :: results     !< opened
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
-    logical, intent(out) :: ready                          !< the run can begin
-    type(error_type), allocatable :: err
-    type(hdf5_sink_type), pointer :: hdf5
+  !> Fail in a check where a run would fail: at a start from which the motion cannot begin, or at drives without values at the end of
+  !> the time.
+  subroutine check_motion(variable, motion, err)
+    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
+    type(model_motion_type), intent(inout), target :: motion        !< prepared; is started
+    type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
+    type(row_source_type), allocatable :: source
+    real(wp), allocatable :: row(:)
 
-    ready = .false.
-    call source%begin_quantities(err)
-    if (allocated(err)) then
-      call diagnostics%add_error(err)
-      return
-    end if
-    call announce(options, model, plan, requested)
-    if (model%request%output%with_forces() .and. .not. options%has('quiet')) call print_forceless(error_unit, model%mechanism)
-    if (pictures%any_wanted() .and. model%request%output%force_arrows) then
-      source%film = new_film(model%mechanism, model%problem%partition%independent(), model%request%time%intervals + 1, &
-                             source%columns, numbers_of(model%request%output%drawn_forces(size(model%mechanism%pairs)) .and. &
-                                        model%mechanism%structure%stands_alone()))
-    else if (pictures%any_wanted()) then
-      source%film = new_film(model%mechanism, model%problem%partition%independent(), model%request%time%intervals + 1, &
-                             source%columns)
-    end if
-    call results%open(options, model, diagnostics%sources(1)%text, source%columns, err)
-    ready = .not. allocated(err)
-    if (.not. ready) call diagnostics%add_error(err)
-    hdf5 => results%hdf5()
-    if (.not. (ready .and. associated(hdf5))) return
-    call write_uniqueness(hdf5%file, source%columns, source%forces)
-    if (.not. source%quantities%is_empty()) call write_quantities(source%quantities, hdf5%file, again=.false.)
-  end subroutine begin_run
+    allocate (source)
+    call new_row_source(motion%simulation, source)
+    associate (model => motion%simulation%model)
+      if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
+      if (.not. allocated(err)) call source%begin_quantities(err)
+      if (allocated(err)) return
+      allocate (row(source%columns%width()))
+      call source%row_at(model%request%time%start, row, err)
+      if (.not. allocated(err)) call check_drives(model, err)
+    end associate
+  end subroutine check_motion
 
-  !> Close the results of a run, draw the mechanism, and print which files were written.
-  subroutine end_run(options, pictures, model, source, results, diagnostics)
-    type(command_line_type), intent(in) :: options         !< the command line
-    type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
-    type(model_type), intent(in) :: model              !< the model
-    type(row_source_type), intent(in) :: source            !< of the rows that were written
-    type(results_type), intent(inout), target :: results   !< closed on return
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
-    type(error_type), allocatable :: err
-    type(hdf5_sink_type), pointer :: hdf5
+  !> Fail where a drive has no value at the end of the time.
+  subroutine check_drives(model, err)
+    type(model_type), intent(in) :: model               !< the model
+    type(error_type), allocatable, intent(out) :: err   !< allocated if one has none
+    real(wp), dimension(size(model%mechanism%pairs)) :: q, dq, ddq
 
-    hdf5 => results%hdf5()
-    if (associated(hdf5) .and. .not. source%quantities%is_empty()) &
-      call write_quantities(source%quantities, hdf5%file, again=.true.)
-    call results%close(err)
-    if (allocated(err)) call diagnostics%add_error(err)
-    if (.not. options%has('quiet')) call print_quantities(error_unit, source%quantities)
-    call results%print_words(error_unit, options%has('quiet'))
-    if (allocated(source%forces%unique) .and. .not. options%has('quiet')) &
-      call print_undetermined(error_unit, reacting_pairs(model), source%forces%unique)
-    ! an interrupted program makes no pictures, which would take too long
-    if (asked_to_end()) return
-    if (allocated(source%film)) call draw(options, pictures, model, source%film, diagnostics)
-  end subroutine end_run
-
-  !> Print the title, and with --verbose the structure and the plan.
-  subroutine announce(options, model, plan, requested)
-    type(command_line_type), intent(in) :: options   !< the command line
-    type(model_type), intent(in) :: model        !< the model
-    type(plan_type), intent(in) :: plan              !< the plan of the mechanism
-    type(requested_type), intent(in) :: requested    !< the requested part of the motion
-
-    if (.not. options%has('quiet') .and. model%mechanism%title /= '') write (error_unit, '(a)') model%mechanism%title
-    if (.not. options%has('quiet')) call print_held(error_unit, model)
-    if (.not. options%has('quiet')) call print_parameter_notes(error_unit, model)
-    if (.not. options%has('verbose')) return
-    call print_structure(error_unit, model%mechanism%structure, model%problem%partition%vectors)
-    call print_mobility(error_unit, model%mechanism%structure, plan)
-    call print_plan(error_unit, model%mechanism, plan, requested)
-  end subroutine announce
-
-  !> Draw the requested pictures of the mechanism, and print a line about each.
-  subroutine draw(options, pictures, model, film, diagnostics)
-    type(command_line_type), intent(in) :: options         !< the command line
-    type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
-    type(model_type), intent(in) :: model              !< the model
-    type(film_type), intent(in) :: film                    !< poses and columns at some outputs
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
-    type(error_type), allocatable :: err
-
-    call pictures%save(model, film, err)
-    if (allocated(err)) then
-      call diagnostics%add_error(err)
-    else if (.not. options%has('quiet')) then
-      call pictures%print_words(error_unit)
-    end if
-  end subroutine draw
+    call set_inputs(model%problem%drives, model%request%time%end, q, dq, ddq, err)
+  end subroutine check_drives
 end module mech9_task

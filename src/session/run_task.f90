@@ -1,0 +1,233 @@
+!> A run of a program: it opens the results, records the motion, closes the results, and reports.
+module mech9_run_task
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_error, only: error_type
+  use mech9_masks, only: numbers_of
+  use mech9_system, only: asked_to_end
+  use mech9_command_line, only: command_line_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_model, only: model_type
+  use mech9_variable_model, only: variable_model_type
+  use mech9_plan, only: plan_type
+  use mech9_requested, only: requested_type
+  use mech9_driven_simulation, only: driven_simulation_type
+  use mech9_model_motion, only: model_motion_type
+  use mech9_row_source, only: row_source_type, new_row_source
+  use mech9_force_record, only: reacting_pairs
+  use mech9_film, only: film_type, new_film
+  use mech9_json, only: json_type
+  use mech9_facts, only: facts_type
+  use mech9_kept_rows, only: kept_rows_type
+  use mech9_hdf5_sink, only: hdf5_sink_type
+  use mech9_hdf5_record, only: write_uniqueness
+  use mech9_structure_text, only: print_structure, print_mobility
+  use mech9_held_text, only: print_held
+  use mech9_parameter_text, only: print_parameter_notes
+  use mech9_plan_text, only: print_plan
+  use mech9_force_text, only: print_undetermined, print_forceless
+  use mech9_start_way_text, only: print_start_way
+  use mech9_run_words, only: begin_report, add_structure, add_uniqueness
+  use mech9_picture_requests, only: picture_requests_type
+  use mech9_results, only: results_type
+  use mech9_quantity_results, only: write_quantities, print_quantities, report_quantities
+  use mech9_signal_interruption, only: signal_interruption_type
+  use mech9_recording, only: recording_outcome_type, record
+  use mech9_run_report, only: run_report_type
+  implicit none
+  private
+  public :: carry_out
+
+contains
+
+  !> Carry out a run and report it.
+  subroutine carry_out(options, pictures, model, variable, report, motion, diagnostics, reported, kept)
+    type(command_line_type), intent(in) :: options                    !< the command line
+    type(picture_requests_type), intent(in) :: pictures               !< the pictures of the mechanism that are requested
+    type(model_type), intent(inout), target :: model                  !< of the simulation; gets the tolerances for an accuracy
+    class(variable_model_type), intent(inout), target :: variable     !< the model as a function of its parameters
+    class(run_report_type), intent(in) :: report                      !< of this kind of motion
+    type(model_motion_type), intent(inout), target :: motion          !< prepared
+    type(diagnostics_type), intent(inout) :: diagnostics              !< gets the errors
+    logical, intent(out) :: reported                                  !< the run has written the report
+    type(kept_rows_type), intent(inout), optional :: kept             !< gets the rows as well, for a look at them after the run
+    type(row_source_type), allocatable :: source
+    type(results_type), target :: results
+    type(facts_type) :: facts
+    type(hdf5_sink_type), pointer :: hdf5
+    type(recording_outcome_type) :: outcome
+    type(error_type), allocatable :: err
+    logical :: ready
+
+    allocate (source)
+    call new_row_source(motion%simulation, source)
+    call source%forces%judge(model, motion%plan, motion%start)
+    reported = .false.
+    if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+      return
+    end if
+    call begin_run(options, pictures, model, motion%plan, motion%simulation%requested, source, results, diagnostics, ready)
+    if (.not. options%has('quiet')) call print_start_way(error_unit, model%mechanism, motion%way)
+    reported = ready .and. options%has('report')
+    if (.not. ready) return
+    call find_tolerances(options, pictures, model, motion, err)
+    call report%find_facts(motion, outcome, facts)
+    call results%write_facts(facts)
+    hdf5 => results%hdf5()
+    if (associated(hdf5)) call report%write_start(hdf5, motion)
+    if (.not. allocated(err)) call record(source, model, results, options%has('quiet'), outcome, err, kept)
+    if (.not. options%has('quiet')) call report%print(error_unit, motion, results%table_path, outcome)
+    if (allocated(err)) call diagnostics%add_error(err)
+    call report%find_facts(motion, outcome, facts)
+    call results%write_facts(facts, diagnostics%code())
+    if (associated(hdf5)) call report%write_end(hdf5, motion)
+    call end_run(options, pictures, model, source, results, diagnostics)
+    if (.not. reported) return
+    call save_report(options%argument('report'), results%table_path, model, source, facts, diagnostics, report, motion, err)
+    if (allocated(err)) call diagnostics%add_error(err)
+  end subroutine carry_out
+
+  !> Find the tolerances for an accuracy, where one is asked for, and tell where the runs are that this needs.
+  subroutine find_tolerances(options, pictures, model, motion, err)
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(picture_requests_type), intent(in) :: pictures     !< the pictures of the mechanism that are requested
+    type(model_type), intent(inout) :: model                !< of the simulation; gets the tolerances
+    type(model_motion_type), intent(inout) :: motion        !< prepared
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(signal_interruption_type), target :: interruption
+
+    if (.not. motion%simulation%with_error) return
+    call interruption%words%start(model%program, 'no row yet', 'a run that tells the accuracy', options%has('quiet'), &
+                                  with_progress=.true.)
+    call motion%find_tolerances(model, err, pictures%any_wanted(), interruption)
+    call interruption%words%finish()
+  end subroutine find_tolerances
+
+  !> Write the report as JSON, with the structure.
+  subroutine save_report(path, table_path, model, source, facts, diagnostics, report, motion, err)
+    character(len=*), intent(in) :: path                  !< of the report
+    character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
+    type(model_type), intent(in) :: model                 !< the model
+    type(row_source_type), intent(in) :: source           !< of the rows, with forces and quantities
+    type(facts_type), intent(in) :: facts                 !< about the run
+    type(diagnostics_type), intent(in) :: diagnostics     !< messages and exit code of the run
+    class(run_report_type), intent(in) :: report          !< of this kind of motion
+    type(model_motion_type), intent(inout) :: motion      !< the motion, as far as it went
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    type(driven_simulation_type), pointer :: driven
+    type(json_type) :: json
+
+    call begin_report(json, model, diagnostics, table_path)
+    call facts%to_json(json)
+    call report%add_to(json, motion)
+    call report_quantities(source%quantities, json)
+    if (allocated(source%forces%unique)) call add_uniqueness(json, reacting_pairs(model), source%forces%unique)
+    driven => motion%driven()
+    if (associated(driven)) then
+      ! only the blocks that are requested are executed
+      call add_structure(json, model, driven%plan)
+    else
+      call add_structure(json, model, motion%plan)
+    end if
+    call json%end_object()
+    call json%save(path, err)
+  end subroutine save_report
+
+  !> Print the title of the run and open its results. `ready` is false after an error.
+  subroutine begin_run(options, pictures, model, plan, requested, source, results, diagnostics, ready)
+    type(command_line_type), intent(in) :: options         !< the command line
+    type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
+    type(model_type), intent(in) :: model              !< the model
+    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
+    type(requested_type), intent(in) :: requested          !< the requested part of the motion
+    type(row_source_type), intent(inout) :: source         !< computes the rows; gets a film where pictures are wanted
+    type(results_type), intent(out), target :: results     !< opened
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
+    logical, intent(out) :: ready                          !< the run can begin
+    type(error_type), allocatable :: err
+    type(hdf5_sink_type), pointer :: hdf5
+
+    ready = .false.
+    call source%begin_quantities(err)
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+      return
+    end if
+    call announce(options, model, plan, requested)
+    if (model%request%output%with_forces() .and. .not. options%has('quiet')) call print_forceless(error_unit, model%mechanism)
+    if (pictures%any_wanted() .and. model%request%output%force_arrows) then
+      source%film = new_film(model%mechanism, model%problem%partition%independent(), model%request%time%intervals + 1, &
+                             source%columns, numbers_of(model%request%output%drawn_forces(size(model%mechanism%pairs)) .and. &
+                                        model%mechanism%structure%stands_alone()))
+    else if (pictures%any_wanted()) then
+      source%film = new_film(model%mechanism, model%problem%partition%independent(), model%request%time%intervals + 1, &
+                             source%columns)
+    end if
+    call results%open(options, model, diagnostics%sources(1)%text, source%columns, err)
+    ready = .not. allocated(err)
+    if (.not. ready) call diagnostics%add_error(err)
+    hdf5 => results%hdf5()
+    if (.not. (ready .and. associated(hdf5))) return
+    call write_uniqueness(hdf5%file, source%columns, source%forces)
+    if (.not. source%quantities%is_empty()) call write_quantities(source%quantities, hdf5%file, again=.false.)
+  end subroutine begin_run
+
+  !> Close the results of a run, draw the mechanism, and print which files were written.
+  subroutine end_run(options, pictures, model, source, results, diagnostics)
+    type(command_line_type), intent(in) :: options         !< the command line
+    type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
+    type(model_type), intent(in) :: model              !< the model
+    type(row_source_type), intent(in) :: source            !< of the rows that were written
+    type(results_type), intent(inout), target :: results   !< closed on return
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
+    type(error_type), allocatable :: err
+    type(hdf5_sink_type), pointer :: hdf5
+
+    hdf5 => results%hdf5()
+    if (associated(hdf5) .and. .not. source%quantities%is_empty()) &
+      call write_quantities(source%quantities, hdf5%file, again=.true.)
+    call results%close(err)
+    if (allocated(err)) call diagnostics%add_error(err)
+    if (.not. options%has('quiet')) call print_quantities(error_unit, source%quantities)
+    call results%print_words(error_unit, options%has('quiet'))
+    if (allocated(source%forces%unique) .and. .not. options%has('quiet')) &
+      call print_undetermined(error_unit, reacting_pairs(model), source%forces%unique)
+    ! an interrupted program makes no pictures, which would take too long
+    if (asked_to_end()) return
+    if (allocated(source%film)) call draw(options, pictures, model, source%film, diagnostics)
+  end subroutine end_run
+
+  !> Print the title, and with --verbose the structure and the plan.
+  subroutine announce(options, model, plan, requested)
+    type(command_line_type), intent(in) :: options   !< the command line
+    type(model_type), intent(in) :: model        !< the model
+    type(plan_type), intent(in) :: plan              !< the plan of the mechanism
+    type(requested_type), intent(in) :: requested    !< the requested part of the motion
+
+    if (.not. options%has('quiet') .and. model%mechanism%title /= '') write (error_unit, '(a)') model%mechanism%title
+    if (.not. options%has('quiet')) call print_held(error_unit, model)
+    if (.not. options%has('quiet')) call print_parameter_notes(error_unit, model)
+    if (.not. options%has('verbose')) return
+    call print_structure(error_unit, model%mechanism%structure, model%problem%partition%vectors)
+    call print_mobility(error_unit, model%mechanism%structure, plan)
+    call print_plan(error_unit, model%mechanism, plan, requested)
+  end subroutine announce
+
+  !> Draw the requested pictures of the mechanism, and print a line about each.
+  subroutine draw(options, pictures, model, film, diagnostics)
+    type(command_line_type), intent(in) :: options         !< the command line
+    type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
+    type(model_type), intent(in) :: model              !< the model
+    type(film_type), intent(in) :: film                    !< poses and columns at some outputs
+    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
+    type(error_type), allocatable :: err
+
+    call pictures%save(model, film, err)
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+    else if (.not. options%has('quiet')) then
+      call pictures%print_words(error_unit)
+    end if
+  end subroutine draw
+end module mech9_run_task
