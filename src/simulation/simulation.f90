@@ -17,7 +17,8 @@ module mech9_simulation
   public :: simulation_type, interruption_type, simulation_statistics_type, coordinate_change_type
   public :: estimated_errors_type, judge_error, standing_type
 
-  !> Answers whether a motion shall stop. It is asked before each time and before each step of an integrator.
+  !> Answers whether a motion shall stop. It is asked before each time, before each step of an integrator, and after many steps of a
+  !> driven motion.
   type, abstract :: interruption_type
   contains
     procedure(wanted_interface), deferred :: is_wanted

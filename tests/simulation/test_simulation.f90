@@ -60,9 +60,11 @@ contains
     ! 2 s are some 200 steps; each errs by 1e-10, and errors grow as the motion's own differences do
     if (test%runs('pieces_free')) call check_pieces(test, free, .false., 1e-7_wp)
     if (test%runs('pieces_by_rocker')) call check_pieces(test, by_rocker, .false., 1e-7_wp)
-    if (test%runs('interruption_driven')) call check_interruption(test, driven, .true., 1)
-    if (test%runs('interruption_free')) call check_interruption(test, free, .false., 1)
-    if (test%runs('interruption_later')) call check_interruption(test, free, .false., 7)
+    if (test%runs('interruption_driven')) call check_interruption(test, driven, .true., 1, 1.0_wp, 'before t = 1 s')
+    ! 5000 rad are some ten thousand steps; the motion asks after each thousand of them
+    if (test%runs('interruption_on_the_way')) call check_interruption(test, driven, .true., 4, 1000.0_wp, 'before t = ')
+    if (test%runs('interruption_free')) call check_interruption(test, free, .false., 1, 1.0_wp, 'before t = 1 s')
+    if (test%runs('interruption_later')) call check_interruption(test, free, .false., 7, 1.0_wp, 'before t = 1 s')
     if (test%runs('check_statistics')) call check_statistics(test)
     if (test%runs('order_of_times_driven')) call check_order_of_times(test, driven, .true.)
     if (test%runs('order_of_times_free')) call check_order_of_times(test, free, .false.)
@@ -162,28 +164,30 @@ contains
   end subroutine check_pieces
 
   !> A motion that is interrupted at the given question stops there with its code; asked again it goes on to the same end.
-  subroutine check_interruption(test, text, is_driven, question)
+  subroutine check_interruption(test, text, is_driven, question, t, words)
     type(tester_type), intent(inout) :: test   !< counts the checks
     character(len=*), intent(in) :: text       !< text of a data file
     logical, intent(in) :: is_driven           !< all independent coordinates are driven
     integer, intent(in) :: question            !< after the one of the start
+    real(wp), intent(in) :: t                  !< time to go to [s]
+    character(len=*), intent(in) :: words      !< of the message
     class(simulation_type), allocatable :: whole, interrupted
     type(error_type), allocatable :: err
     integer, target :: left
 
     call new_simulation(test, text, is_driven, whole)
     call whole%start(err)
-    call whole%advance(1.0_wp, err)
+    call whole%advance(t, err)
     call new_simulation(test, text, is_driven, interrupted)
     left = 1 + question
     call interrupted%start(err, countdown_type(left))
     call test%no_error(err, 'the motion starts')
-    call interrupted%advance(1.0_wp, err)
+    call interrupted%advance(t, err)
     call test%has_error(err, exit_interrupted, 'an interruption stops a motion')
     call explain(err)
-    call test%is_true(index(err%message, 'before t = 1 s') > 0, 'the message of an interruption says before which time')
-    call test%is_true(interrupted%t < 1.0_wp, 'an interrupted motion stands before the time that was asked for')
-    call interrupted%advance(1.0_wp, err)
+    call test%is_true(index(err%message, words) > 0, 'the message of an interruption says before which time')
+    call test%is_true(interrupted%t < t, 'an interrupted motion stands before the time that was asked for')
+    call interrupted%advance(t, err)
     call test%no_error(err, 'an interrupted motion goes on when it is asked again')
     ! a free motion goes on with the steps that it would have taken; a driven one closes again, as in pieces
     call test%is_true(maxval(abs(numbers(whole) - numbers(interrupted))) <= 1e-12_wp, &

@@ -8,6 +8,7 @@ module mech9_design_motion
   use mech9_state, only: state_type
   use mech9_frame_motion, only: point_motion
   use mech9_model_motion, only: model_motion_type
+  use mech9_signal_interruption, only: signal_interruption_type
   use mech9_row_source, only: row_source_type, new_row_source
   use mech9_film, only: film_type, new_film
   implicit none
@@ -78,6 +79,7 @@ contains
     type(model_type), intent(in) :: shown                     !< the model with other points
     type(film_type), intent(out) :: film                      !< of the run
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    type(signal_interruption_type), target :: interruption
     type(row_source_type) :: source
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
@@ -87,6 +89,7 @@ contains
     call self%motion%prepare(self%model, err, pictures=.true.)
     if (allocated(err)) return
     call new_row_source(self%motion%simulation, source)
+    source%interruption => interruption
     allocate (row(source%columns%width()), source=0.0_wp)
     film = new_film(shown%mechanism, shown%problem%partition%independent(), shown%request%time%intervals + 1, source%columns)
     do i = 0, shown%request%time%intervals
