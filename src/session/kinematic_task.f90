@@ -89,6 +89,10 @@ contains
       return
     end if
     call motion%prepare(used, err, pictures%any_wanted())
-    if (.not. allocated(err)) call carry_out(options, pictures, used, variable, report, motion, diagnostics, reported, kept)
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+    else
+      call carry_out(options, pictures, used, variable, report, motion, diagnostics, reported, kept)
+    end if
   end subroutine work_driven
 end module mech9_kinematic_task
