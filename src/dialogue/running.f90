@@ -10,6 +10,7 @@ module mech9_running
   use mech9_kept_rows, only: kept_rows_type
   use mech9_rows_text, only: all_rows_text
   use mech9_task, only: task_type
+  use mech9_study_processes, only: study_processes_type
   use mech9_session, only: run_file
   use mech9_conversation, only: conversation_type, going, finished
   use mech9_closing, only: write_data_file
@@ -29,6 +30,7 @@ contains
     character(len=*), intent(in) :: path                     !< the data file of the conversation, or its draft
     integer, intent(out) :: code                             !< exit code of the last run
     type(kept_rows_type) :: kept, earlier
+    type(study_processes_type) :: processes
     character(len=:), allocatable :: request
     integer :: next
     logical :: changed, saved_again
@@ -36,7 +38,7 @@ contains
     changed = .false.
     saved_again = .false.
     do
-      call run_file(task, options, path, code, kept)
+      call run_file(task, options, path, processes, code, kept)
       if (asked_to_end()) exit
       ! Ctrl-C ends the run only, not the conversation
       call catch_interrupts()
@@ -78,6 +80,7 @@ contains
     type(command_line_type) :: options
     type(error_type), allocatable :: err
     type(kept_rows_type) :: found
+    type(study_processes_type) :: processes
     character(len=:), allocatable :: file
     integer :: i, code
 
@@ -96,7 +99,7 @@ contains
     if (allocated(err)) then
       call conversation%say(err%message)
     else
-      call run_file(task, options, file, code, found)
+      call run_file(task, options, file, processes, code, found)
       if (found%count > 0) write (error_unit, '(a)', advance='no') all_rows_text(found)
     end if
   end subroutine answer

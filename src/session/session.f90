@@ -24,7 +24,7 @@ module mech9_session
   use mech9_task, only: task_type, answers_only
   use mech9_run_words, only: save_short_report
   use mech9_study_task, only: work_on_study
-  use mech9_study_team, only: study_team_type
+  use mech9_study_processes, only: study_processes_type
   use mech9_dakota_task, only: work_for_dakota
   use mech9_study_merge, only: merge_studies
   use mech9_optimum_task, only: work_on_optimum
@@ -39,11 +39,11 @@ contains
 
   !> Carry out a command line about a data file or about the program itself; `code` is the exit code of the
   !> program.
-  subroutine carry_out(task, options, code, team)
-    class(task_type), intent(in) :: task             !< the work of this program
-    type(command_line_type), intent(in) :: options   !< the command line
-    integer, intent(out) :: code                     !< exit code of the program
-    class(study_team_type), intent(in), optional :: team   !< processes that make studies together
+  subroutine carry_out(task, options, processes, code)
+    class(task_type), intent(in) :: task                     !< the work of this program
+    type(command_line_type), intent(in) :: options           !< the command line
+    type(study_processes_type), intent(inout) :: processes   !< those that make studies together
+    integer, intent(out) :: code                             !< exit code of the program
     type(error_type), allocatable :: err
 
     code = exit_done
@@ -57,7 +57,7 @@ contains
       call catch_size_limit()
       call merge_studies(options, code)
     else
-      call run_file(task, options, options%file, code, team=team)
+      call run_file(task, options, options%file, processes, code)
     end if
     call flush_output(err)
     if (.not. allocated(err)) return
@@ -86,13 +86,13 @@ contains
   end subroutine show_data_help
 
   !> Read a data file and carry out the options.
-  subroutine run_file(task, options, path, code, kept, team)
+  subroutine run_file(task, options, path, processes, code, kept)
     class(task_type), intent(in) :: task                    !< the work of this program
     type(command_line_type), intent(in) :: options          !< the command line
     character(len=*), intent(in) :: path                    !< of the data file
+    type(study_processes_type), intent(inout) :: processes  !< those that make studies together
     integer, intent(out) :: code                            !< exit code of the program
     type(kept_rows_type), intent(inout), optional :: kept   !< the rows of the run, for who looks at them after it
-    class(study_team_type), intent(in), optional :: team    !< processes that make studies together
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics, choice
     type(structure_type) :: structure
@@ -123,8 +123,7 @@ contains
       return
     end if
     ! of several processes the first one writes the report
-    reported = .false.
-    if (present(team)) reported = .not. team%is_first
+    reported = .not. processes%is_first
     if (options%has('structure')) then
       if (.not. options%has('quiet')) call print_unused_options(error_unit, options, model)
       call read_structure_only(document, structure, partition, diagnostics)
@@ -146,7 +145,7 @@ contains
         if (.not. allocated(err) .and. options%has('dakota')) then
           call work_for_dakota(options, variable, model, diagnostics)
         else if (.not. allocated(err) .and. options%has('study')) then
-          call work_on_study(options, document, variable, model, diagnostics, reported, team)
+          call work_on_study(options, document, variable, model, diagnostics, reported, processes)
         else if (.not. allocated(err) .and. options%has('optimize')) then
           call work_on_optimum(options, document, variable, model, diagnostics, reported)
         else if (.not. allocated(err)) then

@@ -10,7 +10,7 @@ module mech9_mpi_program
   use mech9_system, only: exit_program, leave_quit_alone
   use mech9_session, only: carry_out, asks_for_text
   use mech9_task, only: task_type
-  use mech9_mpi_team, only: mpi_team_type
+  use mech9_study_processes, only: study_processes_type
   implicit none
   private
   public :: run_mpi_program
@@ -55,7 +55,7 @@ contains
     class(task_type), intent(in) :: task  !< computation of the program: kinematics or dynamics
     logical, intent(in) :: is_first       !< this is the first process
     integer, intent(out) :: code          !< exit code of this process
-    type(mpi_team_type) :: team
+    type(study_processes_type) :: processes
     type(command_line_type) :: options
     type(error_type), allocatable :: err
 
@@ -65,14 +65,14 @@ contains
       code = err%code
       return
     end if
-    team%is_first = is_first
-    call MPI_Comm_size(MPI_COMM_WORLD, team%processes)
-    allocate (team%agreements, source=0)
-    call carry_out(task, options, code, team)
+    processes%is_first = is_first
+    call MPI_Comm_size(MPI_COMM_WORLD, processes%count)
+    call carry_out(task, options, processes, code)
     ! a process that did not come to a study tells the others, which may have done so
-    if (team%agreements == 0) call team%agree(code, err)
-    if (code == 0 .and. allocated(err)) code = err%code
-    deallocate (team%agreements)
+    if (processes%agreements > 0) return
+    if (code /= 0) call raise(err, code, 'this process did not come to a study')
+    call processes%agree(err)
+    if (allocated(err)) code = err%code
   end subroutine run_processes
 
   !> Read the command line. It must be that of a study.

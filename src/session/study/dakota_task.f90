@@ -11,11 +11,9 @@ module mech9_dakota_task
   use mech9_explanation, only: explain
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
-  use mech9_row_source, only: row_source_type
   use mech9_quantity_record, only: quantity_record_type
-  use mech9_design_run, only: run_design, find_quantities
+  use mech9_design_run, only: run_design, find_design_gradient, find_quantities
   use mech9_signal_interruption, only: signal_interruption_type
-  use mech9_design_gradient, only: find_design_gradient
   use mech9_dakota_file, only: dakota_request_type, read_dakota, write_dakota_failure, write_dakota_results
   implicit none
   private
@@ -166,7 +164,6 @@ contains
     real(wp), intent(out) :: gradient(:, :)                 !< (parameters,quantities)
     type(error_type), allocatable, intent(out) :: err       !< allocated if the run failed
     type(model_type), target :: model
-    type(row_source_type) :: source
     type(signal_interruption_type) :: interruption
 
     numbers = 0.0_wp
@@ -177,7 +174,7 @@ contains
     if (with_gradient) then
       call find_design_gradient(model, varied, numbers, gradient, err, interruption)
     else
-      call run_design(model, source, numbers, err, interruption=interruption)
+      call run_design(model, numbers, err, interruption=interruption)
     end if
   end subroutine run_at
 end module mech9_dakota_task

@@ -9,7 +9,7 @@ module mech9_study_propagation
   use mech9_parameter, only: parameter_type
   use mech9_variable_model, only: variable_model_type
   use mech9_signal_interruption, only: signal_interruption_type
-  use mech9_design_gradient, only: find_design_gradient
+  use mech9_design_run, only: find_design_gradient
   implicit none
   private
   public :: propagation_type, propagate

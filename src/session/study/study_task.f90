@@ -18,8 +18,8 @@ module mech9_study_task
   use mech9_study_columns, only: refuse_varied_times
   use mech9_study_plots, only: study_plots_type
   use mech9_user_calls, only: calls_user_procedures
-  use mech9_study_team, only: study_team_type
-  use mech9_study_threads, only: make_in_threads, threads_of_machine, has_threads
+  use mech9_study_processes, only: study_processes_type
+  use mech9_study_threads, only: threads_of_machine, has_threads
   use mech9_study_propagation, only: propagation_type, propagate
   use mech9_study_words, only: print_study, save_study_report
   implicit none
@@ -34,14 +34,14 @@ module mech9_study_task
 contains
 
   !> Carry out the study that a data file describes.
-  subroutine work_on_study(options, document, varied, model, diagnostics, reported, team)
+  subroutine work_on_study(options, document, varied, model, diagnostics, reported, processes)
     type(command_line_type), intent(in) :: options          !< the command line
     type(document_type), intent(in) :: document             !< the data file as groups and items, with the changes by --set
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< a report was asked for, and it is written
-    class(study_team_type), intent(in), optional :: team    !< processes that make the runs together
+    type(study_processes_type), intent(inout) :: processes  !< those that make the runs together
     type(quantity_record_type) :: quantities
     type(study_runs_type) :: runs
     type(study_plots_type) :: plots
@@ -51,38 +51,23 @@ contains
     reported = .false.
     used = model
     call check_study(options, used, quantities, err)
-    if (present(team)) call agree_on(team, err)
-    if (present(team) .and. .not. allocated(err)) then
-      if (.not. team%is_first) then
-        call agree_on(team, err)
-        if (.not. allocated(err)) call team%follow(used, varied, options%has('quiet'))
-        reported = .true.
-        return
-      end if
+    call processes%agree(err)
+    if (.not. (processes%is_first .or. allocated(err))) then
+      call processes%agree(err)
+      if (.not. allocated(err)) call processes%follow(used, varied, options%has('quiet'))
+      reported = .true.
+      return
     end if
     if (.not. allocated(err)) then
       call open_files(options, document, used, quantities, runs, plots, err)
-      if (present(team)) call agree_on(team, err)
+      call processes%agree(err)
     end if
     if (allocated(err)) then
       call diagnostics%add_error(err)
     else
-      call carry_out(options, varied, used, quantities, runs, plots, diagnostics, reported, team)
+      call carry_out(options, varied, used, quantities, runs, plots, diagnostics, reported, processes)
     end if
   end subroutine work_on_study
-
-  !> Go on only where all processes can.
-  subroutine agree_on(team, err)
-    class(study_team_type), intent(in) :: team              !< processes that make the runs together
-    type(error_type), allocatable, intent(inout) :: err     !< allocated if this process cannot go on; afterwards if any cannot
-    type(error_type), allocatable :: of_others
-    integer :: code
-
-    code = 0
-    if (allocated(err)) code = err%code
-    call team%agree(code, of_others)
-    if (.not. allocated(err)) call move_alloc(of_others, err)
-  end subroutine agree_on
 
   !> Open the files of a study, and read the requests for its plots.
   subroutine open_files(options, document, model, quantities, runs, plots, err)
@@ -161,7 +146,7 @@ contains
   end subroutine print_notes
 
   !> Make the runs, close the files, and tell how the study went. Where every run failed, the first failure is that of the study.
-  subroutine carry_out(options, varied, model, quantities, runs, plots, diagnostics, reported, team)
+  subroutine carry_out(options, varied, model, quantities, runs, plots, diagnostics, reported, processes)
     type(command_line_type), intent(in) :: options          !< the command line
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
@@ -170,7 +155,7 @@ contains
     type(study_plots_type), intent(inout) :: plots          !< the plots that are requested
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(inout) :: reported                      !< the report is written
-    class(study_team_type), intent(in), optional :: team    !< processes that make the runs together
+    type(study_processes_type), intent(in) :: processes     !< those that make the runs together
     type(propagation_type), allocatable :: propagation(:)
     type(error_type), allocatable :: err, without_shares
     real(wp) :: clock
@@ -180,13 +165,8 @@ contains
     quiet = options%has('quiet')
     clock = seconds()
     threads = threads_of_study(options, model)
-    if (present(team)) threads = team%processes
-    call runs%begin(model, runs_ahead*threads, options%has('plot'), quiet)
-    if (present(team)) then
-      call team%lead(model, varied, quiet, runs)
-    else
-      call make_in_threads(model, varied, threads, quiet, runs)
-    end if
+    call runs%begin(model, runs_ahead*max(threads, processes%count), options%has('plot'), quiet)
+    call processes%lead(model, varied, threads, quiet, runs)
     call runs%finish(err)
     kept = .true.
     if (allocated(err)) kept = err%code == exit_interrupted

@@ -1,27 +1,22 @@
-!> Processes that make the runs of a study together, by MPI.
+!> The procedures of processes that make the runs of a study together, by MPI.
 !>
 !> Runs are handed out in batches, each as long as some milliseconds of work. Every process has two batches, so that it works on the
 !> second one while the results of the first one are on their way. The first process makes runs, too, one at a time, and looks for
 !> messages between them.
-module mech9_mpi_team
+submodule (mech9_study_processes) mech9_mpi_processes
   use mpi_f08, only: MPI_COMM_WORLD, MPI_ANY_SOURCE, MPI_INTEGER, MPI_DOUBLE_PRECISION, MPI_CHARACTER, MPI_Status, MPI_Allgather, &
                      MPI_Iprobe, MPI_Get_count, MPI_Recv, MPI_Send
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
-  use mech9_error, only: error_type, place_type, raise
+  use mech9_error, only: place_type, raise
   use mech9_clock, only: seconds
   use mech9_pause, only: pause_for
   use mech9_explanation, only: explain
-  use mech9_model, only: model_type
-  use mech9_variable_model, only: variable_model_type
   use mech9_study_values, only: values_of_run
   use mech9_signal_interruption, only: signal_interruption_type
   use mech9_run_maker, only: run_maker_type, made_run_type
-  use mech9_study_runs, only: study_runs_type, all_handed_out, wait_for_others
-  use mech9_study_team, only: study_team_type
+  use mech9_study_runs, only: all_handed_out, wait_for_others
   implicit none
-  private
-  public :: mpi_team_type
 
   !> Tags of the messages: numbers of runs from the first process; codes, quantities and texts of runs to it, and the columns of
   !> each run, if they are kept.
@@ -34,44 +29,37 @@ module mech9_mpi_team
   real(wp), parameter :: time_of_batch = 0.005_wp       !< work in a batch [s]
   real(wp), parameter :: short_wait = 0.0002_wp         !< until a process that has nothing to do looks for messages again [s]
 
-  type, extends(study_team_type) :: mpi_team_type
-    integer, pointer :: agreements => null()   !< at how many points this process has agreed with the others
-  contains
-    procedure :: agree => agree_by_mpi
-    procedure :: lead => lead_by_mpi
-    procedure :: follow => follow_by_mpi
-  end type mpi_team_type
-
 contains
 
-  !> Learn whether all processes can go on.
-  subroutine agree_by_mpi(self, code, err)
-    class(mpi_team_type), intent(in) :: self             !< the processes
-    integer, intent(in) :: code                          !< exit code that this process has to end with; 0: it can go on
-    type(error_type), allocatable, intent(out) :: err    !< allocated if this process could go on, and another one cannot
-    integer :: codes(self%processes), other
+  module subroutine agree(self, err)
+    class(study_processes_type), intent(inout) :: self    !< the processes
+    type(error_type), allocatable, intent(inout) :: err   !< allocated if this process cannot go on; afterwards if any cannot
+    integer :: codes(self%count), code, other
 
     self%agreements = self%agreements + 1
+    code = 0
+    if (allocated(err)) code = err%code
     call MPI_Allgather([code], 1, MPI_INTEGER, codes, 1, MPI_INTEGER, MPI_COMM_WORLD)
     if (code /= 0) return
-    do other = 1, self%processes
+    do other = 1, self%count
       if (codes(other) == 0) cycle
-      call raise(err, codes(other), 'process '//to_text(other)//' of '//to_text(self%processes)//' cannot begin and ends with '// &
+      call raise(err, codes(other), 'process '//to_text(other)//' of '//to_text(self%count)//' cannot begin and ends with '// &
                  to_text(codes(other))//'; can it read the data file, and the files that this one names?')
       return
     end do
-  end subroutine agree_by_mpi
+  end subroutine agree
 
-  !> Hand out runs to the other processes and make some, until all are made.
-  subroutine lead_by_mpi(self, model, varied, quiet, runs)
-    class(mpi_team_type), intent(in) :: self              !< the processes
+  !> The first process makes some of the runs, too.
+  module subroutine lead(self, model, varied, threads, quiet, runs)
+    class(study_processes_type), intent(in) :: self       !< the processes
     type(model_type), intent(in) :: model                 !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
+    integer, intent(in) :: threads                        !< unused: each process has one
     logical, intent(in) :: quiet                          !< nothing is said of a run that takes long
     type(study_runs_type), intent(inout) :: runs          !< about to begin
     type(run_maker_type) :: maker
     type(made_run_type) :: run
-    integer :: waiting(self%processes - 1)
+    integer :: waiting(self%count - 1)
     integer :: number, batch, other
     real(wp) :: begun
 
@@ -95,7 +83,7 @@ contains
     do other = 1, size(waiting)
       call MPI_Send([0], 0, MPI_INTEGER, other, of_numbers, MPI_COMM_WORLD)
     end do
-  end subroutine lead_by_mpi
+  end subroutine lead
 
   !> Hand out runs until every process has two batches, or there are none to hand out now.
   subroutine feed_all(batch, waiting, runs)
@@ -183,9 +171,8 @@ contains
     end do
   end subroutine take_batch
 
-  !> Make the runs that the first process hands out, until it has no more.
-  subroutine follow_by_mpi(self, model, varied, quiet)
-    class(mpi_team_type), intent(in) :: self              !< the processes
+  module subroutine follow(self, model, varied, quiet)
+    class(study_processes_type), intent(in) :: self       !< the processes
     type(model_type), intent(in) :: model                 !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
     logical, intent(in) :: quiet                          !< nothing is said of a run that takes long
@@ -206,7 +193,7 @@ contains
       if (n == 0) exit
       call make_batch(maker, numbers(:n), size(model%request%quantities), model%program, quiet)
     end do
-  end subroutine follow_by_mpi
+  end subroutine follow
 
   !> Make a run, and tell where it is if it takes long.
   subroutine make(maker, number, program, quiet, run)
@@ -256,4 +243,4 @@ contains
         call MPI_Send(made(i)%rows, size(made(i)%rows), MPI_DOUBLE_PRECISION, 0, of_rows, MPI_COMM_WORLD)
     end do
   end subroutine make_batch
-end module mech9_mpi_team
+end submodule mech9_mpi_processes

@@ -1,50 +1,49 @@
 !> Processes that make the runs of a study together. All read the same data file; the first one hands out the runs and writes the
-!> results.
-module mech9_study_team
+!> results. Which procedures stand behind these interfaces is decided by the linker: those of the library (one_process.f90) serve a
+!> program that is alone, and those of src/programs/mpi replace them in programs with MPI.
+module mech9_study_processes
   use mech9_error, only: error_type
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_study_runs, only: study_runs_type
   implicit none
   private
-  public :: study_team_type
+  public :: study_processes_type
 
-  type, abstract :: study_team_type
+  type :: study_processes_type
     logical :: is_first = .true.   !< this process hands out the runs
-    integer :: processes = 1       !< how many there are
+    integer :: count = 1           !< how many there are
+    integer :: agreements = 0      !< at how many points this process has agreed with the others
   contains
-    procedure(agree), deferred :: agree
-    procedure(lead), deferred :: lead
-    procedure(follow), deferred :: follow
-  end type study_team_type
+    procedure :: agree
+    procedure :: lead
+    procedure :: follow
+  end type study_processes_type
 
-  abstract interface
+  interface
     !> Learn whether all processes can go on. Every process calls it at the same two points: when it has read the data file, and
     !> before the first run.
-    subroutine agree(self, code, err)
-      import :: study_team_type, error_type
-      class(study_team_type), intent(in) :: self           !< the processes
-      integer, intent(in) :: code                          !< exit code that this process has to end with; 0: it can go on
-      type(error_type), allocatable, intent(out) :: err    !< allocated if this process could go on, and another one cannot
+    module subroutine agree(self, err)
+      class(study_processes_type), intent(inout) :: self    !< the processes
+      type(error_type), allocatable, intent(inout) :: err   !< allocated if this process cannot go on; afterwards if any cannot
     end subroutine agree
 
-    !> Hand out runs to the other processes and make some, until all are made. The first process calls it.
-    subroutine lead(self, model, varied, quiet, runs)
-      import :: study_team_type, model_type, variable_model_type, study_runs_type
-      class(study_team_type), intent(in) :: self            !< the processes
+    !> Make all runs. The first process calls it; it hands out runs to the other processes.
+    module subroutine lead(self, model, varied, threads, quiet, runs)
+      class(study_processes_type), intent(in) :: self       !< the processes
       type(model_type), intent(in) :: model                 !< the model with the values of the data file
       class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
+      integer, intent(in) :: threads                        !< how many make the runs where there is one process
       logical, intent(in) :: quiet                          !< nothing is said of a run that takes long
       type(study_runs_type), intent(inout) :: runs          !< about to begin
     end subroutine lead
 
     !> Make the runs that the first process hands out. All other processes call it.
-    subroutine follow(self, model, varied, quiet)
-      import :: study_team_type, model_type, variable_model_type
-      class(study_team_type), intent(in) :: self            !< the processes
+    module subroutine follow(self, model, varied, quiet)
+      class(study_processes_type), intent(in) :: self       !< the processes
       type(model_type), intent(in) :: model                 !< the model with the values of the data file
       class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
       logical, intent(in) :: quiet                          !< nothing is said of a run that takes long
     end subroutine follow
   end interface
-end module mech9_study_team
+end module mech9_study_processes
