@@ -49,7 +49,7 @@ contains
     type(progress_type) :: progress
     type(pacer_type) :: pacer
     type(pacer_type), pointer :: pause
-    type(signal_interruption_type), target :: interruption
+    type(signal_interruption_type), pointer :: interruption
     real(wp), allocatable :: rows(:, :)
     real(wp) :: clock, last_row, words_after
     integer :: next, count
@@ -62,7 +62,7 @@ contains
     clock = seconds()
     call progress%start(program_names(model%program), quiet)
     call pacer%start(longest_wait)
-    allocate (pause)
+    allocate (pause, interruption)
     call pause%start(longest_wait)
     interruption%pause => pause
     source%interruption => interruption
@@ -95,7 +95,7 @@ contains
       words_after = 2.0_wp*words_after
     end do
     source%interruption => null()
-    deallocate (pause)
+    deallocate (pause, interruption)
     call progress%finish()
     if (.not. (allocated(stopped) .or. allocated(err) .or. source%quantities%is_empty())) call source%quantities%finish()
     call results%flush(at_flush)
