@@ -1,39 +1,69 @@
-!> One run of a study: the quantities of a motion, and its columns where they are wanted, without any files.
+!> Runs of designs: the quantities of a motion, their derivatives or the columns, where they are wanted, without any files.
 module mech9_design_run
   use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_model, only: model_type
-  use mech9_simulation, only: simulation_type, interruption_type
-  use mech9_model_motion, only: model_motion_type
-  use mech9_row_source, only: row_source_type, new_row_source, find_columns
+  use mech9_variable_model, only: variable_model_type
+  use mech9_simulation, only: interruption_type
+  use mech9_run, only: run_type
+  use mech9_row_source, only: find_columns
   use mech9_columns, only: columns_type
   use mech9_force_record, only: force_record_type
   use mech9_quantity_record, only: quantity_record_type
   implicit none
   private
-  public :: run_design, find_quantities, columns_of_runs
+  public :: run_design, find_design_gradient, find_quantities, columns_of_runs
 
 contains
 
-  !> Make the motion of a model and take its quantities. Fails as a run would; the quantities are then of no use, and rows have
+  !> Make the run of a model and take its quantities. Fails as the run would; the quantities are then of no use, and rows have
   !> their numbers up to the failure.
-  subroutine run_design(model, source, numbers, err, rows, interruption)
+  subroutine run_design(model, numbers, err, rows, interruption)
     type(model_type), intent(inout), target :: model      !< gets the tolerances where an accuracy is requested
-    type(row_source_type), intent(inout) :: source        !< rows of the run; made anew
     real(wp), intent(out) :: numbers(:)                   !< (quantities)
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     real(wp), intent(inout), optional :: rows(:, :)       !< (columns,outputs) gets the columns of all outputs that are reached
     class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
-    type(model_motion_type), target :: motion
+    type(run_type), target :: run
+
+    call make_run(model, run, err, rows=rows, interruption=interruption)
+    if (.not. allocated(err) .and. size(numbers) > 0) numbers = run%source%quantities%numbers
+  end subroutine run_design
+
+  !> Make the run of a model with its derivatives and take its quantities. Fails as a run with derivatives would.
+  subroutine find_design_gradient(model, variable, numbers, gradient, err, interruption)
+    type(model_type), intent(inout), target :: model        !< with quantities; gets the tolerances where an accuracy is requested
+    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
+    real(wp), intent(out) :: numbers(:)                     !< (quantities)
+    real(wp), intent(out) :: gradient(:, :)                 !< (parameters,quantities); NaN where a number has no derivative
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
+    type(run_type), target :: run
+
+    model%request%output%gradients = .true.
+    call make_run(model, run, err, variable, interruption=interruption)
+    if (allocated(err)) return
+    numbers = run%source%quantities%numbers
+    gradient = run%source%quantities%gradient
+  end subroutine find_design_gradient
+
+  !> Make a run from its assembly to its end.
+  subroutine make_run(model, run, err, variable, rows, interruption)
+    type(model_type), intent(inout), target :: model      !< gets the tolerances where an accuracy is requested
+    type(run_type), intent(inout), target :: run          !< made anew, and closed on return
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    class(variable_model_type), intent(inout), optional, target :: variable     !< the model as a function of its parameters
+    real(wp), intent(inout), optional :: rows(:, :)       !< (columns,outputs) gets the columns of all outputs that are reached
+    class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
 
     if (present(interruption)) call interruption%begin_run()
-    call motion%assemble(model, err)
-    if (.not. allocated(err)) call motion%prepare(model, err)
-    if (.not. allocated(err)) call motion%find_tolerances(model, err, interruption=interruption)
-    if (.not. allocated(err)) call take_quantities(motion%simulation, source, numbers, err, rows, interruption)
-    call motion%close()
-  end subroutine run_design
+    call run%motion%assemble(model, err)
+    if (.not. allocated(err)) call run%prepare(model, err, variable)
+    if (.not. allocated(err)) call run%motion%find_tolerances(model, err, interruption=interruption)
+    if (.not. allocated(err)) call run%make(err, rows, interruption)
+    call run%close()
+  end subroutine make_run
 
   !> Find the columns of the quantities that the runs of a model will have. Fails with exit_data where one is not recorded.
   subroutine find_quantities(model, quantities, err)
@@ -55,25 +85,4 @@ contains
     call find_columns(model, model%program == dynamics .and. model%request%output%energies, &
                       model%request%solver%accuracy > 0.0_wp .and. .not. model%is_driven(), columns, forces)
   end subroutine columns_of_runs
-
-  !> Go through all outputs of a simulation.
-  subroutine take_quantities(simulation, source, numbers, err, rows, interruption)
-    class(simulation_type), intent(inout), target :: simulation    !< about to start
-    type(row_source_type), intent(inout) :: source                 !< rows of the run; made anew
-    real(wp), intent(out) :: numbers(:)                            !< (quantities)
-    type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
-    real(wp), intent(inout), optional :: rows(:, :)                !< (columns,outputs) gets the columns of all outputs
-    class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
-
-    call new_row_source(simulation, source)
-    if (present(interruption)) source%interruption => interruption
-    call source%begin_quantities(err)
-    if (allocated(err)) return
-    call source%go_through(err, rows)
-    source%interruption => null()
-    if (allocated(err)) return
-    if (size(numbers) == 0) return
-    call source%quantities%finish()
-    numbers = source%quantities%numbers
-  end subroutine take_quantities
 end module mech9_design_run

@@ -8,7 +8,6 @@ module mech9_run_maker
   use mech9_study, only: study_type
   use mech9_variable_model, only: variable_model_type
   use mech9_study_values, only: values_of_run
-  use mech9_row_source, only: row_source_type
   use mech9_simulation, only: interruption_type
   use mech9_columns, only: columns_type
   use mech9_design_run, only: run_design, columns_of_runs
@@ -74,7 +73,6 @@ contains
     type(made_run_type), intent(out) :: run        !< the run, which may have failed
     class(interruption_type), intent(inout), optional :: interruption   !< is asked whether the run shall stop
     type(model_type), target :: model
-    type(row_source_type) :: source
 
     run%number = number
     allocate (run%values(size(self%parameters)))
@@ -83,7 +81,7 @@ contains
     if (self%n_columns > 0) &
       allocate (run%rows(self%n_columns, self%n_outputs), source=ieee_value(1.0_wp, ieee_quiet_nan))
     call self%varied%at(run%values, model, run%failure)
-    if (.not. allocated(run%failure)) call run_design(model, source, run%quantities, run%failure, run%rows, interruption)
+    if (.not. allocated(run%failure)) call run_design(model, run%quantities, run%failure, run%rows, interruption)
     if (.not. allocated(run%failure)) return
     run%exit_code = run%failure%code
     run%quantities = ieee_value(1.0_wp, ieee_quiet_nan)

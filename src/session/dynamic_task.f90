@@ -13,7 +13,7 @@ module mech9_dynamic_task
   use mech9_task, only: task_type, answers_only, print_check, print_given, check_motion
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_free_simulation, only: free_simulation_type
-  use mech9_model_motion, only: model_motion_type
+  use mech9_run, only: run_type
   use mech9_kinematic_task, only: work_driven
   use mech9_dynamic_report, only: dynamic_report_type, print_coefficients
   use mech9_run_task, only: carry_out
@@ -46,7 +46,7 @@ contains
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
     type(model_type), target :: used
     type(dynamic_report_type) :: report
-    type(model_motion_type), target :: motion
+    type(run_type), target :: run
     type(picture_requests_type) :: pictures
     type(free_simulation_type), pointer :: simulation
     type(error_type), allocatable :: err
@@ -64,21 +64,27 @@ contains
     if (diagnostics%failed()) return
     used = model
     call read_picture_requests(options, model, pictures, err)
-    if (.not. allocated(err)) call motion%assemble(used, err)
-    if (.not. allocated(err)) &
-      call motion%prepare(used, err, pictures%any_wanted() .or. model%request%output%with_derivatives())
+    if (.not. allocated(err)) call run%motion%assemble(used, err)
+    if (.not. allocated(err) .and. answers_only(options)) then
+      call run%motion%prepare(used, err, pictures%any_wanted())
+    else if (.not. allocated(err)) then
+      call run%prepare(used, err, variable, pictures%any_wanted())
+    end if
     if (allocated(err)) then
       if (options%has('check')) call print_given(model, .true.)
       call diagnostics%add_error(err)
     else if (answers_only(options)) then
-      simulation => motion%free()
-      call print_check(options, pictures, model, motion%plan, simulation%requested, motion%start, motion%way, diagnostics)
-      if (options%has('check') .or. options%has('plan')) call print_coefficients(output_unit, motion%plan, simulation%coefficients)
-      if (options%has('check')) call check_motion(variable, motion, err)
+      simulation => run%motion%free()
+      associate (motion => run%motion)
+        call print_check(options, pictures, model, motion%plan, simulation%requested, motion%start, motion%way, diagnostics)
+        if (options%has('check') .or. options%has('plan')) &
+          call print_coefficients(output_unit, motion%plan, simulation%coefficients)
+      end associate
+      if (options%has('check')) call check_motion(used, variable, run, err)
       if (allocated(err)) call diagnostics%add_error(err)
     else
-      call carry_out(options, pictures, used, variable, report, motion, diagnostics, reported, kept)
+      call carry_out(options, pictures, used, report, run, diagnostics, reported, kept)
     end if
-    call motion%close()
+    call run%close()
   end subroutine work
 end module mech9_dynamic_task

@@ -9,7 +9,7 @@ module mech9_kinematic_task
   use mech9_variable_model, only: variable_model_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_requested, only: requested_by_results
-  use mech9_model_motion, only: model_motion_type
+  use mech9_run, only: run_type
   use mech9_law_times, only: check_times_of_laws
   use mech9_task, only: task_type, answers_only, print_check, print_given, check_motion
   use mech9_range_text, only: print_ranges
@@ -58,7 +58,7 @@ contains
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
     type(model_type), target :: used
     type(kinematic_report_type) :: report
-    type(model_motion_type), target :: motion
+    type(run_type), target :: run
     type(picture_requests_type) :: pictures
     type(error_type), allocatable :: err
 
@@ -68,31 +68,28 @@ contains
     if (diagnostics%failed()) return
     used = model
     call read_picture_requests(options, model, pictures, err)
-    if (.not. allocated(err)) call motion%assemble(used, err)
+    if (.not. allocated(err)) call run%motion%assemble(used, err)
     if (allocated(err)) then
       if (options%has('check')) call print_given(model, model%program == dynamics)
       call diagnostics%add_error(err)
       return
     end if
     if (answers_only(options)) then
-      call print_check(options, pictures, model, motion%plan, &
-                       requested_by_results(model%mechanism, model%request%output, pictures%any_wanted()), motion%start, &
-                       motion%way, diagnostics)
-      if (options%has('range')) call print_ranges(output_unit, model, motion%plan, motion%start)
-      if (options%has('check')) then
-        call motion%prepare(used, err)
-        if (.not. allocated(err)) call check_motion(variable, motion, err)
-      end if
+      call print_check(options, pictures, model, run%motion%plan, &
+                       requested_by_results(model%mechanism, model%request%output, pictures%any_wanted()), run%motion%start, &
+                       run%motion%way, diagnostics)
+      if (options%has('range')) call print_ranges(output_unit, model, run%motion%plan, run%motion%start)
+      if (options%has('check')) call check_motion(used, variable, run, err)
       if (options%has('cam') .and. .not. allocated(err)) &
-        call work_on_cams(options, model, motion%plan, motion%start, diagnostics, reported, err)
+        call work_on_cams(options, model, run%motion%plan, run%motion%start, diagnostics, reported, err)
       if (allocated(err)) call diagnostics%add_error(err)
       return
     end if
-    call motion%prepare(used, err, pictures%any_wanted())
+    call run%prepare(used, err, variable, pictures%any_wanted())
     if (allocated(err)) then
       call diagnostics%add_error(err)
     else
-      call carry_out(options, pictures, used, variable, report, motion, diagnostics, reported, kept)
+      call carry_out(options, pictures, used, report, run, diagnostics, reported, kept)
     end if
   end subroutine work_driven
 end module mech9_kinematic_task

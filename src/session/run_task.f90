@@ -7,12 +7,12 @@ module mech9_run_task
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
-  use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_requested, only: requested_type
   use mech9_driven_simulation, only: driven_simulation_type
   use mech9_model_motion, only: model_motion_type
-  use mech9_row_source, only: row_source_type, new_row_source
+  use mech9_run, only: run_type
+  use mech9_row_source, only: row_source_type
   use mech9_force_record, only: reacting_pairs
   use mech9_film, only: film_type, new_film
   use mech9_json, only: json_type
@@ -40,17 +40,15 @@ module mech9_run_task
 contains
 
   !> Carry out a run and report it.
-  subroutine carry_out(options, pictures, model, variable, report, motion, diagnostics, reported, kept)
+  subroutine carry_out(options, pictures, model, report, run, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options                    !< the command line
     type(picture_requests_type), intent(in) :: pictures               !< the pictures of the mechanism that are requested
     type(model_type), intent(inout), target :: model                  !< of the simulation; gets the tolerances for an accuracy
-    class(variable_model_type), intent(inout), target :: variable     !< the model as a function of its parameters
     class(run_report_type), intent(in) :: report                      !< of this kind of motion
-    type(model_motion_type), intent(inout), target :: motion          !< prepared
+    type(run_type), intent(inout), target :: run                      !< prepared
     type(diagnostics_type), intent(inout) :: diagnostics              !< gets the errors
     logical, intent(out) :: reported                                  !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept             !< gets the rows as well, for a look at them after the run
-    type(row_source_type), allocatable :: source
     type(results_type), target :: results
     type(facts_type) :: facts
     type(hdf5_sink_type), pointer :: hdf5
@@ -58,34 +56,28 @@ contains
     type(error_type), allocatable :: err
     logical :: ready
 
-    allocate (source)
-    call new_row_source(motion%simulation, source)
-    call source%forces%judge(model, motion%plan, motion%start)
-    reported = .false.
-    if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
-    if (allocated(err)) then
-      call diagnostics%add_error(err)
-      return
-    end if
-    call begin_run(options, pictures, model, motion%plan, motion%simulation%requested, source, results, diagnostics, ready)
-    if (.not. options%has('quiet')) call print_start_way(error_unit, model%mechanism, motion%way)
-    reported = ready .and. options%has('report')
-    if (.not. ready) return
-    call find_tolerances(options, pictures, model, motion, err)
-    call report%find_facts(motion, outcome, facts)
-    call results%write_facts(facts)
-    hdf5 => results%hdf5()
-    if (associated(hdf5)) call report%write_start(hdf5, motion)
-    if (.not. allocated(err)) call record(source, model, results, options%has('quiet'), outcome, err, kept)
-    if (.not. options%has('quiet')) call report%print(error_unit, motion, results%table_path, outcome)
-    if (allocated(err)) call diagnostics%add_error(err)
-    call report%find_facts(motion, outcome, facts)
-    call results%write_facts(facts, diagnostics%code())
-    if (associated(hdf5)) call report%write_end(hdf5, motion)
-    call end_run(options, pictures, model, source, results, diagnostics)
-    if (.not. reported) return
-    call save_report(options%argument('report'), results%table_path, model, source, facts, diagnostics, report, motion, err)
-    if (allocated(err)) call diagnostics%add_error(err)
+    associate (motion => run%motion, source => run%source)
+      call source%forces%judge(model, motion%plan, motion%start)
+      call begin_run(options, pictures, model, motion%plan, motion%simulation%requested, source, results, diagnostics, ready)
+      if (.not. options%has('quiet')) call print_start_way(error_unit, model%mechanism, motion%way)
+      reported = ready .and. options%has('report')
+      if (.not. ready) return
+      call find_tolerances(options, pictures, model, motion, err)
+      call report%find_facts(motion, outcome, facts)
+      call results%write_facts(facts)
+      hdf5 => results%hdf5()
+      if (associated(hdf5)) call report%write_start(hdf5, motion)
+      if (.not. allocated(err)) call record(source, model, results, options%has('quiet'), outcome, err, kept)
+      if (.not. options%has('quiet')) call report%print(error_unit, motion, results%table_path, outcome)
+      if (allocated(err)) call diagnostics%add_error(err)
+      call report%find_facts(motion, outcome, facts)
+      call results%write_facts(facts, diagnostics%code())
+      if (associated(hdf5)) call report%write_end(hdf5, motion)
+      call end_run(options, pictures, model, source, results, diagnostics)
+      if (.not. reported) return
+      call save_report(options%argument('report'), results%table_path, model, facts, diagnostics, report, run, err)
+      if (allocated(err)) call diagnostics%add_error(err)
+    end associate
   end subroutine carry_out
 
   !> Find the tolerances for an accuracy, where one is asked for, and tell where the runs are that this needs.
@@ -105,30 +97,31 @@ contains
   end subroutine find_tolerances
 
   !> Write the report as JSON, with the structure.
-  subroutine save_report(path, table_path, model, source, facts, diagnostics, report, motion, err)
+  subroutine save_report(path, table_path, model, facts, diagnostics, report, run, err)
     character(len=*), intent(in) :: path                  !< of the report
     character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
     type(model_type), intent(in) :: model                 !< the model
-    type(row_source_type), intent(in) :: source           !< of the rows, with forces and quantities
     type(facts_type), intent(in) :: facts                 !< about the run
     type(diagnostics_type), intent(in) :: diagnostics     !< messages and exit code of the run
     class(run_report_type), intent(in) :: report          !< of this kind of motion
-    type(model_motion_type), intent(inout) :: motion      !< the motion, as far as it went
+    type(run_type), intent(inout) :: run                  !< the run, as far as it went
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(driven_simulation_type), pointer :: driven
     type(json_type) :: json
 
     call begin_report(json, model, diagnostics, table_path)
     call facts%to_json(json)
-    call report%add_to(json, motion)
-    call report_quantities(source%quantities, json)
-    if (allocated(source%forces%unique)) call add_uniqueness(json, reacting_pairs(model), source%forces%unique)
-    driven => motion%driven()
+    call report%add_to(json, run%motion)
+    call report_quantities(run%source%quantities, json)
+    associate (forces => run%source%forces)
+      if (allocated(forces%unique)) call add_uniqueness(json, reacting_pairs(model), forces%unique)
+    end associate
+    driven => run%motion%driven()
     if (associated(driven)) then
       ! only the blocks that are requested are executed
       call add_structure(json, model, driven%plan)
     else
-      call add_structure(json, model, motion%plan)
+      call add_structure(json, model, run%motion%plan)
     end if
     call json%end_object()
     call json%save(path, err)
@@ -149,11 +142,6 @@ contains
     type(hdf5_sink_type), pointer :: hdf5
 
     ready = .false.
-    call source%begin_quantities(err)
-    if (allocated(err)) then
-      call diagnostics%add_error(err)
-      return
-    end if
     call announce(options, model, plan, requested)
     if (model%request%output%with_forces() .and. .not. options%has('quiet')) call print_forceless(error_unit, model%mechanism)
     if (pictures%any_wanted() .and. model%request%output%force_arrows) then

@@ -14,9 +14,8 @@ module mech9_task
   use mech9_requested, only: requested_type
   use mech9_kinds, only: wp
   use mech9_driven_motion, only: set_inputs
-  use mech9_model_motion, only: model_motion_type
+  use mech9_run, only: run_type
   use mech9_picture_requests, only: picture_requests_type
-  use mech9_row_source, only: row_source_type, new_row_source
   use mech9_mobility_report, only: mobility_report_type, report_mobility
   use mech9_assemblies_text, only: print_assemblies
   use mech9_structure_graph, only: save_structure_graph
@@ -157,23 +156,18 @@ contains
 
   !> Fail in a check where a run would fail: at a start from which the motion cannot begin, or at drives without values at the end of
   !> the time.
-  subroutine check_motion(variable, motion, err)
+  subroutine check_motion(model, variable, run, err)
+    type(model_type), intent(in), target :: model                   !< the model
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
-    type(model_motion_type), intent(inout), target :: motion        !< prepared; is started
+    type(run_type), intent(inout), target :: run                    !< with its motion assembled; its first row is computed
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
-    type(row_source_type), allocatable :: source
     real(wp), allocatable :: row(:)
 
-    allocate (source)
-    call new_row_source(motion%simulation, source)
-    associate (model => motion%simulation%model)
-      if (model%request%output%with_derivatives()) call source%add_sensitivities(variable, err)
-      if (.not. allocated(err)) call source%begin_quantities(err)
-      if (allocated(err)) return
-      allocate (row(source%columns%width()))
-      call source%row_at(model%request%time%start, row, err)
-      if (.not. allocated(err)) call check_drives(model, err)
-    end associate
+    call run%prepare(model, err, variable)
+    if (allocated(err)) return
+    allocate (row(run%source%columns%width()))
+    call run%source%row_at(model%request%time%start, row, err)
+    if (.not. allocated(err)) call check_drives(model, err)
   end subroutine check_motion
 
   !> Fail where a drive has no value at the end of the time.

@@ -6,10 +6,8 @@ module mech9_run_evaluator
   use mech9_model, only: model_type
   use mech9_objective, only: quantity_objective, quantity_limit
   use mech9_variable_model, only: variable_model_type
-  use mech9_row_source, only: row_source_type
   use mech9_simulation, only: interruption_type
-  use mech9_design_gradient, only: find_design_gradient
-  use mech9_design_run, only: run_design
+  use mech9_design_run, only: run_design, find_design_gradient
   implicit none
   private
   public :: run_evaluator_type, new_run_evaluator, used_quantities
@@ -145,13 +143,12 @@ contains
     real(wp), intent(out) :: numbers(:)                !< (used) the quantities
     logical, intent(out) :: has_value                  !< they exist
     type(model_type), target :: model
-    type(row_source_type) :: source
     type(error_type), allocatable :: err
 
     numbers = 0.0_wp
     call make_model(self, values, q, model, has_value)
     if (.not. has_value) return
-    call run_design(model, source, numbers, err, interruption=self%interruption)
+    call run_design(model, numbers, err, interruption=self%interruption)
     has_value = .not. allocated(err)
     if (has_value) has_value = all(ieee_is_finite(numbers))
   end subroutine take_numbers

@@ -10,7 +10,7 @@ module test_design_gradient
   use mech9_parser, only: parse_document
   use mech9_model, only: model_type
   use mech9_varied_document, only: varied_document_type, new_varied_document
-  use mech9_design_gradient, only: find_design_gradient
+  use mech9_design_run, only: find_design_gradient
   use mech9_testing, only: tester_type
   implicit none
   private

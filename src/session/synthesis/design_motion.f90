@@ -7,9 +7,8 @@ module mech9_design_motion
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: point_motion
-  use mech9_model_motion, only: model_motion_type
+  use mech9_run, only: run_type
   use mech9_signal_interruption, only: signal_interruption_type
-  use mech9_row_source, only: row_source_type, new_row_source
   use mech9_film, only: film_type, new_film
   implicit none
   private
@@ -17,7 +16,7 @@ module mech9_design_motion
 
   type :: design_motion_type
     class(model_type), allocatable :: model   !< with the values of the design, from the positions of its assembly
-    type(model_motion_type) :: motion         !< assembled
+    type(run_type) :: run                     !< with its motion assembled
   contains
     procedure :: visit
     procedure :: make_film
@@ -38,9 +37,13 @@ contains
     call variable%at(values, motion%model, err)
     if (allocated(err)) return
     motion%model%request = model%request
+    ! of the rows a film takes the columns of the motion only
+    motion%model%request%output%sensitivities = .false.
+    motion%model%request%output%gradients = .false.
+    if (allocated(motion%model%request%quantities)) deallocate (motion%model%request%quantities)
     motion%model%problem%initial%position = q
     motion%model%problem%initial%position_given = .true.
-    call motion%motion%assemble(motion%model, err)
+    call motion%run%motion%assemble(motion%model, err)
   end subroutine new_design_motion
 
   !> The places of a point of a link, the direction of the x axis of the link, and the coordinates, at times in their order from the
@@ -60,12 +63,12 @@ contains
     real(wp), parameter :: along_x(3) = [1.0_wp, 0.0_wp, 0.0_wp]
     integer :: i
 
-    call self%motion%prepare(self%model, err, pictures=.true.)
-    if (.not. allocated(err)) call self%motion%simulation%start(err)
+    call self%run%motion%prepare(self%model, err, pictures=.true.)
+    if (.not. allocated(err)) call self%run%motion%simulation%start(err)
     do i = 1, size(times)
-      if (.not. allocated(err)) call self%motion%simulation%advance(times(i), err)
+      if (.not. allocated(err)) call self%run%motion%simulation%advance(times(i), err)
       if (allocated(err)) return
-      call self%motion%simulation%present(plan, state)
+      call self%run%motion%simulation%present(plan, state)
       call point_motion(plan, state, link, point, places(:, i), rate, rate2)
       call point_motion(plan, state, link, point + along_x, place, rate, rate2)
       directions(:, i) = place - places(:, i)
@@ -79,24 +82,26 @@ contains
     type(model_type), intent(in) :: shown                     !< the model with other points
     type(film_type), intent(out) :: film                      !< of the run
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
-    type(signal_interruption_type), target :: interruption
-    type(row_source_type) :: source
+    type(signal_interruption_type), pointer :: interruption
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
     real(wp), allocatable :: row(:)
     integer :: i
 
-    call self%motion%prepare(self%model, err, pictures=.true.)
+    call self%run%prepare(self%model, err, pictures=.true.)
     if (allocated(err)) return
-    call new_row_source(self%motion%simulation, source)
-    source%interruption => interruption
-    allocate (row(source%columns%width()), source=0.0_wp)
-    film = new_film(shown%mechanism, shown%problem%partition%independent(), shown%request%time%intervals + 1, source%columns)
+    allocate (interruption)
+    self%run%source%interruption => interruption
+    allocate (row(self%run%source%columns%width()), source=0.0_wp)
+    film = new_film(shown%mechanism, shown%problem%partition%independent(), shown%request%time%intervals + 1, &
+                    self%run%source%columns)
     do i = 0, shown%request%time%intervals
-      call source%row_at(shown%request%time%time(i), row, err)
-      if (allocated(err)) return
-      call self%motion%simulation%present(plan, state)
+      call self%run%source%row_at(shown%request%time%time(i), row, err)
+      if (allocated(err)) exit
+      call self%run%motion%simulation%present(plan, state)
       call film%take(shown%mechanism, plan, state, row)
     end do
+    self%run%source%interruption => null()
+    deallocate (interruption)
   end subroutine make_film
 end module mech9_design_motion

@@ -78,7 +78,7 @@ contains
     end associate
     visited%times = times
     allocate (visited%places(3, size(times)), visited%directions(3, size(times)))
-    allocate (visited%q(motion%motion%plan%n_coordinates, size(times)))
+    allocate (visited%q(motion%run%motion%plan%n_coordinates, size(times)))
     call motion%visit(times, link, point, visited%places, visited%directions, visited%q, err)
   end subroutine visit
 

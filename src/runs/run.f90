@@ -1,0 +1,67 @@
+!> A run of a model: its motion, the rows of its outputs, its quantities, and the derivatives of both by the parameters.
+module mech9_run
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_model, only: model_type
+  use mech9_variable_model, only: variable_model_type
+  use mech9_simulation, only: interruption_type
+  use mech9_model_motion, only: model_motion_type
+  use mech9_row_source, only: row_source_type, new_row_source
+  implicit none
+  private
+  public :: run_type
+
+  !> It must not be copied once it is prepared.
+  type :: run_type
+    type(model_motion_type) :: motion               !< assembled before the run is prepared
+    type(row_source_type), allocatable :: source    !< computes the rows
+  contains
+    procedure :: prepare
+    procedure :: make
+    procedure :: close => close_run
+  end type run_type
+
+contains
+
+  !> Make the simulation of an assembled motion, and find the columns of its rows and of its quantities. Fails with exit_data where
+  !> a quantity is not recorded, and where a derivative does not exist.
+  subroutine prepare(self, model, err, variable, pictures)
+    class(run_type), intent(inout), target :: self                            !< the run
+    type(model_type), intent(in), target :: model                             !< its model; it must outlive the run
+    type(error_type), allocatable, intent(out) :: err                         !< allocated if it failed
+    class(variable_model_type), intent(inout), optional, target :: variable   !< the model as a function of its parameters, where
+                                                                              !< derivatives are requested; it must outlive the run
+    logical, intent(in), optional :: pictures                                 !< the motion of all links is requested
+    logical :: all_links
+
+    all_links = model%request%output%with_derivatives() .and. .not. model%is_driven()
+    if (present(pictures)) all_links = all_links .or. pictures
+    call self%motion%prepare(model, err, all_links)
+    if (allocated(err)) return
+    if (allocated(self%source)) deallocate (self%source)
+    allocate (self%source)
+    call new_row_source(self%motion%simulation, self%source)
+    if (model%request%output%with_derivatives()) call self%source%add_sensitivities(variable, err)
+    if (.not. allocated(err)) call self%source%begin_quantities(err)
+  end subroutine prepare
+
+  !> Go through all outputs, without any files, and finish the quantities.
+  subroutine make(self, err, rows, interruption)
+    class(run_type), intent(inout) :: self                !< the run, prepared
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    real(wp), intent(inout), optional :: rows(:, :)       !< (columns,outputs) gets the columns of all outputs that are reached
+    class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
+
+    if (present(interruption)) self%source%interruption => interruption
+    call self%source%go_through(err, rows)
+    self%source%interruption => null()
+    if (.not. (allocated(err) .or. self%source%quantities%is_empty())) call self%source%quantities%finish()
+  end subroutine make
+
+  !> End the motion, if there is one. Rows and quantities stay.
+  subroutine close_run(self)
+    class(run_type), intent(inout) :: self   !< the run
+
+    call self%motion%close()
+  end subroutine close_run
+end module mech9_run
