@@ -7,7 +7,7 @@ module mech9_parameter_reader
   use mech9_document, only: document_type, group_type, value_real
   use mech9_lookup, only: groups_named, find_item, has_name, count_values, get_integer, get_real, get_reals, get_text, span_of
   use mech9_item_check, only: is_in_range, is_sensible
-  use mech9_named_number, only: number_name_type, number_place_type, find_number
+  use mech9_named_number, only: number_place_type, find_number
   use mech9_name_check, only: check_name
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parameter, only: parameter_type, parameter_target_type
@@ -70,7 +70,6 @@ contains
     type(parameter_type), intent(inout) :: parameter      !< gets its targets
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(number_place_type) :: place
-    type(number_name_type) :: name
     type(group_type) :: group
     integer :: i
 
@@ -78,9 +77,11 @@ contains
     associate (names => group%items(find_item(group, 'sets'))%values)
       allocate (parameter%targets(size(names)))
       do i = 1, size(names)
-        call find_number(document, names(i)%text, names(i)%span, has_name(group, 'value'), place, name, diagnostics)
-        parameter%targets(i) = parameter_target_type(names(i)%text, name%group, name%number, name%item, name%position, &
-                                                     group_place=place%group, item_place=place%item)
+        call find_number(document, names(i)%text, names(i)%span, has_name(group, 'value'), place, diagnostics)
+        associate (name => place%name)
+          parameter%targets(i) = parameter_target_type(names(i)%text, name%group, name%number, name%item, name%position, &
+                                                       group_place=place%group, item_place=place%item)
+        end associate
         if (place%group == 0) cycle
         document%groups(place%group)%items(place%item)%row = place%row
         parameter%targets(i)%unit = item_table(place%row)%unit

@@ -38,6 +38,18 @@ module mech9_quantity_record
 
 contains
 
+  !> Letters of the unit of a quantity. It stands first: gfortran must see it before the function whose result has this length.
+  pure integer function unit_length(self, i)
+    class(quantity_record_type), intent(in) :: self   !< the record
+    integer, intent(in) :: i                          !< number of the quantity
+
+    associate (unit => self%columns%units(self%tracked(i)%column)%text)
+      unit_length = len(unit)
+      if (self%tracked(i)%take /= 'integral') return
+      unit_length = merge(1, len(unit) + 2, unit == '1' .or. unit == '')
+    end associate
+  end function unit_length
+
   !> Find the columns of the quantities. Fails with exit_data at the place of a quantity whose column is not recorded.
   subroutine begin(self, model, columns, err)
     class(quantity_record_type), intent(out) :: self        !< the record
@@ -223,14 +235,9 @@ contains
   pure function unit_of(self, i) result(unit)
     class(quantity_record_type), intent(in) :: self   !< the record
     integer, intent(in) :: i                          !< number of the quantity
-    character(len=:), allocatable :: unit
+    character(len=unit_length(self, i)) :: unit
 
     unit = self%columns%units(self%tracked(i)%column)%text
-    if (self%tracked(i)%take /= 'integral') return
-    if (unit == '1' .or. unit == '') then
-      unit = 's'
-    else
-      unit = unit//' s'
-    end if
+    if (self%tracked(i)%take == 'integral') unit(max(1, len(unit) - 1):) = trim(merge('s ', ' s', len(unit) == 1))
   end function unit_of
 end module mech9_quantity_record

@@ -1,16 +1,17 @@
 !> A number of a checked document by its name, as --set writes it: group.name, or group(2).name(3).
 module mech9_named_number
+  use mech9_kinds, only: wp, long
   use mech9_text, only: lower, nearest_name, to_text
   use mech9_source, only: span_type
   use mech9_grammar, only: item_table, find_group_row, names_of_groups, names_in_group
   use mech9_item_rows, only: find_item_rows
-  use mech9_document, only: document_type, group_type, item_type, subscript_type, value_real, add_item
+  use mech9_document, only: document_type, group_type, item_type, subscript_type, value_type, value_real, value_integer, add_item
   use mech9_lookup, only: find_item, get_reals, row_of
   use mech9_scanner, only: scan_word, scan_subscripts, is_letter
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: number_name_type, number_place_type, read_name, find_number
+  public :: number_name_type, number_place_type, read_name, find_number, set_number
 
   !> The parts of a name.
   type :: number_name_type
@@ -26,8 +27,10 @@ module mech9_named_number
     integer :: item = 0               !< position of the item in the group
     integer :: value = 0              !< position of the number in the item
     integer :: row = 0                !< row of the item in item_table
+    type(number_name_type) :: name    !< parts of its name, complete
   end type number_place_type
 
+  real(wp), parameter :: most_whole = 2.0_wp**53   !< whole numbers beyond it have neighbours that are not whole
   !> Groups whose numbers describe studies, not a mechanism and its motion.
   character(len=9), parameter :: closed_groups(6) = [character(len=9) :: 'parameter', 'quantity', 'study', 'objective', &
                                                                    'limit', 'optimum']
@@ -75,40 +78,59 @@ contains
     if (ok) position = subscripts(1)%first
   end subroutine read_position
 
-  !> Find the real number that a name means. A name that the group does not give is added with its default. Errors are reported
-  !> at the place of the name, and `place%group` is then 0; it is 0 without a report where the group holds other errors.
-  pure subroutine find_number(document, text, span, alone, place, name, diagnostics)
+  !> Find the real number that a name means, of the mechanism or its motion. A name that the group does not give is added with its
+  !> default. Errors are reported at the place of the name, and `place%group` is then 0; it is 0 without a report where the group
+  !> holds other errors.
+  pure subroutine find_number(document, text, span, alone, place, diagnostics, any_number)
     type(document_type), intent(inout) :: document        !< checked; gets an item for a default
     character(len=*), intent(in) :: text                  !< the name as the user wrote it
     type(span_type), intent(in) :: span                   !< its place
     logical, intent(in) :: alone                          !< the only number of a name is added where it has no default
     type(number_place_type), intent(out) :: place         !< of the number
-    type(number_name_type), intent(out) :: name           !< its parts, complete
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    logical, intent(in), optional :: any_number           !< whole numbers and those of all groups are meant, too
+    type(number_name_type) :: name
     integer :: found, group, row
-    logical :: ok
+    logical :: ok, of_parameter
 
     found = diagnostics%count
+    of_parameter = .true.
+    if (present(any_number)) of_parameter = .not. any_number
     call read_name(text, name, ok)
+    place%name = name
     if (.not. ok) call diagnostics%add(span, 'write the name of a number as group.name, or group(2).name(3) for the third '// &
                                        'number in the second group of this name')
-    if (ok) call check_names(name, span, diagnostics)
+    if (ok) call check_names(name, of_parameter, span, diagnostics)
     if (diagnostics%count > found) return
     call find_group(document, name, span, group, diagnostics)
     if (group == 0) return
     if (.not. document%groups(group)%sound) return
-    call find_row(document%groups(group), name, span, row, diagnostics)
+    call find_row(document%groups(group), name, of_parameter, span, row, diagnostics)
     if (row == 0) return
     call give_default(document%groups(group), name, row, alone, span, diagnostics)
     if (diagnostics%count > found) return
     call find_position(document%groups(group), name, row, span, diagnostics)
     if (diagnostics%count > found) return
-    place = number_place_type(group, find_item(document%groups(group), trim(name%item)), name%position, row)
+    place = number_place_type(group, find_item(document%groups(group), trim(name%item)), name%position, row, name)
   end subroutine find_number
 
+  !> Give a number that was found another value. Its range is judged when the document is checked.
+  pure subroutine set_number(document, place, number)
+    type(document_type), intent(inout) :: document        !< checked
+    type(number_place_type), intent(in) :: place          !< of the number
+    real(wp), intent(in) :: number                        !< the value, in the unit of the data file
+
+    associate (value => document%groups(place%group)%items(place%item)%values(place%value))
+      value%kind = value_real
+      value%number = number
+      if (item_table(place%row)%type == 'integer') call make_whole(value)
+    end associate
+  end subroutine set_number
+
   !> Report names of groups and items that the grammar does not have, with the nearest that it has.
-  pure subroutine check_names(name, span, diagnostics)
+  pure subroutine check_names(name, of_parameter, span, diagnostics)
     type(number_name_type), intent(in) :: name            !< parts of the name
+    logical, intent(in) :: of_parameter                   !< a parameter is to set the number
     type(span_type), intent(in) :: span                   !< its place
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=80) :: hint
@@ -118,7 +140,7 @@ contains
       hint = nearest_name(trim(name%group), names_of_groups())
       if (hint /= '') hint = '; did you mean '''//trim(hint)//'''?'
       call diagnostics%add(span, 'unknown group '''//trim(name%group)//''''//trim(hint))
-    else if (any(closed_groups == name%group)) then
+    else if (of_parameter .and. any(closed_groups == name%group)) then
       call diagnostics%add(span, 'a parameter sets numbers of the mechanism and its motion, not of &'//trim(name%group))
     else if (size(find_item_rows(name%group, name%item)) == 0) then
       hint = nearest_name(trim(name%item), names_in_group(name%group))
@@ -160,13 +182,15 @@ contains
   end subroutine find_group
 
   !> Row of the grammar for a name in its group; 0, with a report, where it does not belong there or takes no real numbers.
-  pure subroutine find_row(group, name, span, row, diagnostics)
+  pure subroutine find_row(group, name, of_parameter, span, row, diagnostics)
     type(group_type), intent(in) :: group                 !< without errors
     type(number_name_type), intent(in) :: name            !< parts of the name
+    logical, intent(in) :: of_parameter                   !< a parameter is to set the number
     type(span_type), intent(in) :: span                   !< its place
     integer, intent(out) :: row                           !< row of item_table
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=60) :: reason
+    character(len=*), parameter :: is_real = ', and a parameter is a real number'
 
     row = row_of(group, trim(name%item))
     if (row == 0) then
@@ -177,11 +201,18 @@ contains
     case ('real')
       return
     case ('integer')
-      reason = ' takes whole numbers, and a parameter is a real number'
+      if (.not. of_parameter) return
+      reason = ' takes whole numbers'
+    case ('logical')
+      reason = ' is .true. or .false.'
     case default
-      reason = ' is a word, and a parameter is a real number'
+      reason = ' is a word'
     end select
-    if (item_table(row)%type == 'logical') reason = ' is .true. or .false., and a parameter is a real number'
+    if (of_parameter) then
+      reason = trim(reason)//is_real
+    else
+      reason = trim(reason)//', not a number'
+    end if
     call diagnostics%add(span, ''''//trim(name%item)//''''//trim(reason))
     row = 0
   end subroutine find_row
@@ -200,8 +231,7 @@ contains
     if (find_item(group, trim(name%item)) > 0) return
     associate (numbers => get_reals(group, trim(name%item)))
       if (size(numbers) == 0 .and. .not. (alone .and. item_table(row)%high == 1)) then
-        call diagnostics%add(span, 'this &'//trim(name%group)//' does not give '''//trim(name%item)//'''; write it, so that a '// &
-                             'parameter can set its numbers')
+        call diagnostics%add(span, 'this &'//trim(name%group)//' does not give '''//trim(name%item)//'''; write it first')
         return
       end if
       item%name = trim(name%item)
@@ -211,11 +241,21 @@ contains
         item%values(i)%kind = value_real
         item%values(i)%span = group%span
         if (i <= size(numbers)) item%values(i)%number = numbers(i)
+        if (item_table(row)%type == 'integer') call make_whole(item%values(i))
       end do
     end associate
     count = size(group%items)
     call append(group%items, count, item)
   end subroutine give_default
+
+  !> Turn a value without a fraction into an integer.
+  pure subroutine make_whole(value)
+    type(value_type), intent(inout) :: value   !< a number
+
+    if (abs(value%number - anint(value%number)) > 0.0_wp .or. abs(value%number) >= most_whole) return
+    value%kind = value_integer
+    value%whole = nint(value%number, long)
+  end subroutine make_whole
 
   !> Append an item to all items of a group.
   pure subroutine append(items, count, item)

@@ -200,7 +200,6 @@ contains
       type(number_place_type), intent(out) :: place        !< of the number
       type(diagnostics_type), intent(out) :: diagnostics   !< gets the errors
       type(document_type) :: document
-      type(number_name_type) :: name
 
       call parse_document(source_from_text('a.nml', &
         "&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=1,2,3 /"//eol// &
@@ -209,7 +208,7 @@ contains
       call check_document(document, diagnostics)
       call diagnostics%clear()
       document%groups%sound = .true.
-      call find_number(document, text, span_type(), .false., place, name, diagnostics)
+      call find_number(document, text, span_type(), .false., place, diagnostics)
     end subroutine find
 
     subroutine found(text, group, position)

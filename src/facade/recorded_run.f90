@@ -1,0 +1,237 @@
+!> A run as the library's users make it: the rows of its outputs as arrays, its quantities and their derivatives.
+module mech9_recorded_run
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use mech9_program_kind, only: kinematics, dynamics
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_usage, exit_interrupted
+  use mech9_text, only: string_type
+  use mech9_model, only: model_type
+  use mech9_simulation, only: interruption_type
+  use mech9_explanation, only: explain
+  use mech9_run, only: run_type
+  use mech9_varied_document, only: varied_document_type
+  use mech9_checked_mechanism, only: checked_mechanism_type
+  implicit none
+  private
+  public :: recorded_run_type
+
+  !> It must not be copied.
+  type :: recorded_run_type
+    private
+    type(model_type), pointer :: model => null()                 !< owned; the run refers to it
+    type(varied_document_type), pointer :: variable => null()    !< owned; the run refers to it
+    type(run_type), pointer :: run => null()                     !< owned; null where none is begun
+    class(interruption_type), pointer :: interruption => null()  !< owned; null where the run cannot be stopped
+    integer :: next = 0                                          !< number of the next output, from 0 on
+    logical :: has_failed = .false.                              !< the run ended before its last output
+  contains
+    procedure :: begin_kinematics
+    procedure :: begin_dynamics
+    procedure :: outputs
+    procedure :: columns
+    procedure :: take_rows
+    procedure :: quantities
+    procedure :: gradients
+    procedure :: close => close_run
+  end type recorded_run_type
+
+contains
+
+  !> Begin a driven run over the outputs of &time: plan, assemble, and find the columns. Fails with exit_data for a missing drive,
+  !> with exit_structure or exit_assembly where the mechanism cannot be put together.
+  subroutine begin_kinematics(self, mechanism, err, interruption)
+    class(recorded_run_type), intent(inout) :: self                  !< the run; one that it held is closed
+    type(checked_mechanism_type), intent(in) :: mechanism            !< with a drive for each independent coordinate
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the run shall stop
+
+    call begin(self, mechanism, kinematics, err, interruption)
+  end subroutine begin_kinematics
+
+  !> Begin a run under forces over the outputs of &time. Fails as begin_kinematics does.
+  subroutine begin_dynamics(self, mechanism, err, interruption)
+    class(recorded_run_type), intent(inout) :: self                  !< the run; one that it held is closed
+    type(checked_mechanism_type), intent(in) :: mechanism            !< with bodies, loads and gravity
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the run shall stop
+
+    call begin(self, mechanism, dynamics, err, interruption)
+  end subroutine begin_dynamics
+
+  !> Begin a run of a program.
+  subroutine begin(self, mechanism, program, err, interruption)
+    class(recorded_run_type), intent(inout) :: self                  !< the run; one that it held is closed
+    type(checked_mechanism_type), intent(in) :: mechanism            !< the mechanism
+    integer, intent(in) :: program                                   !< kinematics or dynamics
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the run shall stop
+
+    call self%close()
+    allocate (self%model, self%variable, self%run)
+    if (present(interruption)) allocate (self%interruption, source=interruption)
+    call mechanism%take_request(program, self%model, err)
+    if (.not. allocated(err)) then
+      if (self%model%request%output%with_derivatives()) call mechanism%take_variable(program, self%variable)
+      call self%run%motion%assemble(self%model, err)
+    end if
+    if (.not. allocated(err)) call self%run%prepare(self%model, err, self%variable)
+    if (.not. allocated(err)) call find_tolerances(self, err)
+    call mechanism%point_at(err)
+    if (allocated(err)) call self%close()
+  end subroutine begin
+
+  !> Find the tolerances for an accuracy, if one is asked for.
+  subroutine find_tolerances(self, err)
+    type(recorded_run_type), intent(inout) :: self         !< the run, prepared
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    if (associated(self%interruption)) then
+      call self%run%motion%find_tolerances(self%model, err, interruption=self%interruption)
+      self%run%source%interruption => self%interruption
+    else
+      call self%run%motion%find_tolerances(self%model, err)
+    end if
+  end subroutine find_tolerances
+
+  !> Number of outputs of the whole run; 0 where none is begun.
+  pure integer function outputs(self)
+    class(recorded_run_type), intent(in) :: self   !< the run
+
+    outputs = 0
+    if (associated(self%run)) outputs = self%model%request%time%intervals + 1
+  end function outputs
+
+  !> Names and units of the columns, the time first. There are none where no run is begun.
+  pure subroutine columns(self, names, units)
+    class(recorded_run_type), intent(in) :: self                        !< the run
+    character(len=:), allocatable, intent(out) :: names(:)              !< (columns) as the programs write them
+    character(len=:), allocatable, intent(out), optional :: units(:)    !< (columns)
+    type(string_type) :: none(0)
+
+    if (associated(self%run)) then
+      associate (found => self%run%source%columns)
+        call list(found%names(:found%count), names)
+        if (present(units)) call list(found%units(:found%count), units)
+      end associate
+    else
+      call list(none, names)
+      if (present(units)) call list(none, units)
+    end if
+  end subroutine columns
+
+  !> Take the next rows. Fewer rows than there is room for are the last ones. Fails with exit_singular where the motion cannot go
+  !> on, with exit_integrator where the integration cannot, and with exit_usage where no run is begun or the run failed before. The
+  !> rows before the failure are then there. An interrupted run goes on with the next call.
+  subroutine take_rows(self, rows, count, err)
+    class(recorded_run_type), intent(inout) :: self       !< the run
+    real(wp), intent(inout) :: rows(:, :)                 !< (columns,most rows) in the units of the columns
+    integer, intent(out) :: count                         !< rows that were taken
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    real(wp), allocatable :: whole(:, :)
+    integer :: taken
+
+    count = 0
+    if (.not. associated(self%run)) then
+      call raise(err, exit_usage, 'a run must be begun before its rows are taken')
+    else if (self%has_failed) then
+      call raise(err, exit_usage, 'this run has failed; begin it anew')
+    else if (size(rows, 1) /= self%run%source%columns%count) then
+      call raise(err, exit_usage, 'the first dimension of the array for the rows is not the number of columns')
+    end if
+    if (allocated(err)) return
+    associate (source => self%run%source, time => self%model%request%time)
+      ! rows of the engine may end with derivatives that only quantities need
+      allocate (whole(source%columns%width(), min(size(rows, 2), time%intervals + 1 - self%next)), source=0.0_wp)
+      do taken = 1, size(whole, 2)
+        call source%add_row(time%time(self%next), whole, count, err)
+        if (allocated(err)) exit
+        self%next = self%next + 1
+      end do
+      if (.not. allocated(err)) call source%complete(whole, count, err)
+      rows(:, :count) = whole(:size(rows, 1), :count)
+    end associate
+    call finish(self, err)
+  end subroutine take_rows
+
+  !> End with a failure, or finish the quantities after the last row.
+  subroutine finish(self, err)
+    type(recorded_run_type), intent(inout) :: self          !< the run
+    type(error_type), allocatable, intent(inout) :: err     !< allocated if its rows failed; gets its sentence
+
+    if (allocated(err)) then
+      self%has_failed = err%code /= exit_interrupted
+      call explain(err)
+      return
+    end if
+    associate (found => self%run%source%quantities)
+      if (self%next > self%model%request%time%intervals .and. .not. (found%is_empty() .or. found%is_finished)) call found%finish()
+    end associate
+  end subroutine finish
+
+  !> The quantities of the run. They are not numbers before its last row is taken.
+  subroutine quantities(self, names, values, units)
+    class(recorded_run_type), intent(in) :: self                        !< the run
+    character(len=:), allocatable, intent(out) :: names(:)              !< (quantities)
+    real(wp), allocatable, intent(out) :: values(:)                     !< (quantities) in their units
+    character(len=:), allocatable, intent(out), optional :: units(:)    !< (quantities)
+    type(string_type), allocatable :: texts(:), of_units(:)
+    integer :: i, n
+
+    n = 0
+    if (associated(self%run)) then
+      if (allocated(self%model%request%quantities)) n = size(self%model%request%quantities)
+    end if
+    allocate (texts(n), of_units(n))
+    allocate (values(n), source=ieee_value(1.0_wp, ieee_quiet_nan))
+    do i = 1, n
+      texts(i)%text = self%model%request%quantities(i)%name
+      of_units(i)%text = self%run%source%quantities%unit_of(i)
+      values(i) = self%run%source%quantities%numbers(i)
+    end do
+    call list(texts, names)
+    if (present(units)) call list(of_units, units)
+  end subroutine quantities
+
+  !> The derivatives of the quantities by the parameters, where &output requests them. They are not numbers before the last row is
+  !> taken, and where a quantity has no derivative.
+  subroutine gradients(self, values)
+    class(recorded_run_type), intent(in) :: self           !< the run
+    real(wp), allocatable, intent(out) :: values(:, :)     !< (parameters,quantities) in units of the data file
+
+    if (associated(self%run)) then
+      if (allocated(self%run%source%quantities%gradient)) values = self%run%source%quantities%gradient
+    end if
+    if (.not. allocated(values)) allocate (values(0, 0))
+  end subroutine gradients
+
+  !> Texts as an array of the length of the longest.
+  pure subroutine list(texts, array)
+    type(string_type), intent(in) :: texts(:)                   !< the texts
+    character(len=:), allocatable, intent(out) :: array(:)      !< padded with blanks
+    integer :: i, longest
+
+    longest = 0
+    do i = 1, size(texts)
+      longest = max(longest, len(texts(i)%text))
+    end do
+    allocate (character(len=longest) :: array(size(texts)))
+    do i = 1, size(texts)
+      array(i) = texts(i)%text
+    end do
+  end subroutine list
+
+  !> End the run and free its memory. Another one can then be begun.
+  subroutine close_run(self)
+    class(recorded_run_type), intent(inout) :: self   !< the run
+
+    if (associated(self%run)) then
+      call self%run%close()
+      deallocate (self%run)
+    end if
+    if (associated(self%variable)) deallocate (self%variable)
+    if (associated(self%model)) deallocate (self%model)
+    if (associated(self%interruption)) deallocate (self%interruption)
+    self%next = 0
+    self%has_failed = .false.
+  end subroutine close_run
+end module mech9_recorded_run
