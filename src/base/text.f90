@@ -7,7 +7,7 @@ module mech9_text
   use mech9_kinds, only: wp, long
   implicit none
   private
-  public :: string_type, to_text, some_of, lower, join, nearest_name, starts_with
+  public :: string_type, to_text, some_of, lower, join, texts_of_one_length, nearest_name, starts_with
 
   integer, parameter :: longest_real = 48     !< characters of a real number
 
@@ -261,6 +261,22 @@ contains
       n = n + len(strings(i)%text)
     end do
   end function join
+
+  !> Pad texts with blanks to the length of the longest.
+  pure subroutine texts_of_one_length(texts, array)
+    type(string_type), intent(in) :: texts(:)                   !< the texts, all of them allocated
+    character(len=:), allocatable, intent(out) :: array(:)      !< (texts)
+    integer :: i, longest
+
+    longest = 0
+    do i = 1, size(texts)
+      longest = max(longest, len(texts(i)%text))
+    end do
+    allocate (character(len=longest) :: array(size(texts)))
+    do i = 1, size(texts)
+      array(i) = texts(i)%text
+    end do
+  end subroutine texts_of_one_length
 
   !> The name that was probably meant: the known name that the fewest single-letter edits and exchanges of
   !> neighbours lead to; empty where none is near (more than a third of the letters differ).

@@ -4,7 +4,7 @@ module mech9_recorded_run
   use mech9_program_kind, only: kinematics, dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage, exit_interrupted
-  use mech9_text, only: string_type
+  use mech9_text, only: string_type, texts_of_one_length
   use mech9_model, only: model_type
   use mech9_simulation, only: interruption_type
   use mech9_explanation, only: explain
@@ -110,12 +110,12 @@ contains
 
     if (associated(self%run)) then
       associate (found => self%run%source%columns)
-        call list(found%names(:found%count), names)
-        if (present(units)) call list(found%units(:found%count), units)
+        call texts_of_one_length(found%names(:found%count), names)
+        if (present(units)) call texts_of_one_length(found%units(:found%count), units)
       end associate
     else
-      call list(none, names)
-      if (present(units)) call list(none, units)
+      call texts_of_one_length(none, names)
+      if (present(units)) call texts_of_one_length(none, units)
     end if
   end subroutine columns
 
@@ -188,8 +188,8 @@ contains
       of_units(i)%text = self%run%source%quantities%unit_of(i)
       values(i) = self%run%source%quantities%numbers(i)
     end do
-    call list(texts, names)
-    if (present(units)) call list(of_units, units)
+    call texts_of_one_length(texts, names)
+    if (present(units)) call texts_of_one_length(of_units, units)
   end subroutine quantities
 
   !> The derivatives of the quantities by the parameters, where &output requests them. They are not numbers before the last row is
@@ -203,22 +203,6 @@ contains
     end if
     if (.not. allocated(values)) allocate (values(0, 0))
   end subroutine gradients
-
-  !> Texts as an array of the length of the longest.
-  pure subroutine list(texts, array)
-    type(string_type), intent(in) :: texts(:)                   !< the texts
-    character(len=:), allocatable, intent(out) :: array(:)      !< padded with blanks
-    integer :: i, longest
-
-    longest = 0
-    do i = 1, size(texts)
-      longest = max(longest, len(texts(i)%text))
-    end do
-    allocate (character(len=longest) :: array(size(texts)))
-    do i = 1, size(texts)
-      array(i) = texts(i)%text
-    end do
-  end subroutine list
 
   !> End the run and free its memory. Another one can then be begun.
   subroutine close_run(self)

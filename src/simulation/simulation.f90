@@ -315,8 +315,9 @@ contains
   end subroutine stop_if_interrupted
 
   !> Learn that a run begins, which may need several motions. Interruptions do nothing then unless they say so.
-  subroutine begin_nothing(self)
+  subroutine begin_nothing(self, number)
     class(interruption_type), intent(inout) :: self   !< the interruption
+    integer, intent(in), optional :: number           !< of the run in a study
   end subroutine begin_nothing
 
   !> See where a motion stands, before it is asked whether it shall stop. Interruptions look at nothing unless they say so.

@@ -13,7 +13,6 @@ submodule (mech9_study_processes) mech9_mpi_processes
   use mech9_pause, only: pause_for
   use mech9_explanation, only: explain
   use mech9_study_values, only: values_of_run
-  use mech9_signal_interruption, only: signal_interruption_type
   use mech9_run_maker, only: run_maker_type, made_run_type
   use mech9_study_runs, only: all_handed_out, wait_for_others
   implicit none
@@ -50,19 +49,21 @@ contains
   end subroutine agree
 
   !> The first process makes some of the runs, too.
-  module subroutine lead(self, model, varied, threads, quiet, runs)
+  module subroutine lead(self, model, varied, threads, interruption, runs)
     class(study_processes_type), intent(in) :: self       !< the processes
     type(model_type), intent(in) :: model                 !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
     integer, intent(in) :: threads                        !< unused: each process has one
-    logical, intent(in) :: quiet                          !< nothing is said of a run that takes long
+    class(interruption_type), intent(in) :: interruption  !< is asked whether a run shall stop
     type(study_runs_type), intent(inout) :: runs          !< about to begin
+    class(interruption_type), allocatable :: of_run
     type(run_maker_type) :: maker
     type(made_run_type) :: run
     integer :: waiting(self%count - 1)
     integer :: number, batch, other
     real(wp) :: begun
 
+    allocate (of_run, source=interruption)
     call maker%begin(model, varied)
     waiting = 0
     batch = 1
@@ -76,7 +77,7 @@ contains
         cycle
       end if
       begun = seconds()
-      call make(maker, number, model%program, quiet, run)
+      call maker%make(number, run, of_run)
       batch = int(min(real(longest_batch, wp), max(1.0_wp, time_of_batch/max(seconds() - begun, tiny(begun)))))
       call runs%take(run)
     end do
@@ -171,16 +172,18 @@ contains
     end do
   end subroutine take_batch
 
-  module subroutine follow(self, model, varied, quiet)
+  module subroutine follow(self, model, varied, interruption)
     class(study_processes_type), intent(in) :: self       !< the processes
     type(model_type), intent(in) :: model                 !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
-    logical, intent(in) :: quiet                          !< nothing is said of a run that takes long
+    class(interruption_type), intent(in) :: interruption  !< is asked whether a run shall stop
+    class(interruption_type), allocatable :: of_run
     type(run_maker_type) :: maker
     type(MPI_Status) :: status
     integer :: numbers(longest_batch), n
     logical :: arrived
 
+    allocate (of_run, source=interruption)
     call maker%begin(model, varied)
     do
       do
@@ -191,30 +194,16 @@ contains
       call MPI_Get_count(status, MPI_INTEGER, n)
       call MPI_Recv(numbers, n, MPI_INTEGER, 0, of_numbers, MPI_COMM_WORLD, status)
       if (n == 0) exit
-      call make_batch(maker, numbers(:n), size(model%request%quantities), model%program, quiet)
+      call make_batch(maker, numbers(:n), size(model%request%quantities), of_run)
     end do
   end subroutine follow
 
-  !> Make a run, and tell where it is if it takes long.
-  subroutine make(maker, number, program, quiet, run)
-    type(run_maker_type), intent(inout) :: maker   !< of this process
-    integer, intent(in) :: number                  !< of the run
-    integer, intent(in) :: program                 !< kinematics or dynamics
-    logical, intent(in) :: quiet                   !< nothing is said of a run that takes long
-    type(made_run_type), intent(out) :: run        !< the run
-    type(signal_interruption_type) :: interruption
-
-    call interruption%words%start(program, 'no result of run '//to_text(number), 'it', quiet, with_progress=.false.)
-    call maker%make(number, run, interruption)
-  end subroutine make
-
   !> Make the runs of a batch, and send their results to the first process.
-  subroutine make_batch(maker, numbers, n_quantities, program, quiet)
+  subroutine make_batch(maker, numbers, n_quantities, interruption)
     type(run_maker_type), intent(inout) :: maker   !< of this process
     integer, intent(in) :: numbers(:)              !< of the runs
     integer, intent(in) :: n_quantities            !< how many quantities a run has
-    integer, intent(in) :: program                 !< kinematics or dynamics
-    logical, intent(in) :: quiet                   !< nothing is said of a run that takes long
+    class(interruption_type), intent(inout) :: interruption   !< is asked whether a run shall stop
     type(made_run_type) :: made(size(numbers))
     integer :: codes(codes_per_run, size(numbers)), i
     real(wp) :: quantities(n_quantities, size(numbers))
@@ -224,7 +213,7 @@ contains
     codes = 0
     do i = 1, size(numbers)
       associate (run => made(i))
-        call make(maker, numbers(i), program, quiet, run)
+        call maker%make(numbers(i), run, interruption)
         codes(:2, i) = [run%number, run%exit_code]
         quantities(:, i) = run%quantities
         if (.not. allocated(run%failure)) cycle

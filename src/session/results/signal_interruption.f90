@@ -29,10 +29,11 @@ contains
   end function is_wanted
 
   !> Let the words begin to wait for another run.
-  subroutine begin_run(self)
+  subroutine begin_run(self, number)
     class(signal_interruption_type), intent(inout) :: self   !< the interruption
+    integer, intent(in), optional :: number                  !< of the run in a study
 
-    call self%words%begin_run()
+    call self%words%begin_run(number)
   end subroutine begin_run
 
   !> Let the words tell where a motion stands.

@@ -55,10 +55,12 @@ contains
   end subroutine start
 
   !> Begin to wait for another run.
-  subroutine begin_run(self)
+  subroutine begin_run(self, number)
     class(waiting_words_type), intent(inout) :: self   !< the words
+    integer, intent(in), optional :: number            !< of the run in a study
 
     if (self%quiet) return
+    if (present(number)) self%missing = 'no result of run '//to_text(number)
     self%started = seconds()
     self%words_after = first_words_after
     call self%pacer%start(look_every)

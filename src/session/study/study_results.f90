@@ -3,15 +3,19 @@ module mech9_study_results
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_file
   use mech9_text, only: to_text
+  use mech9_program_kind, only: program_names
   use mech9_version, only: name_and_version
   use mech9_command_line, only: command_line_type
   use mech9_document, only: document_type
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type
   use mech9_table, only: table_type
+  use mech9_progress, only: progress_type
   use mech9_written_files, only: result_paths_type, find_result_paths, standard_output_path
   use mech9_quantity_record, only: quantity_record_type
   use mech9_run_maker, only: made_run_type
+  use mech9_study_sink, only: study_sink_type
+  use mech9_study_sums, only: study_sums_type
   use mech9_study_definition, only: define_study
   use mech9_study_file, only: study_file_type, not_made
   use mech9_study_layout, only: study_layout_type, layout_of
@@ -21,11 +25,11 @@ module mech9_study_results
   private
   public :: study_results_type
 
-  type :: study_results_type
+  type, extends(study_sink_type) :: study_results_type
     type(result_paths_type) :: paths                !< of the files; empty where there is none
-    integer :: part(2) = 1                          !< number of the part of the study that is made, and how many parts there are
     type(table_type), private :: table
     type(study_file_type), private :: file          !< of HDF5
+    type(progress_type), private :: progress        !< shown on a terminal
     real(wp), allocatable, private :: row(:)        !< of the table
   contains
     procedure :: open => open_results
@@ -33,6 +37,7 @@ module mech9_study_results
     procedure :: read_run
     procedure :: write_run
     procedure :: show_run
+    procedure :: tell_progress
     procedure :: close => close_results
     procedure :: print_paths
   end type study_results_type
@@ -76,7 +81,11 @@ contains
       call self%table%open(self%paths%table, model%mechanism%title, name_and_version(model%program), &
                            columns%names(:columns%count), columns%units(:columns%count), err)
     if (.not. allocated(err) .and. self%paths%hdf5 /= '' .and. .not. options%has('continue')) call self%file%publish(err)
-    if (allocated(err)) call self%close(at_close)
+    if (allocated(err)) then
+      call self%close(at_close)
+    else
+      call self%progress%start(program_names(model%program), options%has('quiet'))
+    end if
   end subroutine open_results
 
   !> Begin the columns of all runs in the HDF5 file, which is new or continued.
@@ -174,12 +183,37 @@ contains
     call self%table%write_row(self%row, err)
   end subroutine show_run
 
+  !> Show how far the study is, and how many of its runs failed.
+  subroutine tell_progress(self, done, read, sums)
+    class(study_results_type), intent(inout) :: self       !< the files
+    real(wp), intent(in) :: done                           !< share of the runs that are shown, up to 1
+    real(wp), intent(in) :: read                           !< share of the runs that were made before
+    type(study_sums_type), intent(in) :: sums              !< over the runs that are shown
+
+    call self%progress%update(done, failed_words(sums), read)
+  end subroutine tell_progress
+
+  !> How many runs failed so far, by their codes.
+  pure function failed_words(sums) result(words)
+    type(study_sums_type), intent(in) :: sums   !< over the runs
+    character(len=:), allocatable :: words
+    integer :: i
+
+    words = ''
+    do i = 1, sums%n_codes
+      if (i == 1) words = 'failed '
+      if (i > 1) words = words//', '
+      words = words//to_text(sums%failed(i))//' (code '//to_text(sums%codes(i))//')'
+    end do
+  end function failed_words
+
   !> Close the files.
   subroutine close_results(self, err)
     class(study_results_type), intent(inout) :: self     !< the files
     type(error_type), allocatable, intent(out) :: err    !< allocated if rows could not be written
     type(error_type), allocatable :: of_table
 
+    call self%progress%finish()
     call self%file%close(err)
     call self%table%close(of_table)
     if (.not. allocated(err)) call move_alloc(of_table, err)

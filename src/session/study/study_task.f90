@@ -2,7 +2,7 @@
 module mech9_study_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_interrupted
+  use mech9_error, only: error_type, raise, exit_usage, exit_interrupted
   use mech9_text, only: to_text
   use mech9_clock, only: seconds
   use mech9_system, only: asked_to_end
@@ -13,8 +13,10 @@ module mech9_study_task
   use mech9_variable_model, only: variable_model_type
   use mech9_written_files, only: result_paths_type, find_result_paths
   use mech9_quantity_record, only: quantity_record_type
-  use mech9_design_run, only: find_quantities
+  use mech9_study_check, only: check_study
   use mech9_study_runs, only: study_runs_type
+  use mech9_study_results, only: study_results_type
+  use mech9_signal_interruption, only: signal_interruption_type
   use mech9_study_columns, only: refuse_varied_times
   use mech9_study_plots, only: study_plots_type
   use mech9_user_calls, only: calls_user_procedures
@@ -43,39 +45,41 @@ contains
     logical, intent(out) :: reported                        !< a report was asked for, and it is written
     type(study_processes_type), intent(inout) :: processes  !< those that make the runs together
     type(quantity_record_type) :: quantities
-    type(study_runs_type) :: runs
+    type(study_results_type), target :: results
     type(study_plots_type) :: plots
+    type(signal_interruption_type) :: interruption
     type(model_type), allocatable :: used
     type(error_type), allocatable :: err
 
     reported = .false.
     used = model
-    call check_study(options, used, quantities, err)
+    call judge(options, used, quantities, err)
     call processes%agree(err)
     if (.not. (processes%is_first .or. allocated(err))) then
       call processes%agree(err)
-      if (.not. allocated(err)) call processes%follow(used, varied, options%has('quiet'))
+      call interruption%words%start(model%program, 'no result', 'it', options%has('quiet'), with_progress=.false.)
+      if (.not. allocated(err)) call processes%follow(used, varied, interruption)
       reported = .true.
       return
     end if
     if (.not. allocated(err)) then
-      call open_files(options, document, used, quantities, runs, plots, err)
+      call open_files(options, document, used, quantities, results, plots, err)
       call processes%agree(err)
     end if
     if (allocated(err)) then
       call diagnostics%add_error(err)
     else
-      call carry_out(options, varied, used, quantities, runs, plots, diagnostics, reported, processes)
+      call carry_out(options, varied, used, quantities, results, plots, diagnostics, reported, processes)
     end if
   end subroutine work_on_study
 
   !> Open the files of a study, and read the requests for its plots.
-  subroutine open_files(options, document, model, quantities, runs, plots, err)
+  subroutine open_files(options, document, model, quantities, results, plots, err)
     type(command_line_type), intent(in) :: options          !< the command line
     type(document_type), intent(in) :: document             !< the data file as groups and items, with the changes by --set
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(quantity_record_type), intent(in) :: quantities    !< with their columns
-    type(study_runs_type), intent(inout) :: runs            !< gets the open files
+    type(study_results_type), intent(inout) :: results      !< gets the open files
     type(study_plots_type), intent(inout) :: plots          !< gets the requests
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(result_paths_type) :: paths
@@ -84,12 +88,12 @@ contains
     call plots%open(options, model, quantities, paths%table, err)
     if (allocated(err)) return
     if (.not. options%has('quiet')) call print_notes(options, model)
-    call runs%results%open(options, document, model, quantities, err)
+    call results%open(options, document, model, quantities, err)
   end subroutine open_files
 
   !> Report a study that cannot be carried out, and find the columns of its quantities. Runs keep their columns only where a file
   !> gets them.
-  subroutine check_study(options, model, quantities, err)
+  subroutine judge(options, model, quantities, err)
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(inout) :: model                !< the model with the values of the data file
     type(quantity_record_type), intent(out) :: quantities   !< with their columns
@@ -98,20 +102,11 @@ contains
 
     call find_result_paths(options, model%request%output, paths)
     if (paths%hdf5 == '') model%request%output%hdf5_runs = .false.
-    if (options%number('threads', 1) > most_threads) then
+    if (options%number('threads', 1) > most_threads) &
       call raise(err, exit_usage, '--threads takes at most '//to_text(most_threads))
-    else if (model%request%study%kind == '') then
-      call raise(err, exit_usage, '--study carries out the study of a group &study, and this file has none')
-    else if (model%request%output%with_derivatives()) then
-      call raise(err, exit_data, 'a study records no '//trim(merge('sensitivities', 'gradients    ', &
-                                                                   model%request%output%sensitivities))// &
-                 ': leave out '//trim(merge('sensitivities', 'gradients    ', model%request%output%sensitivities))//' in &output', &
-                 model%request%output%sensitivities_place)
-    else
-      if (model%request%output%hdf5_runs) call refuse_varied_times(model, err)
-      if (.not. allocated(err)) call find_quantities(model, quantities, err)
-    end if
-  end subroutine check_study
+    if (.not. allocated(err)) call check_study(model, quantities, err)
+    if (.not. allocated(err) .and. model%request%output%hdf5_runs) call refuse_varied_times(model, err)
+  end subroutine judge
 
   !> How many threads make the runs.
   integer function threads_of_study(options, model) result(threads)
@@ -146,17 +141,19 @@ contains
   end subroutine print_notes
 
   !> Make the runs, close the files, and tell how the study went. Where every run failed, the first failure is that of the study.
-  subroutine carry_out(options, varied, model, quantities, runs, plots, diagnostics, reported, processes)
+  subroutine carry_out(options, varied, model, quantities, results, plots, diagnostics, reported, processes)
     type(command_line_type), intent(in) :: options          !< the command line
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(quantity_record_type), intent(in) :: quantities    !< with their columns
-    type(study_runs_type), intent(inout) :: runs            !< of the study; its files are open, and closed on return
+    type(study_results_type), intent(inout), target :: results   !< open, and closed on return
     type(study_plots_type), intent(inout) :: plots          !< the plots that are requested
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(inout) :: reported                      !< the report is written
     type(study_processes_type), intent(in) :: processes     !< those that make the runs together
+    type(study_runs_type) :: runs
     type(propagation_type), allocatable :: propagation(:)
+    type(signal_interruption_type), target :: interruption
     type(error_type), allocatable :: err, without_shares
     real(wp) :: clock
     integer :: threads
@@ -165,20 +162,23 @@ contains
     quiet = options%has('quiet')
     clock = seconds()
     threads = threads_of_study(options, model)
-    call runs%begin(model, runs_ahead*max(threads, processes%count), options%has('plot'), quiet)
-    call processes%lead(model, varied, threads, quiet, runs)
+    call interruption%words%start(model%program, 'no result', 'it', quiet, with_progress=.false.)
+    call runs%begin(model, results, runs_ahead*max(threads, processes%count), options%has('plot'), interruption)
+    call processes%lead(model, varied, threads, interruption, runs)
     call runs%finish(err)
     kept = .true.
     if (allocated(err)) kept = err%code == exit_interrupted
     clock = seconds() - clock
     allocate (propagation(0))
     if (.not. allocated(err) .and. runs%statistics%drawn .and. runs%sums%done > 0 .and. &
-        .not. (quiet .and. .not. options%has('report'))) &
-      call propagate(model, varied, quiet, propagation, without_shares)
+        .not. (quiet .and. .not. options%has('report'))) then
+      call interruption%words%start(model%program, 'no derivatives at the means yet', 'their run', quiet, with_progress=.false.)
+      call propagate(model, varied, interruption, propagation, without_shares)
+    end if
     if (.not. quiet) call print_study(error_unit, model, quantities, runs%sums, runs%statistics, propagation, clock)
     if (.not. quiet .and. allocated(without_shares)) &
       write (error_unit, '(a)') 'note: no shares by derivatives: '//without_shares%message
-    if (.not. quiet .and. kept) call runs%results%print_paths(error_unit)
+    if (.not. quiet .and. kept) call results%print_paths(error_unit)
     if (allocated(err)) then
       call diagnostics%add_error(err)
     else if (allocated(runs%first_failure) .and. runs%sums%done == 0) then
@@ -193,7 +193,7 @@ contains
     end if
     if (.not. options%has('report')) return
     call save_study_report(options%argument('report'), model, quantities, runs%values, runs%sums, &
-                           runs%statistics, propagation, runs%results%paths%table, diagnostics, err)
+                           runs%statistics, propagation, results%paths%table, diagnostics, err)
     reported = .true.
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out

@@ -12,9 +12,11 @@ module test_study_runs
   use mech9_quantity_record, only: quantity_record_type
   use mech9_run_evaluator, only: used_quantities
   use mech9_run_maker, only: run_maker_type, made_run_type
+  use mech9_signal_interruption, only: signal_interruption_type
   use mech9_study_file, only: study_file_type
   use mech9_study_merge, only: merge_studies
   use mech9_study_propagation, only: propagation_type, propagate
+  use mech9_study_results, only: study_results_type
   use mech9_study_runs, only: study_runs_type, all_handed_out, wait_for_others
   use mech9_study_threads, only: make_in_threads, threads_of_machine
   use mech9_study_words, only: print_study
@@ -75,19 +77,21 @@ contains
   end subroutine prepare
 
   !> Open the results of a command line, and begin its runs.
-  subroutine begin(tester, this, line, ahead, runs)
+  subroutine begin(tester, this, line, ahead, results, runs)
     type(tester_type), intent(inout) :: tester        !< counts the checks
     type(study_case_type), intent(in) :: this         !< the study
     character(len=*), intent(in) :: line              !< command line
     integer, intent(in) :: ahead                      !< runs that may be handed out before the first of them is written
+    type(study_results_type), intent(out), target :: results   !< open; they must outlive the runs
     type(study_runs_type), intent(out) :: runs        !< about to begin
+    type(signal_interruption_type) :: interruption
     type(command_line_type) :: options
     type(error_type), allocatable :: err
 
     call options_of(tester, line, options)
-    call runs%results%open(options, this%document, this%model, this%quantities, err)
+    call results%open(options, this%document, this%model, this%quantities, err)
     call tester%no_error(err, 'results of '//line)
-    call runs%begin(this%model, ahead, .false., .true.)
+    call runs%begin(this%model, results, ahead, .false., interruption)
   end subroutine begin
 
   !> The last parameter changes from run to run; each run has the sum of its lengths.
@@ -113,6 +117,7 @@ contains
   subroutine order(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(study_case_type) :: this
+    type(study_results_type), target :: results
     type(study_runs_type) :: runs
     type(run_maker_type) :: maker
     type(made_run_type) :: made(6)
@@ -122,7 +127,7 @@ contains
     integer :: numbers(6), i, unit, at, status
 
     call prepare(tester, grid, this)
-    call begin(tester, this, 'a.nml --study --table '//stem//'.dat', 3, runs)
+    call begin(tester, this, 'a.nml --study --table '//stem//'.dat', 3, results, runs)
     call maker%begin(this%model, this%varied)
     do i = 1, 6
       call maker%make(i, made(i))
@@ -179,11 +184,13 @@ contains
     subroutine make(n, text)
       integer, intent(in) :: n                             !< threads
       character(len=:), allocatable, intent(out) :: text   !< the table
+      type(study_results_type), target :: results
       type(study_runs_type) :: runs
+      type(signal_interruption_type) :: interruption
       type(error_type), allocatable :: err
 
-      call begin(tester, this, 'a.nml --study --table '//stem//'.dat', 2*n, runs)
-      call make_in_threads(this%model, this%varied, n, .true., runs)
+      call begin(tester, this, 'a.nml --study --table '//stem//'.dat', 2*n, results, runs)
+      call make_in_threads(this%model, this%varied, n, interruption, runs)
       call runs%finish(err)
       call tester%no_error(err, 'a study in threads')
       call text_of_file(tester, stem//'.dat', text)
@@ -195,7 +202,9 @@ contains
   subroutine parts(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(study_case_type) :: this
+    type(study_results_type), target :: of_first, of_second
     type(study_runs_type) :: first, second
+    type(signal_interruption_type) :: interruption
     type(study_file_type) :: file
     type(command_line_type) :: options
     type(error_type), allocatable :: err
@@ -203,11 +212,11 @@ contains
     integer :: i, code
 
     call prepare(tester, grid, this)
-    call begin(tester, this, 'a.nml --study --part 1/2 --hdf5 '//stem//'_1.h5', 2, first)
-    call make_in_threads(this%model, this%varied, 1, .true., first)
+    call begin(tester, this, 'a.nml --study --part 1/2 --hdf5 '//stem//'_1.h5', 2, of_first, first)
+    call make_in_threads(this%model, this%varied, 1, interruption, first)
     call first%finish(err)
-    call begin(tester, this, 'a.nml --study --part 2/2 --hdf5 '//stem//'_2.h5', 2, second)
-    call make_in_threads(this%model, this%varied, 1, .true., second)
+    call begin(tester, this, 'a.nml --study --part 2/2 --hdf5 '//stem//'_2.h5', 2, of_second, second)
+    call make_in_threads(this%model, this%varied, 1, interruption, second)
     call second%finish(err)
     call tester%is_true(first%sums%done == 3 .and. second%sums%done == 3, 'three runs each')
     call options_of(tester, '--merge '//stem//'_1.h5 '//stem//'_2.h5 --hdf5 '//stem//'.h5 --quiet', options)
@@ -236,13 +245,14 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(study_case_type) :: this
     type(propagation_type), allocatable :: found(:)
+    type(signal_interruption_type), target :: interruption
     type(error_type), allocatable :: err
 
     call prepare(tester, slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0, 1 /"//eol// &
       "&time end=0.5, intervals=1 /"//eol//"&parameter name='r', value=0.3, spread=0.003, sets='pair(2).point(1)' /"//eol// &
       "&parameter name='l', value=1, spread=0.004, sets='pair(3).point(1)' /"//eol// &
       "&quantity name='x', of='q4', take='start' /"//eol//"&study kind='latin', runs=10 /"//eol, this)
-    call propagate(this%model, this%varied, .true., found, err)
+    call propagate(this%model, this%varied, interruption, found, err)
     call tester%no_error(err, 'derivatives of the quantity')
     if (size(found) /= 1) return
     call tester%is_true(found(1)%known .and. found(1)%varies, 'they are known')

@@ -75,6 +75,7 @@ contains
     type(model_type), target :: model
 
     run%number = number
+    if (present(interruption)) call interruption%begin_run(number)
     allocate (run%values(size(self%parameters)))
     allocate (run%quantities(self%n_quantities), source=ieee_value(1.0_wp, ieee_quiet_nan))
     call values_of_run(self%study, self%parameters, number, run%values)

@@ -7,8 +7,7 @@ module mech9_study_threads
   use mech9_pause, only: pause_for
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
-  use mech9_text, only: to_text
-  use mech9_signal_interruption, only: signal_interruption_type
+  use mech9_simulation, only: interruption_type
   use mech9_run_maker, only: run_maker_type, made_run_type
   use mech9_study_runs, only: study_runs_type, all_handed_out, wait_for_others
   implicit none
@@ -33,11 +32,11 @@ contains
   end function threads_of_machine
 
   !> Make all runs. Each thread takes the next one when it has finished one, so that none waits for runs that take long.
-  subroutine make_in_threads(model, varied, threads, quiet, runs)
+  subroutine make_in_threads(model, varied, threads, interruption, runs)
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied        !< the model as a function of its parameters
     integer, intent(in) :: threads                          !< how many
-    logical, intent(in) :: quiet                            !< nothing is said of a run that takes long
+    class(interruption_type), intent(in) :: interruption    !< is asked whether a run shall stop; each thread has a copy
     type(study_runs_type), intent(inout) :: runs            !< about to begin
     type(run_maker_type), allocatable :: makers(:)
     integer :: i
@@ -48,21 +47,21 @@ contains
     end do
     !$omp parallel do num_threads(threads) schedule(static, 1) default(shared) private(i)
     do i = 1, threads
-      call make_until_done(makers(i), model%program, quiet, runs)
+      call make_until_done(makers(i), interruption, runs)
     end do
     !$omp end parallel do
   end subroutine make_in_threads
 
   !> Make one run after the other until all are handed out. One thread at a time asks for a number and gives its run back.
-  subroutine make_until_done(maker, program, quiet, runs)
+  subroutine make_until_done(maker, interruption, runs)
     type(run_maker_type), intent(inout) :: maker   !< of this thread
-    integer, intent(in) :: program                 !< kinematics or dynamics
-    logical, intent(in) :: quiet                   !< nothing is said of a run that takes long
+    class(interruption_type), intent(in) :: interruption   !< is copied
     type(study_runs_type), intent(inout) :: runs   !< of all threads
     type(made_run_type) :: run
-    type(signal_interruption_type) :: interruption
+    class(interruption_type), allocatable :: of_run
     integer :: number
 
+    allocate (of_run, source=interruption)
     do
       !$omp critical (runs_of_study)
       if (run%number > 0) call runs%take(run)
@@ -73,8 +72,7 @@ contains
       if (number == wait_for_others) then
         call pause_for(short_wait)
       else
-        call interruption%words%start(program, 'no result of run '//to_text(number), 'it', quiet, with_progress=.false.)
-        call maker%make(number, run, interruption)
+        call maker%make(number, run, of_run)
       end if
     end do
   end subroutine make_until_done

@@ -5,17 +5,15 @@
 !> the other. Results are written and added up in the order of the numbers, hence with the same bits in any case. Runs that are
 !> made before their turn wait; so few numbers are handed out ahead that memory stays bounded.
 module mech9_study_runs
-  use mech9_program_kind, only: program_names
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, add_place, raise, exit_done, exit_interrupted
   use mech9_text, only: to_text
   use mech9_counted, only: counted
-  use mech9_system, only: interrupted
   use mech9_explanation, only: explain
   use mech9_model, only: model_type
-  use mech9_progress, only: progress_type
+  use mech9_simulation, only: interruption_type
   use mech9_run_maker, only: made_run_type
-  use mech9_study_results, only: study_results_type
+  use mech9_study_sink, only: study_sink_type
   use mech9_study_sums, only: study_sums_type
   use mech9_study_statistics, only: study_statistics_type
   implicit none
@@ -27,13 +25,13 @@ module mech9_study_runs
   integer, parameter :: all_handed_out = 0, wait_for_others = -1
 
   type :: study_runs_type
-    type(study_results_type) :: results                    !< the open files
     type(study_sums_type) :: values                        !< sums of the parameters over all runs
     type(study_sums_type) :: sums                          !< sums of the quantities over the runs that went to their end
     type(study_statistics_type) :: statistics              !< how their quantities scatter, with a sample of them
     type(error_type), allocatable :: first_failure         !< of the first run that failed, with the number of the run
-    type(error_type), allocatable :: stopped               !< allocated where rows cannot be written, or the user interrupts
-    type(progress_type), private :: progress
+    type(error_type), allocatable :: stopped               !< allocated where runs cannot be kept, or the user interrupts
+    class(study_sink_type), pointer, private :: sink => null()           !< takes the runs; not owned
+    class(interruption_type), allocatable, private :: interruption       !< is asked whether the study shall stop
     integer, private :: first = 1                          !< number of the first run of the part
     integer, private :: step = 1                           !< from one run of the part to the next
     integer, private :: total = 0                          !< runs of the part
@@ -52,18 +50,21 @@ module mech9_study_runs
 contains
 
   !> Begin the runs of part K of N parts: K, K + N, K + 2 N and so on, so that each part has its share of long ones.
-  subroutine begin(self, model, ahead, with_sample, quiet)
-    class(study_runs_type), intent(inout) :: self     !< the runs; its results are open, and know the part
-    type(model_type), intent(in) :: model             !< the model with the values of the data file
-    integer, intent(in) :: ahead                      !< most runs that are handed out before the first of them is written
-    logical, intent(in) :: with_sample                !< a sample of the runs is kept for plots
-    logical, intent(in) :: quiet                      !< no progress is shown
+  subroutine begin(self, model, sink, ahead, with_sample, interruption)
+    class(study_runs_type), intent(inout) :: self                !< the runs
+    type(model_type), intent(in) :: model                        !< the model with the values of the data file
+    class(study_sink_type), intent(inout), target :: sink        !< takes the runs, and knows the part; it must outlive them
+    integer, intent(in) :: ahead                                 !< most runs that are handed out before the first of them is shown
+    logical, intent(in) :: with_sample                           !< a sample of the runs is kept for plots
+    class(interruption_type), intent(in) :: interruption         !< is asked whether the study shall stop
     integer :: i
 
+    self%sink => sink
+    allocate (self%interruption, source=interruption)
     call self%values%begin(size(model%parameters))
     call self%sums%begin(size(model%request%quantities))
-    self%first = self%results%part(1)
-    self%step = self%results%part(2)
+    self%first = sink%part(1)
+    self%step = sink%part(2)
     if (self%first <= model%request%study%runs) self%total = 1 + (model%request%study%runs - self%first)/self%step
     call self%statistics%begin(model, self%total, with_sample)
     allocate (self%made(0:ahead - 1))
@@ -71,7 +72,6 @@ contains
       allocate (self%made(i)%values(size(model%parameters)), self%made(i)%quantities(size(model%request%quantities)))
     end do
     allocate (self%before(0:ahead - 1), source=.false.)
-    call self%progress%start(program_names(model%program), quiet)
   end subroutine begin
 
   !> The number of a run to be made next; or all_handed_out, or wait_for_others: ask again when another run was taken. Runs that
@@ -81,7 +81,7 @@ contains
 
     do
       call write_ready(self)
-      if (interrupted()) call stop_here(self)
+      if (self%interruption%is_wanted()) call stop_here(self)
       number = all_handed_out
       if (allocated(self%stopped) .or. self%handed_out == self%total) return
       number = wait_for_others
@@ -89,7 +89,7 @@ contains
       self%handed_out = self%handed_out + 1
       number = self%first + (self%handed_out - 1)*self%step
       associate (before => self%before(modulo(self%handed_out, size(self%made))))
-        before = self%results%is_made(self%handed_out)
+        before = self%sink%is_made(self%handed_out)
         if (.not. before) return
       end associate
     end do
@@ -105,7 +105,7 @@ contains
     if (allocated(self%stopped)) return
     place = 1 + (run%number - self%first)/self%step
     call keep(run, self%made(modulo(place, size(self%made))))
-    call self%results%write_run(place, run, self%stopped)
+    call self%sink%write_run(place, run, self%stopped)
     call write_ready(self)
   end subroutine take
 
@@ -129,30 +129,16 @@ contains
 
     do while (self%written < self%handed_out .and. .not. allocated(self%stopped))
       i = modulo(self%written + 1, size(self%made))
-      if (self%before(i)) call self%results%read_run(self%written + 1, self%made(i))
+      if (self%before(i)) call self%sink%read_run(self%written + 1, self%made(i))
       if (self%made(i)%number /= self%first + self%written*self%step) exit
       call add_up(self, self%made(i))
-      call self%results%show_run(self%made(i), self%stopped)
+      call self%sink%show_run(self%made(i), self%stopped)
       if (self%before(i)) self%found = self%found + 1
       self%before(i) = .false.
       self%written = self%written + 1
-      call self%progress%update(real(self%written, wp)/self%total, failed_words(self%sums), real(self%found, wp)/self%total)
+      call self%sink%tell_progress(real(self%written, wp)/self%total, real(self%found, wp)/self%total, self%sums)
     end do
   end subroutine write_ready
-
-  !> How many runs failed so far, by their codes.
-  pure function failed_words(sums) result(words)
-    type(study_sums_type), intent(in) :: sums   !< over the runs
-    character(len=:), allocatable :: words
-    integer :: i
-
-    words = ''
-    do i = 1, sums%n_codes
-      if (i == 1) words = 'failed '
-      if (i > 1) words = words//', '
-      words = words//to_text(sums%failed(i))//' (code '//to_text(sums%codes(i))//')'
-    end do
-  end function failed_words
 
   !> Stop at the user's request.
   subroutine stop_here(self)
@@ -185,15 +171,14 @@ contains
     call add_place(self%first_failure, 'run '//to_text(run%number))
   end subroutine add_up
 
-  !> End, and close the files.
+  !> End, and close the sink.
   subroutine finish(self, err)
     class(study_runs_type), intent(inout) :: self        !< the runs
-    type(error_type), allocatable, intent(out) :: err    !< allocated if the study was stopped, or the files cannot be written
+    type(error_type), allocatable, intent(out) :: err    !< allocated if the study was stopped, or its runs could not be kept
     type(error_type), allocatable :: at_close
 
     call write_ready(self)
-    call self%progress%finish()
-    call self%results%close(at_close)
+    call self%sink%close(at_close)
     if (.not. allocated(self%stopped)) call move_alloc(at_close, self%stopped)
     if (allocated(self%stopped)) err = self%stopped
   end subroutine finish

@@ -12,22 +12,22 @@ contains
     self%agreements = self%agreements + 1
   end subroutine agree
 
-  module subroutine lead(self, model, varied, threads, quiet, runs)
+  module subroutine lead(self, model, varied, threads, interruption, runs)
     class(study_processes_type), intent(in) :: self       !< the process
     type(model_type), intent(in) :: model                 !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
     integer, intent(in) :: threads                        !< how many make the runs
-    logical, intent(in) :: quiet                          !< nothing is said of a run that takes long
+    class(interruption_type), intent(in) :: interruption  !< is asked whether a run shall stop
     type(study_runs_type), intent(inout) :: runs          !< about to begin
 
-    call make_in_threads(model, varied, threads, quiet, runs)
+    call make_in_threads(model, varied, threads, interruption, runs)
   end subroutine lead
 
   !> There is no other process to call it.
-  module subroutine follow(self, model, varied, quiet)
+  module subroutine follow(self, model, varied, interruption)
     class(study_processes_type), intent(in) :: self       !< the process
     type(model_type), intent(in) :: model                 !< unused
     class(variable_model_type), intent(in) :: varied      !< unused
-    logical, intent(in) :: quiet                          !< unused
+    class(interruption_type), intent(in) :: interruption  !< unused
   end subroutine follow
 end submodule mech9_one_process

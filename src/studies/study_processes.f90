@@ -1,10 +1,11 @@
 !> Processes that make the runs of a study together. All read the same data file; the first one hands out the runs and writes the
-!> results. Which procedures stand behind these interfaces is decided by the linker: those of the library (one_process.f90) serve a
+!> results. Which procedures stand behind these interfaces is decided by the linker: those of the library serve a
 !> program that is alone, and those of src/programs/mpi replace them in programs with MPI.
 module mech9_study_processes
   use mech9_error, only: error_type
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
+  use mech9_simulation, only: interruption_type
   use mech9_study_runs, only: study_runs_type
   implicit none
   private
@@ -29,21 +30,21 @@ module mech9_study_processes
     end subroutine agree
 
     !> Make all runs. The first process calls it; it hands out runs to the other processes.
-    module subroutine lead(self, model, varied, threads, quiet, runs)
+    module subroutine lead(self, model, varied, threads, interruption, runs)
       class(study_processes_type), intent(in) :: self       !< the processes
       type(model_type), intent(in) :: model                 !< the model with the values of the data file
       class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
       integer, intent(in) :: threads                        !< how many make the runs where there is one process
-      logical, intent(in) :: quiet                          !< nothing is said of a run that takes long
+      class(interruption_type), intent(in) :: interruption  !< is asked whether a run shall stop
       type(study_runs_type), intent(inout) :: runs          !< about to begin
     end subroutine lead
 
     !> Make the runs that the first process hands out. All other processes call it.
-    module subroutine follow(self, model, varied, quiet)
+    module subroutine follow(self, model, varied, interruption)
       class(study_processes_type), intent(in) :: self       !< the processes
       type(model_type), intent(in) :: model                 !< the model with the values of the data file
       class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
-      logical, intent(in) :: quiet                          !< nothing is said of a run that takes long
+      class(interruption_type), intent(in) :: interruption  !< is asked whether a run shall stop
     end subroutine follow
   end interface
 end module mech9_study_processes

@@ -8,7 +8,7 @@ module mech9_study_propagation
   use mech9_model, only: model_type
   use mech9_parameter, only: parameter_type
   use mech9_variable_model, only: variable_model_type
-  use mech9_signal_interruption, only: signal_interruption_type
+  use mech9_simulation, only: interruption_type
   use mech9_design_run, only: find_design_gradient
   implicit none
   private
@@ -26,14 +26,13 @@ module mech9_study_propagation
 contains
 
   !> Find how all quantities scatter to first order. Fails where the run with derivatives does.
-  subroutine propagate(model, varied, quiet, found, err)
+  subroutine propagate(model, varied, interruption, found, err)
     type(model_type), intent(in) :: model                              !< the model with the values of the data file
     class(variable_model_type), intent(inout) :: varied                !< the model as a function of its parameters
-    logical, intent(in) :: quiet                                       !< nothing is said of a run that takes long
+    class(interruption_type), intent(inout), target :: interruption    !< is asked whether the run shall stop
     type(propagation_type), allocatable, intent(out) :: found(:)       !< (quantities) none where it fails
     type(error_type), allocatable, intent(out) :: err                  !< allocated if it failed, with a sentence
     type(model_type), target :: mean
-    type(signal_interruption_type) :: interruption
     real(wp) :: numbers(size(model%request%quantities)), values(size(model%parameters))
     real(wp) :: gradient(size(model%parameters), size(model%request%quantities))
     integer :: i
@@ -42,10 +41,7 @@ contains
     if (size(numbers) == 0) return
     values = [(mean_of(model%parameters(i)), i=1, size(values))]
     call varied%at(values, mean, err)
-    if (.not. allocated(err)) then
-      call interruption%words%start(model%program, 'no derivatives at the means yet', 'their run', quiet, with_progress=.false.)
-      call find_design_gradient(mean, varied, numbers, gradient, err, interruption)
-    end if
+    if (.not. allocated(err)) call find_design_gradient(mean, varied, numbers, gradient, err, interruption)
     if (allocated(err)) then
       call explain(err)
       return
