@@ -1,4 +1,4 @@
-# The text of docs/benchmarks.md, from what bench/run measured. Uses its $work, $top, $programs, $mode, $problems and words.
+# The text of bench/benchmarks.md, from what bench/run measured. Uses its $work, $top, $programs, $mode, $problems and words.
 
 machine() {
   local model cores

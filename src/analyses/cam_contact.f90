@@ -1,7 +1,8 @@
 !> The contact of a cam with its follower in one position: a point of the cam's profile with its tangent and curvature.
 !>
 !> The profile is the envelope of the roller's circles, or of the lines of a flat face, in the system of the cam. It follows from
-!> the position, velocity and acceleration of the follower against the cam (docs/theory.md); nothing is found by differences.
+!> the position, velocity and acceleration of the follower against the cam (docs/explanation/theory.md); nothing is found by
+!> differences.
 module mech9_cam_contact
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
   use mech9_kinds, only: wp

@@ -1,4 +1,5 @@
-!> Accelerations of open chains by articulated bodies (Featherstone in docs/bibliography.md), without a matrix, in O(links).
+!> Accelerations of open chains by articulated bodies (Featherstone in docs/reference/bibliography.md), without a matrix, in
+!> O(links).
 !>
 !> Lagrange's equations of a mechanism without closed chains are those of Newton and Euler link by link. The links
 !> beyond a step, towards the tips, resist a motion (dw, dv) of its frame with a wrench that is linear in it,

@@ -1,5 +1,5 @@
 !> Articulated bodies of a closed cluster: its independent accelerations are eliminated together, as those of an open step are one
-!> by one (constraint embedding: Jain; Chignoli and others in docs/bibliography.md).
+!> by one (constraint embedding: Jain; Chignoli and others in docs/reference/bibliography.md).
 !>
 !> With the columns S_f = d(motion of frame f relative to the base)/d(rates of the cluster's independent coordinates), in which
 !> the dependent coordinates are eliminated already, the inertia I_f of all that frame f carries, and its wrench p_f, about the

@@ -1,5 +1,5 @@
 !> A mechanism from values set in code. A design is the text of a data file in the making, so that finishing it checks
-!> everything that the reader of data files checks, and every name of docs/data-file.md can be given.
+!> everything that the reader of data files checks, and every name of docs/reference/data-file.md can be given.
 module mech9_design
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -74,7 +74,7 @@ contains
   !> Add a joint with several freedoms, as a pair with several coordinates. Points and directions as of other pairs.
   pure subroutine compound_joint(self, coordinates, kind, links, point, axis, moving_point, moving_axis, zero, moving_zero)
     class(design_type), intent(inout) :: self             !< the design
-    integer, intent(in) :: coordinates(:)                 !< numbers of its coordinates, in the order of docs/how-to-model.md
+    integer, intent(in) :: coordinates(:)                 !< numbers of its coordinates, in the order of docs/how-to/how-to-model.md
     character(len=*), intent(in) :: kind                  !< 'spherical', 'universal', 'cylindrical', 'planar' or 'free'
     integer, intent(in) :: links(2)                       !< reference link and moving link; 1 is the frame
     real(wp), intent(in), optional :: point(3)            !< centre, or a point on the axis, in the reference link [m]
@@ -203,7 +203,7 @@ contains
   !> Add any group of the data file, for example ('drive', "coordinate=1, kind='harmonic', amplitude=0.2, angular_frequency=3").
   pure subroutine add(self, group, names)
     class(design_type), intent(inout) :: self    !< the design
-    character(len=*), intent(in) :: group        !< its name, as in docs/data-file.md
+    character(len=*), intent(in) :: group        !< its name, as in docs/reference/data-file.md
     character(len=*), intent(in) :: names        !< its names with their values
 
     if (.not. allocated(self%text)) self%text = ''

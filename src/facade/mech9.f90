@@ -1,4 +1,5 @@
-!> The library for other programs: mechanisms from data files or from values set in code, and their motions (docs/library.md).
+!> The library for other programs: mechanisms from data files or from values set in code, and their motions
+!> (docs/how-to/library.md).
 !>
 !> Angles are in rad, lengths in m, times in s, whatever units a data file uses. Nothing is printed and no program is ended: a
 !> failure is a value `type(error_type), allocatable`, whose message tells what is wrong and what to do. Threads may run motions

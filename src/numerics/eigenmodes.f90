@@ -3,7 +3,7 @@
 !> A vibration without damping, M and K symmetric, is a symmetric problem: its eigenvalues are purely imaginary, real, or zero, and
 !> come out so exactly. All others are eigenvalues of a general matrix. Roots that are zero follow from the structure: each
 !> null vector of K is a root, and one more where C makes no force along it; they are taken out before the others are found, which
-!> a double root near by would disturb by the root of round-off (Tisseur and Meerbergen in docs/bibliography.md).
+!> a double root near by would disturb by the root of round-off (Tisseur and Meerbergen in docs/reference/bibliography.md).
 module mech9_eigenmodes
   use mech9_kinds, only: wp
   use mech9_lapack, only: dsyev, dgeev

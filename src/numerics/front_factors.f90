@@ -4,7 +4,7 @@
 !> Instead, the distance of each column from the span of all others is found: it is 1 over the length of its row of R^-1. The
 !> least of them is at least the least singular value, and at most that times the root of the number of columns. The squares of
 !> these lengths are the diagonal of the covariance (R^T R)^-1, and of that each front needs only the part of its own columns,
-!> which follows from that of its parent (Erisman and Tinney in docs/bibliography.md).
+!> which follows from that of its parent (Erisman and Tinney in docs/reference/bibliography.md).
 module mech9_front_factors
   use mech9_kinds, only: wp
   use mech9_householder, only: reflect_back

@@ -1,4 +1,4 @@
-!> The plan of a sparse QR factorization by fronts (multifrontal; Duff and Reid, Davis in docs/bibliography.md).
+!> The plan of a sparse QR factorization by fronts (multifrontal; Duff and Reid, Davis in docs/reference/bibliography.md).
 !>
 !> The equations of a block of closed chains come in groups, one for each constraint, and each group has derivatives with
 !> respect to the unknowns of its own loop only. Unknowns that occur in the same groups are a class. A *front* is a small full

@@ -1,4 +1,4 @@
-!> QR of small matrices by Householder reflections (Businger and Golub in docs/bibliography.md).
+!> QR of small matrices by Householder reflections (Businger and Golub in docs/reference/bibliography.md).
 !>
 !> The loops stand in files of their own and are compiled three times: for any size, and, with the size known
 !> to the compiler, for the two most frequent sizes, three equations of a planar or spherical chain and six of a

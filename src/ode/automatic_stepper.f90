@@ -2,7 +2,7 @@
 !> and back where it no longer is.
 !>
 !> Two evaluations of the explicit method at the end of a step tell how fast the equations react to a change (Hairer and Wanner
-!> in docs/bibliography.md). Where the product with the length of steps stays at the limit of stability, stability and not
+!> in docs/reference/bibliography.md). Where the product with the length of steps stays at the limit of stability, stability and not
 !> accuracy holds the steps down: the implicit method goes on. While it does, this measure is found by a power iteration of its own
 !> now and then, and tells how long the steps of the explicit method could be.
 module mech9_automatic_stepper

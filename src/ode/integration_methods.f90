@@ -29,7 +29,7 @@ module mech9_integration_methods
     integer :: stages        !< evaluations of the rate in a step; 0 where their number varies
     logical :: reuses_last   !< the last stage is the first one of the next step
     !> Part of the tolerances by which its steps are judged. Multistep methods make many steps, whose errors have one sign. With
-    !> these parts their error at the end of each motion in docs/accuracy.md is at most three times that of prince-dormand, or
+    !> these parts their error at the end of each motion in bench/accuracy.md is at most three times that of prince-dormand, or
     !> a hundred tolerances where that is more.
     real(wp) :: share
     character(len=64) :: help

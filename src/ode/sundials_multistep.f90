@@ -27,7 +27,7 @@ module mech9_sundials_multistep
   public :: multistep_type, new_multistep
 
   !> Newton's method ends when this part of the error that is allowed in a step is left. (CVODE's own part, 0.1, costs the stiff
-  !> governor half as many evaluations again, and saves other motions a tenth; docs/measurements.md.)
+  !> governor half as many evaluations again, and saves other motions a tenth; bench/measurements.md.)
   real(c_double), parameter :: newton_part = 0.01_c_double
 
   !> A multistep method at work.

@@ -1,4 +1,4 @@
-!> Results as an HDF5 file; docs/results.md describes its content.
+!> Results as an HDF5 file; docs/reference/results.md describes its content.
 module mech9_hdf5_sink
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

@@ -1,4 +1,4 @@
-!> The choice of other independent coordinates near a singular position (Wehage and Haug in docs/bibliography.md).
+!> The choice of other independent coordinates near a singular position (Wehage and Haug in docs/reference/bibliography.md).
 !>
 !> QR with column pivoting of the equations of one block after the other finds which of the coordinates on which the block depends,
 !> and of its own unknowns, are better determined by the others. The work grows with the number of blocks; a cluster of one block

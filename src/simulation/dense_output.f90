@@ -1,4 +1,4 @@
-!> Dense output, that is, the motion between the ends of steps (Hairer, Norsett and Wanner in docs/bibliography.md).
+!> Dense output, that is, the motion between the ends of steps (Hairer, Norsett and Wanner in docs/reference/bibliography.md).
 !>
 !> Positions, rates and accelerations at the nearest points that are known, ends of steps and points inserted into the last
 !> one, give a polynomial. Without the farthest of these points it is a worse one; where both agree within the

@@ -2,7 +2,7 @@
 !>
 !> The vector that is integrated holds all coordinates, the rates of the free ones and the states of motors; then, where they are
 !> asked for, derivatives of free coordinates and of their rates by parameters. The motion of driven coordinates is that of their drives. An evaluation takes the positions as they are, and the chains are closed after each
-!> accepted step: half the cost of closing them in every evaluation, at the same error (docs/design-decisions.md).
+!> accepted step: half the cost of closing them in every evaluation, at the same error (docs/explanation/design-decisions.md).
 module mech9_motion_system
   use mech9_kinds, only: wp, long
   use mech9_simulation_tolerances, only: trusted_between_steps, trusted_closing

@@ -1,8 +1,8 @@
 !> A smooth curve through points in space, with its arc length as parameter, and a frame that moves along it.
 !>
-!> The curve is a quintic spline, whose parameter is the length of its pieces (docs/theory.md). Arc lengths are integrals by Gauss's
-!> rule over parts so short that they are exact to round-off, and are inverted by Newton's method. The x axis of the frame
-!> is the tangent; its other axes do not turn about the tangent (Bishop's frame), but evenly where a closed
+!> The curve is a quintic spline, whose parameter is the length of its pieces (docs/explanation/theory.md). Arc lengths are
+!> integrals by Gauss's rule over parts so short that they are exact to round-off, and are inverted by Newton's method. The x axis
+!> of the frame is the tangent; its other axes do not turn about the tangent (Bishop's frame), but evenly where a closed
 !> curve would else end with other axes than those at its beginning.
 module mech9_space_curve
   use mech9_kinds, only: wp

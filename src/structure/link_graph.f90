@@ -86,7 +86,7 @@ contains
     graph%cost = merge(1_long, scale + 1_long, independent)
   end subroutine weigh
 
-  !> Bridges by one depth-first walk from link 1 (Tarjan in docs/bibliography.md): the pair that first reached a link is a
+  !> Bridges by one depth-first walk from link 1 (Tarjan in docs/reference/bibliography.md): the pair that first reached a link is a
   !> bridge if no other pair leads from that link, or from those reached through it, further back.
   pure subroutine find_bridges(graph)
     type(link_graph_type), intent(inout) :: graph   !< the graph, with the pairs of each link

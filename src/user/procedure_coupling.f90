@@ -52,7 +52,7 @@ contains
       call user_coupling_values(number, start, parameters, value)
       if (value <= not_linked) then
         call raise(err, exit_data, 'coupling '//to_text(number)//' asks for a user procedure, but none is linked; '// &
-                   'see docs/user-procedures.md for how to write user_coupling and link it')
+                   'see docs/how-to/user-procedures.md for how to write user_coupling and link it')
         return
       end if
     end if

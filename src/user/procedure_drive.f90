@@ -45,7 +45,7 @@ contains
     call user_drive_values(coordinate, start, parameters, value)
     if (value <= not_linked) &
       call raise(err, exit_data, 'the drive of coordinate '//to_text(coordinate)//' asks for a user procedure, '// &
-                 'but none is linked; see docs/user-procedures.md for how to write user_drive and link it')
+                 'but none is linked; see docs/how-to/user-procedures.md for how to write user_drive and link it')
   end subroutine make_procedure_drive
 
   !> The procedure's value and derivatives. Fails where they are not finite.

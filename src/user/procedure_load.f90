@@ -60,7 +60,7 @@ contains
     if (allocated(err)) return
     if (sum%unanswered) then
       call raise(err, exit_data, 'a load asks for a user procedure, but none is linked; '// &
-                 'see docs/user-procedures.md for how to write user_force and link it', self%place)
+                 'see docs/how-to/user-procedures.md for how to write user_force and link it', self%place)
       return
     end if
     if (.not. (all(ieee_is_finite(sum%force)) .and. all(ieee_is_finite(sum%torque)) .and. &

@@ -53,7 +53,7 @@ contains
     call user_pair_values(coordinate, 0.0_wp, parameters, v1, v2, v3)
     if (all(is_missing(v1))) &
       call raise(err, exit_data, 'pair '//to_text(coordinate)//' asks for a user procedure, but none is linked; '// &
-                 'see docs/user-procedures.md for how to write user_pair and link it')
+                 'see docs/how-to/user-procedures.md for how to write user_pair and link it')
   end subroutine make_procedure_pair
 
   !> Whether a number is the answer of a default procedure.

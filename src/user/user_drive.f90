@@ -1,6 +1,6 @@
 !> The hook for the user's own drive, in Taylor arithmetic.
 !>
-!> Write a submodule of this module that holds `user_drive`, and link it: see docs/user-procedures.md.
+!> Write a submodule of this module that holds `user_drive`, and link it: see docs/how-to/user-procedures.md.
 !> All of Taylor arithmetic is known there without a further `use`.
 module mech9_user_drive
   use mech9_kinds, only: wp

@@ -1,7 +1,7 @@
 !> The hook for the user's own drive, in plain real numbers; the program differentiates it.
 !>
 !> Write a submodule of this module that holds `user_drive_values`, and link it: see
-!> docs/user-procedures.md.
+!> docs/how-to/user-procedures.md.
 module mech9_user_drive_values
   use mech9_kinds, only: wp
   implicit none

@@ -1,6 +1,6 @@
 !> The hook for the user's own forces.
 !>
-!> Write a submodule of this module that holds `user_force`, and link it: see docs/user-procedures.md.
+!> Write a submodule of this module that holds `user_force`, and link it: see docs/how-to/user-procedures.md.
 module mech9_user_force
   use mech9_kinds, only: wp
   use mech9_motion_view, only: motion_view_type

@@ -1,7 +1,7 @@
 !> The hook for the user's own pair, in plain real numbers; the program differentiates it.
 !>
 !> Write a submodule of this module that holds `user_pair_values`, and link it: see
-!> docs/user-procedures.md.
+!> docs/how-to/user-procedures.md.
 module mech9_user_pair_values
   use mech9_kinds, only: wp
   implicit none

@@ -7,7 +7,7 @@ import math
 from mech9_cases import run, table_of
 
 MASS, STIFFNESS, REST = 0.2, 2000.0, -0.01
-# a cam with its return spring, after docs/couplings.md; the follower slides along y
+# a cam with its return spring, after docs/how-to/couplings.md; the follower slides along y
 CAM = f"""
 &mechanism angle_unit='deg' /
 &structure cq=1 /

@@ -403,8 +403,8 @@ def test_axes_that_tilt_alike_turn_the_plane(case):
     case.checks.near(rows[:, :planar.shape[1]], planar, 1e-10, 'beside such a parameter, others have the same derivatives', scale=1.0)
 
 
-# A run with ten parameters of a four-bar linkage takes 1.8 times the instructions of a run without derivatives (docs/measurements.md).
-# Times are less certain. When the derivatives were found for each parameter by itself, in space, this was 20.
+# A run with ten parameters of a four-bar linkage takes 1.8 times the instructions of a run without derivatives
+# (bench/measurements.md). Times are less certain. When the derivatives were found for each parameter by itself, in space, this was 20.
 MOST_COST = 5.0
 
 

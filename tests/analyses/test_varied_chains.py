@@ -105,7 +105,7 @@ def test_derivatives_are_differences_of_runs(case, why, text, parameters, part):
     case.against_runs(text, parameters, why, part)
 
 
-# Instructions with ten parameters are some three times those of a plain run (docs/measurements.md); times are less certain, and a
+# Instructions with ten parameters are some three times those of a plain run (bench/measurements.md); times are less certain, and a
 # program with all run-time checks differs. Spatial motions found for each parameter and each evaluation made this more than thirty.
 MOST_COST = 9.0
 # The derivatives are integrated under the same error control: more steps, but not many more.

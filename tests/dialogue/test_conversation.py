@@ -164,8 +164,8 @@ def transcript(said, steps):
 
 
 def test_document(talks, tmp_path):
-    """The conversation in docs/conversation.md is this one."""
-    path, new = os.path.join(TREE, 'docs', 'conversation.md'), tmp_path / 'conversation.md'
+    """The conversation in docs/tutorials/conversation.md is this one."""
+    path, new = os.path.join(TREE, 'docs', 'tutorials', 'conversation.md'), tmp_path / 'conversation.md'
     done = piped(talks.mech9k, folder=tmp_path, answers=answers_of(scripts.FIG1))
     now = transcript(done.stderr, scripts.FIG1)
     text = text_of(path)

@@ -7,9 +7,8 @@ import pytest
 from document_checks import blocks_of, check_commands, check_document
 from mech9_cases import TREE, text_of
 
-DOCUMENTS = sorted({os.path.relpath(path, TREE) for pattern in ('*.md', 'docs/**/*.md')
-                    for path in glob.glob(os.path.join(TREE, pattern), recursive=True)} - {'CHANGELOG.md', 'docs/api.md'}
-                   | {'tests/README.md', 'user_procs/README.md'})
+DOCUMENTS = sorted({os.path.relpath(path, TREE) for pattern in ('*.md', *(f'{folder}/**/*.md' for folder in ('bench', 'docs', 'tests', 'user_procs')))
+                    for path in glob.glob(os.path.join(TREE, pattern), recursive=True)} - {'docs/reference/api.md'})
 WITH_COMMANDS = [document for document in DOCUMENTS if any(blocks_of(text_of(os.path.join(TREE, document))))]
 
 

@@ -1,5 +1,5 @@
 !> Coefficients of Runge-Kutta methods against all conditions of their orders, one for each rooted tree (Hairer, Nørsett and Wanner in
-!> docs/bibliography.md): the weights times the elementary weights of the tree are one over its density.
+!> docs/reference/bibliography.md): the weights times the elementary weights of the tree are one over its density.
 module test_butcher_tables
   use mech9_kinds, only: wp
   use mech9_butcher_tables, only: butcher_table_type, kutta_merson, prince_dormand

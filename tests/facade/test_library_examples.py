@@ -1,5 +1,5 @@
 """The programs of examples/library print the numbers that mech9k and mech9d write for the same mechanism, to round-off, and
-docs/library.md shows them as they are.
+docs/how-to/library.md shows them as they are.
 
 Compares the program with itself: the numbers of the library and of the programs.
 """
@@ -56,7 +56,7 @@ def test_without_its_data_file(checks, build, tmp_path):
 
 
 def test_document_shows_the_programs(checks):
-    shown = text_of(os.path.join(TREE, 'docs', 'library.md'))
-    checks.true(text_of(os.path.join(FOLDER, 'from_file.f90')) in shown, 'docs/library.md shows from_file.f90')
+    shown = text_of(os.path.join(TREE, 'docs', 'how-to', 'library.md'))
+    checks.true(text_of(os.path.join(FOLDER, 'from_file.f90')) in shown, 'docs/how-to/library.md shows from_file.f90')
     lines = [line for line in text_of(os.path.join(FOLDER, 'from_values.f90')).splitlines() if 'design%' in line]
-    checks.true(len(lines) > 5 and '\n'.join(lines) in shown, 'docs/library.md shows the design of from_values.f90')
+    checks.true(len(lines) > 5 and '\n'.join(lines) in shown, 'docs/how-to/library.md shows the design of from_values.f90')

@@ -1,4 +1,4 @@
-!> The documentation of the data file, docs/data-file.md, is what the table of names says.
+!> The documentation of the data file, docs/reference/data-file.md, is what the table of names says.
 !>
 !> The right text is left in `data-file.md` of the current folder, to be copied over an outdated one.
 module test_data_help
@@ -30,7 +30,7 @@ contains
     type(error_type), allocatable :: err
     integer :: unit, at
 
-    call read_source(tester%tree//'/docs/data-file.md', found, err)
+    call read_source(tester%tree//'/docs/reference/data-file.md', found, err)
     call tester%no_error(err, 'the document can be read')
     at = index(found%text, mark//eol)
     call tester%is_true(at > 0, 'the document has its mark')

@@ -4,7 +4,7 @@ import pytest
 
 from kinematic_accuracy import MECHANISMS, QUANTITIES, errors_of
 
-# Times in a cycle; the table in docs/accuracy.md has more.
+# Times in a cycle; the table in bench/accuracy.md has more.
 TIMES = 60
 # A position is closed to round-off; 1e-13 for it and 1e-11 for accelerations are asked of chains well away from
 # their singular positions, as all of these are.

@@ -18,7 +18,7 @@ module test_postures
 
   real(wp), parameter :: x(3) = [1.0_wp, 0.0_wp, 0.0_wp], y(3) = [0.0_wp, 1.0_wp, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp]
   real(wp), parameter :: origin(3) = 0.0_wp, near = 1.0e-11_wp
-  !> Centres of the joints on base and platform, and the lengths of the legs (Dietmaier in docs/bibliography.md).
+  !> Centres of the joints on base and platform, and the lengths of the legs (Dietmaier in docs/reference/bibliography.md).
   real(wp), parameter :: base(3, 6) = reshape([0.0_wp, 0.0_wp, 0.0_wp, 1.107915_wp, 0.0_wp, 0.0_wp, 0.549094_wp, 0.756063_wp, &
     0.0_wp, 0.735077_wp, -0.223935_wp, 0.525991_wp, 0.514188_wp, -0.526063_wp, -0.368418_wp, 0.590473_wp, 0.094733_wp, &
     -0.205018_wp], [3, 6])

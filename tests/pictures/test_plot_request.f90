@@ -1,4 +1,4 @@
-!> Tests of mech9_plot_request and mech9_plot_panels: what the words of --plot mean, by the rules in docs/pictures.md.
+!> Tests of mech9_plot_request and mech9_plot_panels: what the words of --plot mean, by the rules in docs/how-to/pictures.md.
 module test_plot_request
   use mech9_error, only: error_type, exit_usage
   use mech9_text, only: string_type

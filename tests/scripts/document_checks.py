@@ -16,7 +16,7 @@ from mech9_cases import PATIENCE, TREE, text_of
 BLOCK = re.compile(r'^(?P<not_run><!-- not run: [^\n]* -->\n)?'
                    r'(?P<indent> *)```(?P<kind>\w*)\n(?P<text>.*?)^ *```$', re.M | re.S)
 LINK = re.compile(r'\[[^\]]*\]\((?!https?:)([^)#\s]*)(#[^)\s]*)?\)')
-PLACE = re.compile(r'`((?:src|tests|user_procs|cmake|examples|docs)/[\w/.-]+)`(?:: ((?:`\w+`(?:, )?)+))?')
+PLACE = re.compile(r'`((?:src|tests|user_procs|cmake|examples|docs|bench)/[\w/.-]+)`(?:: ((?:`\w+`(?:, )?)+))?')
 COPIED = ('cmake', 'docs', 'examples', 'src', 'tests', 'user_procs')
 
 

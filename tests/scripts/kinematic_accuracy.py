@@ -1,5 +1,5 @@
 """Errors of positions, velocities and accelerations over whole cycles, against the motion in extended precision: the table in
-docs/accuracy.md.
+bench/accuracy.md.
 
 usage: kinematic_accuracy.py MECH9K [TIMES]      writes rows of a table to standard output; 1000 times a cycle unless told
 

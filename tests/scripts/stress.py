@@ -1,7 +1,7 @@
 """A stress test: more than a thousand generated mechanisms, run by the program and followed apart from it.
 
 Each ends either in the motion that continuation by arc length finds, its chains closed to round-off, or with the right
-exit code. Seeds are fixed. Prints a summary; docs/robustness.md keeps one.
+exit code. Seeds are fixed. Prints a summary; tests/robustness.md keeps one.
 
 tests/programs/test_stress.py tests each variant of a family by itself. This script runs all of them and prints the summary:
 

@@ -1,4 +1,4 @@
-"""Errors at the end of motions over the tolerance, by method: the table in docs/accuracy.md.
+"""Errors at the end of motions over the tolerance, by method: the table in bench/accuracy.md.
 
 usage: tolerance_factors.py MECH9D      writes rows of a table to standard output; takes some minutes
 

@@ -9,7 +9,7 @@ lies above or below its trend as steps happen to end: three quarters of the orde
 is no fault. (test_integrator holds the methods to their orders with equal steps.)
 
 adams and bdf, whose steps are many, must be as good as their tolerance promises with prince-dormand: three times its error
-or a hundred tolerances at most, on the smooth, long and sensitive motions of docs/accuracy.md.
+or a hundred tolerances at most, on the smooth, long and sensitive motions of bench/accuracy.md.
 
 auto costs little more than the better one of prince-dormand and bdf, and tells which steps were made by bdf.
 """

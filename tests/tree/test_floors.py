@@ -60,7 +60,7 @@ def test_use_statements_have_an_only_list(checks, sources):
 
 
 def test_architecture_tells_the_same_floors(checks):
-    told = re.findall(r'^   ([\w/]+) {2,}\w', text_of(os.path.join(TREE, 'docs', 'architecture.md')), re.M)
+    told = re.findall(r'^   ([\w/]+) {2,}\w', text_of(os.path.join(TREE, 'docs', 'explanation', 'architecture.md')), re.M)
     checks.equal(told[::-1], FLOORS, 'the architecture tells the same floors')
 
 

@@ -1,5 +1,6 @@
 """The tree as it is handed on: nothing at its root but what belongs there, no paths of somebody's machine, no file that holds more than one idea,
-scripts that can be run, Fortran files with their head, and tests that say where they compare the program with itself.
+scripts that can be run, Fortran files with their head, pages where the files name them, and tests that say where they compare the program
+with itself.
 """
 import os
 import re
@@ -14,6 +15,8 @@ ROOT = set('.ci .gitignore CHANGELOG.md CITATION.cff CMakeLists.txt CMakePresets
 LONGEST = 600
 # homes and mounts that mean something on one machine only; the system's own places are fine
 MACHINE_PATH = re.compile(r'(?<![\w.$}-])/(home|root|work|mnt|media|Users|opt/\w+)/[\w.]')
+# a page that a comment, a message or a test names
+PAGE = re.compile(r'(?<![\w./-])(?:bench|docs|examples|tests|user_procs)/(?:[\w-]+/)*[\w-]+\.md\b')
 TEXT = ('.f90', '.f', '.py', '.sh', '.cmake', '.txt', '.md', '.nml', '.json', '.in', 'run')
 SKIPPED = {'.git', 'build', '__pycache__'}
 
@@ -97,6 +100,12 @@ def test_scripts_can_be_run(checks, texts):
     for name, text in texts.items():
         if text.startswith('#!') and not name.endswith('.in'):   # .in: made executable when configured
             checks.true(os.access(os.path.join(TREE, name), os.X_OK), f'{name}: can be run')
+
+
+def test_pages_that_files_name(checks, names, texts):
+    """Comments, messages and tests name pages that are there."""
+    for name, text in texts.items():
+        checks.equal(set(PAGE.findall(text)) - set(names), set(), f'{name}: the pages that it names are there')
 
 
 def test_self_comparisons(checks, texts):

@@ -7,7 +7,7 @@ contains
 
   module subroutine user_force(t, state, parameters, loads)
     real(wp), intent(in) :: t                      !< time [s]
-    type(motion_view_type), intent(in) :: state    !< motion of links and coordinates: see docs/user-procedures.md
+    type(motion_view_type), intent(in) :: state    !< motion of links and coordinates: see docs/how-to/user-procedures.md
     real(wp), intent(in) :: parameters(:)          !< the numbers of &user parameters = ... /
     type(force_sum_type), intent(inout) :: loads   !< forces and torques are added to it
     real(wp), parameter :: origin(3) = 0.0_wp

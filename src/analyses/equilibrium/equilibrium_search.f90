@@ -3,7 +3,7 @@
 !> A position near an equilibrium leads to it by Newton's method, whether it is stable or not. From other positions the mechanism
 !> is first let go: it moves as its forces pull, by Newton's method with the magnitudes of the stiffness in all directions, until
 !> a stable equilibrium is near. Where that finds none, as from random starts, the sum of the squared forces is reduced
-!> (Levenberg and Marquardt in docs/bibliography.md), which leads to stable and unstable ones.
+!> (Levenberg and Marquardt in docs/reference/bibliography.md), which leads to stable and unstable ones.
 module mech9_equilibrium_search
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_assembly

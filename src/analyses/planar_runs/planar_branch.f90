@@ -3,8 +3,8 @@
 !> Positions that follow each other in time are judged as the branch stepper judges the ends of a step (mech9_branch_stepping): no matrix
 !> between the two Jacobians is singular, no coordinate moves far, rates do not turn back, and the second position is where the rates of
 !> both predict it by the trapezoidal rule. The correction of this prediction is measured by the least pivot, which tells how far away
-!> other branches are (Kantorovich's theorem, see docs/bibliography.md). Where two positions are too far apart for this, another one is
-!> put between them. Where a position is near a singular one, or too many would be needed, the run is in doubt.
+!> other branches are (Kantorovich's theorem, see docs/reference/bibliography.md). Where two positions are too far apart for
+!> this, another one is put between them. Where a position is near a singular one, or too many would be needed, the run is in doubt.
 module mech9_planar_branch
   use mech9_kinds, only: wp
   use mech9_tolerances, only: longest_drive, longest_move, near_singular, trusted_change, trusted_correction, trusted_rate_change

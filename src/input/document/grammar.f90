@@ -378,7 +378,8 @@ module mech9_grammar
                   'largest error of an output, in rad and m; other runs estimate it, and tolerances follow; 0: tolerances decide', &
                   '1e-8', seldom=.true.), &
     item_row_type('solver', 'relative_tolerance', 'real', 1, 1, '', optional, '1e-8', '>0 and <1', '', '', &
-                  'error allowed in each step, relative to coordinates and rates; errors add up, see docs/accuracy.md', &
+                  'error allowed in each step, relative to coordinates and rates; errors add up, see '// &
+                  'docs/explanation/accuracy.md', &
                   '1e-8', seldom=.true.), &
     item_row_type('solver', 'absolute_tolerance', 'real', 1, 1, '', optional, '1e-10', '>0', '', '', &
                   'error allowed in a step, in rad, m and their rates', '1e-10', seldom=.true.), &

@@ -1,6 +1,6 @@
 !> The assembly of a block: its chains are closed from a rough guess.
 !>
-!> The residual is reduced by damped least squares (Levenberg and Marquardt in docs/bibliography.md), and Newton's method
+!> The residual is reduced by damped least squares (Levenberg and Marquardt in docs/reference/bibliography.md), and Newton's method
 !> finishes at round-off. Where the guess leads to no closed position, the guesses are changed by growing random amounts, the
 !> same in every run.
 module mech9_assembly

@@ -1,8 +1,9 @@
 !> The way from one assembly to others: with one independent coordinate set free, the closed positions are a curve, and each of its
 !> positions with the given value of this coordinate is an assembly.
 !>
-!> The curve is followed by small steps along its tangent and Newton's method (Allgower and Georg in docs/bibliography.md). The
-!> coordinate that changes fastest leads: it is given in Newton's method, and all others follow from it.
+!> The curve is followed by small steps along its tangent and Newton's method (Allgower and Georg in
+!> docs/reference/bibliography.md). The coordinate that changes fastest leads: it is given in Newton's method, and all others
+!> follow from it.
 module mech9_released_curve
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

@@ -3,7 +3,8 @@
 !> Each unknown is assigned to a closed chain that can determine it (a matching). A chain then depends on the unknowns of its
 !> loop that are assigned to other chains, and on those that place the links on which its loop stands. Chains that depend
 !> on each other, directly or through others, are a block (a strongly connected component); each block comes after those on
-!> which it depends. Matching and components together are the decomposition of Dulmage and Mendelsohn (docs/bibliography.md).
+!> which it depends. Matching and components together are the decomposition of Dulmage and Mendelsohn
+!> (docs/reference/bibliography.md).
 module mech9_blocks
   use mech9_kinds, only: wp
   use mech9_tree_paths, only: find_loop, split_loops, ascending

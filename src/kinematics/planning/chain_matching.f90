@@ -3,7 +3,7 @@
 !> Each chain can determine as many unknowns of its loop as it offers equations. Chains that can determine all unknowns of
 !> their loops are assigned first, which often leaves others with few enough unknowns. The rest is matched by augmenting paths,
 !> each found by a breadth-first search, so that as many unknowns as possible have a chain (a maximum matching; Hopcroft and
-!> Karp in docs/bibliography.md).
+!> Karp in docs/reference/bibliography.md).
 module mech9_chain_matching
   implicit none
   private

@@ -1,7 +1,7 @@
 !> The space of motions of each loop: planar, spherical, translational, another subalgebra, or all six dimensions.
 !>
 !> It is the smallest Lie algebra that contains the screws of the loop's pairs, and its dimension is the number of equations
-!> of the closure (Herve's groups of displacements, docs/bibliography.md).
+!> of the closure (Herve's groups of displacements, docs/reference/bibliography.md).
 module mech9_loop_space
   use mech9_kinds, only: wp
   use mech9_tolerances, only: inexact_dimensions, screw_tolerance

@@ -1,5 +1,5 @@
-!> First part of the plan: the spanning tree of steps and frames (Jain in docs/bibliography.md), from the structural vectors.
-!> Constant poses are combined.
+!> First part of the plan: the spanning tree of steps and frames (Jain in docs/reference/bibliography.md), from the structural
+!> vectors. Constant poses are combined.
 !>
 !> A closed chain joins two known links by links that are new. These are reached from both ends, so that every frame is as few
 !> steps as possible from the frame of link 1; the last step reaches a link that is known already and makes a second frame of

@@ -1,5 +1,5 @@
 !> Strongly connected components of a directed graph, each after those to which it leads (Tarjan's algorithm without
-!> recursion, in linear time and memory; docs/bibliography.md).
+!> recursion, in linear time and memory; docs/reference/bibliography.md).
 module mech9_strong_components
   implicit none
   private

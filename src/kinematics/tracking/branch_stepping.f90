@@ -3,7 +3,7 @@
 !> Each block is predicted (mech9_predictor), corrected by Newton's method, and judged. A step is accepted if the block's
 !> Jacobian cannot have been singular within it (mech9_singularity_monitor) and the correction is small: then the closed
 !> position near the prediction is the only one there, and it belongs to the branch (Kantorovich's theorem, see
-!> docs/bibliography.md). The correction is measured by the least pivot, which tells how far away other branches are.
+!> docs/reference/bibliography.md). The correction is measured by the least pivot, which tells how far away other branches are.
 module mech9_branch_stepping
   use mech9_kinds, only: wp, long
   use mech9_tolerances, only: longest_drive, longest_move, trusted_correction, trusted_rate_change, unchanged_factors

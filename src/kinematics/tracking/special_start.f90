@@ -2,7 +2,8 @@
 !>
 !> At such a position J x' = -F_t does not determine the rates: x' = p + z n with n from the null space of J. The second
 !> derivatives of the equations, projected on the vector w with J^T w = 0, give a quadratic equation for z,
-!> w . (J' x' + ...) = 0. Each of its real roots is a branch through the position (Allgower and Georg in docs/bibliography.md).
+!> w . (J' x' + ...) = 0. Each of its real roots is a branch through the position (Allgower and Georg in
+!> docs/reference/bibliography.md).
 module mech9_special_start
   use mech9_kinds, only: wp
   use mech9_tolerances, only: singular_conditioning

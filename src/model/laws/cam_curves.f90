@@ -1,5 +1,5 @@
 !> Motion laws of cam design: the way s(x) from 0 to 1 in the time x from 0 to 1, with its exact derivatives (Norton; VDI 2143 in
-!> docs/bibliography.md). All are symmetric: s(1 - x) = 1 - s(x).
+!> docs/reference/bibliography.md). All are symmetric: s(1 - x) = 1 - s(x).
 module mech9_cam_curves
   use mech9_kinds, only: wp, pi
   implicit none

@@ -1,8 +1,8 @@
 !> A motor whose force a PID controller sets.
 !>
-!> While the force is at its limit, the integral is led back (back-calculation, Astrom and Hagglund in docs/bibliography.md): the
-!> excess of the force without limit decays within the tracking time. Its rate has a kink at the limit and no jump, so that the
-!> motion is unique and never slides along the limit.
+!> While the force is at its limit, the integral is led back (back-calculation, Astrom and Hagglund in
+!> docs/reference/bibliography.md): the excess of the force without limit decays within the tracking time. Its rate has a kink at
+!> the limit and no jump, so that the motion is unique and never slides along the limit.
 module mech9_pid_motor
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
