@@ -74,7 +74,7 @@ contains
   !> Add a joint with several freedoms, as a pair with several coordinates. Points and directions as of other pairs.
   pure subroutine compound_joint(self, coordinates, kind, links, point, axis, moving_point, moving_axis, zero, moving_zero)
     class(design_type), intent(inout) :: self             !< the design
-    integer, intent(in) :: coordinates(:)                 !< numbers of its coordinates, in the order of docs/how-to/how-to-model.md
+    integer, intent(in) :: coordinates(:)                 !< numbers of its coordinates, in the order of docs/how-to/model.md
     character(len=*), intent(in) :: kind                  !< 'spherical', 'universal', 'cylindrical', 'planar' or 'free'
     integer, intent(in) :: links(2)                       !< reference link and moving link; 1 is the frame
     real(wp), intent(in), optional :: point(3)            !< centre, or a point on the axis, in the reference link [m]
