@@ -69,7 +69,7 @@ def main():
         for method in METHODS:
             factors = [error(end_of(mech9d, data, end, method, tolerance), truth) / tolerance
                        for tolerance in TOLERANCES if tolerance > 100 * doubt]
-            cells.append(f'{plain(np.nanmin(factors))} to {plain(np.nanmax(factors))}' if factors else '')
+            cells.append(f'{plain(np.nanmin(factors))}–{plain(np.nanmax(factors))}' if factors else '')
         print(f'| {name} ({doubt:.0e}) | ' + ' | '.join(cells) + ' |', flush=True)
 
 
