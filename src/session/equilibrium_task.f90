@@ -2,22 +2,16 @@
 module mech9_equilibrium_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp, pi
-  use mech9_error, only: error_type, raise, add_place, exit_usage, exit_data, exit_interrupted
+  use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: to_text
-  use mech9_dynamics_failures, only: failure_no_inertia
   use mech9_json, only: json_type
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
-  use mech9_partition, only: free_coordinate, driven_coordinate
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
-  use mech9_start_path, only: start_way_type
   use mech9_start_way_text, only: print_start_way
-  use mech9_explained_assembly, only: assemble_model
   use mech9_linearised_equilibrium, only: equilibrium_type
-  use mech9_equilibria, only: find_equilibrium, find_equilibria
   use mech9_mode_shapes, only: position_in_vibration
   use mech9_film, only: film_type, new_film
   use mech9_columns, only: columns_type
@@ -26,8 +20,9 @@ module mech9_equilibrium_task
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_record, only: write_provenance, write_structure, write_coordinates
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
-  use mech9_equilibrium_rows, only: columns_of_equilibria, rows_of_equilibria, columns_of_modes, rows_of_modes, put_rows, &
-    put_forces, put_energy_shares
+  use mech9_rest, only: rest_type, is_interruption
+  use mech9_equilibrium_rows, only: columns_of_equilibria, rows_of_equilibria, columns_of_modes, rows_of_modes
+  use mech9_equilibrium_file, only: put_rows, put_forces, put_energy_shares
   use mech9_linear_file, only: put_linear_system
   use mech9_run_words, only: begin_report, add_uniqueness
   use mech9_force_record, only: force_record_type, reacting_pairs
@@ -62,44 +57,33 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< the report is written
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows of the table, too
-    type(equilibrium_type), allocatable :: list(:)
-    type(plan_type) :: plan
-    type(state_type) :: start
-    type(start_way_type) :: way
+    type(rest_type) :: rest
     type(picture_requests_type) :: pictures
     type(force_record_type) :: forces
     type(error_type), allocatable :: err, interruption
 
     reported = .false.
-    allocate (list(0))
+    allocate (rest%equilibria(0))
     if (options%has('animate')) call read_picture_requests(options, model, pictures, err)
-    if (.not. allocated(err)) call assemble_in_space(model, plan, start, way, err)
-    if (.not. (allocated(err) .or. options%has('quiet'))) call print_start_way(error_unit, model%mechanism, way)
-    if (.not. allocated(err) .and. options%has('verbose')) call print_making(model, plan)
-    if (.not. allocated(err)) call search(options, model, plan, start, list, err)
-    if (is_interruption(err) .and. size(list) > 0) call move_alloc(err, interruption)
+    if (.not. allocated(err)) call rest%assemble(model, err)
+    if (.not. (allocated(err) .or. options%has('quiet'))) call print_start_way(error_unit, model%mechanism, rest%way)
+    if (.not. allocated(err) .and. options%has('verbose')) call print_making(model, rest%plan)
+    if (.not. allocated(err)) call search(options, model, rest, err)
+    if (is_interruption(err) .and. size(rest%equilibria) > 0) call move_alloc(err, interruption)
     if (.not. allocated(err)) then
-      if (.not. options%has('quiet')) call print_findings(error_unit, options%number('starts', 0), list, &
+      if (.not. options%has('quiet')) call print_findings(error_unit, options%number('starts', 0), rest%equilibria, &
                                                             allocated(interruption))
-      if (.not. options%has('modes')) call judge_forces(options, model, list(1), forces)
-      call write_results(options, model, list, forces, diagnostics%sources(1)%text, err, kept)
+      if (.not. options%has('modes')) call judge_forces(options, model, rest%equilibria(1), forces)
+      call write_results(options, model, rest%equilibria, forces, diagnostics%sources(1)%text, err, kept)
     end if
     if (allocated(interruption)) call diagnostics%add_error(interruption)
-    if (.not. allocated(err) .and. options%has('mode')) call show_mode(options, model, pictures, list(1), err)
+    if (.not. allocated(err) .and. options%has('mode')) call show_mode(options, model, pictures, rest%equilibria(1), err)
     if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('report')) return
-    call save_report(options, model, list, forces, diagnostics, err)
+    call save_report(options, model, rest%equilibria, forces, diagnostics, err)
     reported = .not. allocated(err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine find_rest
-
-  !> Whether a failure is an interruption by the user.
-  pure logical function is_interruption(err)
-    type(error_type), allocatable, intent(in) :: err   !< a failure, or none
-
-    is_interruption = .false.
-    if (allocated(err)) is_interruption = err%code == exit_interrupted
-  end function is_interruption
 
   !> Print the structural vectors and the plan.
   subroutine print_making(model, plan)
@@ -111,71 +95,22 @@ contains
     call print_plan(error_unit, model%mechanism, plan, requested_by_results(model%mechanism, model%request%output, .true.))
   end subroutine print_making
 
-  !> Plan and closed position at the start, in space, with the motion of the driven coordinates.
-  subroutine assemble_in_space(model, plan, start, way, err)
-    type(model_type), intent(in) :: model               !< the model
-    type(plan_type), intent(out) :: plan                !< the plan of the mechanism
-    type(state_type), intent(out) :: start              !< the closed position
-    type(start_way_type), intent(out) :: way            !< how it was reached from the drawn position
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(plan_type) :: own_plan
-    type(state_type) :: own_start
-    integer :: i, k
-
-    if (.not. any(model%problem%partition%kind == free_coordinate)) then
-      call raise(err, exit_data, 'every independent coordinate is driven, so that none can come to rest; leave out a &drive', &
-                 model%problem%drives(1)%drive%place)
-      return
-    end if
-    call assemble_model(model, own_plan, own_start, err, way)
-    if (allocated(err)) return
-    call make_plan(model%mechanism, model%problem%partition, own_start%q, plan, start, err, in_space=.true.)
-    if (allocated(err)) return
-    start%t = model%request%time%start
-    do i = 1, size(model%problem%drives)
-      k = model%problem%drives(i)%drive%coordinate
-      if (model%problem%partition%kind(k) /= driven_coordinate) cycle
-      call model%problem%drives(i)%drive%evaluate(start%t, start%q(k), start%dq(k), start%ddq(k), err)
-      if (allocated(err)) return
-    end do
-  end subroutine assemble_in_space
-
   !> Find one equilibrium, or those of many starts.
-  subroutine search(options, model, plan, start, list, err)
-    type(command_line_type), intent(in) :: options                        !< the command line
-    type(model_type), intent(in) :: model                                 !< the model
-    type(plan_type), intent(in) :: plan                                   !< its plan, in space
-    type(state_type), intent(in) :: start                                 !< the closed position at the start
-    type(equilibrium_type), allocatable, intent(inout) :: list(:)         !< gets the equilibria
-    type(error_type), allocatable, intent(out) :: err                     !< allocated if there is none
-    type(equilibrium_type), allocatable :: one(:)
-
-    if (options%has('starts') .and. options%has('equilibrium')) then
-      call find_equilibria(model%mechanism, model%problem%partition, plan, start, options%number('starts', 1), one, err, &
-                           signal_interruption_type())
-    else
-      allocate (one(1))
-      call find_equilibrium(model%mechanism, model%problem%partition, plan, start, one(1), err)
-    end if
-    if (.not. allocated(err) .and. .not. options%has('equilibrium')) call need_inertia(model, one(1), err)
-    if (.not. allocated(err) .or. is_interruption(err)) call move_alloc(one, list)
-    if (allocated(err) .or. .not. options%has('mode')) return
-    if (options%number('mode', 1) > list(1)%modes%count) &
-      call raise(err, exit_usage, 'there is no mode '//options%argument('mode')//'; the modes are 1 to '// &
-                 to_text(list(1)%modes%count))
-  end subroutine search
-
-  !> Fail because modes and linearised equations of motion need the inertia of each free coordinate.
-  subroutine need_inertia(model, equilibrium, err)
+  subroutine search(options, model, rest, err)
+    type(command_line_type), intent(in) :: options      !< the command line
     type(model_type), intent(in) :: model               !< the model
-    type(equilibrium_type), intent(in) :: equilibrium   !< the equilibrium
-    type(error_type), allocatable, intent(out) :: err   !< allocated if one has none
+    type(rest_type), intent(inout) :: rest              !< assembled; gets the equilibria
+    type(error_type), allocatable, intent(out) :: err   !< allocated if there is none
+    integer :: starts
 
-    if (equilibrium%without_inertia == 0) return
-    call raise(err, exit_data, failure_no_inertia)
-    err%failure%coordinates = [equilibrium%without_inertia]
-    call add_place(err, place=model%mechanism%pairs(equilibrium%without_inertia)%pair%place)
-  end subroutine need_inertia
+    starts = 0
+    if (options%has('starts') .and. options%has('equilibrium')) starts = options%number('starts', 1)
+    call rest%find(model, starts, .not. options%has('equilibrium'), err, signal_interruption_type())
+    if (allocated(err) .or. .not. options%has('mode')) return
+    if (options%number('mode', 1) > rest%equilibria(1)%modes%count) &
+      call raise(err, exit_usage, 'there is no mode '//options%argument('mode')//'; the modes are 1 to '// &
+                 to_text(rest%equilibria(1)%modes%count))
+  end subroutine search
 
   !> Find which components of the forces in pairs are unique, if any are recorded, and say how many are not.
   subroutine judge_forces(options, model, equilibrium, forces)

@@ -49,6 +49,14 @@ def test_from_values_in_code(checks, build, mech9d, tmp_path):
     checks.near(printed[:, -1] + printed[:, -2], printed[0, -1] + printed[0, -2], 1e-6, 'the energy stays')
 
 
+def test_other_cranks(checks, build, mech9k):
+    done = run(build.program('library_other_cranks'), folder=FOLDER)
+    checks.equal(done.returncode, 0, f'it runs; {done.stderr}')
+    for line, crank in zip(done.stdout.splitlines(), (0.3, 0.25, 0.2), strict=True):
+        highest = table_of(mech9k, DATA, '--set', f'pair(2).point(1)={crank}')['P.y'].max()
+        checks.equal(line.split(), ['crank', f'{crank:.2f}', 'm:', 'P.y', 'is', 'at', 'most', f'{highest:.4f}'], f'crank {crank}')
+
+
 def test_without_its_data_file(checks, build, tmp_path):
     done = run(build.program('library_from_file'), folder=tmp_path)
     checks.equal(done.returncode, 1, 'without its data file the program fails')
@@ -58,5 +66,6 @@ def test_without_its_data_file(checks, build, tmp_path):
 def test_document_shows_the_programs(checks):
     shown = text_of(os.path.join(TREE, 'docs', 'how-to', 'library.md'))
     checks.true(text_of(os.path.join(FOLDER, 'from_file.f90')) in shown, 'docs/how-to/library.md shows from_file.f90')
+    checks.true(text_of(os.path.join(FOLDER, 'other_cranks.f90')) in shown, 'docs/how-to/library.md shows other_cranks.f90')
     lines = [line for line in text_of(os.path.join(FOLDER, 'from_values.f90')).splitlines() if 'design%' in line]
     checks.true(len(lines) > 5 and '\n'.join(lines) in shown, 'docs/how-to/library.md shows the design of from_values.f90')

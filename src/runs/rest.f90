@@ -1,0 +1,105 @@
+!> Equilibria of a model, from its assembly on: what --equilibrium, --modes and --linear find.
+module mech9_rest
+  use mech9_error, only: error_type, raise, add_place, exit_data, exit_interrupted
+  use mech9_dynamics_failures, only: failure_no_inertia
+  use mech9_model, only: model_type
+  use mech9_partition, only: free_coordinate, driven_coordinate
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_planning, only: make_plan
+  use mech9_start_path, only: start_way_type
+  use mech9_simulation, only: interruption_type
+  use mech9_linearised_equilibrium, only: equilibrium_type
+  use mech9_equilibria, only: find_equilibrium, find_equilibria
+  use mech9_explained_assembly, only: assemble_model
+  implicit none
+  private
+  public :: rest_type, is_interruption
+
+  !> Parts are polymorphic, which keeps the code of copies small.
+  type :: rest_type
+    class(plan_type), allocatable :: plan                !< of the mechanism, in space
+    class(state_type), allocatable :: start              !< the closed position at the start, with the motion of the drives
+    type(start_way_type) :: way                          !< how the start was reached from the drawn position
+    type(equilibrium_type), allocatable :: equilibria(:) !< the one to which the start leads, or those of many starts
+  contains
+    procedure :: assemble
+    procedure :: find
+  end type rest_type
+
+contains
+
+  !> Find plan and closed position at the start, in space, with the motion of the driven coordinates. Fails with exit_data where
+  !> every independent coordinate is driven.
+  subroutine assemble(self, model, err)
+    class(rest_type), intent(inout) :: self             !< gets them; without equilibria
+    type(model_type), intent(in) :: model               !< the model
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(plan_type) :: first_plan
+    type(state_type) :: first_start
+    integer :: i, k
+
+    if (allocated(self%equilibria)) deallocate (self%equilibria)
+    allocate (self%equilibria(0))
+    if (.not. any(model%problem%partition%kind == free_coordinate)) then
+      call raise(err, exit_data, 'every independent coordinate is driven, so that none can come to rest; leave out a &drive', &
+                 model%problem%drives(1)%drive%place)
+      return
+    end if
+    if (.not. allocated(self%plan)) allocate (self%plan, self%start)
+    call assemble_model(model, first_plan, first_start, err, self%way)
+    if (.not. allocated(err)) &
+      call make_plan(model%mechanism, model%problem%partition, first_start%q, self%plan, self%start, err, in_space=.true.)
+    if (allocated(err)) return
+    associate (start => self%start)
+      start%t = model%request%time%start
+      do i = 1, size(model%problem%drives)
+        k = model%problem%drives(i)%drive%coordinate
+        if (model%problem%partition%kind(k) /= driven_coordinate) cycle
+        call model%problem%drives(i)%drive%evaluate(start%t, start%q(k), start%dq(k), start%ddq(k), err)
+        if (allocated(err)) return
+      end do
+    end associate
+  end subroutine assemble
+
+  !> Find the equilibrium to which the start leads, or those of many starts. Fails with exit_assembly where there is none, and with
+  !> exit_interrupted where the search is stopped; the equilibria that were found before are then there.
+  subroutine find(self, model, starts, with_modes, err, interruption)
+    class(rest_type), intent(inout) :: self                          !< assembled; gets the equilibria
+    type(model_type), intent(in) :: model                            !< the model
+    integer, intent(in) :: starts                                    !< number of random starts; 0: the start of the model alone
+    logical, intent(in) :: with_modes                                !< modes are needed, and so is inertia of every free coordinate
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked before each start
+    type(equilibrium_type), allocatable :: found(:)
+
+    if (starts > 0) then
+      call find_equilibria(model%mechanism, model%problem%partition, self%plan, self%start, starts, found, err, interruption)
+    else
+      allocate (found(1))
+      call find_equilibrium(model%mechanism, model%problem%partition, self%plan, self%start, found(1), err)
+    end if
+    if (.not. allocated(err) .and. with_modes) call need_inertia(model, found(1), err)
+    if (.not. allocated(err) .or. is_interruption(err)) call move_alloc(found, self%equilibria)
+  end subroutine find
+
+  !> Fail because modes and linearised equations of motion need the inertia of each free coordinate.
+  subroutine need_inertia(model, equilibrium, err)
+    type(model_type), intent(in) :: model               !< the model
+    type(equilibrium_type), intent(in) :: equilibrium   !< the equilibrium
+    type(error_type), allocatable, intent(out) :: err   !< allocated if one has none
+
+    if (equilibrium%without_inertia == 0) return
+    call raise(err, exit_data, failure_no_inertia)
+    err%failure%coordinates = [equilibrium%without_inertia]
+    call add_place(err, place=model%mechanism%pairs(equilibrium%without_inertia)%pair%place)
+  end subroutine need_inertia
+
+  !> Whether a failure is an interruption.
+  pure logical function is_interruption(err)
+    type(error_type), allocatable, intent(in) :: err   !< a failure, or none
+
+    is_interruption = .false.
+    if (allocated(err)) is_interruption = err%code == exit_interrupted
+  end function is_interruption
+end module mech9_rest

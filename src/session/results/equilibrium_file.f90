@@ -1,0 +1,110 @@
+!> Equilibria and modes as data sets of an HDF5 file.
+module mech9_equilibrium_file
+  use mech9_kinds, only: wp
+  use mech9_mechanism, only: mechanism_type
+  use mech9_columns, only: columns_type
+  use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_hdf5_scales, only: put_force_scales, common_unit
+  use mech9_hdf5_record, only: write_uniqueness
+  use mech9_force_record, only: force_record_type
+  use mech9_linearised_equilibrium, only: equilibrium_type
+  use mech9_mode_shapes, only: energy_shares
+  implicit none
+  private
+  public :: put_rows, put_forces, put_energy_shares
+
+contains
+
+  !> Put rows into a file: the first column is the scale of the others, columns of coordinates become one data set, and those of
+  !> forces are left to put_forces.
+  subroutine put_rows(file, columns, rows, first, n_coordinates, suffixes)
+    type(hdf5_file_type), intent(inout) :: file       !< the open file
+    type(columns_type), intent(in) :: columns         !< of the rows
+    real(wp), intent(in) :: rows(:, :)                !< (columns, rows)
+    integer, intent(in) :: first                      !< the first column of a coordinate
+    integer, intent(in) :: n_coordinates              !< M
+    character(len=*), intent(in) :: suffixes(:)       !< of the data sets of coordinates, in the order of the columns
+    real(wp) :: together(n_coordinates, size(rows, 2))
+    character(len=:), allocatable :: scale, name
+    character(len=12) :: scales(2)
+    integer :: i, at
+
+    scale = columns%names(1)%text
+    call file%put(scale, nint(rows(1, :)), columns%long_names(1)%text)
+    call file%make_scale(scale)
+    do i = 2, columns%count
+      if (i >= first .and. i < first + n_coordinates*size(suffixes)) cycle
+      if (columns%forces() > 0 .and. i > columns%motion .and. i <= columns%motion + columns%forces()) cycle
+      name = columns%names(i)%text
+      at = index(name, '.')
+      if (at > 0) name(at:at) = '_'
+      call file%put(name, rows(i, :), columns%long_names(i)%text, columns%units(i)%text)
+      call file%attach_scales(name, ['/'//scale])
+    end do
+    do i = 1, size(suffixes)
+      name = 'q'//trim(suffixes(i))
+      together = rows(first + i - 1:first + n_coordinates*size(suffixes) - 1:size(suffixes), :)
+      call file%put(name, together, 'coordinates of the pairs; coordinate_unit tells the unit of each')
+      scales(1) = '/'//scale
+      scales(2) = '/coordinate'
+      call file%attach_scales(name, scales)
+    end do
+  end subroutine put_rows
+
+  !> Put the forces at equilibria into a file, in the data sets of runs, with the components that are unique.
+  subroutine put_forces(file, mechanism, columns, rows, forces)
+    type(hdf5_file_type), intent(inout) :: file       !< the open file, with the scale of the equilibria
+    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
+    type(columns_type), intent(in) :: columns         !< of the rows
+    real(wp), intent(in) :: rows(:, :)                !< (columns, rows)
+    type(force_record_type), intent(in) :: forces     !< with the components that are unique
+    real(wp), allocatable :: wrenches(:, :, :, :), part(:, :, :)
+    character(len=12) :: scales(3)
+    logical :: has_axes
+    integer :: at, n
+
+    if (columns%forces() == 0) return
+    has_axes = .false.
+    call put_force_scales(file, mechanism, columns, has_axes)
+    scales = [character(len=12) :: '/equilibrium', '/pair', '/axis']
+    at = columns%motion
+    n = size(columns%drives)
+    if (n > 0) then
+      call file%put('drive_force', rows(at + 1:at + n, :), 'forces that the drives need', common_unit(columns%units(at + 1:at + n)))
+      call file%attach_scales('drive_force', [scales(1), '/driven     '])
+    end if
+    n = size(columns%reacting)
+    if (n == 0) return
+    wrenches = reshape(rows(at + size(columns%drives) + 1:at + size(columns%drives) + 6*n, :), [3, 2, n, size(rows, 2)])
+    part = wrenches(:, 1, :, :)
+    call file%put('reaction_force', part, 'forces that the reference links pass to the moving links through the pairs, in the '// &
+                  'fixed frame', 'N')
+    call file%attach_scales('reaction_force', scales)
+    part = wrenches(:, 2, :, :)
+    call file%put('reaction_moment', part, 'moments that they pass, about the origins of the pairs'' frames in the moving links', &
+                  'N m')
+    call file%attach_scales('reaction_moment', scales)
+    at = at + columns%forces() - columns%couplings
+    if (columns%couplings > 0) then
+      call file%put('coupling_force', rows(at + 1:at + columns%couplings, :), &
+                    'forces of the couplings on their second coordinates', &
+                    common_unit(columns%units(at + 1:at + columns%couplings)))
+      call file%attach_scales('coupling_force', [scales(1), '/coupling   '])
+    end if
+    call write_uniqueness(file, columns, forces)
+  end subroutine put_forces
+
+  !> Put the shares of the kinetic energy into a file of modes.
+  subroutine put_energy_shares(file, equilibrium)
+    type(hdf5_file_type), intent(inout) :: file         !< the open file, with the scales
+    type(equilibrium_type), intent(in) :: equilibrium   !< with its modes
+    real(wp) :: shares(equilibrium%resting%plan%n_coordinates, equilibrium%modes%count)
+    integer :: i
+
+    do i = 1, size(shares, 2)
+      call energy_shares(equilibrium, i, shares(:, i))
+    end do
+    call file%put('kinetic_share', shares, 'share of each free coordinate in the kinetic energy of the mode')
+    call file%attach_scales('kinetic_share', ['/mode      ', '/coordinate'])
+  end subroutine put_energy_shares
+end module mech9_equilibrium_file
