@@ -295,3 +295,13 @@ def test_too_many_values_for_one_parameter(cases, mech9k):
 def test_a_wrong_parameter_is_one_error(cases, mech9k):
     done = run(mech9k, cases.write(SLIDER_CRANK + parameters(', lo=1').splitlines()[0] + "\n&study kind='grid' /\n"), '--study')
     cases.checks.true("unknown name 'lo'" in done.stderr and 'at least one' not in done.stderr, 'a wrong parameter is one error', done.stderr)
+
+
+def test_a_program_has_the_threads_of_its_build(checks, build, tmp_path):
+    """A build that found OpenMP uses it; another one tells that one core makes the runs."""
+    found = bool(build.settings.get('OpenMP_Fortran_FLAGS')) and build.kind not in ('Debug', 'Sanitize', 'Threads')
+    for name, text in (('mech9k', SLIDER_CRANK + "&parameter name='crank', sets='pair(2).point(1)', low=0.2, high=0.8, count=9 /\n&study kind='grid' /\n"),
+                       ('mech9d', PENDULUM + "&study kind='random', runs=9, seed=1 /\n")):
+        done = run(build.program(name), Cases(checks, tmp_path).write(text), '--study', '--threads', '2', folder=tmp_path)
+        checks.equal(done.returncode, DONE, f'{name}: two threads make a study; {done.stderr}')
+        checks.equal('built without threads' in done.stderr, not found, f'{name}: threads are there where OpenMP was found')
