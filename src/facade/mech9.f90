@@ -15,11 +15,13 @@ module mech9
   use mech9_recorded_run, only: run_type => recorded_run_type
   use mech9_recorded_study, only: study_type => recorded_study_type
   use mech9_recorded_rest, only: rest_type => recorded_rest_type
+  use mech9_structure_answers, only: judge_mobility, list_assemblies, list_ranges
   implicit none
   private
   public :: wp
   public :: mechanism_type, read_file, read_text, design_type
   public :: motion_type, run_type, study_type, rest_type, interruption_type, simulation_statistics_type, coordinate_change_type
+  public :: judge_mobility, list_assemblies, list_ranges
   public :: error_type, exit_usage, exit_data, exit_structure, exit_assembly, exit_singular, exit_integrator, exit_file, &
     exit_interrupted
 end module mech9

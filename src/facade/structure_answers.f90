@@ -1,0 +1,111 @@
+!> Answers about the structure of a mechanism for the library's users: its mobility, its assemblies, and how far it can move.
+module mech9_structure_answers
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
+  use mech9_program_kind, only: dynamics
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_model, only: model_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_explained_assembly, only: assemble_model
+  use mech9_mobility_report, only: mobility_report_type, report_mobility
+  use mech9_assemblies, only: assembly_list_type, find_assemblies
+  use mech9_motion_range, only: motion_range_type, end_type, find_range, ends_never, ends_round
+  use mech9_checked_mechanism, only: checked_mechanism_type
+  implicit none
+  private
+  public :: judge_mobility, list_assemblies, list_ranges
+
+contains
+
+  !> Find the mobility of a mechanism and its redundant equations. Fails with exit_structure or exit_assembly where the mechanism
+  !> cannot be put together.
+  subroutine judge_mobility(mechanism, mobility, redundant, err)
+    type(checked_mechanism_type), intent(in) :: mechanism      !< the mechanism
+    integer, intent(out) :: mobility                           !< coordinates less rank, in a general position; 0 after a failure
+    integer, intent(out) :: redundant                          !< equations of all chains that follow from others
+    type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
+    type(model_type) :: model
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(mobility_report_type) :: report
+
+    mobility = 0
+    redundant = 0
+    call assemble(mechanism, model, plan, start, err)
+    if (allocated(err)) return
+    call report_mobility(model%mechanism, plan, start, report)
+    mobility = report%by_rank
+    redundant = sum(report%redundant)
+  end subroutine judge_mobility
+
+  !> Find the assemblies with the independent coordinates of the start, from random starts. The first one is that of the mechanism.
+  !> Fails as judge_mobility does.
+  subroutine list_assemblies(mechanism, starts, q, err)
+    type(checked_mechanism_type), intent(in) :: mechanism      !< the mechanism
+    integer, intent(in) :: starts                              !< number of random starts
+    real(wp), allocatable, intent(out) :: q(:, :)              !< (M,assemblies) coordinates [rad, m]
+    type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
+    type(model_type) :: model
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(assembly_list_type) :: list
+
+    call assemble(mechanism, model, plan, start, err)
+    if (.not. allocated(err)) then
+      call find_assemblies(model%mechanism, plan, start, starts, list)
+      q = list%q(:, :size(list%found))
+    else
+      allocate (q(0, 0))
+    end if
+  end subroutine list_assemblies
+
+  !> Find how far each independent coordinate can go from the start while the others are held there. Fails as judge_mobility does.
+  subroutine list_ranges(mechanism, coordinates, lower, upper, err)
+    type(checked_mechanism_type), intent(in) :: mechanism      !< the mechanism
+    integer, allocatable, intent(out) :: coordinates(:)        !< (independent) their numbers
+    real(wp), allocatable, intent(out) :: lower(:)             !< (independent) least values [rad, m]; -infinite: there is none
+    real(wp), allocatable, intent(out) :: upper(:)             !< (independent) greatest values [rad, m]; infinite: none
+    type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
+    type(model_type) :: model
+    type(plan_type) :: plan
+    type(state_type) :: start
+    type(motion_range_type) :: range
+    integer :: i
+
+    call assemble(mechanism, model, plan, start, err)
+    if (allocated(err)) then
+      allocate (coordinates(0), lower(0), upper(0))
+      return
+    end if
+    coordinates = plan%independent
+    allocate (lower(size(coordinates)), upper(size(coordinates)))
+    do i = 1, size(coordinates)
+      call find_range(plan, start, coordinates(i), range)
+      lower(i) = end_of(range%lower, -1.0_wp)
+      upper(i) = end_of(range%upper, 1.0_wp)
+    end do
+  end subroutine list_ranges
+
+  !> The value of an end; infinite where there is none.
+  pure real(wp) function end_of(found, direction)
+    type(end_type), intent(in) :: found       !< one end of a range
+    real(wp), intent(in) :: direction         !< 1 for the upper end, -1 for the lower one
+
+    end_of = found%value
+    if (any(found%kind == [ends_never, ends_round])) end_of = direction*ieee_value(1.0_wp, ieee_positive_inf)
+  end function end_of
+
+  !> Find the plan and the closed position of a mechanism at its start. Drives need not be there.
+  subroutine assemble(mechanism, model, plan, start, err)
+    type(checked_mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(model_type), intent(out) :: model                     !< of the mechanism
+    type(plan_type), intent(out) :: plan                       !< its plan
+    type(state_type), intent(out) :: start                     !< the closed position
+    type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
+
+    call mechanism%take_request(dynamics, model, err)
+    if (.not. allocated(err)) call assemble_model(model, plan, start, err)
+    call mechanism%point_at(err)
+  end subroutine assemble
+end module mech9_structure_answers
