@@ -39,13 +39,14 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
     "-g -Og -Wno-maybe-uninitialized -fcheck=all,no-array-temps -finit-real=snan -finit-derived -ffpe-trap=invalid,zero,overflow")
   set(mech9_sanitizers "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer")
   foreach(language C Fortran)
-    set(CMAKE_${language}_FLAGS_SANITIZE "-g -O1 ${mech9_sanitizers} ${mech9_no_false_warnings}")
-    set(CMAKE_${language}_FLAGS_THREADS "-g -O1 -fsanitize=thread ${mech9_no_false_warnings}")
+    # twice as quick to compile as with -g -O1
+    set(CMAKE_${language}_FLAGS_SANITIZE "-g1 -Og ${mech9_sanitizers} ${mech9_no_false_warnings}")
+    set(CMAKE_${language}_FLAGS_THREADS "-g1 -Og -fsanitize=thread ${mech9_no_false_warnings}")
     set(CMAKE_${language}_FLAGS_COVERAGE "-g -O0 --coverage")
   endforeach()
   # A function with effects behind .and. or .or. may be left out, which only optimising builds tell; these ones refuse it.
   foreach(type SANITIZE THREADS)
-    string(APPEND CMAKE_Fortran_FLAGS_${type} " -Werror=function-elimination")
+    string(APPEND CMAKE_Fortran_FLAGS_${type} " -ffrontend-optimize -Werror=function-elimination")
   endforeach()
 
   # How the floors are compiled in an optimised build (src/CMakeLists.txt); procedures that nothing calls are left out of programs.
