@@ -1,14 +1,15 @@
 !> The pieces of the time between two outputs in which all laws are smooth.
 !>
-!> Laws of drives and loads have joints, at which rates, accelerations and forces may jump. A piece ends a little more than
+!> Laws of drives, loads and motors have joints, at which rates, accelerations and forces may jump. A piece ends a little more than
 !> round-off before a joint, and the next one begins as much behind it, so that both have the values of their own side. Joints of
 !> several laws that differ by round-off are one joint. Joints are passed in the order of time.
 module mech9_smooth_pieces
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
-  use mech9_law, only: from_inside
+  use mech9_law, only: law_type, from_inside
+  use mech9_load, only: load_type
   use mech9_model, only: model_type
-  use mech9_tangent, only: tangent_type
+  use mech9_tangent, only: tangent_type, law_tangent_type
   implicit none
   private
   public :: smooth_piece_type, smooth_pieces_type, have_joints
@@ -28,7 +29,7 @@ module mech9_smooth_pieces
     real(wp), allocatable :: by(:, :)     !< (numbers,P)
   end type law_change_type
 
-  !> The laws of drives, then those of loads, with the joints that were passed so far.
+  !> The laws of drives, then those of loads and of motors, with the joints that were passed so far.
   type :: smooth_pieces_type
     integer, private :: n_parameters = 0                         !< P
     real(wp), private :: direction = 1.0_wp                      !< of time
@@ -75,7 +76,7 @@ contains
       self%direction = sign(1.0_wp, time%end - time%start)
       self%tolerance = same_time*duration
       before = time%start - self%direction*part_before*duration
-      allocate (self%coming(size(model%problem%drives) + size(model%mechanism%loads)))
+      allocate (self%coming(size(model%problem%drives) + size(model%mechanism%loads) + size(model%mechanism%motors)))
       do l = 1, size(self%coming)
         self%coming(l) = joint_after(model, l, before, self%direction)
         do while ((self%coming(l) - time%start)*self%direction < -self%tolerance)
@@ -93,22 +94,33 @@ contains
     type(model_type), intent(in) :: model                             !< the model with the laws
     type(tangent_type), intent(in) :: tangents(:)                     !< (P) derivatives by the parameters
     type(law_change_type), intent(inout) :: changes(:)                !< of each law, not known before
-    real(wp), allocatable :: own(:)
-    integer :: i, l, p
+    integer :: i, p
 
     do p = 1, size(tangents)
       do i = 1, size(model%problem%drives)
         if (allocated(tangents(p)%drives(i)%change)) call take(i, tangents(p)%drives(i)%change)
       end do
       do i = 1, size(model%mechanism%loads)
-        l = size(model%problem%drives) + i
-        if (.not. allocated(model%mechanism%loads(i)%load%law)) cycle
-        if (.not. allocated(tangents(p)%loads(i)%change)) cycle
-        call model%mechanism%loads(i)%load%numbers(own)
-        call take(l, tangents(p)%loads(i)%change(size(own) + 1:))
+        call take_load(size(model%problem%drives) + i, model%mechanism%loads(i)%load, tangents(p)%loads(i))
+      end do
+      do i = 1, size(model%mechanism%motors)
+        call take_load(size(model%problem%drives) + size(model%mechanism%loads) + i, model%mechanism%motors(i)%motor, &
+                       tangents(p)%motors(i))
       end do
     end do
   contains
+    !> Take the derivatives of the law of one load by parameter p, if it has a law.
+    subroutine take_load(law, load, part)
+      integer, intent(in) :: law                   !< number of the law
+      class(load_type), intent(in) :: load         !< the load
+      type(law_tangent_type), intent(in) :: part   !< of its numbers, then of those of its law
+      real(wp), allocatable :: own(:)
+
+      if (.not. (allocated(load%law) .and. allocated(part%change))) return
+      call load%numbers(own)
+      call take(law, part%change(size(own) + 1:))
+    end subroutine take_load
+
     !> Take the derivatives of one law by parameter p.
     subroutine take(law, change)
       integer, intent(in) :: law           !< number of the law
@@ -125,16 +137,28 @@ contains
     integer, intent(in) :: l                 !< number of the law
     real(wp), intent(in) :: t                !< time; a joint there does not count [s]
     real(wp), intent(in) :: direction        !< of time
-    integer :: i
+    integer :: i, n
 
-    joint = sign(huge(t), direction)
     i = l - size(model%problem%drives)
+    n = size(model%mechanism%loads)
     if (i <= 0) then
       joint = model%problem%drives(l)%drive%next_joint(t, direction)
-    else if (allocated(model%mechanism%loads(i)%load%law)) then
-      joint = model%mechanism%loads(i)%load%law%next_joint(t, direction)
+    else if (i <= n) then
+      joint = joint_of_load(model%mechanism%loads(i)%load, t, direction)
+    else
+      joint = joint_of_load(model%mechanism%motors(i - n)%motor, t, direction)
     end if
   end function joint_after
+
+  !> The next joint of a load's law behind a time; beyond all times where there is none.
+  pure real(wp) function joint_of_load(load, t, direction) result(joint)
+    class(load_type), intent(in) :: load     !< the load
+    real(wp), intent(in) :: t                !< time; a joint there does not count [s]
+    real(wp), intent(in) :: direction        !< of time
+
+    joint = sign(huge(t), direction)
+    if (allocated(load%law)) joint = load%law%next_joint(t, direction)
+  end function joint_of_load
 
   !> Whether the joint that comes next is at a time.
   pure logical function is_at_joint(self, t)
@@ -235,14 +259,31 @@ contains
     type(law_change_type), intent(in) :: change     !< of its numbers
     real(wp), intent(in) :: joint                   !< time of the joint [s]
     real(wp), intent(out) :: rate(:)                !< (P) derivatives by the parameters
-    integer :: p, i
+    integer :: i, n
 
     rate = 0.0_wp
     if (.not. allocated(change%by)) return
     i = l - size(model%problem%drives)
-    do p = 1, size(rate)
-      if (i <= 0) rate(p) = model%problem%drives(l)%drive%joint_rate(change%by(:, p), joint)
-      if (i > 0) rate(p) = model%mechanism%loads(i)%load%law%joint_rate(change%by(:, p), joint)
-    end do
+    n = size(model%mechanism%loads)
+    if (i <= 0) then
+      call find_law_rate(model%problem%drives(l)%drive, change, joint, rate)
+    else if (i <= n) then
+      call find_law_rate(model%mechanism%loads(i)%load%law, change, joint, rate)
+    else
+      call find_law_rate(model%mechanism%motors(i - n)%motor%law, change, joint, rate)
+    end if
   end subroutine find_rate
+
+  !> Derivatives of the time of a joint of a law.
+  pure subroutine find_law_rate(law, change, joint, rate)
+    class(law_type), intent(in) :: law              !< the law
+    type(law_change_type), intent(in) :: change     !< of its numbers
+    real(wp), intent(in) :: joint                   !< time of the joint [s]
+    real(wp), intent(out) :: rate(:)                !< (P) derivatives by the parameters
+    integer :: p
+
+    do p = 1, size(rate)
+      rate(p) = law%joint_rate(change%by(:, p), joint)
+    end do
+  end subroutine find_law_rate
 end module mech9_smooth_pieces

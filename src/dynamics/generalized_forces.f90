@@ -12,11 +12,11 @@ module mech9_generalized_forces
   use mech9_frame_motion, only: link_motion
   implicit none
   private
-  public :: collect_loads, sum_loads, collect_forces, add_generalized, show_state, show_links
+  public :: collect_loads, sum_forces, sum_loads, collect_forces, add_generalized, show_state, show_links
 
 contains
 
-  !> Collect the forces and torques of the loads on links, and their generalized forces on coordinates, in work%sum.
+  !> Collect the forces and torques of the loads on links, and the generalized forces of loads and motors on coordinates, in work%sum.
   subroutine collect_loads(mechanism, plan, dynamics, state, work, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
@@ -25,9 +25,28 @@ contains
     type(lagrange_work_type), intent(inout) :: work     !< gets the loads' sums and the motion that they read
     type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
 
-    if (size(dynamics%acting) == 0) return
-    call sum_loads(mechanism, plan, dynamics%acting, dynamics%loaded, state, work%view, work%sum, err)
+    if (size(dynamics%acting) == 0 .and. size(mechanism%motors) == 0) return
+    call sum_forces(mechanism, plan, dynamics%acting, dynamics%loaded, state, work%view, work%sum, err)
   end subroutine collect_loads
+
+  !> The sums of loads and of all motors on links and coordinates, from the motion that they read.
+  subroutine sum_forces(mechanism, plan, acting, loaded, state, view, sum, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    integer, intent(in) :: acting(:)                    !< numbers of the loads
+    integer, intent(in) :: loaded(:)                    !< links on whose motion they depend
+    type(state_type), intent(in) :: state               !< position and motion of the mechanism
+    type(motion_view_type), intent(inout) :: view       !< gets the motion that loads and motors read
+    type(force_sum_type), intent(inout) :: sum          !< gets the sums
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a load or a motor failed
+    integer :: i
+
+    call sum_loads(mechanism, plan, acting, loaded, state, view, sum, err)
+    do i = 1, size(mechanism%motors)
+      if (allocated(err)) return
+      call mechanism%motors(i)%motor%apply(view, sum, err)
+    end do
+  end subroutine sum_forces
 
   !> The sums of loads on links and coordinates, from the motion that they read.
   subroutine sum_loads(mechanism, plan, acting, loaded, state, view, sum, err)

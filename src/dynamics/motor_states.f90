@@ -8,7 +8,7 @@ module mech9_motor_states
   use mech9_state, only: state_type
   implicit none
   private
-  public :: start_motors, find_motor_rates, motion_of_state, find_action, find_limits, coordinate_of_motor, has_limits
+  public :: start_motors, find_motor_rates, motion_of_state, find_action, find_limits, has_limits
 
 contains
 
@@ -18,22 +18,10 @@ contains
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(state_type), intent(inout) :: state        !< gets the states of the motors
 
-    if (mechanism%n_motors == 0 .or. allocated(state%motor)) return
-    allocate (state%motor(mechanism%n_motors), state%motor_rate(mechanism%n_motors), source=0.0_wp)
-    allocate (state%limited(mechanism%n_motors), source=unlocked)
+    if (size(mechanism%motors) == 0 .or. allocated(state%motor)) return
+    allocate (state%motor(size(mechanism%motors)), state%motor_rate(size(mechanism%motors)), source=0.0_wp)
+    allocate (state%limited(size(mechanism%motors)), source=unlocked)
   end subroutine start_motors
-
-  !> The number of a motor's coordinate.
-  pure integer function coordinate_of_motor(mechanism, i)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    integer, intent(in) :: i                        !< number of the motor
-
-    coordinate_of_motor = 0
-    select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
-    class is (motor_type)
-      coordinate_of_motor = motor%coordinate
-    end select
-  end function coordinate_of_motor
 
   !> The action of a motor in a state of motion with all coordinates, rates and accelerations. Fails where its law has no value.
   subroutine find_action(mechanism, i, state, action, err)
@@ -43,10 +31,9 @@ contains
     type(motor_action_type), intent(out) :: action      !< the action
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
-    class is (motor_type)
+    associate (motor => mechanism%motors(i)%motor)
       call motor%act(motion_of_state(motor, i, state), action, err)
-    end select
+    end associate
   end subroutine find_action
 
   !> The motion of a motor's coordinate, and the motor's state, in a state of motion.
@@ -88,11 +75,8 @@ contains
     integer :: i
 
     has_limits = .false.
-    do i = size(mechanism%loads) - mechanism%n_motors + 1, size(mechanism%loads)
-      select type (motor => mechanism%loads(i)%load)
-      class is (motor_type)
-        has_limits = has_limits .or. motor%has_limit()
-      end select
+    do i = 1, size(mechanism%motors)
+      has_limits = has_limits .or. mechanism%motors(i)%motor%has_limit()
     end do
   end function has_limits
 

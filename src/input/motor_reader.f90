@@ -4,8 +4,7 @@ module mech9_motor_reader
   use mech9_text, only: to_text
   use mech9_pair, only: pair_slot_type
   use mech9_polynomial_law, only: polynomial_law_type
-  use mech9_load, only: load_slot_type
-  use mech9_motor, only: motor_type
+  use mech9_motor, only: motor_type, motor_slot_type
   use mech9_dc_motor, only: dc_motor_type
   use mech9_pid_motor, only: pid_motor_type
   use mech9_document, only: document_type, group_type
@@ -19,28 +18,20 @@ module mech9_motor_reader
 
 contains
 
-  !> Append all motors to the loads, in the order of the file.
-  subroutine read_motors(document, pairs, angle_unit, loads, n_motors, diagnostics)
-    type(document_type), intent(in) :: document                   !< the data file as groups and items
-    type(pair_slot_type), intent(in) :: pairs(:)                  !< (M) pairs by coordinate; size 0 where they are not known
-    real(wp), intent(in) :: angle_unit                            !< unit of angles in the file [rad]
-    type(load_slot_type), allocatable, intent(inout) :: loads(:)  !< gets the motors of sound groups
-    integer, intent(out) :: n_motors                              !< how many motors there are
-    type(diagnostics_type), intent(inout) :: diagnostics          !< gets the errors
-    type(load_slot_type), allocatable :: all(:)
+  !> All motors, in the order of the file.
+  subroutine read_motors(document, pairs, angle_unit, motors, diagnostics)
+    type(document_type), intent(in) :: document                     !< the data file as groups and items
+    type(pair_slot_type), intent(in) :: pairs(:)                    !< (M) pairs by coordinate; size 0 where they are not known
+    real(wp), intent(in) :: angle_unit                              !< unit of angles in the file [rad]
+    type(motor_slot_type), allocatable, intent(out) :: motors(:)    !< gets the motors
+    type(diagnostics_type), intent(inout) :: diagnostics            !< gets the errors
     class(motor_type), allocatable :: motor
     integer, allocatable :: numbers(:)
-    integer :: i, n
+    integer :: i
 
     numbers = groups_named(document, 'motor')
-    n = size(loads)
-    n_motors = size(numbers)
-    if (n_motors == 0) return
-    allocate (all(n + n_motors))
-    do i = 1, n
-      call move_alloc(loads(i)%load, all(i)%load)
-    end do
-    do i = 1, n_motors
+    allocate (motors(size(numbers)))
+    do i = 1, size(motors)
       associate (group => document%groups(numbers(i)))
         call check_coordinate(group, size(pairs), diagnostics)
         if (get_text(group, 'kind') == 'dc') then
@@ -55,31 +46,29 @@ contains
           motor%law%motor = i
           motor%law%place = motor%place
         end if
-        call move_alloc(motor, all(n + i)%load)
+        call move_alloc(motor, motors(i)%motor)
       end associate
     end do
-    call check_integrals(document, numbers, all(n + 1:), diagnostics)
-    call move_alloc(all, loads)
+    call check_integrals(document, numbers, motors, diagnostics)
   end subroutine read_motors
 
   !> Report two controllers with integral parts on one coordinate: neither would come to rest.
   subroutine check_integrals(document, numbers, motors, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     integer, intent(in) :: numbers(:)                     !< groups of the motors
-    type(load_slot_type), intent(in) :: motors(:)         !< the motors
+    type(motor_slot_type), intent(in) :: motors(:)        !< the motors
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: coordinates(size(motors)), i
 
     coordinates = 0
     do i = 1, size(motors)
-      select type (motor => motors(i)%load)
-      type is (pid_motor_type)
-        if (.not. motor%has_state()) cycle
+      associate (motor => motors(i)%motor)
+        if (.not. motor%holds_setpoint()) cycle
         if (any(coordinates(:i - 1) == motor%coordinate)) &
           call diagnostics%add(span_of(document%groups(numbers(i)), 'integral', 1), 'coordinate '//to_text(motor%coordinate)// &
                                ' has a controller with an integral part already, and two never come to rest; leave integral= out')
         coordinates(i) = motor%coordinate
-      end select
+      end associate
     end do
   end subroutine check_integrals
 

@@ -88,8 +88,11 @@ contains
     call read_structure(document, model%mechanism%structure, model%problem%partition, known, diagnostics)
     if (.not. known) call forget(model%mechanism%structure, model%problem%partition)
     call read_parts(document, model%mechanism, model%problem, model%request, diagnostics)
-    if (model%program == dynamics) call read_motors(document, model%mechanism%pairs, model%mechanism%angle_unit, &
-                                                    model%mechanism%loads, model%mechanism%n_motors, diagnostics)
+    if (model%program == dynamics) then
+      call read_motors(document, model%mechanism%pairs, model%mechanism%angle_unit, model%mechanism%motors, diagnostics)
+    else if (.not. allocated(model%mechanism%motors)) then
+      allocate (model%mechanism%motors(0))
+    end if
     call check_drives(document, model, diagnostics)
     if (model%program == dynamics) call check_motors(document, model, diagnostics)
     call check_sensitivities(document, size(model%parameters), diagnostics)

@@ -6,6 +6,7 @@ module mech9_mechanism
   use mech9_point, only: point_type
   use mech9_body, only: body_type
   use mech9_load, only: load_slot_type
+  use mech9_motor, only: motor_slot_type
   use mech9_coupling, only: coupling_slot_type
   implicit none
   private
@@ -23,9 +24,61 @@ module mech9_mechanism
     type(coupling_slot_type), allocatable :: couplings(:)   !< in the order of the data file; none where not allocated
     type(point_type), allocatable :: points(:)
     type(body_type), allocatable :: bodies(:)
-    type(load_slot_type), allocatable :: loads(:)   !< in the order of the data file; motors are the last ones
-    integer :: n_motors = 0                         !< how many of the loads are motors
+    type(load_slot_type), allocatable :: loads(:)     !< in the order of the data file
+    type(motor_slot_type), allocatable :: motors(:)   !< in the order of the data file; their forces act beside those of the loads
     real(wp) :: gravity(3) = 0.0_wp                 !< in the axes of link 1 [m/s^2]
     real(wp), allocatable :: parameters(:)                  !< numbers for the user's procedures
+  contains
+    procedure :: acting_loads
+    procedure :: has_forces
+    procedure :: mark_loaded_links
+    procedure :: mark_loaded_coordinates
   end type mechanism_type
+
+contains
+
+  !> Numbers of the loads that may move something.
+  pure function acting_loads(self) result(acting)
+    class(mechanism_type), intent(in) :: self   !< the mechanism
+    integer, allocatable :: acting(:)
+    integer :: i
+
+    acting = pack([(i, i=1, size(self%loads))], [(.not. self%loads(i)%load%is_idle(), i=1, size(self%loads))])
+  end function acting_loads
+
+  !> Whether a load or a motor may move something.
+  pure logical function has_forces(self)
+    class(mechanism_type), intent(in) :: self   !< the mechanism
+    integer :: i
+
+    has_forces = size(self%motors) > 0
+    do i = 1, size(self%loads)
+      has_forces = has_forces .or. .not. self%loads(i)%load%is_idle()
+    end do
+  end function has_forces
+
+  !> Mark the links on whose motion loads depend or on which they act. Motors act on coordinates alone.
+  pure subroutine mark_loaded_links(self, loaded)
+    class(mechanism_type), intent(in) :: self   !< the mechanism
+    logical, intent(inout) :: loaded(:)         !< (N) becomes true for these links; others stay
+    integer :: i
+
+    do i = 1, size(self%loads)
+      if (.not. self%loads(i)%load%is_idle()) call self%loads(i)%load%mark_links(loaded)
+    end do
+  end subroutine mark_loaded_links
+
+  !> Mark the coordinates on which loads and motors depend or act.
+  pure subroutine mark_loaded_coordinates(self, loaded)
+    class(mechanism_type), intent(in) :: self   !< the mechanism
+    logical, intent(inout) :: loaded(:)         !< (M) becomes true for these coordinates; others stay
+    integer :: i
+
+    do i = 1, size(self%loads)
+      if (.not. self%loads(i)%load%is_idle()) call self%loads(i)%load%mark_coordinates(loaded)
+    end do
+    do i = 1, size(self%motors)
+      call self%motors(i)%motor%mark_coordinates(loaded)
+    end do
+  end subroutine mark_loaded_coordinates
 end module mech9_mechanism

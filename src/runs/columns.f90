@@ -4,9 +4,7 @@ module mech9_columns
   use mech9_error, only: error_type
   use mech9_text, only: string_type, to_text
   use mech9_request, only: output_settings_type
-  use mech9_motor, only: motor_type, motor_action_type
-  use mech9_dc_motor, only: dc_motor_type
-  use mech9_pid_motor, only: pid_motor_type
+  use mech9_motor, only: motor_action_type
   use mech9_mechanism, only: mechanism_type
   use mech9_result_units, only: unit_of, unit_name, force_unit_name
   use mech9_plan, only: plan_type
@@ -176,24 +174,22 @@ contains
   subroutine append_motors(self, mechanism)
     class(columns_type), intent(inout) :: self     !< the columns
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    character(len=:), allocatable :: unit
     integer :: i
 
-    self%motors = 2*mechanism%n_motors
+    self%motors = 2*size(mechanism%motors)
     allocate (self%motor_factors(self%motors), source=1.0_wp)
-    do i = 1, mechanism%n_motors
-      select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
-      type is (dc_motor_type)
-        call self%append('M'//to_text(i)//'.current', 'A', 'current of motor '//to_text(i))
-      type is (pid_motor_type)
-        self%motor_factors(2*i - 1) = 1.0_wp/unit_of(mechanism, motor%coordinate)
-        call self%append('M'//to_text(i)//'.integral', trim(unit_name(mechanism, motor%coordinate))//' s', &
-                         'time integral of the deviation of motor '//to_text(i))
-      end select
-      select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
-      class is (motor_type)
-        call self%append('M'//to_text(i)//'.torque', force_unit_name(mechanism, motor%coordinate), &
-                         'force of motor '//to_text(i)//' on coordinate '//to_text(motor%coordinate))
-      end select
+    do i = 1, size(mechanism%motors)
+      associate (k => mechanism%motors(i)%motor%coordinate, state => mechanism%motors(i)%motor%kind_of_state())
+        unit = state%unit
+        if (state%by_coordinate) then
+          self%motor_factors(2*i - 1) = 1.0_wp/unit_of(mechanism, k)
+          unit = trim(unit_name(mechanism, k))//' '//state%unit
+        end if
+        call self%append('M'//to_text(i)//'.'//trim(state%name), unit, trim(state%meaning)//' of motor '//to_text(i))
+        call self%append('M'//to_text(i)//'.torque', force_unit_name(mechanism, k), &
+                         'force of motor '//to_text(i)//' on coordinate '//to_text(k))
+      end associate
     end do
   end subroutine append_motors
 

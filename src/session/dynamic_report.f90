@@ -186,7 +186,8 @@ contains
       call facts%add('factorizations', work%factorizations, 'Jacobians of blocks that were factorized')
       call facts%add('links_with_inertia', size(simulation%motion%system%dynamics%bodies), &
                      'links that the coefficients of motion have terms of')
-      call facts%add('acting_loads', size(simulation%motion%system%dynamics%acting), 'loads that may move anything')
+      call facts%add('acting_loads', size(simulation%motion%system%dynamics%acting) + &
+                     size(simulation%motion%system%model%mechanism%motors), 'loads and motors that may move anything')
       call facts%add('frames_carried', count(simulation%motion%system%dynamics%carries(1:)), &
                      'frames whose motion a mass or a load depends on')
     end if

@@ -13,7 +13,7 @@ contains
   !> Report the laws that have no value at the start or at the end of the run.
   subroutine check_times_of_laws(model, with_loads, diagnostics)
     type(model_type), intent(in) :: model                 !< the model
-    logical, intent(in) :: with_loads                     !< the loads act in this run, too
+    logical, intent(in) :: with_loads                     !< loads and motors act in this run, too
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: i
 
@@ -23,6 +23,9 @@ contains
     if (.not. with_loads) return
     do i = 1, size(model%mechanism%loads)
       if (allocated(model%mechanism%loads(i)%load%law)) call check_law(model%mechanism%loads(i)%load%law)
+    end do
+    do i = 1, size(model%mechanism%motors)
+      if (allocated(model%mechanism%motors(i)%motor%law)) call check_law(model%mechanism%motors(i)%motor%law)
     end do
   contains
     !> Report one law.

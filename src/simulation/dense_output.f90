@@ -209,7 +209,7 @@ contains
   pure integer function count_states(system)
     type(motion_system_type), intent(in) :: system   !< the system
 
-    count_states = system%plan%n_coordinates + system%model%mechanism%n_motors + system%count_varied()
+    count_states = system%plan%n_coordinates + size(system%model%mechanism%motors) + system%count_varied()
   end function count_states
 
   !> Build the polynomial through the points next to time t, unless the present one goes through them.
@@ -253,7 +253,7 @@ contains
     point%q = system%state%q
     point%dq = system%state%dq
     point%ddq = system%state%ddq
-    do i = 1, system%model%mechanism%n_motors
+    do i = 1, size(system%model%mechanism%motors)
       call find_action(system%model%mechanism, i, system%state, action, err)
       if (allocated(err)) return
       point%q = [point%q, system%state%motor(i)]

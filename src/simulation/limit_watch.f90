@@ -35,8 +35,7 @@ contains
     class(limit_watch_type), intent(in) :: self      !< the watch
     type(motion_system_type), intent(in) :: system   !< the motion system
 
-    is_needed = system%model%mechanism%n_motors > 0
-    if (is_needed) is_needed = has_limits(system%model%mechanism)
+    is_needed = has_limits(system%model%mechanism)
   end function is_needed
 
   !> Keep the demands of the system's state, from which the next step begins.
@@ -58,7 +57,7 @@ contains
     type(motor_action_type) :: action
     integer :: i
 
-    allocate (demand(system%model%mechanism%n_motors), rate(system%model%mechanism%n_motors), source=0.0_wp)
+    allocate (demand(size(system%model%mechanism%motors)), rate(size(system%model%mechanism%motors)), source=0.0_wp)
     do i = 1, size(demand)
       call find_action(system%model%mechanism, i, system%state, action, err)
       if (allocated(err)) return

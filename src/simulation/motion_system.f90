@@ -164,7 +164,7 @@ contains
     class(motion_system_type), intent(inout) :: self    !< the motion system; its state gets those of the motors
     type(error_type), allocatable, intent(out) :: err   !< allocated if the law of a motor has no value
 
-    if (self%model%mechanism%n_motors == 0 .or. allocated(self%state%motor)) return
+    if (size(self%model%mechanism%motors) == 0 .or. allocated(self%state%motor)) return
     call start_motors(self%model%mechanism, self%state)
     call find_limits(self%model%mechanism, self%state, err)
   end subroutine place_motors
@@ -181,7 +181,7 @@ contains
   pure integer function size_of_motion(self)
     class(motion_system_type), intent(in) :: self   !< the motion system
 
-    size_of_motion = length_of_vector(self%plan, self%model%mechanism%n_motors)
+    size_of_motion = length_of_vector(self%plan, size(self%model%mechanism%motors))
   end function size_of_motion
 
   !> How many derivatives of free coordinates by parameters are integrated.
@@ -263,7 +263,7 @@ contains
     type(motor_action_type) :: action
     integer :: before
 
-    if (self%model%mechanism%n_motors == 0) return
+    if (size(self%model%mechanism%motors) == 0) return
     before = 0
     if (self%interval%motor > 0) before = self%state%limited(self%interval%motor)
     call find_limits(self%model%mechanism, self%state, err)

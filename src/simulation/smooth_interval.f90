@@ -26,7 +26,7 @@ module mech9_smooth_interval
 
 contains
 
-  !> Begin the interval at a time, up to the next joint of the laws of drives and loads.
+  !> Begin the interval at a time, up to the next joint of the laws of drives, loads and motors.
   subroutine begin(self, model, t)
     class(smooth_interval_type), intent(inout) :: self   !< gets its two ends
     type(model_type), intent(in) :: model                !< the model with the laws
@@ -38,12 +38,15 @@ contains
     self%behind = t
     self%ahead = sign(huge(t), direction)
     self%ends = .false.
-    associate (drives => model%problem%drives, loads => model%mechanism%loads)
+    associate (drives => model%problem%drives, loads => model%mechanism%loads, motors => model%mechanism%motors)
       do i = 1, size(drives)
         call take_law(drives(i)%drive)
       end do
       do i = 1, size(loads)
         if (allocated(loads(i)%load%law)) call take_law(loads(i)%load%law)
+      end do
+      do i = 1, size(motors)
+        if (allocated(motors(i)%motor%law)) call take_law(motors(i)%motor%law)
       end do
     end associate
   contains

@@ -29,7 +29,6 @@ module mech9_stopped_motion
   use mech9_lagrange, only: find_equations
   use mech9_coordinate_choice, only: best_independent
   use mech9_integrated_vector, only: coordinate_of
-  use mech9_motor_states, only: coordinate_of_motor
   use mech9_motion_system, only: motion_system_type
   use mech9_held_rods, only: held_angle
   use mech9_rotation, only: cross
@@ -105,7 +104,7 @@ contains
     real(wp), intent(in) :: t                             !< the time [s]
     type(error_type), allocatable, intent(inout) :: err   !< stays as it is without gimbal lock
     logical :: loaded(system%plan%n_coordinates)
-    integer :: i, j, k(3)
+    integer :: j, k(3)
 
     if (.not. allocated(system%model%mechanism%structure%joints)) return
     do j = 1, size(system%model%mechanism%structure%joints)
@@ -115,11 +114,7 @@ contains
       end associate
       if (sine_between(system, k(1), k(3)) > nearly_locked) cycle
       loaded = .false.
-      associate (loads => system%model%mechanism%loads)
-        do i = 1, size(loads)
-          if (.not. loads(i)%load%is_idle()) call loads(i)%load%mark_coordinates(loaded)
-        end do
-      end associate
+      call system%model%mechanism%mark_loaded_coordinates(loaded)
       call raise(err, exit_singular, failure_loaded_lock)
       err%failure%coordinates = k
       err%failure%others = pack(k, loaded(k))
@@ -266,7 +261,7 @@ contains
 
     if (.not. is_of_kind(failure, failure_infinite_rate)) return
     k = coordinate_of(system%plan, failure%failure%number)
-    if (k < 0) k = coordinate_of_motor(system%model%mechanism, -k)
+    if (k < 0) k = system%model%mechanism%motors(-k)%motor%coordinate
     failure%failure%coordinates = [k]
   end subroutine name_coordinate
 

@@ -7,6 +7,7 @@ module test_motors
   use mech9_motor, only: motor_type, motor_motion_type, motor_action_type, motor_change_type
   use mech9_dc_motor, only: dc_motor_type
   use mech9_pid_motor, only: pid_motor_type
+  use mech9_mechanism, only: mechanism_type
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -26,6 +27,7 @@ contains
     if (test%runs('without_inductance')) call without_inductance(test)
     if (test%runs('controller')) call controller(test)
     if (test%runs('at_limit')) call at_limit(test)
+    if (test%runs('at_rest')) call at_rest(test)
     if (test%runs('numbers_of_dc')) call numbers_of(test, new_dc(0.05_wp), 5)
     if (test%runs('numbers_of_pid')) call numbers_of(test, new_pid(), 4)
   end subroutine run
@@ -51,6 +53,37 @@ contains
     law%coefficients = [0.5_wp, 0.3_wp]
     allocate (motor%law, source=law)
   end function new_pid
+
+  !> A controller at rest exerts a force by its integral alone, up to its limit. A mechanism has forces by its motors alone.
+  subroutine at_rest(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(mechanism_type) :: mechanism
+    type(motor_motion_type) :: motion
+    type(motor_action_type) :: action
+    type(error_type), allocatable :: err
+    logical :: links(2), coordinates(3)
+
+    allocate (mechanism%loads(0), mechanism%motors(2))
+    allocate (mechanism%motors(1)%motor, source=new_dc(0.05_wp))
+    allocate (mechanism%motors(2)%motor, source=new_pid())
+    mechanism%motors(2)%motor%coordinate = 3
+    motion%q = 0.5_wp
+    motion%dq = 0.3_wp
+    associate (dc => mechanism%motors(1)%motor, pid => mechanism%motors(2)%motor)
+      call test%is_true(pid%holds_setpoint() .and. .not. dc%holds_setpoint(), 'the controller rests at its setpoint only')
+      motion%value = pid%state_for(-3.6_wp)
+      call pid%act(motion, action, err)
+      call test%no_error(err, 'a controller without deviation')
+      call test%near(action%force, -3.6_wp, 4.0_wp*epsilon(1.0_wp), 'the integral exerts the force')
+      call test%near(pid%excess_of(-4.75_wp), -0.75_wp, 0.0_wp, 'a force beyond the limit')
+    end associate
+    links = .false.
+    coordinates = .false.
+    call mechanism%mark_loaded_links(links)
+    call mechanism%mark_loaded_coordinates(coordinates)
+    call test%is_true(mechanism%has_forces() .and. size(mechanism%acting_loads()) == 0, 'motors are no loads, but have forces')
+    call test%is_true(.not. any(links) .and. all(coordinates .eqv. [.true., .false., .true.]), 'they act on coordinates alone')
+  end subroutine at_rest
 
   !> L i' = U - R i - n c dq, and the torque n c i.
   subroutine direct_current(test)

@@ -75,7 +75,7 @@ contains
         call judge_statics(mechanism, massless, m, found, err)
         return
       end if
-      if (mechanism%n_motors > 0) call add_motors(mechanism, m, c, found, err)
+      if (size(mechanism%motors) > 0) call add_motors(mechanism, m, c, found, err)
       if (allocated(err)) return
       found%without_inertia = 0
       found%is_stable = .not. found%modes%growth > 0.0_wp

@@ -8,8 +8,7 @@ module mech9_resting_motors
   use mech9_error, only: error_type, raise, exit_assembly
   use mech9_equilibrium_failures, only: failure_no_equilibrium
   use mech9_mechanism, only: mechanism_type
-  use mech9_motor, only: motor_type, motor_action_type
-  use mech9_pid_motor, only: pid_motor_type
+  use mech9_motor, only: motor_action_type
   use mech9_motor_states, only: start_motors, find_limits, find_action
   use mech9_partition, only: partition_type, driven_coordinate
   use mech9_plan, only: plan_type
@@ -54,14 +53,13 @@ contains
     held = partition
     q = assembled%q
     is_held = .false.
-    do i = size(mechanism%loads) - mechanism%n_motors + 1, size(mechanism%loads)
-      select type (motor => mechanism%loads(i)%load)
-      type is (pid_motor_type)
-        if (.not. motor%has_state()) cycle
+    do i = 1, size(mechanism%motors)
+      associate (motor => mechanism%motors(i)%motor)
+        if (.not. motor%holds_setpoint()) cycle
         call motor%law%evaluate(assembled%t, q(motor%coordinate), rate, acceleration, err)
         if (allocated(err)) return
         is_held(motor%coordinate) = .true.
-      end select
+      end associate
     end do
     where (is_held) held%kind = driven_coordinate
     ! setpoints may be far from the assembled position, which the plan of closed positions does not expect
@@ -88,23 +86,22 @@ contains
     type(plan_type) :: plan
     type(state_type) :: state
     type(motor_action_type) :: action
-    real(wp) :: forces(size(resting%state%q)), values(mechanism%n_motors)
+    real(wp) :: forces(size(resting%state%q)), values(size(mechanism%motors))
     integer :: i
     logical :: is_held
 
-    if (mechanism%n_motors == 0) return
+    if (size(mechanism%motors) == 0) return
     forces = resting%linearisation%forces
     is_held = .false.
-    do i = 1, mechanism%n_motors
+    do i = 1, size(mechanism%motors)
       call find_action(mechanism, i, resting%state, action, err)
       if (allocated(err)) return
       values(i) = action%value
-      select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
-      type is (pid_motor_type)
-        if (.not. motor%has_state()) cycle
-        values(i) = forces(motor%coordinate)/motor%integral
+      associate (motor => mechanism%motors(i)%motor)
+        if (.not. motor%holds_setpoint()) cycle
+        values(i) = motor%state_for(forces(motor%coordinate))
         is_held = .true.
-      end select
+      end associate
     end do
     call copy_state(resting%state, state)
     if (is_held) then
@@ -138,16 +135,14 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< the failure
     integer :: i
 
-    do i = 1, mechanism%n_motors
-      select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
-      type is (pid_motor_type)
-        if (.not. motor%has_state() .or. state%limited(i) == 0) cycle
+    do i = 1, size(mechanism%motors)
+      associate (motor => mechanism%motors(i)%motor)
+        if (.not. motor%holds_setpoint() .or. state%limited(i) == 0) cycle
         call raise(err, exit_assembly, failure_no_equilibrium)
         err%failure%coordinates = [motor%coordinate]
-        err%failure%values = reshape([forces(motor%coordinate) - sign(motor%limit, forces(motor%coordinate)), &
-                                      state%q(motor%coordinate)], [1, 2])
+        err%failure%values = reshape([motor%excess_of(forces(motor%coordinate)), state%q(motor%coordinate)], [1, 2])
         return
-      end select
+      end associate
     end do
   end subroutine refuse_limits
 
@@ -164,35 +159,29 @@ contains
     call find_slopes(resting, by_position, rate_by_position, by_rate)
     n = size(resting%free)
     allocate (coupling%states(0), coupling%inputs(0))
-    do i = 1, mechanism%n_motors
-      select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
-      class is (motor_type)
-        if (motor%has_state()) coupling%states = [coupling%states, i]
-        if (motor%has_input()) coupling%inputs = [coupling%inputs, i]
-      end select
+    do i = 1, size(mechanism%motors)
+      if (mechanism%motors(i)%motor%has_state()) coupling%states = [coupling%states, i]
+      if (mechanism%motors(i)%motor%has_input()) coupling%inputs = [coupling%inputs, i]
     end do
     s = size(coupling%states)
     v = size(coupling%inputs)
     allocate (coupling%force_by_state(n, s), coupling%force_by_input(n, v), coupling%rate_by_q(s, n), coupling%rate_by_dq(s, n), &
               coupling%rate_by_state(s), coupling%rate_by_input(s, v), source=0.0_wp)
-    do i = 1, mechanism%n_motors
+    do i = 1, size(mechanism%motors)
       call find_action(mechanism, i, resting%state, action, err)
       if (allocated(err)) return
       s = findloc(coupling%states, i, dim=1)
       v = findloc(coupling%inputs, i, dim=1)
-      select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
-      class is (motor_type)
-        associate (k => motor%coordinate)
-          if (v > 0) coupling%force_by_input(:, v) = action%force_by_input*by_rate(:, k)
-          if (s > 0) then
-            coupling%force_by_state(:, s) = action%force_by_value*by_rate(:, k)
-            coupling%rate_by_q(s, :) = action%rate_by_q*by_position(:, k) + action%rate_by_dq*rate_by_position(:, k)
-            coupling%rate_by_dq(s, :) = action%rate_by_dq*by_rate(:, k)
-            coupling%rate_by_state(s) = action%rate_by_value
-            if (v > 0) coupling%rate_by_input(s, v) = action%rate_by_input
-          end if
-        end associate
-      end select
+      associate (k => mechanism%motors(i)%motor%coordinate)
+        if (v > 0) coupling%force_by_input(:, v) = action%force_by_input*by_rate(:, k)
+        if (s > 0) then
+          coupling%force_by_state(:, s) = action%force_by_value*by_rate(:, k)
+          coupling%rate_by_q(s, :) = action%rate_by_q*by_position(:, k) + action%rate_by_dq*rate_by_position(:, k)
+          coupling%rate_by_dq(s, :) = action%rate_by_dq*by_rate(:, k)
+          coupling%rate_by_state(s) = action%rate_by_value
+          if (v > 0) coupling%rate_by_input(s, v) = action%rate_by_input
+        end if
+      end associate
     end do
   end subroutine couple_motors
 

@@ -42,7 +42,7 @@ contains
     outputs = (derivatives + 1)*(size(recorded) + 3*size(mechanism%points))
     states = 0
     voltages = 0
-    if (mechanism%n_motors > 0) then
+    if (size(mechanism%motors) > 0) then
       states = size(equilibrium%motors%states)
       voltages = size(equilibrium%motors%inputs)
     end if

@@ -93,12 +93,9 @@ contains
     call join_clusters(plan, clusters, reactions)
     reactions%length = weighing_length(mechanism, plan)
     reactions%bodies = pack([(i, i=1, size(mechanism%bodies))], mechanism%bodies%link /= 1)
-    reactions%acting = pack([(i, i=1, size(mechanism%loads))], &
-                            [(.not. mechanism%loads(i)%load%is_idle(), i=1, size(mechanism%loads))])
+    reactions%acting = mechanism%acting_loads()
     loaded = .false.
-    do i = 1, size(reactions%acting)
-      call mechanism%loads(reactions%acting(i))%load%mark_links(loaded)
-    end do
+    call mechanism%mark_loaded_links(loaded)
     reactions%loaded = pack([(i, i=2, plan%n_links)], loaded(2:))
     allocate (reactions%flat_bodies(0))
     if (plan%planar%used .and. all(reactions%clusters%determined)) call lay_flat(mechanism, plan, reactions)

@@ -18,7 +18,7 @@ module mech9_reactions
   use mech9_state, only: state_type
   use mech9_motion_view, only: motion_view_type
   use mech9_force_sum, only: force_sum_type, new_force_sum
-  use mech9_generalized_forces, only: sum_loads
+  use mech9_generalized_forces, only: sum_forces
   use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type
   use mech9_required_wrenches, only: find_required
   use mech9_joint_geometry, only: joint_geometry_type, new_joint_geometry, find_geometry
@@ -97,8 +97,8 @@ contains
     integer :: c
     logical :: done
 
-    if (size(reactions%acting) > 0) then
-      call sum_loads(mechanism, plan, reactions%acting, reactions%loaded, state, self%view, self%sum, err)
+    if (size(reactions%acting) > 0 .or. size(mechanism%motors) > 0) then
+      call sum_forces(mechanism, plan, reactions%acting, reactions%loaded, state, self%view, self%sum, err)
       if (allocated(err)) return
     else if (size(plan%couplings) > 0) then
       call self%sum%clear()

@@ -81,7 +81,7 @@ contains
     call append_masses(model, values)
   end subroutine take_constants
 
-  !> Append the numbers of drives, couplings, pairs without a fixed axis and loads, as far as they are known.
+  !> Append the numbers of drives, couplings, pairs without a fixed axis, loads and motors, as far as they are known.
   subroutine append_laws(model, values)
     type(model_type), intent(in) :: model                !< the model
     real(wp), allocatable, intent(inout) :: values(:)    !< the row so far
@@ -104,6 +104,10 @@ contains
     end do
     do i = 1, size(model%mechanism%loads)
       call model%mechanism%loads(i)%load%constants(more)
+      if (allocated(more)) values = [values, more]
+    end do
+    do i = 1, size(model%mechanism%motors)
+      call model%mechanism%motors(i)%motor%constants(more)
       if (allocated(more)) values = [values, more]
     end do
   end subroutine append_laws

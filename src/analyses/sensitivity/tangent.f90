@@ -41,6 +41,7 @@ module mech9_tangent
     type(law_tangent_type), allocatable :: couplings(:)   !< in the order of the couplings
     type(law_tangent_type), allocatable :: pairs(:)       !< (M) of the sizes of curves, and of the numbers of users' procedures
     type(law_tangent_type), allocatable :: loads(:)       !< in the order of the loads
+    type(law_tangent_type), allocatable :: motors(:)      !< in the order of the motors
     type(law_tangent_type), allocatable :: bodies(:)      !< mass, centre and inertia by columns, in the order of the bodies
     real(wp) :: gravity(3) = 0.0_wp            !< of gravity [m/s^2]
     real(wp), allocatable :: start(:, :)       !< (M,0:1) of positions and rates at the start [rad, m]
@@ -332,7 +333,7 @@ contains
     end do
   end function size_of_change
 
-  !> The derivatives of the numbers of drives, couplings, pairs without a fixed axis and loads, and of those of dynamics.
+  !> The derivatives of the numbers of drives, couplings, pairs without a fixed axis, loads and motors, and of those of dynamics.
   subroutine read_laws(model, change, tangent)
     type(model_type), intent(in) :: model           !< the present model
     real(wp), intent(in) :: change(:)               !< the part of the row that belongs to them
@@ -356,10 +357,15 @@ contains
       call model%mechanism%pairs(i)%pair%constants(values)
       call take_part(values, change, at, tangent%pairs(i))
     end do
-    allocate (tangent%loads(size(model%mechanism%loads)), tangent%bodies(size(model%mechanism%bodies)))
+    allocate (tangent%loads(size(model%mechanism%loads)), tangent%motors(size(model%mechanism%motors)), &
+              tangent%bodies(size(model%mechanism%bodies)))
     do i = 1, size(tangent%loads)
       call model%mechanism%loads(i)%load%constants(values)
       call take_part(values, change, at, tangent%loads(i))
+    end do
+    do i = 1, size(tangent%motors)
+      call model%mechanism%motors(i)%motor%constants(values)
+      call take_part(values, change, at, tangent%motors(i))
     end do
     values = spread(0.0_wp, 1, constants_of_body)
     do i = 1, size(tangent%bodies)

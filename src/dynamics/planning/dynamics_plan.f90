@@ -79,11 +79,8 @@ contains
     integer :: i
 
     allocate (dynamics%load_links(plan%n_links), source=.false.)
-    dynamics%acting = pack([(i, i=1, size(mechanism%loads))], &
-                           [(.not. mechanism%loads(i)%load%is_idle(), i=1, size(mechanism%loads))])
-    do i = 1, size(dynamics%acting)
-      call mechanism%loads(dynamics%acting(i))%load%mark_links(dynamics%load_links)
-    end do
+    dynamics%acting = mechanism%acting_loads()
+    call mechanism%mark_loaded_links(dynamics%load_links)
     dynamics%loaded = pack([(i, i=2, plan%n_links)], dynamics%load_links(2:))
   end subroutine find_loads
 

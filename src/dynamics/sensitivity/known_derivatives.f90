@@ -4,8 +4,9 @@ module mech9_known_derivatives
   use mech9_error, only: error_type, raise, exit_data
   use mech9_force_gradient_failures, only: failure_jumping_force
   use mech9_law, only: law_type, from_inside
+  use mech9_load, only: load_type
   use mech9_model, only: model_type
-  use mech9_tangent, only: tangent_type
+  use mech9_tangent, only: tangent_type, law_tangent_type
   implicit none
   private
   public :: check_known
@@ -33,19 +34,29 @@ contains
   logical function is_smooth(model, tangent)
     type(model_type), intent(in) :: model        !< the model
     type(tangent_type), intent(in) :: tangent    !< derivatives by the parameter
-    real(wp), allocatable :: values(:)
     integer :: i
 
     is_smooth = .true.
     do i = 1, size(model%mechanism%loads)
-      associate (load => model%mechanism%loads(i)%load)
-        if (.not. (tangent%loads(i)%varies .and. allocated(load%law))) cycle
-        call load%numbers(values)
-        if (.not. any(abs(tangent%loads(i)%change(size(values) + 1:)) > 0.0_wp)) cycle
-        if (jumps(model, load%law)) is_smooth = .false.
-      end associate
+      if (moves_jump(model, model%mechanism%loads(i)%load, tangent%loads(i))) is_smooth = .false.
+    end do
+    do i = 1, size(model%mechanism%motors)
+      if (moves_jump(model, model%mechanism%motors(i)%motor, tangent%motors(i))) is_smooth = .false.
     end do
   end function is_smooth
+
+  !> Whether the numbers of a load's law vary, and its force jumps.
+  logical function moves_jump(model, load, part)
+    type(model_type), intent(in) :: model          !< the model
+    class(load_type), intent(in) :: load           !< the load
+    type(law_tangent_type), intent(in) :: part     !< derivatives of its numbers and of those of its law
+    real(wp), allocatable :: values(:)
+
+    moves_jump = .false.
+    if (.not. (part%varies .and. allocated(load%law))) return
+    call load%numbers(values)
+    if (any(abs(part%change(size(values) + 1:)) > 0.0_wp)) moves_jump = jumps(model, load%law)
+  end function moves_jump
 
   !> Whether the value of a law jumps at a joint in the time of the run, or for the setpoint of a motor its rate, too.
   logical function jumps(model, law)

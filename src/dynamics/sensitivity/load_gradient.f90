@@ -8,13 +8,14 @@ module mech9_load_gradient
   use mech9_error, only: error_type
   use mech9_rotation, only: cross
   use mech9_motion_view, only: motion_view_type
+  use mech9_load, only: load_type
   use mech9_motion_change, only: motion_change_type, link_change_type, new_motion_change
   use mech9_force_sum, only: force_sum_type, new_force_sum
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_generalized_forces, only: sum_loads
-  use mech9_tangent, only: tangent_type
+  use mech9_generalized_forces, only: sum_forces
+  use mech9_tangent, only: tangent_type, law_tangent_type
   use mech9_twists, only: shift_at
   use mech9_varied_motion, only: varied_motion_type, link_twists
   use mech9_varied_forces, only: show_change
@@ -24,10 +25,11 @@ module mech9_load_gradient
   private
   public :: load_gradient_type, new_load_gradient, reads_motions, find_loads, add_load_rows, vary_loads, by_loads
 
-  !> A load whose forces change with a parameter, by numbers of its own or by the motion that it reads.
+  !> A load or a motor whose forces change with a parameter, by numbers of its own or by the motion that it reads.
   type :: changed_load_type
     integer :: parameter = 0                       !< number of the parameter
-    integer :: load = 0                            !< number of the load
+    integer :: load = 0                            !< number of the load; 0: it is a motor
+    integer :: motor = 0                           !< number of the motor; 0: it is a load
     logical :: by_motion = .false.                 !< they change with the motion
     logical :: by_free = .false.                   !< they change with the motion of free coordinates alone
     integer, allocatable :: links(:)               !< on which it acts, and whose motion it reads
@@ -36,8 +38,9 @@ module mech9_load_gradient
     real(wp), allocatable :: generalized(:)        !< change of its forces on these coordinates
   end type changed_load_type
 
-  !> The loads of a mechanism.
+  !> The loads and motors of a mechanism.
   type :: load_gradient_type
+    logical, private :: is_loaded = .false.                      !< there are loads that act, or motors
     integer, allocatable, private :: acting(:)                   !< numbers of the loads
     integer, allocatable, private :: links(:)                    !< links on which they act, and whose motion they read
     integer, allocatable, private :: coordinates(:)              !< coordinates alike
@@ -65,22 +68,31 @@ contains
     integer, intent(in) :: d                         !< numbers of a wrench
     type(tangent_type), intent(in) :: tangents(:)    !< derivatives of the constants by each parameter
     type(load_gradient_type), intent(out) :: self    !< the loads
-    logical :: acts(size(model%mechanism%loads))
+    logical :: acts(size(model%mechanism%loads)), varies(size(tangents))
+    logical :: of_links(plan%n_links), of_coordinates(plan%n_coordinates)
     integer :: i, p
 
     allocate (self%changed(0))
+    of_links = .false.
+    of_coordinates = .false.
     do i = 1, size(acts)
       associate (load => model%mechanism%loads(i)%load)
-        acts(i) = .not. load%is_idle()
-        do p = 1, size(tangents)
-          acts(i) = acts(i) .or. tangents(p)%loads(i)%varies
-          if (tangents(p)%loads(i)%varies) call append(model, plan, d, changed_load_type(p, i), self%changed)
-          if (.not. load%knows_slopes()) call append(model, plan, d, changed_load_type(p, i, by_motion=.true.), self%changed)
-        end do
+        varies = [(tangents(p)%loads(i)%varies, p=1, size(tangents))]
+        call append(load, plan, d, varies, changed_load_type(load=i), self%changed)
+        acts(i) = any(varies) .or. .not. load%is_idle()
+        if (acts(i)) call mark(load, of_links, of_coordinates)
+      end associate
+    end do
+    do i = 1, size(model%mechanism%motors)
+      associate (motor => model%mechanism%motors(i)%motor)
+        varies = [(tangents(p)%motors(i)%varies, p=1, size(tangents))]
+        call append(motor, plan, d, varies, changed_load_type(motor=i), self%changed)
+        call mark(motor, of_links, of_coordinates)
       end associate
     end do
     self%acting = pack([(i, i=1, size(acts))], acts)
-    call list_marked(model, plan, self%acting, self%links, self%coordinates)
+    self%is_loaded = size(self%acting) > 0 .or. size(model%mechanism%motors) > 0
+    call list_marked(of_links, of_coordinates, self%links, self%coordinates)
     associate (n => plan%n_links, m => plan%n_coordinates)
       allocate (self%view%links(n), self%view%q(m), self%view%dq(m))
       self%sum = new_force_sum(n, m)
@@ -91,44 +103,58 @@ contains
     end associate
   end subroutine new_load_gradient
 
-  !> Append a load whose forces change.
-  subroutine append(model, plan, d, one, list)
-    type(model_type), intent(in) :: model                           !< the model
+  !> Append a load to the list for each parameter by which its forces change: by its own numbers, and by the motion where its slopes
+  !> are not known.
+  subroutine append(load, plan, d, varies, one, list)
+    class(load_type), intent(in) :: load                            !< the load
     type(plan_type), intent(in) :: plan                             !< its plan
     integer, intent(in) :: d                                        !< numbers of a wrench
-    type(changed_load_type), intent(in) :: one                      !< the load
+    logical, intent(in) :: varies(:)                                !< (P) its own numbers vary with the parameter
+    type(changed_load_type), intent(in) :: one                      !< with its number
     type(changed_load_type), allocatable, intent(inout) :: list(:)  !< the list that grows
     type(changed_load_type) :: whole
-    integer :: i
+    logical :: of_links(plan%n_links), of_coordinates(plan%n_coordinates)
+    integer :: i, p
 
     whole = one
-    call list_marked(model, plan, [one%load], whole%links, whole%coordinates)
+    of_links = .false.
+    of_coordinates = .false.
+    call mark(load, of_links, of_coordinates)
+    call list_marked(of_links, of_coordinates, whole%links, whole%coordinates)
     whole%by_free = size(whole%links) == 0
     do i = 1, size(whole%coordinates)
       whole%by_free = whole%by_free .and. any(plan%free == whole%coordinates(i))
     end do
     allocate (whole%wrenches(d, size(whole%links)), whole%generalized(size(whole%coordinates)), source=0.0_wp)
-    list = [list, whole]
+    do p = 1, size(varies)
+      whole%parameter = p
+      whole%by_motion = .false.
+      if (varies(p)) list = [list, whole]
+      whole%by_motion = .true.
+      if (.not. load%knows_slopes()) list = [list, whole]
+    end do
   end subroutine append
 
-  !> List the links but link 1, and the coordinates, on which some loads depend or act.
-  subroutine list_marked(model, plan, loads, links, coordinates)
-    type(model_type), intent(in) :: model                 !< the model
-    type(plan_type), intent(in) :: plan                   !< its plan
-    integer, intent(in) :: loads(:)                       !< numbers of the loads
+  !> Mark the links and coordinates on which a load depends or acts.
+  pure subroutine mark(load, of_links, of_coordinates)
+    class(load_type), intent(in) :: load              !< the load
+    logical, intent(inout) :: of_links(:)             !< (N) becomes true for these links
+    logical, intent(inout) :: of_coordinates(:)       !< (M) becomes true for these coordinates
+
+    call load%mark_links(of_links)
+    call load%mark_coordinates(of_coordinates)
+  end subroutine mark
+
+  !> List the marked links but link 1, and the marked coordinates.
+  pure subroutine list_marked(of_links, of_coordinates, links, coordinates)
+    logical, intent(in) :: of_links(:)                    !< (N) true for marked ones
+    logical, intent(in) :: of_coordinates(:)              !< (M) true for marked ones
     integer, allocatable, intent(out) :: links(:)         !< numbers of the links
     integer, allocatable, intent(out) :: coordinates(:)   !< numbers of the coordinates
-    logical :: of_links(plan%n_links), of_coordinates(plan%n_coordinates)
     integer :: i
 
-    of_links = .false.
-    of_coordinates = .false.
-    do i = 1, size(loads)
-      call model%mechanism%loads(loads(i))%load%mark_links(of_links)
-      call model%mechanism%loads(loads(i))%load%mark_coordinates(of_coordinates)
-    end do
-    links = pack([(i, i=2, plan%n_links)], of_links(2:))
-    coordinates = pack([(i, i=1, plan%n_coordinates)], of_coordinates)
+    links = pack([(i, i=2, size(of_links))], of_links(2:))
+    coordinates = pack([(i, i=1, size(of_coordinates))], of_coordinates)
   end subroutine list_marked
 
   !> Find the forces of all loads, and subtract them from what frames and coordinates need. Fails where a load does.
@@ -143,8 +169,8 @@ contains
     real(wp) :: wrench(size(held%frames, 1))
     integer :: i, k
 
-    if (size(self%acting) == 0) return
-    call sum_loads(model%mechanism, plan, self%acting, self%links, state, self%view, self%sum, err)
+    if (.not. self%is_loaded) return
+    call sum_forces(model%mechanism, plan, self%acting, self%links, state, self%view, self%sum, err)
     if (allocated(err)) return
     do i = 1, size(self%links)
       k = self%links(i)
@@ -186,7 +212,7 @@ contains
     type(error_type), allocatable, intent(out) :: err            !< allocated if it failed
     integer :: i, k
 
-    if (size(self%acting) == 0) return
+    if (.not. self%is_loaded) return
     self%slopes%links(1) = link_change_type()
     do i = 1, size(self%links)
       k = self%links(i)
@@ -270,15 +296,13 @@ contains
       end do
     end if
     do i = 1, size(self%changed)
-      associate (one => self%changed(i), load => model%mechanism%loads(self%changed(i)%load)%load, &
-                 part => motion%tangents(self%changed(i)%parameter)%loads(self%changed(i)%load))
-        call self%change%clear()
-        if (one%by_motion) then
-          call show_change(one%parameter, twists, motion, self%links(:merge(0, size(self%links), one%by_free)), self%view, &
-                           self%moved)
-          call load%vary(self%view, self%moved, self%change, err)
+      associate (one => self%changed(i), tangent => motion%tangents(self%changed(i)%parameter))
+        if (one%by_motion) call show_change(one%parameter, twists, motion, self%links(:merge(0, size(self%links), one%by_free)), &
+                                            self%view, self%moved)
+        if (one%motor > 0) then
+          call find_change(model%mechanism%motors(one%motor)%motor, one%by_motion, tangent%motors(one%motor), self, err)
         else
-          call load%vary_numbers(part%change, self%view, self%change, err)
+          call find_change(model%mechanism%loads(one%load)%load, one%by_motion, tangent%loads(one%load), self, err)
         end if
         if (allocated(err)) return
         do j = 1, size(one%links)
@@ -288,6 +312,22 @@ contains
       end associate
     end do
   end subroutine vary_loads
+
+  !> Find the change of the forces of one load. Fails where the load does.
+  subroutine find_change(load, by_motion, part, self, err)
+    class(load_type), intent(in) :: load                   !< the load
+    logical, intent(in) :: by_motion                       !< by the change of the motion that is shown, not by its own numbers
+    type(law_tangent_type), intent(in) :: part             !< change of its own numbers
+    type(load_gradient_type), intent(inout) :: self        !< with the motion as loads read it; gets `change`
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    call self%change%clear()
+    if (by_motion) then
+      call load%vary(self%view, self%moved, self%change, err)
+    else
+      call load%vary_numbers(part%change, self%view, self%change, err)
+    end if
+  end subroutine find_change
 
   !> Subtract the changes of the loads' power in a virtual motion, beside the rows, from those of a force.
   pure subroutine by_loads(plan, virtual, rates, self, by_parameters)

@@ -56,7 +56,7 @@ contains
     if (allocated(err)) return
     call new_force_gradient(model, plan, dynamics, self%motion%tangents, self%gradient)
     associate (n => self%motion%n_parameters)
-      allocate (self%values(n, size(plan%free), 0:2), self%motors(n, model%mechanism%n_motors, 0:1), source=0.0_wp)
+      allocate (self%values(n, size(plan%free), 0:2), self%motors(n, size(model%mechanism%motors), 0:1), source=0.0_wp)
       allocate (self%size_of(n))
       do p = 1, n
         self%size_of(p) = self%motion%tangents(p)%size

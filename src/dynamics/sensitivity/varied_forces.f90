@@ -13,7 +13,7 @@ module mech9_varied_forces
   use mech9_force_sum, only: force_sum_type, new_force_sum
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
-  use mech9_generalized_forces, only: sum_loads
+  use mech9_generalized_forces, only: sum_forces
   use mech9_tree_forces, only: loop_wrench_type
   use mech9_loop_forces, only: loop_forces_type, new_loop_forces, eliminate_dependent, loop_wrenches, vary_couplings
   use mech9_twists, only: bracket, carried, shift_at
@@ -31,6 +31,7 @@ module mech9_varied_forces
     real(wp), allocatable :: changes(:, :)       !< (P,M) their derivatives
     type(link_requirements_type), allocatable :: links   !< kept where wrenches of pairs are wanted
     integer, allocatable, private :: acting(:)            !< numbers of the loads
+    logical, private :: is_loaded = .false.               !< there are loads or motors
     integer, allocatable, private :: loaded(:)            !< links on which they act or whose motion they read
     type(motion_view_type), private :: view               !< the motion as loads read it
     type(motion_change_type), private :: change           !< its derivative by one parameter
@@ -57,6 +58,7 @@ contains
     links = motion%plan%n_links
     self%acting = [(i, i=1, size(model%mechanism%loads))]
     marked = .false.
+    self%is_loaded = size(model%mechanism%loads) > 0 .or. size(model%mechanism%motors) > 0
     do i = 1, size(self%acting)
       call model%mechanism%loads(i)%load%mark_links(marked)
     end do
@@ -87,7 +89,7 @@ contains
     self%wrenches = 0.0_wp
     self%changes = 0.0_wp
     call add_bodies(model, motion, self)
-    if (size(self%acting) > 0) call add_loads(model, motion, self, err)
+    if (self%is_loaded) call add_loads(model, motion, self, err)
     if (allocated(err)) return
     if (allocated(self%links)) call keep_required(motion%plan, self)
     call find_forces(motion, self)
@@ -107,7 +109,7 @@ contains
       self%links%wrenches(:, :, i) = self%wrenches(:, :, plan%frame_of(i))
     end do
     self%links%along = 0.0_wp
-    if (size(self%acting) > 0) self%links%along = self%sum%generalized
+    if (self%is_loaded) self%links%along = self%sum%generalized
     self%links%alongs = -self%changes
     self%links%largest = 0.0_wp
     self%links%largest_changes = 0.0_wp
@@ -183,7 +185,7 @@ contains
     real(wp) :: twists(motion%n_parameters, 6, 0:2, size(self%loaded)), wrench(6), change(6), place(3)
     integer :: i, k, p, f
 
-    call sum_loads(model%mechanism, motion%plan, self%acting, self%loaded, motion%state, self%view, self%sum, err)
+    call sum_forces(model%mechanism, motion%plan, self%acting, self%loaded, motion%state, self%view, self%sum, err)
     if (allocated(err)) return
     do i = 1, size(self%loaded)
       k = self%loaded(i)
@@ -211,7 +213,7 @@ contains
     end do
   end subroutine add_loads
 
-  !> The derivatives of all loads by one parameter.
+  !> The derivatives of all loads and motors by one parameter.
   subroutine vary_loads(model, p, motion, self, err)
     type(model_type), intent(in) :: model               !< the model
     integer, intent(in) :: p                            !< number of the parameter
@@ -225,6 +227,13 @@ contains
       associate (load => model%mechanism%loads(i)%load, part => motion%tangents(p)%loads(i))
         call load%vary(self%view, self%change, self%sum_change, err)
         if (part%varies .and. .not. allocated(err)) call load%vary_numbers(part%change, self%view, self%sum_change, err)
+      end associate
+      if (allocated(err)) return
+    end do
+    do i = 1, size(model%mechanism%motors)
+      associate (motor => model%mechanism%motors(i)%motor, part => motion%tangents(p)%motors(i))
+        call motor%vary(self%view, self%change, self%sum_change, err)
+        if (part%varies .and. .not. allocated(err)) call motor%vary_numbers(part%change, self%view, self%sum_change, err)
       end associate
       if (allocated(err)) return
     end do
@@ -271,7 +280,7 @@ contains
         do s = plan%blocks(b)%last_step, plan%blocks(b)%first_step, -1
           k = plan%steps(s)%coordinate
           self%forces(k) = dot_product(motion%motion%step(:, 0, s), sums(:, s))
-          if (size(self%acting) > 0) self%forces(k) = self%forces(k) - self%sum%generalized(k)
+          if (self%is_loaded) self%forces(k) = self%forces(k) - self%sum%generalized(k)
           sums(:, plan%steps(s)%parent) = sums(:, plan%steps(s)%parent) + sums(:, s)
         end do
       end do

@@ -89,7 +89,7 @@ contains
     self%numbers = [(i, i=0, m)]
     call list_pairs(self)
     allocate (self%q(n, 0:2, m), self%twists(n, 6, 0:2, 0:m), self%points(n, 3, 0:2, size(model%mechanism%points)), &
-              self%given(n, 0:2, size(plan%free)), self%motor(n, model%mechanism%n_motors), source=0.0_wp)
+              self%given(n, 0:2, size(plan%free)), self%motor(n, size(model%mechanism%motors)), source=0.0_wp)
   end subroutine new_varied_motion
 
   !> The pairs without a fixed axis whose numbers parameters change.

@@ -2,7 +2,7 @@
 module mech9_varied_motors
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_motor, only: motor_type, motor_motion_type, motor_change_type
+  use mech9_motor, only: motor_motion_type, motor_change_type
   use mech9_model, only: model_type
   use mech9_motor_states, only: motion_of_state
   use mech9_varied_motion, only: varied_motion_type
@@ -19,17 +19,15 @@ contains
     type(motor_change_type), intent(out) :: changes(:, :)      !< (P,motors) of states and forces
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     type(motor_motion_type) :: moved
-    integer :: i, p, number
+    integer :: i, p
 
     do i = 1, size(changes, 2)
-      number = size(model%mechanism%loads) - size(changes, 2) + i
-      select type (motor => model%mechanism%loads(number)%load)
-      class is (motor_type)
+      associate (motor => model%mechanism%motors(i)%motor)
         do p = 1, motion%n_parameters
           moved%q = motion%q(p, 0, motor%coordinate)
           moved%dq = motion%q(p, 1, motor%coordinate)
           moved%value = motion%motor(p, i)
-          associate (part => motion%tangents(p)%loads(number), present => motion_of_state(motor, i, motion%state))
+          associate (part => motion%tangents(p)%motors(i), present => motion_of_state(motor, i, motion%state))
             if (part%varies) then
               call motor%vary_act(present, moved, part%change, changes(p, i), err)
             else
@@ -38,7 +36,7 @@ contains
           end associate
           if (allocated(err)) return
         end do
-      end select
+      end associate
     end do
   end subroutine find_varied_motors
 end module mech9_varied_motors

@@ -143,7 +143,7 @@ contains
     end do
   end subroutine add_loads
 
-  !> Add the magnitude of each load by itself, since loads may cancel each other in their sums.
+  !> Add the magnitude of each load and motor by itself, since they may cancel each other in their sums.
   subroutine add_magnitudes(mechanism, plan, dynamics, state, forces, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism, in space
@@ -153,15 +153,22 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
     integer :: i, j
 
-    associate (loads => forces%loads%sum)
+    associate (loads => forces%loads%sum, view => forces%loads%view)
       do i = 1, size(dynamics%acting)
-        call sum_loads(mechanism, plan, dynamics%acting(i:i), dynamics%loaded, state, forces%loads%view, loads, err)
+        call sum_loads(mechanism, plan, dynamics%acting(i:i), dynamics%loaded, state, view, loads, err)
         if (allocated(err)) return
         do j = 1, size(dynamics%loaded)
           associate (k => dynamics%loaded(j))
             forces%magnitude = forces%magnitude + norm2(loads%force(:, k))*plan%length + norm2(loads%torque(:, k))
           end associate
         end do
+        forces%magnitude = forces%magnitude + sum(abs(loads%generalized)*plan%unit_of)
+      end do
+      if (size(mechanism%motors) > 0) call show_state(plan, dynamics, state, view)
+      do i = 1, size(mechanism%motors)
+        call loads%clear()
+        call mechanism%motors(i)%motor%apply(view, loads, err)
+        if (allocated(err)) return
         forces%magnitude = forces%magnitude + sum(abs(loads%generalized)*plan%unit_of)
       end do
     end associate
@@ -232,7 +239,8 @@ contains
       call vary_body(dynamics%bodies(i), dynamics%gravity, state, variation, plan%length, forces)
     end do
     call forces%load_change%clear()
-    if (size(dynamics%acting) > 0) call vary_loads(mechanism, plan, dynamics, state, variation, forces, err)
+    if (size(dynamics%acting) > 0 .or. size(mechanism%motors) > 0) &
+      call vary_loads(mechanism, plan, dynamics, state, variation, forces, err)
     if (allocated(err)) return
     if (present(wrenches)) call vary_wrenches(plan, state, variation, wrenches, forces)
     call sweep_changes(plan, state, variation, forces)
@@ -299,7 +307,7 @@ contains
     change = cross(turned, spin) + turned_inertia(body, r, relative)
   end function change_of_spin
 
-  !> Subtract the derivatives of the loads.
+  !> Subtract the derivatives of the loads and motors.
   subroutine vary_loads(mechanism, plan, dynamics, state, variation, forces, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism, in space
@@ -315,6 +323,10 @@ contains
     call show_variation(plan, dynamics, state, variation, forces%change)
     do i = 1, size(dynamics%acting)
       call mechanism%loads(dynamics%acting(i))%load%vary(forces%loads%view, forces%change, forces%load_change, err)
+      if (allocated(err)) return
+    end do
+    do i = 1, size(mechanism%motors)
+      call mechanism%motors(i)%motor%vary(forces%loads%view, forces%change, forces%load_change, err)
       if (allocated(err)) return
     end do
     do i = 1, size(dynamics%loaded)

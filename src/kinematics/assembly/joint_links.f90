@@ -86,9 +86,7 @@ contains
     view%axes = pair_axes(mechanism%pairs)
     allocate (view%joint_at(size(view%axes)), source=0)
     allocate (view%loaded(size(bears)), source=.false.)
-    do i = 1, size(mechanism%loads)
-      if (.not. mechanism%loads(i)%load%is_idle()) call mechanism%loads(i)%load%mark_links(view%loaded)
-    end do
+    call mechanism%mark_loaded_links(view%loaded)
     if (allocated(mechanism%couplings)) then
       do i = 1, size(mechanism%couplings)
         associate (coupled => view%axes(mechanism%couplings(i)%coupling%coordinates))

@@ -61,11 +61,8 @@ contains
     do i = 1, size(mechanism%bodies)
       if (mechanism%bodies(i)%has_inertia()) requested%links(mechanism%bodies(i)%link) = .true.
     end do
-    do i = 1, size(mechanism%loads)
-      if (mechanism%loads(i)%load%is_idle()) cycle
-      call mechanism%loads(i)%load%mark_links(requested%links)
-      call mechanism%loads(i)%load%mark_coordinates(requested%coordinates)
-    end do
+    call mechanism%mark_loaded_links(requested%links)
+    call mechanism%mark_loaded_coordinates(requested%coordinates)
   end subroutine add_forces
 
   !> The blocks on which a requested coordinate or link depends.

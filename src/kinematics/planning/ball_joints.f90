@@ -77,9 +77,7 @@ contains
     do i = 1, size(mechanism%bodies)
       if (mechanism%bodies(i)%has_inertia()) loaded(mechanism%bodies(i)%link) = .true.
     end do
-    do i = 1, size(mechanism%loads)
-      if (.not. mechanism%loads(i)%load%is_idle()) call mechanism%loads(i)%load%mark_links(loaded)
-    end do
+    call mechanism%mark_loaded_links(loaded)
     do i = 2, plan%n_links
       if (loaded(i)) passive(plan%frame_of(i)) = .false.
     end do
@@ -96,9 +94,7 @@ contains
     integer :: i
 
     loaded = .false.
-    do i = 1, size(mechanism%loads)
-      if (.not. mechanism%loads(i)%load%is_idle()) call mechanism%loads(i)%load%mark_coordinates(loaded)
-    end do
+    call mechanism%mark_loaded_coordinates(loaded)
     free = .false.
     do i = 1, size(plan%blocks)
       free(plan%blocks(i)%first_step:plan%blocks(i)%last_step) = .true.

@@ -2,7 +2,7 @@
 module mech9_dc_motor
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_motor, only: motor_type, motor_motion_type, motor_action_type, motor_change_type
+  use mech9_motor, only: motor_type, motor_motion_type, motor_action_type, motor_change_type, motor_state_type
   implicit none
   private
   public :: dc_motor_type
@@ -21,6 +21,7 @@ module mech9_dc_motor
     procedure :: has_state
     procedure :: has_limit
     procedure :: has_input
+    procedure :: kind_of_state
   end type dc_motor_type
 
 contains
@@ -113,4 +114,12 @@ contains
 
     has_input = .true.
   end function has_input
+
+  !> Its state is its current.
+  pure function kind_of_state(self) result(kind)
+    class(dc_motor_type), intent(in) :: self   !< the motor
+    type(motor_state_type) :: kind
+
+    kind = motor_state_type('current', 'current', 'A')
+  end function kind_of_state
 end module mech9_dc_motor

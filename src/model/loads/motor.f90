@@ -8,7 +8,7 @@ module mech9_motor
   use mech9_load, only: load_type
   implicit none
   private
-  public :: motor_type, motor_motion_type, motor_action_type, motor_change_type, motion_of_motor
+  public :: motor_type, motor_slot_type, motor_motion_type, motor_action_type, motor_change_type, motor_state_type, motion_of_motor
 
   !> The motion of a motor's coordinate, and the motor's own state.
   type :: motor_motion_type
@@ -46,6 +46,14 @@ module mech9_motor
     real(wp) :: rate = 0.0_wp       !< of the derivative of the state in time
   end type motor_change_type
 
+  !> The meaning of the state of a kind of motors, for the names of results.
+  type :: motor_state_type
+    character(len=8) :: name = ''         !< in the names of columns
+    character(len=30) :: meaning = ''     !< in a few words
+    character(len=1) :: unit = ''         !< its unit, or what is multiplied by that of the coordinate
+    logical :: by_coordinate = .false.    !< the unit is multiplied by that of the coordinate
+  end type motor_state_type
+
   !> A motor of any kind. Its work counts as put in.
   type, abstract, extends(load_type) :: motor_type
     integer :: coordinate = 0   !< number of the coordinate on which it acts
@@ -56,6 +64,10 @@ module mech9_motor
     procedure(answer_interface), deferred :: has_state
     procedure(answer_interface), deferred :: has_limit
     procedure(answer_interface), deferred :: has_input
+    procedure(kind_of_state_interface), deferred :: kind_of_state
+    procedure :: holds_setpoint
+    procedure :: state_for
+    procedure :: excess_of
     procedure :: mark_links
     procedure :: mark_coordinates
     procedure :: apply
@@ -63,6 +75,11 @@ module mech9_motor
     procedure :: vary
     procedure :: vary_numbers
   end type motor_type
+
+  !> One of several motors of different kinds.
+  type :: motor_slot_type
+    class(motor_type), allocatable :: motor
+  end type motor_slot_type
 
   abstract interface
     !> The action of the motor. Fails where its law of time has no value.
@@ -91,6 +108,13 @@ module mech9_motor
       import :: motor_type
       class(motor_type), intent(in) :: self   !< the motor
     end function answer_interface
+
+    !> The meaning of the state of this kind of motors.
+    pure function kind_of_state_interface(self) result(kind)
+      import :: motor_type, motor_state_type
+      class(motor_type), intent(in) :: self   !< the motor
+      type(motor_state_type) :: kind
+    end function kind_of_state_interface
   end interface
 
 contains
@@ -109,6 +133,30 @@ contains
     motion%value = view%motor(self%number)
     motion%limited = view%limited(self%number)
   end function motion_of_motor
+
+  !> Whether the motor is at rest at the value of its law only, with the force that holds its coordinate there. This procedure is for
+  !> kinds that are not.
+  pure logical function holds_setpoint(self)
+    class(motor_type), intent(in) :: self   !< the motor
+
+    holds_setpoint = .false.
+  end function holds_setpoint
+
+  !> The state in which the motor exerts a force at its setpoint. This procedure is for kinds without setpoint.
+  pure real(wp) function state_for(self, force) result(value)
+    class(motor_type), intent(in) :: self   !< the motor
+    real(wp), intent(in) :: force           !< on the coordinate [N m, N]
+
+    value = 0.0_wp
+  end function state_for
+
+  !> How far a force is beyond what the motor can exert [N m, N]. This procedure is for kinds without limit.
+  pure real(wp) function excess_of(self, force) result(excess)
+    class(motor_type), intent(in) :: self   !< the motor
+    real(wp), intent(in) :: force           !< on the coordinate, beyond the limit [N m, N]
+
+    excess = 0.0_wp
+  end function excess_of
 
   !> The motor acts on a coordinate and requests no link.
   pure subroutine mark_links(self, needed)

@@ -7,7 +7,7 @@ module mech9_pid_motor
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_motion_view, only: unlocked
-  use mech9_motor, only: motor_type, motor_motion_type, motor_action_type, motor_change_type
+  use mech9_motor, only: motor_type, motor_motion_type, motor_action_type, motor_change_type, motor_state_type
   implicit none
   private
   public :: pid_motor_type
@@ -26,6 +26,10 @@ module mech9_pid_motor
     procedure :: has_state
     procedure :: has_limit
     procedure :: has_input
+    procedure :: kind_of_state
+    procedure :: holds_setpoint => has_state
+    procedure :: state_for
+    procedure :: excess_of
     procedure :: tracking_time
   end type pid_motor_type
 
@@ -182,4 +186,28 @@ contains
 
     has_input = .false.
   end function has_input
+
+  !> Its state is the integral of its deviation.
+  pure function kind_of_state(self) result(kind)
+    class(pid_motor_type), intent(in) :: self   !< the controller
+    type(motor_state_type) :: kind
+
+    kind = motor_state_type('integral', 'time integral of the deviation', 's', by_coordinate=.true.)
+  end function kind_of_state
+
+  !> The integral that exerts a force without deviation.
+  pure real(wp) function state_for(self, force) result(value)
+    class(pid_motor_type), intent(in) :: self   !< the controller, with an integral part
+    real(wp), intent(in) :: force               !< on the coordinate [N m, N]
+
+    value = force/self%integral
+  end function state_for
+
+  !> How far a force is beyond the limit, with its sign [N m, N].
+  pure real(wp) function excess_of(self, force) result(excess)
+    class(pid_motor_type), intent(in) :: self   !< the controller, with a limit
+    real(wp), intent(in) :: force               !< on the coordinate, beyond the limit [N m, N]
+
+    excess = force - sign(self%limit, force)
+  end function excess_of
 end module mech9_pid_motor

@@ -2,7 +2,6 @@
 module mech9_linear_file
   use mech9_kinds, only: wp
   use mech9_text, only: string_type, to_text
-  use mech9_pid_motor, only: pid_motor_type
   use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
   use mech9_result_units, only: unit_name
@@ -87,7 +86,7 @@ contains
       do i = 1, size(free)
         call states%append('dq'//to_text(free(i)), trim(unit_name(mechanism, free(i)))//'/s')
       end do
-      if (mechanism%n_motors > 0) then
+      if (size(mechanism%motors) > 0) then
         do i = 1, size(equilibrium%motors%states)
           call append_motor_state(mechanism, equilibrium%motors%states(i), states)
         end do
@@ -109,14 +108,13 @@ contains
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: i                        !< number of the motor
     type(columns_type), intent(inout) :: states     !< gets the name and the unit
+    character(len=:), allocatable :: unit
 
-    select type (motor => mechanism%loads(size(mechanism%loads) - mechanism%n_motors + i)%load)
-    type is (pid_motor_type)
-      call states%append('M'//to_text(i)//'.integral', &
-                         trim(merge('rad', 'm  ', mechanism%pairs(motor%coordinate)%pair%angular))//' s')
-    class default
-      call states%append('M'//to_text(i)//'.current', 'A')
-    end select
+    associate (k => mechanism%motors(i)%motor%coordinate, state => mechanism%motors(i)%motor%kind_of_state())
+      unit = state%unit
+      if (state%by_coordinate) unit = trim(merge('rad', 'm  ', mechanism%pairs(k)%pair%angular))//' '//state%unit
+      call states%append('M'//to_text(i)//'.'//trim(state%name), unit)
+    end associate
   end subroutine append_motor_state
 
   !> Put one scale of the state space and its units.

@@ -88,9 +88,7 @@ contains
     do i = 1, size(mechanism%bodies)
       if (mechanism%bodies(i)%link /= 1 .and. mechanism%bodies(i)%has_inertia()) return
     end do
-    do i = 1, size(mechanism%loads)
-      if (.not. mechanism%loads(i)%load%is_idle()) return
-    end do
+    if (mechanism%has_forces()) return
     write (unit, '(a)') 'note: no link has mass and no load acts, so that all forces of drives and in pairs are zero; '// &
       'give &body or &load'
   end subroutine print_forceless

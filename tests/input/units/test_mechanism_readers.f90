@@ -19,6 +19,7 @@ module test_mechanism_readers
   use mech9_law, only: drive_slot_type
   use mech9_limit_reader, only: read_limits
   use mech9_load, only: load_slot_type
+  use mech9_motor, only: motor_slot_type
   use mech9_load_reader, only: read_loads
   use mech9_model, only: model_type
   use mech9_motor_reader, only: read_motors
@@ -284,26 +285,24 @@ contains
     type(document_type) :: document
     type(model_type) :: model
     type(diagnostics_type) :: diagnostics
-    type(load_slot_type), allocatable :: list(:)
+    type(motor_slot_type), allocatable :: list(:)
     type(error_type), allocatable :: err
     real(wp) :: q, dq, ddq
-    integer :: n
 
     call checked(tester, "&motor coordinate=1, kind='dc', voltage=24, resistance=0.5, constant=0.05, gear_ratio=20 /"//eol// &
                  "&motor coordinate=4, kind='pid', proportional=50, derivative=5, limit=8, setpoint=1.25 /"//eol// &
                  "&motor coordinate=1, kind='pid', proportional=50, setpoint=90 /"//eol, document, model, diagnostics)
-    allocate (list(0))
-    call read_motors(document, model%mechanism%pairs, degree, list, n, diagnostics)
-    call tester%is_true(.not. diagnostics%failed() .and. n == 3 .and. size(list) == 3, 'three motors')
+    call read_motors(document, model%mechanism%pairs, degree, list, diagnostics)
+    call tester%is_true(.not. diagnostics%failed() .and. size(list) == 3, 'three motors')
     if (size(list) /= 3) return
-    select type (motor => list(1)%load)
+    select type (motor => list(1)%motor)
     type is (dc_motor_type)
       call near_vector(tester, [motor%voltage, motor%resistance, motor%inductance, motor%constant, motor%gear_ratio], &
                        [24.0_wp, 0.5_wp, 0.0_wp, 0.05_wp, 20.0_wp], 0.0_wp, 'a motor of direct current')
     class default
       call tester%is_true(.false., 'the kind of the first motor')
     end select
-    select type (motor => list(2)%load)
+    select type (motor => list(2)%motor)
     type is (pid_motor_type)
       call near_vector(tester, [motor%proportional, motor%integral, motor%derivative, motor%limit], &
                        [50.0_wp, 0.0_wp, 5.0_wp, 8.0_wp], 0.0_wp, 'a controller')
@@ -312,12 +311,10 @@ contains
     class default
       call tester%is_true(.false., 'the kind of the second motor')
     end select
-    call list(3)%load%law%evaluate(1.0_wp, q, dq, ddq, err)
+    call list(3)%motor%law%evaluate(1.0_wp, q, dq, ddq, err)
     call tester%near(q, pi/2.0_wp, tol, 'a setpoint in degrees')
     call checked(tester, "&motor coordinate=1, kind='dc', resistance=0.5, constant=0.05 /"//eol, document, model, diagnostics)
-    deallocate (list)
-    allocate (list(0))
-    call read_motors(document, model%mechanism%pairs, degree, list, n, diagnostics)
+    call read_motors(document, model%mechanism%pairs, degree, list, diagnostics)
     call tester%is_true(diagnostics%failed(), 'a motor without voltage')
   end subroutine motors
 
