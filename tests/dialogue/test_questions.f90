@@ -235,7 +235,7 @@ contains
       associate (item => item_table(row))
         place = find_explanation(trim(item%group), trim(item%name), trim(item%kinds))
         call tester%is_true(place > 0, '&'//trim(item%group)//' '//trim(item%name)//' ('//trim(item%kinds)// &
-                            ') has an explanation in src/dialogue/drafts/explanations.f90')
+                            ') has an explanation in src/dialogue/questions/explanations.f90')
         if (place == 0) cycle
         times(place) = times(place) + 1
         call tester%is_true(ends_sentence(trim(explanations(place)%text)), &

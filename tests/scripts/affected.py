@@ -19,7 +19,7 @@ ALL = ['.*']
 MANY = ['documents/', 'dialogue/', 'gallery/', 'programs/', 'session/', 'output/']
 REQUESTS = {
     'interchange': ['interchange/'], 'interchange/xml': ['interchange/'],
-    'dialogue': [], 'dialogue/drafts': [], 'terminal': ['terminal/'],
+    'dialogue': [], 'dialogue/questions': [], 'drafts': ['interchange/', 'synthesis/'], 'terminal': ['terminal/'],
     'pictures/plots': ['pictures/', 'study/', 'synthesis/'], 'pictures/scene': ['pictures/', 'synthesis/'],
     'pictures/films': ['pictures/', 'synthesis/'],
     'synthesis': ['synthesis/', 'threads/'], 'session/synthesis': ['synthesis/', 'threads/'],

@@ -10,10 +10,10 @@ from mech9_cases import TREE
 FLOORS = ['base', 'system', 'numerics', 'numerics/minima', 'spatial', 'structure', 'model/couplings', 'model/laws', 'model/loads', 'model/request', 'model',
           'sampling', 'user', 'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
           'ode', 'dynamics', 'dynamics/planning', 'dynamics/variations', 'analyses/sensitivity', 'dynamics/sensitivity', 'simulation',
-          'analyses/reactions', 'analyses/equilibrium', 'analyses/planar_runs', 'analyses', 'wording', 'runs', 'studies', 'synthesis', 'input/document', 'input', 'output',
+          'analyses/reactions', 'analyses/equilibrium', 'analyses/planar_runs', 'analyses', 'wording', 'runs', 'studies', 'synthesis', 'input/document', 'input', 'drafts', 'output',
           'pictures/plots', 'pictures/scene',
           'pictures/films', 'terminal', 'session/command', 'session/words', 'facade', 'session/results', 'session/study', 'session/synthesis', 'session',
-          'dialogue/drafts',
+          'dialogue/questions',
           'interchange/xml', 'interchange', 'dialogue',
           'programs/mpi', 'programs']
 WITHOUT_WORDS = ('numerics', 'spatial', 'kinematics/', 'ode', 'dynamics', 'simulation', 'analyses/', 'synthesis')   # they fail with numbers, see src/wording

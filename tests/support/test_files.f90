@@ -6,7 +6,7 @@ module mech9_test_files
   use mech9_testing, only: tester_type
   implicit none
   private
-  public :: save_lines, remove_file, text_of_file, text_of_unit
+  public :: save_lines, remove_file, text_of_file, text_of_unit, count_of
 
 contains
 
@@ -60,4 +60,20 @@ contains
     call text_of_file(tester, trim(path), text)
     call remove_file(trim(path))
   end subroutine text_of_unit
+
+  !> How often words stand in a text.
+  pure integer function count_of(words, text) result(n)
+    character(len=*), intent(in) :: words   !< words that are counted
+    character(len=*), intent(in) :: text    !< text that may hold them
+    integer :: at, found
+
+    n = 0
+    at = 1
+    do
+      found = index(text(at:), words)
+      if (found == 0) return
+      n = n + 1
+      at = at + found + len(words) - 1
+    end do
+  end function count_of
 end module mech9_test_files

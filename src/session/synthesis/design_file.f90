@@ -2,9 +2,9 @@
 module mech9_design_file
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
-  use mech9_source, only: span_type
   use mech9_document, only: document_type, group_type
-  use mech9_lookup, only: find_item, get_integer, has_name
+  use mech9_lookup, only: get_integer, has_name
+  use mech9_changed_text, only: set_number, full_number
   use mech9_coupling, only: coupling_type
   use mech9_linear_coupling, only: linear_coupling_type
   use mech9_model, only: model_type
@@ -14,7 +14,6 @@ module mech9_design_file
   public :: text_of_design
 
   character, parameter :: line_end = achar(10)
-  integer, parameter :: digits = 17   !< of numbers: none is lost
 
 contains
 
@@ -52,7 +51,7 @@ contains
     end do
     do k = 1, size(q)
       if (.not. given(k)) text = text//'&initial coordinate='//to_text(k)//', position='// &
-                                 to_text(q(k)/unit_of(model%mechanism, k), digits)//' /'//line_end
+                                 full_number(q(k)/unit_of(model%mechanism, k))//' /'//line_end
     end do
     text = history//text
   end subroutine text_of_design
@@ -70,22 +69,4 @@ contains
       call set_number(group, 'phase', coupling%constant/unit_of(model%mechanism, coupling%coordinates(2)), text)
     end select
   end subroutine keep_phase
-
-  !> Set a number of a group: in the place of the one that stands there, or directly behind the name of the group.
-  pure subroutine set_number(group, name, number, text)
-    type(group_type), intent(in) :: group                      !< the group of the data file
-    character(len=*), intent(in) :: name                       !< of the item
-    real(wp), intent(in) :: number                             !< the number
-    character(len=:), allocatable, intent(inout) :: text       !< of the data file
-    type(span_type) :: span
-    integer :: i
-
-    i = find_item(group, name)
-    if (i > 0) then
-      span = group%items(i)%values(1)%span
-      text = text(:span%first - 1)//to_text(number, digits)//text(span%last + 1:)
-    else
-      text = text(:group%span%last)//' '//name//'='//to_text(number, digits)//','//text(group%span%last + 1:)
-    end if
-  end subroutine set_number
 end module mech9_design_file

@@ -1,18 +1,15 @@
-!> Films in files: SVG, pages and descriptions for ParaView are whole documents that show all frames.
+!> Films in files: SVG and pages are whole documents that show all frames.
 module test_films
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_file
   use mech9_film, only: film_type
   use mech9_model, only: model_type
   use mech9_projection, only: projection_type
-  use mech9_request, only: time_grid_type
-  use mech9_poses, only: poses_of
   use mech9_scene, only: scene_type
   use mech9_svg_film, only: save_svg_film, duration_of
   use mech9_svg_picture, only: save_sketch
   use mech9_html_film, only: save_html_film
-  use mech9_xdmf, only: xdmf_type, new_xdmf, xdmf_path
-  use mech9_test_files, only: remove_file, text_of_file
+  use mech9_test_files, only: remove_file, text_of_file, count_of
   use mech9_testing, only: tester_type
   use crank_film, only: take_film, set_scene
   implicit none
@@ -29,25 +26,8 @@ contains
 
     if (tester%runs('durations')) call durations(tester)
     if (tester%runs('pictures')) call pictures(tester)
-    if (tester%runs('paraview')) call paraview(tester)
     if (tester%runs('failures')) call failures(tester)
   end subroutine run
-
-  !> How often words stand in a text.
-  pure integer function count_of(words, text) result(n)
-    character(len=*), intent(in) :: words   !< words that are counted
-    character(len=*), intent(in) :: text    !< text that may hold them
-    integer :: at, found
-
-    n = 0
-    at = 1
-    do
-      found = index(text(at:), words)
-      if (found == 0) return
-      n = n + 1
-      at = at + found + len(words) - 1
-    end do
-  end function count_of
 
   !> A film plays as long as its motion takes, from 3 s to 15 s.
   subroutine durations(tester)
@@ -94,44 +74,6 @@ contains
     call tester%is_true(index(text, 'a <b>') == 0, 'its title has no markup')
     call remove_file(path)
   end subroutine pictures
-
-  !> One grid for each row, with its time; of many rows every second or third one.
-  subroutine paraview(tester)
-    type(tester_type), intent(inout) :: tester   !< counts the checks
-    type(model_type) :: model
-    type(film_type) :: film
-
-    call take_film(tester, 1, model, film)
-    call tester%is_true(xdmf_path('d/a.h5') == 'd/a.xdmf', 'the file stands beside the other one')
-    call describe(3, 3)
-    call describe(2000, 2000)
-    call describe(2001, 1001)
-  contains
-    subroutine describe(rows, shown)
-      integer, intent(in) :: rows    !< of the results
-      integer, intent(in) :: shown   !< how many of them are shown
-      type(xdmf_type) :: sink
-      type(time_grid_type) :: grid
-      type(error_type), allocatable :: err
-      character(len=:), allocatable :: text
-      real(wp), allocatable :: numbers(:, :)
-
-      grid%start = 2.0_wp
-      grid%end = 4.0_wp
-      grid%intervals = rows - 1
-      sink = new_xdmf('test_films.h5', title, grid, poses_of(model%mechanism))
-      allocate (numbers(1, rows), source=0.0_wp)
-      call sink%write_rows(numbers, err)
-      call sink%close(err)
-      call tester%no_error(err, 'a description')
-      call text_of_file(tester, 'test_films.xdmf', text)
-      call tester%is_true(count_of('<Grid', text) == shown + 1 .and. count_of('</Grid>', text) == shown + 1, 'a grid for each row')
-      call tester%is_true(index(text, '<Time Value="2"/>') > 0, 'the first time')
-      if (shown == rows) call tester%is_true(index(text, '<Time Value="4"/>') > 0, 'the last time')
-      call tester%is_true(index(text, 'test_films.h5:/vertex') > 0 .and. index(text, 'a &lt;b&gt;') > 0, 'data set and title')
-      call remove_file('test_films.xdmf')
-    end subroutine describe
-  end subroutine paraview
 
   subroutine failures(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
