@@ -5,10 +5,11 @@ module mech9_integrator
   use mech9_ode_failures, only: failure_many_steps
   use mech9_ode_system, only: ode_system_type
   use mech9_integration_methods, only: integration_methods, tolerance_share, runge_kutta, automatic
-  use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed
+  use mech9_stepper, only: stepper_type, stepper_counts_type, tolerances_type, stepped, evaluation_failed
+  use mech9_sundials_stepper, only: sundials_stepper_type
   use mech9_sundials_system, only: system_box_type
-  use mech9_sundials_runge_kutta, only: runge_kutta_type, new_runge_kutta
-  use mech9_sundials_multistep, only: multistep_type, new_multistep
+  use mech9_sundials_runge_kutta, only: runge_kutta_type
+  use mech9_sundials_multistep, only: multistep_type
   use mech9_automatic_stepper, only: automatic_type, new_automatic
   use mech9_integration_failure, only: check_method, check_tolerances, fail_by_outcome, fail_by_vanishing_step
   implicit none
@@ -79,6 +80,7 @@ contains
     real(wp), intent(in) :: t                           !< [s]
     real(wp), intent(in) :: y(:)   !< initial values, one for each variable
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(tolerances_type) :: tolerances
     real(wp) :: share
     integer :: index, outcome
 
@@ -104,15 +106,12 @@ contains
     case default
       allocate (multistep_type :: self%stepper)
     end select
+    tolerances = tolerances_type(relative_tolerance, absolute_tolerance)
     select type (stepper => self%stepper)
-    type is (runge_kutta_type)
-      call new_runge_kutta(integration_methods(index), self%box, share*relative_tolerance, &
-                           share*absolute_tolerance, 0.0_wp, y, stepper, outcome)
-    type is (multistep_type)
-      call new_multistep(integration_methods(index), self%box, share*relative_tolerance, &
-                         share*absolute_tolerance, 0.0_wp, y, stepper, outcome)
+    class is (sundials_stepper_type)
+      call stepper%start(integration_methods(index), self%box, tolerances%times(share), 0.0_wp, y, outcome)
     type is (automatic_type)
-      call new_automatic(self%box, relative_tolerance, absolute_tolerance, 0.0_wp, y, stepper, outcome)
+      call new_automatic(self%box, tolerances, 0.0_wp, y, stepper, outcome)
     end select
     if (outcome /= stepped) call fail_by_outcome(self%box, outcome, self%t_given_out, err)
   end subroutine create

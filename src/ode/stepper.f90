@@ -3,7 +3,7 @@ module mech9_stepper
   use mech9_kinds, only: wp, long
   implicit none
   private
-  public :: stepper_type, stepper_counts_type
+  public :: stepper_type, stepper_counts_type, tolerances_type
   public :: stepped, evaluation_failed, too_inaccurate, not_convergent, too_accurate, out_of_memory, refused
 
   !> Outcomes of a step.
@@ -25,6 +25,14 @@ module mech9_stepper
     integer :: last_order = 0                   !< of the method in the last step
     real(wp) :: last_step = 0.0_wp              !< length of the last step [s]
   end type stepper_counts_type
+
+  !> Errors that are allowed in a step.
+  type :: tolerances_type
+    real(wp) :: relative = 0.0_wp            !< of each variable
+    real(wp), allocatable :: absolute(:)     !< of each variable, in its unit
+  contains
+    procedure :: times
+  end type tolerances_type
 
   !> A method at work. It starts from the values given at its creation.
   type, abstract :: stepper_type
@@ -107,4 +115,16 @@ module mech9_stepper
       class(stepper_type), intent(inout) :: self   !< the method at work
     end subroutine close_interface
   end interface
+
+contains
+
+  !> A part of the tolerances.
+  pure function times(self, share) result(tolerances)
+    class(tolerances_type), intent(in) :: self   !< the tolerances
+    real(wp), intent(in) :: share                !< the part
+    type(tolerances_type) :: tolerances
+
+    tolerances%relative = share*self%relative
+    tolerances%absolute = share*self%absolute
+  end function times
 end module mech9_stepper

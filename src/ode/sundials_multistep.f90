@@ -4,27 +4,24 @@ module mech9_sundials_multistep
     c_funloc, c_f_pointer
   use mech9_kinds, only: wp, long
   use mech9_integration_methods, only: integration_method_type
-  use mech9_stepper, only: stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
-    not_convergent, too_accurate, out_of_memory, refused
-  use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, FN_VDestroy, SUNMatrix, FSUNMatDestroy, SUNLinearSolver, &
+  use mech9_stepper, only: stepper_counts_type, stepped, evaluation_failed
+  use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, SUNMatrix, FSUNMatDestroy, SUNLinearSolver, &
     FSUNLinSolFree, SUNNonlinearSolver, FSUNNonlinSolFree, index_kind, silence_cvode
-  use mech9_sundials_stepper, only: sundials_stepper_type, most_failures
-  use mech9_sundials_system, only: system_box_type, evaluate_rate, evaluate_jacobian
+  use mech9_sundials_stepper, only: sundials_stepper_type, most_failures, meaning
+  use mech9_sundials_system, only: evaluate_rate, evaluate_jacobian
   use fcvode_mod, only: FCVodeCreate, FCVodeFree, FCVodeInit, FCVodeReInit, FCVode, FCVodeSVtolerances, &
     FCVodeSetUserData, FCVodeSetLinearSolver, FCVodeSetNonlinearSolver, FCVodeSetJacFn, FCVodeSetMaxHnilWarns, &
     FCVodeSetMaxErrTestFails, FCVodeSetMaxConvFails, FCVodeSetNonlinConvCoef, FCVodeSetInitStep, FCVodeSetMaxStep, &
     FCVodeSetStopTime, &
     FCVodeGetNonlinearSystemData, FCVodeGetDky, FCVodeGetCurrentStep, FCVodeGetLastStep, FCVodeGetNumJacEvals, FCVodeGetLastOrder, &
     FCVodeGetNumErrTestFails, FCVodeGetNumStepSolveFails, &
-    CV_ADAMS, CV_BDF, CV_ONE_STEP, CV_SUCCESS, CV_TSTOP_RETURN, CV_TOO_MUCH_ACC, CV_ERR_FAILURE, CV_CONV_FAILURE, &
-    CV_LSETUP_FAIL, CV_LSOLVE_FAIL, CV_RHSFUNC_FAIL, CV_FIRST_RHSFUNC_ERR, CV_REPTD_RHSFUNC_ERR, &
-    CV_UNREC_RHSFUNC_ERR, CV_MEM_FAIL
+    CV_ADAMS, CV_BDF, CV_ONE_STEP, CV_MEM_FAIL
   use fsunmatrix_dense_mod, only: FSUNDenseMatrix
   use fsunlinsol_dense_mod, only: FSUNLinSol_Dense
   use fsunnonlinsol_fixedpoint_mod, only: FSUNNonlinSol_FixedPoint
   implicit none
   private
-  public :: multistep_type, new_multistep
+  public :: multistep_type
 
   !> Newton's method ends when this part of the error that is allowed in a step is left. (CVODE's own part, 0.1, costs the stiff
   !> governor half as many evaluations again, and saves other motions a tenth; bench/measurements.md.)
@@ -39,63 +36,53 @@ module mech9_sundials_multistep
     type(SUNNonlinearSolver), pointer :: nonlinear => null()   !< of Adams' methods
     type(stepper_counts_type) :: earlier                       !< counted before the last restart
   contains
-    procedure :: advance
+    procedure :: open_method
+    procedure :: set_up
+    procedure :: stop_at
+    procedure :: turn_back
+    procedure :: make_step
+    procedure :: finish_step
+    procedure :: begin_anew
     procedure :: interpolate
     procedure :: correct
-    procedure :: restart
     procedure :: limit
     procedure :: next_step
     procedure :: counts => count_so_far
-    procedure :: close => close_multistep
+    procedure :: free_method
   end type multistep_type
 
 contains
 
-  !> The method at work on the system in the box, from (t, y). `outcome` is `stepped` when all is well.
-  subroutine new_multistep(method, box, relative_tolerance, absolute_tolerance, t, y, stepper, outcome)
+  !> Open CVODE.
+  subroutine open_method(self, method, flag)
+    class(multistep_type), intent(inout) :: self          !< the method
     type(integration_method_type), intent(in) :: method   !< adams or bdf
-    type(system_box_type), pointer, intent(in) :: box     !< holds the system; must outlive the stepper
-    real(wp), intent(in) :: relative_tolerance            !< of each variable, in a step
-    real(wp), intent(in) :: absolute_tolerance(:)         !< of each variable, in its unit
-    real(wp), intent(in) :: t                             !< [s]
-    real(wp), intent(in) :: y(:)                          !< initial values
-    type(multistep_type), intent(inout) :: stepper        !< the method at work
-    integer, intent(out) :: outcome                       !< `stepped`, or why it failed
-    integer(c_int) :: flag
-    logical :: opened
-
-    outcome = out_of_memory
-    call stepper%open_steps(box, t, y, opened)
-    if (.not. opened) return
-    stepper%memory = FCVodeCreate(merge(CV_ADAMS, CV_BDF, method%name == 'adams'), stepper%context)
-    if (.not. c_associated(stepper%memory)) return
-    call silence_cvode(stepper%memory, flag)
-    if (flag == 0) flag = FCVodeInit(stepper%memory, c_funloc(evaluate_rate), t, stepper%vector)
-    if (flag == 0) call set_tolerances(stepper, relative_tolerance, absolute_tolerance, flag)
-    if (flag == 0) call set_solver(stepper, method, flag)
-    if (flag == 0) call set_options(stepper, flag)
-    if (flag == 0) call find_history(stepper, flag)
-    outcome = merge(stepped, refused, flag == 0)
-  end subroutine new_multistep
-
-  !> Give CVODE the tolerances.
-  subroutine set_tolerances(self, relative_tolerance, absolute_tolerance, flag)
-    type(multistep_type), intent(inout) :: self     !< the method at work
-    real(wp), intent(in) :: relative_tolerance      !< of each variable, in a step
-    real(wp), intent(in) :: absolute_tolerance(:)   !< of each variable, in its unit
-    integer(c_int), intent(out) :: flag             !< 0 when all is well
-    type(N_Vector), pointer :: absolute
+    integer(c_int), intent(out) :: flag                   !< 0 when all is well
 
     flag = CV_MEM_FAIL
-    absolute => self%new_vector(absolute_tolerance)
-    if (.not. associated(absolute)) return
-    flag = FCVodeSVtolerances(self%memory, relative_tolerance, absolute)   ! SUNDIALS keeps a copy
-    call FN_VDestroy(absolute)
-  end subroutine set_tolerances
+    self%memory = FCVodeCreate(merge(CV_ADAMS, CV_BDF, method%name == 'adams'), self%context)
+    if (.not. c_associated(self%memory)) return
+    call silence_cvode(self%memory, flag)
+    if (flag == 0) flag = FCVodeInit(self%memory, c_funloc(evaluate_rate), self%t, self%vector)
+  end subroutine open_method
+
+  !> Give CVODE the tolerances, the solver of its equations and the limits.
+  subroutine set_up(self, method, relative, absolute, flag)
+    class(multistep_type), intent(inout) :: self          !< the method
+    type(integration_method_type), intent(in) :: method   !< adams or bdf
+    real(wp), intent(in) :: relative                      !< tolerance of each variable, in a step
+    type(N_Vector), intent(inout) :: absolute             !< tolerances of the variables; SUNDIALS keeps a copy
+    integer(c_int), intent(out) :: flag                   !< 0 when all is well
+
+    flag = FCVodeSVtolerances(self%memory, relative, absolute)
+    if (flag == 0) call set_solver(self, method, flag)
+    if (flag == 0) call set_options(self, flag)
+    if (flag == 0) call find_history(self, flag)
+  end subroutine set_up
 
   !> Adams' equations are solved by iterating them, those of backward differences by Newton's method.
   subroutine set_solver(self, method, flag)
-    type(multistep_type), intent(inout) :: self           !< the method at work
+    class(multistep_type), intent(inout) :: self          !< the method at work
     type(integration_method_type), intent(in) :: method   !< adams or bdf
     integer(c_int), intent(out) :: flag                   !< 0 when all is well
     integer(index_kind) :: n
@@ -117,7 +104,7 @@ contains
 
   !> Give CVODE the box and the limits, and keep its warnings from the terminal.
   subroutine set_options(self, flag)
-    type(multistep_type), intent(inout) :: self   !< the method at work
+    class(multistep_type), intent(inout) :: self  !< the method at work
     integer(c_int), intent(out) :: flag           !< 0 when all is well
 
     flag = FCVodeSetUserData(self%memory, c_loc(self%box))
@@ -131,7 +118,7 @@ contains
   !> CVODE gives it out as the prediction. The method goes on from a small change there without a restart, as it does
   !> after CVODE's own projection, which only backward differences have.
   subroutine find_history(self, flag)
-    type(multistep_type), intent(inout) :: self   !< the method at work
+    class(multistep_type), intent(inout) :: self  !< the method at work
     integer(c_int), intent(out) :: flag           !< 0 when all is well
     type(c_ptr), target :: found(4)
     type(c_ptr) :: at(4), context
@@ -150,60 +137,53 @@ contains
     self%history => FN_VGetArrayPointer(vector)
   end subroutine find_history
 
+  !> CVODE keeps the stop.
+  subroutine stop_at(self, time, flag)
+    class(multistep_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: time                   !< latest end of the step [s]
+    integer(c_int), intent(out) :: flag            !< 0 when all is well
+
+    flag = FCVodeSetStopTime(self%memory, time)
+  end subroutine stop_at
+
   !> A step against the direction of the last one needs a restart.
-  subroutine advance(self, t_stop, t, y, outcome)
+  subroutine turn_back(self, time, flag)
+    class(multistep_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: time                   !< latest end of the step [s]
+    integer(c_int), intent(out) :: flag            !< 0 when all is well
+
+    self%values = self%history
+    call self%begin_anew(0.0_wp, flag)
+    if (flag == 0) call self%stop_at(time, flag)
+  end subroutine turn_back
+
+  !> A step of CVODE.
+  subroutine make_step(self, t_stop, t_reached, flag)
     class(multistep_type), intent(inout) :: self   !< the method at work
     real(wp), intent(in) :: t_stop                 !< latest end of the step [s]
-    real(wp), intent(out) :: t                     !< end of the step [s]
-    real(wp), intent(out) :: y(:)                  !< values there
+    real(c_double), intent(out) :: t_reached(1)    !< end of the step [s]
+    integer(c_int), intent(out) :: flag            !< its answer
+
+    flag = FCVode(self%memory, t_stop, self%vector, t_reached, CV_ONE_STEP)
+  end subroutine make_step
+
+  !> CVODE goes on after a failure of any kind, and lets no system settle.
+  subroutine finish_step(self, t, y, outcome)
+    class(multistep_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: t                      !< end of the step [s]
+    real(wp), intent(inout) :: y(:)                !< values there
     integer, intent(out) :: outcome                !< `stepped`, or why it failed
-    real(c_double) :: t_reached(1)
-    integer(c_int) :: flag
     logical :: settled
 
-    if ((t_stop - self%t)*self%last_step < 0.0_wp) then
-      call self%restart((self%t), self%history, 0.0_wp, outcome)
-      if (outcome /= stepped) return
-    end if
-    flag = FCVodeSetStopTime(self%memory, t_stop)
-    if (flag == 0) flag = FCVode(self%memory, t_stop, self%vector, t_reached, CV_ONE_STEP)
-    outcome = meaning(flag)
-    if (outcome /= stepped) return
-    call self%note_step(t_reached(1), t, y)
-    if (self%box%broken) then
-      outcome = evaluation_failed
-      return
-    end if
-    if (.not. self%box%system%settles) return
+    outcome = merge(evaluation_failed, stepped, self%box%broken)
+    if (self%box%broken .or. .not. self%box%system%settles) return
     call self%box%settle(t, y, settled)
     if (settled) then
       self%history = y
     else
       outcome = evaluation_failed
     end if
-  end subroutine advance
-
-  !> The outcome that an answer of SUNDIALS means.
-  pure integer function meaning(flag)
-    integer(c_int), intent(in) :: flag   !< answer of a function of CVODE
-
-    select case (flag)
-    case (CV_SUCCESS, CV_TSTOP_RETURN)
-      meaning = stepped
-    case (CV_RHSFUNC_FAIL, CV_FIRST_RHSFUNC_ERR, CV_REPTD_RHSFUNC_ERR, CV_UNREC_RHSFUNC_ERR, CV_LSETUP_FAIL)
-      meaning = evaluation_failed
-    case (CV_ERR_FAILURE)
-      meaning = too_inaccurate
-    case (CV_CONV_FAILURE, CV_LSOLVE_FAIL)
-      meaning = not_convergent
-    case (CV_TOO_MUCH_ACC)
-      meaning = too_accurate
-    case (CV_MEM_FAIL)
-      meaning = out_of_memory
-    case default
-      meaning = refused
-    end select
-  end function meaning
+  end subroutine finish_step
 
   !> The polynomial of the method gives the values.
   subroutine interpolate(self, t, y, found)
@@ -232,24 +212,18 @@ contains
   end subroutine correct
 
   !> The method falls back to the first order, as all multistep methods must.
-  subroutine restart(self, t, y, first_step, outcome)
+  subroutine begin_anew(self, time, flag)
     class(multistep_type), intent(inout) :: self   !< the method at work
-    real(wp), intent(in) :: t                      !< time of the beginning [s]
-    real(wp), intent(in) :: y(:)                   !< values there
-    real(wp), intent(in) :: first_step             !< its length with its sign; 0: to be found [s]
-    integer, intent(out) :: outcome                !< `stepped`, or why it failed
+    real(wp), intent(in) :: time                   !< length of the first step with its sign; 0: to be found [s]
+    integer(c_int), intent(out) :: flag            !< 0 when all is well
     type(stepper_counts_type) :: counts
-    integer(c_int) :: flag
 
     call self%counts(counts)
     self%earlier = counts
-    self%values = y
-    flag = FCVodeReInit(self%memory, t, self%vector)
-    if (flag == 0) flag = FCVodeSetInitStep(self%memory, first_step)
-    self%t = t
+    flag = FCVodeReInit(self%memory, self%t, self%vector)
+    if (flag == 0) flag = FCVodeSetInitStep(self%memory, time)
     self%last_step = 0.0_wp
-    outcome = meaning(flag)
-  end subroutine restart
+  end subroutine begin_anew
 
   !> CVODE keeps the limit.
   subroutine limit(self, largest_step, outcome)
@@ -297,9 +271,9 @@ contains
     counts%last_order = int(order(1))
   end subroutine count_so_far
 
-  !> Free the memory of SUNDIALS.
-  subroutine close_multistep(self)
-    class(multistep_type), intent(inout) :: self   !< the method at work
+  !> Free the memory of CVODE and its solvers.
+  subroutine free_method(self)
+    class(multistep_type), intent(inout) :: self   !< the method
     integer(c_int) :: flag
 
     if (c_associated(self%memory)) call FCVodeFree(self%memory)
@@ -310,6 +284,5 @@ contains
     self%matrix => null()
     self%nonlinear => null()
     self%history => null()
-    call self%close_steps()
-  end subroutine close_multistep
+  end subroutine free_method
 end module mech9_sundials_multistep

@@ -6,14 +6,11 @@ module mech9_sundials_runge_kutta
     fehlberg_table, kutta_merson_table
   use mech9_butcher_tables, only: butcher_table_type, kutta_merson, prince_dormand
   use mech9_step_choice, only: next_step_length, safety
-  use mech9_stepper, only: stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
-    too_accurate, out_of_memory, refused
-  use mech9_sundials, only: N_Vector, FN_VDestroy, last_stage_mistaken, silence_erkstep, form_own_sums
-  use mech9_sundials_stepper, only: sundials_stepper_type, most_failures
-  use mech9_sundials_system, only: system_box_type, evaluate_rate, settle_step
-  use farkode_mod, only: FARKodeButcherTable_Create, FARKodeButcherTable_Free, ARK_SUCCESS, ARK_TSTOP_RETURN, &
-    ARK_ONE_STEP, ARK_ERR_FAILURE, ARK_TOO_MUCH_ACC, ARK_RHSFUNC_FAIL, ARK_FIRST_RHSFUNC_ERR, ARK_REPTD_RHSFUNC_ERR, &
-    ARK_UNREC_RHSFUNC_ERR, ARK_POSTPROCESS_STEP_FAIL, ARK_MEM_FAIL, ARK_ILL_INPUT, &
+  use mech9_stepper, only: stepper_counts_type
+  use mech9_sundials, only: N_Vector, last_stage_mistaken, silence_erkstep, form_own_sums
+  use mech9_sundials_stepper, only: sundials_stepper_type, most_failures, meaning
+  use mech9_sundials_system, only: evaluate_rate, settle_step
+  use farkode_mod, only: FARKodeButcherTable_Create, FARKodeButcherTable_Free, ARK_ONE_STEP, ARK_MEM_FAIL, ARK_ILL_INPUT, &
     ARKODE_DORMAND_PRINCE_7_4_5, ARKODE_VERNER_8_5_6, ARKODE_FEHLBERG_13_7_8
   use farkode_erkstep_mod, only: FERKStepCreate, FERKStepFree, FERKStepReset, FERKStepEvolve, FERKStepSVtolerances, &
     FERKStepSetUserData, FERKStepSetTableNum, FERKStepSetTable, FERKStepSetInterpolantDegree, &
@@ -23,72 +20,59 @@ module mech9_sundials_runge_kutta
   use fnvector_serial_mod, only: FN_VEnableFusedOps_Serial
   implicit none
   private
-  public :: runge_kutta_type, new_runge_kutta
+  public :: runge_kutta_type
 
   !> A Runge-Kutta method at work.
   type, extends(sundials_stepper_type) :: runge_kutta_type
     private
     integer :: order = 0   !< of the method
   contains
-    procedure :: advance
+    procedure :: open_method
+    procedure :: set_up
+    procedure :: stop_at
+    procedure :: turn_back
+    procedure :: make_step
+    procedure :: begin_anew
     procedure :: interpolate
     procedure :: correct
-    procedure :: restart
     procedure :: limit
     procedure :: next_step
     procedure :: counts => count_so_far
-    procedure :: close => close_runge_kutta
+    procedure :: free_method
   end type runge_kutta_type
 
 contains
 
-  !> The method at work on the system in the box, from (t, y). `outcome` is `stepped` when all is well.
-  subroutine new_runge_kutta(method, box, relative_tolerance, absolute_tolerance, t, y, stepper, outcome)
+  !> Open ERKStep.
+  subroutine open_method(self, method, flag)
+    class(runge_kutta_type), intent(inout) :: self        !< the method
     type(integration_method_type), intent(in) :: method   !< one of the Runge-Kutta methods
-    type(system_box_type), pointer, intent(in) :: box     !< holds the system; must outlive the stepper
-    real(wp), intent(in) :: relative_tolerance            !< of each variable, in a step
-    real(wp), intent(in) :: absolute_tolerance(:)         !< of each variable, in its unit
-    real(wp), intent(in) :: t                             !< [s]
-    real(wp), intent(in) :: y(:)                          !< initial values
-    type(runge_kutta_type), intent(inout) :: stepper      !< the method at work
-    integer, intent(out) :: outcome                       !< `stepped`, or why it failed
-    integer(c_int) :: flag
-    logical :: opened
+    integer(c_int), intent(out) :: flag                   !< 0 when all is well
 
-    outcome = out_of_memory
-    stepper%order = method%order
-    call stepper%open_steps(box, t, y, opened)
-    if (.not. opened) return
-    flag = FN_VEnableFusedOps_Serial(stepper%vector, 1_c_int)   ! a tenth to a fifth faster
+    self%order = method%order
+    flag = FN_VEnableFusedOps_Serial(self%vector, 1_c_int)   ! a tenth to a fifth faster
     if (flag /= 0) return
-    call form_own_sums(stepper%vector)
-    stepper%memory = FERKStepCreate(c_funloc(evaluate_rate), t, stepper%vector, stepper%context)
-    if (.not. c_associated(stepper%memory)) return
-    call silence_erkstep(stepper%memory, flag)
-    if (flag == 0) call set_tolerances(stepper, relative_tolerance, absolute_tolerance, flag)
-    if (flag == 0) call set_table(stepper, method, flag)
-    if (flag == 0) call set_options(stepper, method, flag)
-    outcome = merge(stepped, refused, flag == 0)
-  end subroutine new_runge_kutta
+    call form_own_sums(self%vector)
+    self%memory = FERKStepCreate(c_funloc(evaluate_rate), self%t, self%vector, self%context)
+    if (c_associated(self%memory)) call silence_erkstep(self%memory, flag)
+  end subroutine open_method
 
-  !> Give ERKStep the tolerances.
-  subroutine set_tolerances(self, relative_tolerance, absolute_tolerance, flag)
-    type(runge_kutta_type), intent(inout) :: self   !< the method at work
-    real(wp), intent(in) :: relative_tolerance      !< of each variable, in a step
-    real(wp), intent(in) :: absolute_tolerance(:)   !< of each variable, in its unit
-    integer(c_int), intent(out) :: flag             !< 0 when all is well
-    type(N_Vector), pointer :: absolute
+  !> Give ERKStep the tolerances, the coefficients, the choice of steps and the limits.
+  subroutine set_up(self, method, relative, absolute, flag)
+    class(runge_kutta_type), intent(inout) :: self        !< the method
+    type(integration_method_type), intent(in) :: method   !< one of the Runge-Kutta methods
+    real(wp), intent(in) :: relative                      !< tolerance of each variable, in a step
+    type(N_Vector), intent(inout) :: absolute             !< tolerances of the variables; SUNDIALS keeps a copy
+    integer(c_int), intent(out) :: flag                   !< 0 when all is well
 
-    flag = ARK_MEM_FAIL
-    absolute => self%new_vector(absolute_tolerance)
-    if (.not. associated(absolute)) return
-    flag = FERKStepSVtolerances(self%memory, relative_tolerance, absolute)   ! SUNDIALS keeps a copy
-    call FN_VDestroy(absolute)
-  end subroutine set_tolerances
+    flag = FERKStepSVtolerances(self%memory, relative, absolute)
+    if (flag == 0) call set_table(self, method, flag)
+    if (flag == 0) call set_options(self, method, flag)
+  end subroutine set_up
 
   !> Give SUNDIALS the coefficients. A method whose table is not known is refused.
   subroutine set_table(self, method, flag)
-    type(runge_kutta_type), intent(inout) :: self         !< the method at work
+    class(runge_kutta_type), intent(inout) :: self        !< the method at work
     type(integration_method_type), intent(in) :: method   !< the Runge-Kutta method
     integer(c_int), intent(out) :: flag                   !< ARK_SUCCESS when all is well
 
@@ -110,7 +94,7 @@ contains
 
   !> Give ERKStep coefficients of mech9_butcher_tables.
   subroutine set_own_table(self, table, flag)
-    type(runge_kutta_type), intent(inout) :: self   !< the method at work
+    class(runge_kutta_type), intent(inout) :: self  !< the method at work
     type(butcher_table_type), intent(in) :: table   !< coefficients of the method
     integer(c_int), intent(out) :: flag             !< 0 when all is well
     real(c_double), target :: c(table%stages), b(table%stages), d(table%stages), a(table%stages**2)
@@ -130,7 +114,7 @@ contains
 
   !> Give ERKStep the box, the choice of steps and the limits, and keep its warnings from the terminal.
   subroutine set_options(self, method, flag)
-    type(runge_kutta_type), intent(inout) :: self         !< the method at work
+    class(runge_kutta_type), intent(inout) :: self        !< the method at work
     type(integration_method_type), intent(in) :: method   !< the Runge-Kutta method
     integer(c_int), intent(out) :: flag                   !< 0 when all is well
     type(c_ptr) :: nothing
@@ -169,60 +153,46 @@ contains
     answer = 0
   end function choose_step
 
-  !> A step against the direction of the last one is prepared by turn_back.
-  subroutine advance(self, t_stop, t, y, outcome)
+  !> ERKStep keeps the stop.
+  subroutine stop_at(self, time, flag)
     class(runge_kutta_type), intent(inout) :: self   !< the method at work
-    real(wp), intent(in) :: t_stop                   !< latest end of the step [s]
-    real(wp), intent(out) :: t                       !< end of the step [s]
-    real(wp), intent(out) :: y(:)                    !< values there
-    integer, intent(out) :: outcome                  !< `stepped`, or why it failed
-    real(c_double) :: t_reached(1)
-    integer(c_int) :: flag
+    real(wp), intent(in) :: time                     !< latest end of the step [s]
+    integer(c_int), intent(out) :: flag              !< 0 when all is well
 
-    if ((t_stop - self%t)*self%last_step < 0.0_wp) then
-      call turn_back(self, t_stop, flag)
-    else
-      flag = FERKStepSetStopTime(self%memory, t_stop)
-    end if
-    if (flag == 0) flag = FERKStepEvolve(self%memory, t_stop, self%vector, t_reached, ARK_ONE_STEP)
-    outcome = meaning(flag)
-    if (outcome /= stepped) return
-    call self%note_step(t_reached(1), t, y)
-  end subroutine advance
+    flag = FERKStepSetStopTime(self%memory, time)
+  end subroutine stop_at
 
   !> ERKStep accepts no stop against the direction of its last step. The first step back is therefore set to half of the
   !> way to the stop at most; as it can only become smaller, it needs no stop.
-  subroutine turn_back(self, t_stop, flag)
+  subroutine turn_back(self, time, flag)
     class(runge_kutta_type), intent(inout) :: self   !< the method at work
-    real(wp), intent(in) :: t_stop                   !< latest end of the step [s]
+    real(wp), intent(in) :: time                     !< latest end of the step [s]
     integer(c_int), intent(out) :: flag              !< 0 when all is well
     real(wp) :: half
 
-    half = 0.5_wp*(t_stop - self%t)
-    flag = FERKStepSetInitStep(self%memory, sign(min(abs(self%last_step), abs(half)), half))
-    if (flag == 0) flag = FERKStepReset(self%memory, self%t, self%vector)
+    half = 0.5_wp*(time - self%t)
+    call self%begin_anew(sign(min(abs(self%last_step), abs(half)), half), flag)
   end subroutine turn_back
 
-  !> The outcome that an answer of SUNDIALS means.
-  pure integer function meaning(flag)
-    integer(c_int), intent(in) :: flag   !< answer of a function of ERKStep
+  !> A step of ERKStep.
+  subroutine make_step(self, t_stop, t_reached, flag)
+    class(runge_kutta_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: t_stop                   !< latest end of the step [s]
+    real(c_double), intent(out) :: t_reached(1)      !< end of the step [s]
+    integer(c_int), intent(out) :: flag              !< its answer
 
-    select case (flag)
-    case (ARK_SUCCESS, ARK_TSTOP_RETURN)
-      meaning = stepped
-    case (ARK_RHSFUNC_FAIL, ARK_FIRST_RHSFUNC_ERR, ARK_REPTD_RHSFUNC_ERR, ARK_UNREC_RHSFUNC_ERR, &
-          ARK_POSTPROCESS_STEP_FAIL)
-      meaning = evaluation_failed
-    case (ARK_ERR_FAILURE)
-      meaning = too_inaccurate
-    case (ARK_TOO_MUCH_ACC)
-      meaning = too_accurate
-    case (ARK_MEM_FAIL)
-      meaning = out_of_memory
-    case default
-      meaning = refused
-    end select
-  end function meaning
+    flag = FERKStepEvolve(self%memory, t_stop, self%vector, t_reached, ARK_ONE_STEP)
+  end subroutine make_step
+
+  !> ERKStep begins anew.
+  subroutine begin_anew(self, time, flag)
+    class(runge_kutta_type), intent(inout) :: self   !< the method at work
+    real(wp), intent(in) :: time                     !< length of the first step with its sign; 0: to be found [s]
+    integer(c_int), intent(out) :: flag              !< 0 when all is well
+
+    flag = FERKStepSetInitStep(self%memory, time)
+    if (flag == 0) flag = FERKStepReset(self%memory, self%t, self%vector)
+  end subroutine begin_anew
 
   !> The method has no approximation of its own order inside a step.
   subroutine interpolate(self, t, y, found)
@@ -245,22 +215,6 @@ contains
     self%values = y
     outcome = meaning(FERKStepReset(self%memory, t, self%vector))
   end subroutine correct
-
-  !> The next step starts from the given values.
-  subroutine restart(self, t, y, first_step, outcome)
-    class(runge_kutta_type), intent(inout) :: self   !< the method at work
-    real(wp), intent(in) :: t                        !< time of the beginning [s]
-    real(wp), intent(in) :: y(:)                     !< values there
-    real(wp), intent(in) :: first_step               !< its length with its sign; 0: to be found [s]
-    integer, intent(out) :: outcome                  !< `stepped`, or why it failed
-    integer(c_int) :: flag
-
-    self%values = y
-    self%t = t
-    flag = FERKStepSetInitStep(self%memory, first_step)
-    if (flag == 0) flag = FERKStepReset(self%memory, t, self%vector)
-    outcome = meaning(flag)
-  end subroutine restart
 
   !> ERKStep keeps the limit.
   subroutine limit(self, largest_step, outcome)
@@ -299,11 +253,10 @@ contains
     counts%last_order = self%order
   end subroutine count_so_far
 
-  !> Free the memory of SUNDIALS.
-  subroutine close_runge_kutta(self)
-    class(runge_kutta_type), intent(inout) :: self   !< the method at work
+  !> Free the memory of ERKStep.
+  subroutine free_method(self)
+    class(runge_kutta_type), intent(inout) :: self   !< the method
 
     if (c_associated(self%memory)) call FERKStepFree(self%memory)
-    call self%close_steps()
-  end subroutine close_runge_kutta
+  end subroutine free_method
 end module mech9_sundials_runge_kutta

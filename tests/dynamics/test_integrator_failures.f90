@@ -3,9 +3,10 @@ module test_integrator_failures
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_internal, exit_data, exit_singular, exit_integrator
   use mech9_integration_methods, only: integration_method_type, integration_methods, method_index, runge_kutta, no_table
-  use mech9_stepper, only: refused
+  use mech9_stepper, only: tolerances_type, refused
+  use mech9_sundials_stepper, only: answers_agree
   use mech9_sundials_system, only: system_box_type
-  use mech9_sundials_runge_kutta, only: runge_kutta_type, new_runge_kutta
+  use mech9_sundials_runge_kutta, only: runge_kutta_type
   use mech9_integrator, only: integrator_type, integration_statistics_type
   use mech9_integration_problems, only: explosion_type, obstacle_type, rotation_type, orbit_type, &
     orbit_start, integrate
@@ -237,8 +238,9 @@ contains
     method%table = no_table
     allocate (box)
     box%system => orbit
-    call new_runge_kutta(method, box, 1.0e-6_wp, spread(1.0e-6_wp, 1, 4), 0.0_wp, orbit_start(0.5_wp), stepper, outcome)
+    call stepper%start(method, box, tolerances_type(1.0e-6_wp, spread(1.0e-6_wp, 1, 4)), 0.0_wp, orbit_start(0.5_wp), outcome)
     call test%is_true(outcome == refused, 'a method without a table is refused')
+    call test%is_true(answers_agree, 'both parts of SUNDIALS tell the same outcomes by the same numbers')
     call stepper%close()
     deallocate (box)
   end subroutine check_tables
