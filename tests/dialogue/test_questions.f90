@@ -2,7 +2,7 @@
 !> names holds; each question is told from the others by its label, and explained in whole sentences with an example in the
 !> unit that is asked for. A group that was begun can be left out, and nothing is proposed that was meant for something else.
 module test_questions
-  use mech9_program_kind, only: kinematics, dynamics, program_names
+  use mech9_program_kind, only: kinematics, dynamics, program_names, belongs_to
   use mech9_text, only: string_type
   use mech9_grammar, only: group_table, item_table, find_group_row
   use mech9_item_rows, only: item_row_for_kind
@@ -219,7 +219,7 @@ contains
                                   label_of(question)//': the prompt names the item')
         call tester%is_true(index(help_of(question, interview%draft, interview%outline), 'For example: ') > 0, &
                             label_of(question)//': the help gives an example')
-        call tester%is_true(any([character(len=6) :: 'both', program_names(interview%outline%program)] == item%program), &
+        call tester%is_true(belongs_to(item%program, interview%outline%program), &
                             label_of(question)//': the question is used by the program that asks')
       end associate
     end do

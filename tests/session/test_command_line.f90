@@ -1,6 +1,6 @@
 !> Tests of mech9_command_line: the words are an array, so that any command line can be tried here.
 module test_command_line
-  use mech9_program_kind, only: kinematics, dynamics, program_names
+  use mech9_program_kind, only: kinematics, dynamics, belongs_to
   use mech9_error, only: error_type, exit_usage
   use mech9_text, only: string_type
   use mech9_options, only: options_table, option_names, find_option, needed_argument, whole_number, part_of_whole
@@ -102,7 +102,7 @@ contains
     do i = 1, size(options_table)
       name = options_table(i)%name
       program = dynamics
-      if (index(options_table(i)%programs, program_names(kinematics)) > 0) then
+      if (belongs_to(options_table(i)%program, kinematics)) then
         program = kinematics
         of_both = of_both + 1
       end if

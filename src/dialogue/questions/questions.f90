@@ -3,7 +3,7 @@
 !> The list is made anew after each answer, since an answer may open or close other questions. A question is the same in
 !> two lists if it has the same label.
 module mech9_questions
-  use mech9_program_kind, only: kinematics, dynamics, program_names
+  use mech9_program_kind, only: kinematics, dynamics, belongs_to
   use mech9_text, only: to_text
   use mech9_grammar, only: group_table, item_table, for_forces, rows_of_group, find_group_row
   use mech9_item_rows, only: takes_kind, find_item_rows
@@ -73,7 +73,7 @@ contains
     do i = 1, size(rows)
       associate (program => group_table(rows(i))%program)
         if (program == for_forces .and. .not. with_masses) cycle
-        if (all(program /= ['both  ', for_forces, program_names(outline%program)])) cycle
+        if (.not. (program == for_forces .or. belongs_to(program, outline%program))) cycle
       end associate
       call ask_about_group(draft, outline, topic, rows(i), questions, count)
     end do

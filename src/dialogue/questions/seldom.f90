@@ -1,6 +1,6 @@
 !> Rarely used names of the data file, for which a conversation asks on request only.
 module mech9_seldom
-  use mech9_program_kind, only: program_names
+  use mech9_program_kind, only: belongs_to
   use mech9_grammar, only: group_table, item_table, item_row_type, rows_of_group
   use mech9_outline, only: outline_type
   implicit none
@@ -35,6 +35,6 @@ contains
     type(outline_type), intent(in) :: outline  !< facts known beside the draft
     type(item_row_type), intent(in) :: row     !< row of the table of names
 
-    is_used = row%program == 'both' .or. row%program == program_names(outline%program)
+    is_used = belongs_to(row%program, outline%program)
   end function is_used
 end module mech9_seldom

@@ -1,5 +1,6 @@
 !> The grammar as text for users: plain for the terminal, and Markdown for the documentation.
 module mech9_data_help
+  use mech9_program_kind, only: both_programs, program_names
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: to_text, nearest_name
   use mech9_grammar, only: group_table, item_table, item_row_type, group_row_type, unlimited, find_group_row, &
@@ -135,8 +136,8 @@ contains
     if (row%key /= '') text = 'may be repeated, each with another '//trim(row%key)
     if (row%program == for_forces) then
       text = text//'; used by mech9d, and by mech9k for the forces of reactions, drive_forces and force_arrows'
-    else if (row%program /= 'both') then
-      text = text//'; used by '//trim(row%program)
+    else if (row%program /= both_programs) then
+      text = text//'; used by '//program_names(row%program)
     end if
   end function use_text
 

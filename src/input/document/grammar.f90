@@ -3,6 +3,7 @@
 !>
 !> Each field of a row is longer than its longest text, since longer ones would be cut without a warning; a test looks at all rows.
 module mech9_grammar
+  use mech9_program_kind, only: kinematics, dynamics, both => both_programs
   use mech9_text, only: lower
   use mech9_grammar_rows, only: group_row_type, item_row_type, unlimited, for_forces, needed, optional
   use mech9_study_grammar, only: study_items
@@ -17,42 +18,42 @@ module mech9_grammar
                                                'modified-sine modified-trapezoidal'
 
   type(group_row_type), parameter :: group_table(*) = [ &
-    group_row_type('mechanism', .false., '', 'both', 'title, numbers of links and coordinates, unit of angles'), &
-    group_row_type('structure', .false., '', 'both', &
+    group_row_type('mechanism', .false., '', both, 'title, numbers of links and coordinates, unit of angles'), &
+    group_row_type('structure', .false., '', both, &
                    'which links meet, which coordinates are independent: first set (c, cq) or second (nrg, nws, rdw, nrw)'), &
-    group_row_type('pair', .true., 'coordinate', 'both', &
+    group_row_type('pair', .true., 'coordinate', both, &
                    'a joint of two links: its kind, its coordinate or coordinates, its point and axis'), &
-    group_row_type('initial', .true., 'coordinate', 'both', &
+    group_row_type('initial', .true., 'coordinate', both, &
                    'a coordinate at the start: a guess of a dependent one, the value of an independent one'), &
-    group_row_type('coupling', .true., '', 'both', &
+    group_row_type('coupling', .true., '', both, &
                    'an equation between coordinates, as of gears, racks, belts and screws'), &
-    group_row_type('point', .true., 'name', 'both', 'a point of a link whose motion is recorded'), &
-    group_row_type('drive', .true., 'coordinate', 'both', &
+    group_row_type('point', .true., 'name', both, 'a point of a link whose motion is recorded'), &
+    group_row_type('drive', .true., 'coordinate', both, &
                    'an independent coordinate as a function of time; mech9k needs one for each, in mech9d the others are free'), &
     group_row_type('body', .true., 'link', for_forces, 'mass, centre and inertia of a link; links without a body are massless'), &
     group_row_type('gravity', .false., '', for_forces, 'the acceleration of gravity'), &
     group_row_type('load', .true., '', for_forces, 'a force, torque, spring or damper, or a user''s procedure'), &
-    group_row_type('motor', .true., '', 'mech9d', &
+    group_row_type('motor', .true., '', dynamics, &
                    'a motor on an independent coordinate without a drive: direct current, or set by a PID controller'), &
-    group_row_type('cam', .true., '', 'mech9k', &
+    group_row_type('cam', .true., '', kinematics, &
                    'a cam whose profile mech9k computes from the motion of its follower (option --cam)'), &
-    group_row_type('parameter', .true., 'name', 'both', &
+    group_row_type('parameter', .true., 'name', both, &
                    'a number by name that sets numbers of this file, for studies, sensitivities and optimisation'), &
-    group_row_type('quantity', .true., 'name', 'both', &
+    group_row_type('quantity', .true., 'name', both, &
                    'a number from a whole run: an extreme, a mean or an integral of a column of the results'), &
-    group_row_type('study', .false., '', 'both', &
+    group_row_type('study', .false., '', both, &
                    'the sets of parameter values for which --study makes runs'), &
-    group_row_type('objective', .true., '', 'both', &
+    group_row_type('objective', .true., '', both, &
                    'a path, a function, poses or a quantity that the mechanism should have, for --optimize'), &
-    group_row_type('limit', .true., '', 'both', &
+    group_row_type('limit', .true., '', both, &
                    'a condition that the designs of --optimize must meet'), &
-    group_row_type('optimum', .false., '', 'both', &
+    group_row_type('optimum', .false., '', both, &
                    'the search of --optimize for the values of the parameters that meet the objectives best'), &
-    group_row_type('time', .false., '', 'both', &
+    group_row_type('time', .false., '', both, &
                    'the times of the results: start + (end - start) i/intervals, i = 0 .. intervals'), &
-    group_row_type('solver', .false., '', 'mech9d', 'method and tolerances of the integration'), &
-    group_row_type('output', .false., '', 'both', 'the recorded quantities, and the files for them'), &
-    group_row_type('user', .false., '', 'both', 'numbers handed to the user''s own procedures')]
+    group_row_type('solver', .false., '', dynamics, 'method and tolerances of the integration'), &
+    group_row_type('output', .false., '', both, 'the recorded quantities, and the files for them'), &
+    group_row_type('user', .false., '', both, 'numbers handed to the user''s own procedures')]
 
   type(item_row_type), parameter :: general_items(*) = [ &
     item_row_type('mechanism', 'title', 'text', 1, 1, '', optional, '''''', '', '', '', &
@@ -194,7 +195,7 @@ module mech9_grammar
     item_row_type('initial', 'position', 'real', 1, 1, 'q', optional, '0', '', '', '', &
                   'its value, or a guess of it; a coordinate that is free in mech9d needs one', '0.2'), &
     item_row_type('initial', 'velocity', 'real', 1, 1, 'q/s', optional, '0', '', '', '', &
-                  'its rate (independent coordinates in mech9d)', '1.5', program='mech9d'), &
+                  'its rate (independent coordinates in mech9d)', '1.5', program=dynamics), &
     item_row_type('point', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
                   'heading of its columns in the table; letters, digits and _', '''P'''), &
     item_row_type('point', 'link', 'integer', 1, 1, '', needed, '', '>=1', '', '', 'the link it is part of', '3'), &
@@ -415,7 +416,7 @@ module mech9_grammar
                   'highest recorded derivative: 0 positions, 1 velocities too, 2 accelerations too', '0', seldom=.true.), &
     item_row_type('output', 'energies', 'logical', 1, 1, '', optional, '.true.', '', '', '', &
                   'whether mech9d records kinetic and potential energy and their sum', '.false.', seldom=.true., &
-                  program='mech9d'), &
+                  program=dynamics), &
     item_row_type('output', 'reactions', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'forces and moments in the pairs, for which bodies, gravity and loads count in mech9k too', '.true.', &
                   seldom=.true.), &

@@ -1,5 +1,6 @@
 !> The rows of the table that describes the language of the data file.
 module mech9_grammar_rows
+  use mech9_program_kind, only: both_programs
   implicit none
   private
   public :: group_row_type, item_row_type, unlimited, for_forces, needed, optional
@@ -9,8 +10,8 @@ module mech9_grammar_rows
     character(len=10) :: name
     logical :: repeats           !< may stand more than once
     character(len=11) :: key     !< the name whose value tells its groups apart; empty: none does
-    !> Program that uses it: both, mech9k, mech9d, or for_forces: mech9d, and mech9k where forces are asked for.
-    character(len=7) :: program
+    !> Program that uses it: kinematics, dynamics, both_programs, or for_forces: dynamics, and kinematics where forces are asked for.
+    integer :: program
     character(len=120) :: help
   end type group_row_type
 
@@ -32,10 +33,10 @@ module mech9_grammar_rows
     character(len=120) :: help
     character(len=44) :: example  !< a value as it would be written
     logical :: seldom = .false.   !< the conversation asks for it only on request
-    character(len=7) :: program = 'both'  !< program that uses it; the conversation of the other one does not ask for it
+    integer :: program = both_programs   !< program that uses it; the conversation of the other one does not ask for it
   end type item_row_type
 
   integer, parameter :: unlimited = huge(1)
-  character(len=*), parameter :: for_forces = 'forces'
+  integer, parameter :: for_forces = 3
   logical, parameter :: needed = .true., optional = .false.
 end module mech9_grammar_rows

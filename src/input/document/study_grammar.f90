@@ -1,5 +1,6 @@
 !> The names of the groups for parameters, quantities, studies and objectives.
 module mech9_study_grammar
+  use mech9_program_kind, only: kinematics
   use mech9_grammar_rows, only: item_row_type, unlimited, needed, optional
   implicit none
   private
@@ -54,30 +55,30 @@ module mech9_study_grammar
                   '''path'''), &
     item_row_type('objective', 'point', 'text', 1, 1, '', needed, '', '', '', 'path', &
                   'name of the point that follows the path', '''P''', &
-                  program='mech9k'), &
+                  program=kinematics), &
     item_row_type('objective', 'link', 'integer', 1, 1, '', needed, '', '>=1', '', 'pose', &
                   'number of the link that goes through the poses', '3', &
-                  program='mech9k'), &
+                  program=kinematics), &
     item_row_type('objective', 'of', 'text', 1, 1, '', needed, '', '', '', 'function', &
                   'the coordinate that follows the function, by its heading in the results', '''q6''', &
-                  program='mech9k'), &
+                  program=kinematics), &
     item_row_type('objective', 'of', 'text', 1, 1, '', needed, '', '', '', 'quantity', &
                   'name of the &quantity', '''stroke'''), &
     item_row_type('objective', 'over', 'text', 1, 1, '', optional, '''t''', '', '', 'function', &
                   'the variable of the function: t, or a driven coordinate', '''q5''', &
-                  program='mech9k'), &
+                  program=kinematics), &
     item_row_type('objective', 'file', 'text', 1, 1, '', needed, '', '', '', 'path function', &
                   'a text file beside the data file, with a target in each line: x y [z] or t x y [z] of a path, or x and f(x)', &
-                  '''path.dat''', program='mech9k'), &
+                  '''path.dat''', program=kinematics), &
     item_row_type('objective', 'file', 'text', 1, 1, '', needed, '', '', '', 'pose', &
                   'a text file beside the data file, with a pose in each line: [t] x y angle, or [t] x y z and a rotation vector', &
-                  '''poses.dat''', program='mech9k'), &
+                  '''poses.dat''', program=kinematics), &
     item_row_type('objective', 'timing', 'text', 1, 1, '', optional, '''free''', '', 'free given', 'path pose', &
                   'the targets are met at any times in their order (free), or each at the time t in its line (given)', &
-                  '''given''', program='mech9k'), &
+                  '''given''', program=kinematics), &
     item_row_type('objective', 'length', 'real', 1, 1, 'm', optional, '(from the targets)', '>0', '', 'pose', &
                   'an angle of 1 rad counts as much as this distance; by default the largest distance between two poses', '0.1', &
-                  seldom=.true., program='mech9k'), &
+                  seldom=.true., program=kinematics), &
     item_row_type('objective', 'goal', 'real', 1, 1, '', optional, '(none)', '', '', 'quantity', &
                   'the value that the quantity should have, in the unit of the results', '0.3'), &
     item_row_type('objective', 'make', 'text', 1, 1, '', optional, '''least''', '', 'least largest', 'quantity', &
@@ -96,13 +97,13 @@ module mech9_study_grammar
                   'the largest value that is allowed, in the unit of the results', '0.4'), &
     item_row_type('limit', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', 'crank', &
                   'the driven angle that must be able to turn fully, from its value at the start', '1', &
-                  program='mech9k'), &
+                  program=kinematics), &
     item_row_type('limit', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', 'transmission', &
                   'the angle between two moving links, as coupler and rocker, at whose pair the transmission angle is measured', &
-                  '3', program='mech9k'), &
+                  '3', program=kinematics), &
     item_row_type('limit', 'at_least', 'real', 1, 1, 'angle', needed, '', '>0', '', 'transmission', &
                   'the least transmission angle that is allowed in the run; it is at most a right angle', '0.7', &
-                  program='mech9k'), &
+                  program=kinematics), &
     item_row_type('optimum', 'starts', 'integer', 1, 1, '', optional, '100', '>=1', '', '', &
                   'number of sets of values at which the search starts', '1000'), &
     item_row_type('optimum', 'seed', 'integer', 1, 1, '', optional, '1', '>=0', '', '', &

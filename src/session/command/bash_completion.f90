@@ -1,6 +1,6 @@
 !> Completion of a program's command line in bash: a script with the program's options and the data file's names.
 module mech9_bash_completion
-  use mech9_program_kind, only: program_names
+  use mech9_program_kind, only: program_names, belongs_to
   use mech9_options, only: options_table, no_argument, assignment
   use mech9_grammar, only: group_table, item_table
   implicit none
@@ -59,7 +59,7 @@ contains
     label = ''
     do i = 1, size(options_table)
       associate (option => options_table(i))
-        if (index(option%programs, program_names(program)) == 0 .or. option%takes == no_argument) cycle
+        if (.not. belongs_to(option%program, program) .or. option%takes == no_argument) cycle
         label = '*:--'//trim(option%name)
         if (option%form == assignment) then
           text = text//choice(label, names_of_data('='), ' compopt -o nospace;')
@@ -97,7 +97,7 @@ contains
 
     text = ''
     do i = 1, size(options_table)
-      if (index(options_table(i)%programs, program_names(program)) > 0) text = text//' --'//trim(options_table(i)%name)
+      if (belongs_to(options_table(i)%program, program)) text = text//' --'//trim(options_table(i)%name)
     end do
     text = text(2:)
   end function options_of

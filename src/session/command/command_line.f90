@@ -1,6 +1,6 @@
 !> The command line: its words, the data file and the options.
 module mech9_command_line
-  use mech9_program_kind, only: kinematics, program_names
+  use mech9_program_kind, only: kinematics, program_names, belongs_to
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type, nearest_name, starts_with
   use mech9_options, only: option_type, options_table, option_names, find_option, &
@@ -242,7 +242,10 @@ contains
     hint = program_names(program)//' --help lists the options'
     if (nearest /= '') hint = 'did you mean --'//nearest//'?'
     do i = 1, size(options_table)
-      if ('--'//options_table(i)%name == name) hint = 'only '//trim(options_table(i)%programs)//' has it'
+      associate (option => options_table(i))
+        if ('--'//option%name == name .and. .not. belongs_to(option%program, program)) &
+          hint = 'only '//program_names(option%program)//' has it'
+      end associate
     end do
     call raise(err, exit_usage, "unknown option '"//name//"'; "//hint)
   end subroutine raise_unknown

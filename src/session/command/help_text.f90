@@ -1,7 +1,7 @@
 !> The help of a program: its purpose, its options, its exit codes. --help, the manual page and the completion of the
 !> shell are made from these.
 module mech9_help_text
-  use mech9_program_kind, only: dynamics, program_names
+  use mech9_program_kind, only: dynamics, program_names, belongs_to
   use mech9_error, only: exit_done, exit_internal, exit_usage, exit_data, exit_structure, exit_assembly, &
                          exit_singular, exit_integrator, exit_file, exit_interrupted
   use mech9_text, only: to_text
@@ -55,7 +55,7 @@ contains
            '       asks for the mechanism in a conversation, saves it as a data file and runs it'//eol//eol// &
            'options:'
     do i = 1, size(options_table)
-      if (index(options_table(i)%programs, program_names(program)) == 0) cycle
+      if (.not. belongs_to(options_table(i)%program, program)) cycle
       left = option_form(options_table(i))
       text = text//eol//'  '//left//trim(options_table(i)%help)
     end do

@@ -1,6 +1,6 @@
 !> The manual page of a program, in the markup of man(7).
 module mech9_manual_page
-  use mech9_program_kind, only: kinematics, program_names
+  use mech9_program_kind, only: kinematics, program_names, belongs_to
   use mech9_text, only: to_text, starts_with
   use mech9_printable, only: with_escapes
   use mech9_options, only: options_table
@@ -57,7 +57,7 @@ contains
 
     text = '.SH OPTIONS'//eol
     do i = 1, size(options_table)
-      if (index(options_table(i)%programs, program_names(program)) == 0) cycle
+      if (.not. belongs_to(options_table(i)%program, program)) cycle
       text = text//entry(option_form(options_table(i)), trim(options_table(i)%help))
     end do
   end function options_of

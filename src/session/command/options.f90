@@ -1,6 +1,6 @@
 !> The one table of the options of the command line; reading and help both come from it.
 module mech9_options
-  use mech9_program_kind, only: program_names
+  use mech9_program_kind, only: kinematics, dynamics, both => both_programs, belongs_to
   implicit none
   private
   public :: option_type, options_table, option_names, find_option
@@ -20,12 +20,10 @@ module mech9_options
     character(len=18) :: argument = ''    !< the argument's name in the help
     integer :: form = any_text    !< the form of the argument
     logical :: repeats = .false.  !< whether it may be given more than once
-    character(len=13) :: programs = ''    !< the programs that have it
+    integer :: program = both     !< the program that has it
     character(len=72) :: help = ''        !< its explanation, in one line
     integer :: most = 1           !< largest number of its arguments
   end type option_type
-
-  character(len=*), parameter :: both = 'mech9k mech9d'
 
   type(option_type), parameter :: options_table(*) = [ &
     option_type('check', no_argument, '', any_text, .false., both, &
@@ -38,17 +36,17 @@ module mech9_options
                 'list the assemblies found for the start from many random guesses'), &
     option_type('starts', needed_argument, 'N', whole_number, .false., both, &
                 'number of guesses for --branches (100), or --equilibrium (none)'), &
-    option_type('equilibrium', no_argument, '', any_text, .false., 'mech9d', &
+    option_type('equilibrium', no_argument, '', any_text, .false., dynamics, &
                 'find where the mechanism rests near its initial position, or falls to'), &
-    option_type('modes', no_argument, '', any_text, .false., 'mech9d', &
+    option_type('modes', no_argument, '', any_text, .false., dynamics, &
                 'find frequencies, dampings and shapes of its small vibrations there'), &
-    option_type('mode', needed_argument, 'K', whole_number, .false., 'mech9d', &
+    option_type('mode', needed_argument, 'K', whole_number, .false., dynamics, &
                 'the mode of --modes that --animate shows'), &
-    option_type('linear', needed_argument, 'FILE.h5', any_text, .false., 'mech9d', &
+    option_type('linear', needed_argument, 'FILE.h5', any_text, .false., dynamics, &
                 'write the linearised equations of motion there as matrices'), &
-    option_type('range', no_argument, '', any_text, .false., 'mech9k', &
+    option_type('range', no_argument, '', any_text, .false., kinematics, &
                 'print how far each independent coordinate can go from the start'), &
-    option_type('cam', needed_argument, '[N:]FILE', any_text, .true., 'mech9k', &
+    option_type('cam', needed_argument, '[N:]FILE', any_text, .true., kinematics, &
                 'compute the profile of cam N: a table, or a drawing (.svg)'), &
     option_type('graph', needed_argument, 'FILE', any_text, .false., both, &
                 'draw links, pairs and blocks as a graph: .dot, .svg, .png or .pdf'), &
@@ -113,8 +111,7 @@ contains
     integer, intent(in) :: program                !< kinematics or dynamics
 
     do place = 1, size(options_table)
-      if (options_table(place)%name == name &
-          .and. index(options_table(place)%programs, program_names(program)) > 0) return
+      if (options_table(place)%name == name .and. belongs_to(options_table(place)%program, program)) return
     end do
     place = 0
   end function find_option
@@ -123,9 +120,7 @@ contains
   pure function option_names(program) result(names)
     integer, intent(in) :: program                !< kinematics or dynamics
     character(len=len(options_table%name)), allocatable :: names(:)
-    integer :: i
 
-    names = pack(options_table%name, [(index(options_table(i)%programs, program_names(program)) > 0, &
-                                       i=1, size(options_table))])
+    names = pack(options_table%name, belongs_to(options_table%program, program))
   end function option_names
 end module mech9_options

@@ -151,7 +151,7 @@ contains
     type(error_type), allocatable :: err
     character(len=:), allocatable :: history
 
-    call history_of_design(name_and_version(model%program), model, synthesis, history)
+    call history_of_design(model, synthesis, history)
     ! there is such a model, because its motion was followed
     call synthesis%space%variable%at(synthesis%values_of(1), designed, err)
     call text_of_design(document, designed, synthesis%values_of(1), synthesis%optima(1)%q, history, text)

@@ -9,6 +9,7 @@ module mech9_optimum_words
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
   use mech9_json, only: json_type
+  use mech9_version, only: name_and_version
   use mech9_run_words, only: duration, begin_report
   use mech9_synthesis, only: synthesis_type
   implicit none
@@ -67,14 +68,13 @@ contains
   end subroutine print_optimum
 
   !> Comments that tell where a design comes from.
-  subroutine history_of_design(program, model, synthesis, text)
-    character(len=*), intent(in) :: program                  !< name and version of the program
+  subroutine history_of_design(model, synthesis, text)
     type(model_type), intent(in) :: model                    !< the model
     type(synthesis_type), intent(in) :: synthesis            !< with its optima, best first
     character(len=:), allocatable, intent(out) :: text       !< comments, as whole lines
 
-    text = '! The best design that '//program//' found by --optimize from '//counted(synthesis%done, 'start')//', seed '// &
-           to_text(model%request%optimum%seed)//'.'//achar(10)// &
+    text = '! The best design that '//name_and_version(model%program)//' found by --optimize from '// &
+           counted(synthesis%done, 'start')//', seed '//to_text(model%request%optimum%seed)//'.'//achar(10)// &
            '! Value: '//to_text(synthesis%optima(1)%value, 12)//', to which '//counted(synthesis%optima(1)%starts, 'start')// &
            ' led. The positions in &initial are those of its assembly.'//achar(10)
   end subroutine history_of_design

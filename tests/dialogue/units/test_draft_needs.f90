@@ -1,6 +1,6 @@
 !> Names for which a conversation asks on request only, names that studies need, and explanations in their parts.
 module test_draft_needs
-  use mech9_program_kind, only: kinematics
+  use mech9_program_kind, only: kinematics, dynamics
   use mech9_draft, only: draft_type
   use mech9_explanations, only: explanations
   use mech9_force_explanations, only: body_texts, load_texts, motor_texts
@@ -45,12 +45,12 @@ contains
       n = n + size(rows)
       do i = 1, size(rows)
         associate (row => item_table(rows(i)))
-          call tester%is_true(row%group == group_table(g)%name .and. row%seldom .and. row%program /= 'mech9d', &
+          call tester%is_true(row%group == group_table(g)%name .and. row%seldom .and. row%program /= dynamics, &
                               'a seldom name of mech9k: '//trim(row%group)//'.'//trim(row%name))
         end associate
       end do
     end do
-    call tester%is_true(n == count(item_table%seldom .and. item_table%program /= 'mech9d'), 'all of them are found')
+    call tester%is_true(n == count(item_table%seldom .and. item_table%program /= dynamics), 'all of them are found')
     do i = 1, size(item_table)
       if (item_table(i)%group /= 'pair' .or. item_table(i)%name /= 'links') cycle
       outline%way = 'pairs'

@@ -1,6 +1,6 @@
 !> Manual pages and completions name every option of their program, and none of the other alone; roff and bash read them as meant.
 module test_pages
-  use mech9_program_kind, only: kinematics, dynamics, program_names
+  use mech9_program_kind, only: kinematics, dynamics, program_names, belongs_to
   use mech9_grammar, only: group_table
   use mech9_options, only: options_table
   use mech9_manual_page, only: manual_page
@@ -47,7 +47,7 @@ contains
       page = manual_page(k)
       script = bash_completion(k)
       do i = 1, size(options_table)
-        has = index(options_table(i)%programs, program_names(k)) > 0
+        has = belongs_to(options_table(i)%program, k)
         name = trim(options_table(i)%name)
         call tester%is_true((index(page, '.B "'//in_roff(name)//'"') + index(page, '.B "'//in_roff(name)//' ') + &
                              index(page, '.B "'//in_roff(name)//'[') > 0) .eqv. has, &

@@ -15,6 +15,7 @@ module test_synthesis_work
   use mech9_hdf5_copying, only: extents_of
   use mech9_model, only: model_type
   use mech9_optimum_group, only: write_optima
+  use mech9_version, only: name_and_version
   use mech9_optimum_words, only: print_optimum, history_of_design
   use mech9_plan, only: plan_type
   use mech9_start_threads, only: make_in_threads
@@ -156,9 +157,9 @@ contains
     call text_of_unit(tester, unit, text)
     call tester%is_true(index(text, '3 starts: 2.5 s; ') == 1 .and. index(text, '  r = 0.25'//eol) > 0 .and. &
                         index(text, '  l = 1.2'//eol) > 0, 'a summary: '//text)
-    call history_of_design('mech9k 1', model, synthesis, text)
-    call tester%is_true(index(text, '! The best design that mech9k 1 found by --optimize from 3 starts, seed 5.'//eol) == 1, &
-                        'comments')
+    call history_of_design(model, synthesis, text)
+    call tester%is_true(index(text, '! The best design that '//name_and_version(model%program)// &
+                                    ' found by --optimize from 3 starts, seed 5.'//eol) == 1, 'comments')
     call file%create(stem//'.h5', err)
     call file%put('coordinate', [1, 2, 3, 4], 'number of the coordinate')
     call file%make_scale('coordinate')
