@@ -7,6 +7,7 @@ module mech9_limit_watch
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_motor, only: motor_action_type
+  use mech9_simulation_tolerances, only: round_off_of_limit
   use mech9_motor_states, only: find_action, has_limits
   use mech9_motion_system, only: motion_system_type
   implicit none
@@ -25,8 +26,6 @@ module mech9_limit_watch
 
   !> Points within a step at which demands are looked at; the last one is its end.
   integer, parameter :: looks = 8
-  !> Excess over a limit that is round-off, in parts of the limit.
-  real(wp), parameter :: round_off = 1.0e-12_wp
 
 contains
 
@@ -85,7 +84,8 @@ contains
     do k = 1, looks
       x = real(k, wp)/looks
       do i = 1, size(demand)
-        if (excess(system%state%limited(i), between(self%demand(i), h*self%rate(i), demand(i), h*rate(i), x)) <= round_off) cycle
+        if (excess(system%state%limited(i), between(self%demand(i), h*self%rate(i), demand(i), h*rate(i), x)) &
+            <= round_off_of_limit) cycle
         motor = i
         part = x
         return

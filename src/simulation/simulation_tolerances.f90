@@ -8,7 +8,7 @@ module mech9_simulation_tolerances
   public :: largest_closure, hidden_part, trusted_closing, trusted_between_steps, doubtful_conditioning, &
     worthwhile_improvement, regular_conditioning, refused_conditioning, short_way, locked, locked_together, &
     short_part, long_part, many_short, nearly_singular, surely_singular, least_part, nearly_locked, &
-    round_off_of_jumps, steepest_slope, third_derivative_step, drawn_near_by
+    round_off_of_jumps, round_off_of_limit, steepest_slope, third_derivative_step, drawn_near_by
 
   ! The start.
 
@@ -71,6 +71,8 @@ module mech9_simulation_tolerances
   !> A change of the rate of a drive at a joint of its law is round-off of the law where it moves the coordinate by less than this in
   !> the whole run, in its unit: laws that come to rest leave some 1e-14 of their greatest rate.
   real(wp), parameter :: round_off_of_jumps = 1.0e-9_wp
+  !> Excess of a motor's force over its limit that is round-off, in parts of the limit.
+  real(wp), parameter :: round_off_of_limit = 1.0e-12_wp
   !> Steepest slope between two neighbouring triple zeros, times their distance, against the height: 3.4.
   real(wp), parameter :: steepest_slope = 4.0_wp
   !> Distance in time of two evaluations whose difference gives third derivatives, over the time that the motion takes for

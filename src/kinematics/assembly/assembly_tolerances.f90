@@ -8,7 +8,7 @@ module mech9_assembly_tolerances
   public :: newton_radius, regular_correction, closed_singular, allowed_gap, least_part_of_carrying, same_assembly, &
     least_movement, returned_to_start, apparent_motion, closed_after_motion, small_gap, small_part, &
     deciding_conditioning, settled_unknowns, first_displacement, finite_movement, ineffective_dimensions, &
-    first_order_gap, unexplained_gap
+    first_order_gap, unexplained_gap, nearly_closed, overconstrained_nearby, part_open
 
   ! Closing chains.
 
@@ -57,4 +57,13 @@ module mech9_assembly_tolerances
   real(wp), parameter :: first_order_gap = 1.0e-2_wp
   !> Largest part of the gaps that changes of dimensions may leave unexplained.
   real(wp), parameter :: unexplained_gap = 0.1_wp
+
+  ! Causes why chains do not close or move.
+
+  !> Gaps below this part of the mechanism's size come from dimensions with too few digits.
+  real(wp), parameter :: nearly_closed = 1.0e-5_wp
+  !> Dimensions that differ by less than this from those of a mechanism that moves are taken for inexact ones of it.
+  real(wp), parameter :: overconstrained_nearby = 1.0e-3_wp
+  !> A residual above this part of that of all closures remains open.
+  real(wp), parameter :: part_open = 1.0e-3_wp
 end module mech9_assembly_tolerances

@@ -6,6 +6,7 @@
 module mech9_contradiction
   use mech9_kinds, only: wp
   use mech9_tolerances, only: least_rate, rank_tolerance_for
+  use mech9_assembly_tolerances, only: part_open
   use mech9_failure, only: failure_type
   use mech9_lapack, only: dgesvd
   use mech9_plan, only: plan_type, block_type
@@ -26,9 +27,6 @@ module mech9_contradiction
     real(wp) :: open = 0.0_wp                 !< residual that counts as open [rad, lengths of the mechanism]
     integer :: last = 0                       !< closure that follows from others
   end type equations_type
-
-  !> A residual above this part of that of all closures remains open.
-  real(wp), parameter :: part_open = 1.0e-3_wp
 
   abstract interface
     !> Whether some of the closures have a fault together.

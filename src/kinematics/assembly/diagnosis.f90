@@ -2,7 +2,7 @@
 module mech9_diagnosis
   use mech9_kinds, only: wp
   use mech9_tolerances, only: least_rate
-  use mech9_assembly_tolerances, only: apparent_motion, returned_to_start
+  use mech9_assembly_tolerances, only: apparent_motion, returned_to_start, nearly_closed, overconstrained_nearby
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly
   use mech9_assembly_failures, only: failure_wrong_choice, failure_undetermined_coordinates, failure_open_chain, &
     failure_nearly_closed_chain, failure_locked_chain, failure_nearly_moving_chain, failure_open_coupling
@@ -18,11 +18,6 @@ module mech9_diagnosis
   implicit none
   private
   public :: judge_choice, refuse_open, refuse_undetermined, refuse_locked
-
-  !> Gaps below this part of the mechanism's size come from dimensions with too few digits.
-  real(wp), parameter :: nearly_closed = 1.0e-5_wp
-  !> Dimensions that differ by less than this from those of a mechanism that moves are taken for inexact ones of it.
-  real(wp), parameter :: overconstrained_nearby = 1.0e-3_wp
 
 contains
 

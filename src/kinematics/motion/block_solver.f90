@@ -1,7 +1,8 @@
 !> The solution of one block at one time: Newton's method for the positions, then the exact rates and accelerations.
 module mech9_block_solver
   use mech9_kinds, only: wp, long
-  use mech9_tolerances, only: closed_to_round_off, last_correction, small_turn, unchanged_position, unchanged_factors
+  use mech9_tolerances, only: closed_to_round_off, last_correction, unchanged_factors
+  use mech9_motion_tolerances, only: small_turn, unchanged_position
   use mech9_error, only: error_type
   use mech9_least_squares, only: least_squares_type
   use mech9_plan, only: plan_type, block_type

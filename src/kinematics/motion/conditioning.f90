@@ -3,7 +3,7 @@
 !> Rotations are in rad, translations in lengths of the mechanism. The value is 1 where there is no closed chain.
 module mech9_conditioning
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: clearly_less, lower_pivot
+  use mech9_motion_tolerances, only: clearly_less, lower_pivot
   use mech9_block_solver, only: block_work_type
   implicit none
   private

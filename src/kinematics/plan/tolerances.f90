@@ -7,8 +7,8 @@ module mech9_tolerances
   implicit none
   private
   public :: rank_tolerance, rank_tolerance_for, inexact_dimensions, screw_tolerance, least_rate, &
-    singular_conditioning, lower_pivot, clearly_less, round_off_of_rates, negligible_inertia, negligible_distance, &
-    planar_round_off, closed_to_round_off, last_correction, small_turn, unchanged_position, unchanged_factors, &
+    singular_conditioning, round_off_of_rates, negligible_inertia, negligible_distance, &
+    planar_round_off, closed_to_round_off, last_correction, unchanged_factors, &
     longest_drive, longest_move, trusted_correction, trusted_rate_change, trusted_change, near_singular
 
   ! Ranks and singular positions: judged alike by --check, driven motion and dynamics.
@@ -25,10 +25,6 @@ module mech9_tolerances
   !> A block is in a singular position where its least pivot is below this part of its largest one: at a dead point round-off of
   !> the position gives its square root, about 1e-8.
   real(wp), parameter :: singular_conditioning = 1.0e-7_wp
-  !> The least singular value is found when the least pivot has fallen to this part.
-  real(wp), parameter :: lower_pivot = 0.99_wp
-  !> Of values that differ by no more than round-off, after a whole turn for example, the first one counts.
-  real(wp), parameter :: clearly_less = 1.0_wp - 1.0e-12_wp
   !> Round-off of rates where a block is well conditioned. Near a singular position closed positions
   !> are uncertain by round-off over the pivot, and rates by that over the pivot again.
   real(wp), parameter :: round_off_of_rates = 64.0_wp*epsilon(1.0_wp)
@@ -52,10 +48,6 @@ module mech9_tolerances
   real(wp), parameter :: closed_to_round_off = 32.0_wp*epsilon(1.0_wp)
   !> Once a correction is this small, the next error is its square: round-off.
   real(wp), parameter :: last_correction = 1.0e-9_wp
-  !> Angles that change by less are changed to second order: the terms of higher order are round-off.
-  real(wp), parameter :: small_turn = 1.0e-5_wp
-  !> A correction by less than this is round-off of poses and Jacobians, which stay as they are.
-  real(wp), parameter :: unchanged_position = 8.0_wp*epsilon(1.0_wp)
   !> A correction by less than this changes solutions with the factors of a Jacobian by no more than their own round-off in chains
   !> of some dozens of steps; the factors stay.
   real(wp), parameter :: unchanged_factors = 32.0_wp*epsilon(1.0_wp)
