@@ -1,5 +1,4 @@
-!> The part of a conversation after a run: its results are shown, plotted and compared with those of the run before; a
-!> value is changed, and the mechanism is run again.
+!> The part of a conversation after a run: showing, plotting and comparing results, changing a value, and running again.
 module mech9_after_run
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_program_kind, only: dynamics
@@ -19,11 +18,10 @@ module mech9_after_run
   private
   public :: look_back, over, again, changing, answering
 
-  !> The next step that the user wants: to end, to run again, to be asked for a value first, or an answer that is no run.
+  !> The next step that the user wants: to end, to run again, to be asked for a value first, or an answer without a run.
   integer, parameter :: over = 0, again = 1, changing = 2, answering = 3
 
-  !> The number of rows that are shown unless the user gives one, the largest number of rows, and the length up to which a
-  !> line is read.
+  !> The number of rows shown unless the user gives one, the largest such number, and the longest line that is read.
   integer, parameter :: usual_rows = 8, most_rows = 1000, longest_line = 500
   character(len=11), parameter :: commands(8) = [character(len=11) :: 'show', 'plot', 'compare', 'change', 'run', 'done', &
                                                  'equilibrium', 'modes']
@@ -40,7 +38,7 @@ module mech9_after_run
 
 contains
 
-  !> Commands about a finished run are heard and carried out, until one of them asks for more than a look at results.
+  !> Read commands about a finished run and carry them out, until one of them asks for more than a look at results.
   subroutine look_back(conversation, kept, earlier, changed, next, request)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept                 !< results of the last run; none where it gave none
@@ -104,7 +102,7 @@ contains
     end do
   end subroutine look_back
 
-  !> The options of the command line that give an answer about equilibrium; empty where the line is no request for one.
+  !> Form the options of the command line that give an answer about equilibrium; none where the line is no such request.
   subroutine ask_for_rest(conversation, word, number, request)
     class(conversation_type), intent(in) :: conversation     !< the conversation as it stands
     character(len=*), intent(in) :: word                     !< equilibrium or modes
@@ -121,7 +119,7 @@ contains
     end if
   end subroutine ask_for_rest
 
-  !> The words that can be completed: the commands and the names of the columns.
+  !> List the words that can be completed: the commands and the names of the columns.
   pure subroutine words_here(kept, with_rest, words)
     type(kept_rows_type), intent(in) :: kept                 !< results of the last run
     logical, intent(in) :: with_rest                         !< the program answers about equilibrium
@@ -140,7 +138,7 @@ contains
     end do
   end subroutine words_here
 
-  !> The user is told the names of the columns.
+  !> Tell the user the names of the columns.
   subroutine say_columns(conversation, kept)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept              !< results of the last run
@@ -148,7 +146,7 @@ contains
     if (kept%count > 0) call conversation%say('The columns: '//join(kept%names, ' '))
   end subroutine say_columns
 
-  !> Whether there are results to look at. If there are none the user is told.
+  !> Whether there are results to look at. If there are none, tell the user.
   logical function has_rows(conversation, kept)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept              !< results of the last run
@@ -157,7 +155,7 @@ contains
     if (.not. has_rows) call conversation%say('The run has no results to look at.')
   end function has_rows
 
-  !> The last rows of some columns are shown, as a text such as "20 q1 P.x" asks for.
+  !> Show the last rows of some columns, as a text such as "20 q1 P.x" asks for.
   subroutine show(conversation, kept, what)
     class(conversation_type), intent(in) :: conversation !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept    !< results of the last run
@@ -184,7 +182,7 @@ contains
     write (error_unit, '(a)', advance='no') rows_text(kept, columns, rows)
   end subroutine show
 
-  !> The column with a name is appended to a list. The list becomes empty if there is no such column.
+  !> Append the column with a name to a list. The list becomes empty if there is no such column.
   subroutine append_column(conversation, kept, name, columns)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept              !< results of the last run
@@ -205,7 +203,7 @@ contains
     end if
   end subroutine append_column
 
-  !> A plot is drawn in the terminal, or as a picture if one is named.
+  !> Draw a plot in the terminal, or a picture if one is named.
   subroutine plot(conversation, kept, what)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept              !< results of the last run
@@ -227,7 +225,7 @@ contains
     if (said /= '') call conversation%say(said)
   end subroutine plot
 
-  !> The largest differences between the last run and the run before are shown.
+  !> Show the largest differences between the last run and the run before.
   subroutine compare(conversation, kept, earlier)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept              !< results of the last run

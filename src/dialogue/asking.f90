@@ -1,4 +1,4 @@
-!> One question is asked, and its answer is heard.
+!> Ask one question and read the answer.
 module mech9_asking
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_text, only: string_type, lower
@@ -20,7 +20,7 @@ module mech9_asking
 
 contains
 
-  !> The question that is due is asked, and its answer is taken.
+  !> Ask the current question, and check and note its answer.
   subroutine ask(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(question_type) :: question
@@ -54,7 +54,8 @@ contains
     end if
   end subroutine ask
 
-  !> The question before becomes due. If the first question of an incomplete group is due, the group is left out instead.
+  !> Go back to the question before. If the current one is the first of an incomplete group, leave out this group
+  !> instead.
   subroutine go_back(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     logical :: done
@@ -68,7 +69,7 @@ contains
     if (.not. done) call conversation%say('This is the first question.')
   end subroutine go_back
 
-  !> The load, point or body of the present question is taken away.
+  !> Remove the load, point or body of the current question.
   subroutine leave_out(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(question_type) :: question
@@ -90,7 +91,7 @@ contains
     end if
   end subroutine leave_out
 
-  !> The title of a topic is shown where the topic begins.
+  !> Show the title of a topic where the topic begins.
   subroutine announce_topic(conversation, question)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(question_type), intent(in) :: question              !< the question
@@ -104,7 +105,7 @@ contains
     conversation%opened(question%topic) = .true.
   end subroutine announce_topic
 
-  !> The lines above the prompt are shown, and the prompt is made.
+  !> Show the lines above the prompt, and form the prompt.
   subroutine introduce(conversation, question, default, prompt)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(question_type), intent(in) :: question              !< the question
@@ -142,7 +143,7 @@ contains
     end associate
   end subroutine introduce
 
-  !> An empty answer takes the text in brackets.
+  !> Answer an empty line with the text in brackets.
   subroutine take_default(conversation, default)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(default_type), intent(in) :: default                !< the answer that Enter gives

@@ -1,5 +1,5 @@
-!> The checks between the questions. The structure is checked as soon as it is complete, and the geometry by assembling
-!> the mechanism.
+!> Checks between the questions: of the structure as soon as it is complete, and of the geometry by assembling the
+!> mechanism.
 module mech9_checking
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type, exit_structure
@@ -27,7 +27,7 @@ module mech9_checking
 
 contains
 
-  !> The check that is due is carried out. The next question becomes due if all is well; otherwise the user is offered a
+  !> Carry out the current check. Go on to the next question if it finds no error; otherwise offer the user a
   !> correction.
   subroutine check(conversation, task)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
@@ -42,7 +42,7 @@ contains
     end if
   end subroutine check
 
-  !> The structure is shown, or its errors.
+  !> Show the structure, or its errors.
   subroutine judge_structure(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
 
@@ -65,7 +65,7 @@ contains
     end associate
   end subroutine judge_structure
 
-  !> The mechanism is assembled at the start, and the user is told the result.
+  !> Assemble the mechanism at the start, and tell the user the result.
   subroutine judge_start(conversation, task)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
@@ -98,7 +98,7 @@ contains
     call offer_correction(conversation, faults, otherwise)
   end subroutine judge_start
 
-  !> The user is told the positions of all coordinates, and the mobility by the geometry.
+  !> Tell the user the positions of all coordinates, and the mobility by the geometry.
   subroutine tell_start(conversation, model, plan, start)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(model_type), intent(in) :: model                 !< the model

@@ -29,8 +29,8 @@ module mech9_closing
 
 contains
 
-  !> All answers and the remaining errors are shown, and corrections are heard. When everything is right the user decides
-  !> to save or to run.
+  !> Show all answers and the remaining errors, and carry out corrections. When there is no error left, let the user
+  !> decide to save or to run.
   subroutine close_conversation(conversation, run_path)
     class(conversation_type), intent(inout) :: conversation   !< the conversation as it stands
     character(len=:), allocatable, intent(inout) :: run_path  !< data file to be run then; empty: none
@@ -59,7 +59,7 @@ contains
     end select
   end subroutine close_conversation
 
-  !> All answers are shown when the end is reached first, and their errors each time.
+  !> Show the errors of the answers, and all answers when the end is reached first.
   subroutine show_all(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(model_type) :: model
@@ -82,7 +82,7 @@ contains
     call show_faults(conversation, faults)
   end subroutine show_all
 
-  !> The user chooses to save, to run, both or neither, and the data file is saved.
+  !> Ask the user to save, to run, both or neither, and save the data file.
   subroutine finish(conversation, run_path)
     class(conversation_type), intent(inout) :: conversation   !< the conversation as it stands
     character(len=:), allocatable, intent(inout) :: run_path  !< data file to be run then; empty: none
@@ -120,7 +120,7 @@ contains
     if (line == 'run') run_path = conversation%draft_path
   end subroutine finish
 
-  !> The data file is written under a name for which the user is asked. `saved` is false if the user went back or left.
+  !> Write the data file under a name for which the user is asked. `saved` is false if the user went back or left.
   subroutine save(conversation, saved)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     logical, intent(out) :: saved                            !< the data file was written
@@ -189,7 +189,7 @@ contains
     is_read = .false.
   end function is_read
 
-  !> All answers are written as a finished data file. The file of the draft is then deleted.
+  !> Write all answers as a finished data file. Then delete the file of the draft.
   subroutine write_data_file(conversation, path, err)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: path                  !< name of the data file
@@ -205,7 +205,7 @@ contains
     if (.not. same_file(conversation%draft_path, path)) call delete_file(conversation%draft_path)
   end subroutine write_data_file
 
-  !> An existing file other than the one being edited is overwritten only if the user agrees.
+  !> Ask before an existing file other than the one being edited is overwritten.
   subroutine agree_to_overwrite(conversation, path, agreed)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: path                     !< name of the data file

@@ -1,5 +1,5 @@
-!> The state of a conversation, and the parts that are common to all questions: words to the user, answers, and the file
-!> in which these are kept.
+!> The state of a conversation, and the parts common to all questions: words to the user, answers, and the file that
+!> keeps these.
 module mech9_conversation
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_program_kind, only: kinematics
@@ -46,7 +46,7 @@ module mech9_conversation
 
 contains
 
-  !> A paragraph is written to the user, indented by two columns.
+  !> Write a paragraph to the user, indented by two columns.
   subroutine say(self, text)
     class(conversation_type), intent(in) :: self  !< the conversation as it stands
     character(len=*), intent(in) :: text          !< words, any number of lines
@@ -54,7 +54,7 @@ contains
     call print_paragraph(error_unit, text, 2)
   end subroutine say
 
-  !> A prompt is shown, and an answer is heard, without blanks around it. `list` is answered here. `quit` and the end of
+  !> Show a prompt, and read an answer without the blanks around it. Answer `list` here. The words `quit` and the end of
   !> the input end the conversation, and the line is then of no use.
   subroutine listen(self, prompt, words, line)
     class(conversation_type), intent(inout) :: self     !< the conversation as it stands
@@ -91,7 +91,7 @@ contains
     text = line(verify(line//'x', blanks):verify(line, blanks, back=.true.))
   end function without_blanks
 
-  !> The answers so far are kept in the file of the draft. If that fails the user is told once.
+  !> Save the answers so far in the file of the draft. If that fails, tell the user once.
   subroutine keep(self)
     class(conversation_type), intent(inout) :: self  !< the conversation as it stands
     type(error_type), allocatable :: err
@@ -119,7 +119,7 @@ contains
     says_nothing = all([(size(draft%groups(i)%entries) == 0, i=1, size(draft%groups))])
   end function says_nothing
 
-  !> The names of files are settled.
+  !> Choose the names of files that are not given.
   subroutine name_files(self)
     class(conversation_type), intent(inout) :: self  !< the conversation as it stands
 

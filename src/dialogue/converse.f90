@@ -21,7 +21,7 @@ module mech9_converse
 
 contains
 
-  !> A conversation is led, and its decision to save or to run is carried out. `code` is the exit code of the program.
+  !> Hold a conversation, and carry out its decision to save or to run. `code` is the exit code of the program.
   subroutine converse(task, options, code)
     class(task_type), intent(in) :: task            !< computation of the program: kinematics or dynamics
     type(command_line_type), intent(in) :: options  !< options of the command line
@@ -45,7 +45,7 @@ contains
     call conversation%input%close()
   end subroutine converse
 
-  !> The conversation begins: its files are read, and the user is greeted.
+  !> Begin the conversation: read its files and greet the user.
   subroutine begin(conversation, task, options, code)
     type(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     class(task_type), intent(in) :: task                    !< computation of the program: kinematics or dynamics
@@ -91,7 +91,7 @@ contains
     end if
   end subroutine begin
 
-  !> The first words of a conversation.
+  !> Write the first words of a conversation.
   subroutine greet(conversation, program, path)
     type(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     integer, intent(in) :: program                       !< kinematics or dynamics
@@ -109,7 +109,7 @@ contains
     call conversation%say(how)
   end subroutine greet
 
-  !> The last words, and the exit code, of a conversation that does not end with a run.
+  !> Write the last words of a conversation that does not end with a run, and find its exit code.
   subroutine take_leave(conversation, code)
     type(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     integer, intent(out) :: code                            !< exit code of the program

@@ -1,5 +1,5 @@
-!> The correction of answers. Errors are shown with the numbers of their answers, and any answer can be changed, taken
-!> away or added.
+!> The correction of answers: showing errors with the numbers of their answers, and changing, removing or adding any
+!> answer.
 module mech9_correcting
   use mech9_text, only: string_type, to_text, lower
   use mech9_grammar, only: group_table, find_group_row
@@ -21,7 +21,7 @@ module mech9_correcting
 
 contains
 
-  !> Errors are shown, each with its answer.
+  !> Show errors, each with its answer.
   subroutine show_faults(conversation, faults)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(fault_type), intent(in) :: faults(:)             !< errors, each with its entry in the draft
@@ -40,8 +40,8 @@ contains
     if (size(faults) > most_shown) call conversation%say('and '//to_text(size(faults) - most_shown)//' more')
   end subroutine show_faults
 
-  !> The user is asked which answer to change after a check that failed. An empty answer takes the first answer that is
-  !> wrong or missing; if there is none it takes the question with the label `otherwise`.
+  !> Ask which answer to change after a check that failed. An empty answer takes the first answer that is wrong or
+  !> missing; if there is none it takes the question with the label `otherwise`.
   subroutine offer_correction(conversation, faults, otherwise)
     class(conversation_type), intent(inout) :: conversation !< the conversation as it stands
     type(fault_type), intent(in) :: faults(:)         !< errors, each with its entry in the draft
@@ -80,7 +80,7 @@ contains
     end select
   end subroutine offer_correction
 
-  !> The question with a label becomes due. After an answer about a name the conversation returns from there; from other
+  !> Go to the question with a label. After an answer about a name the conversation returns from there; from other
   !> questions it goes on in turn.
   subroutine take_otherwise(conversation, label)
     class(conversation_type), intent(inout) :: conversation !< the conversation as it stands
@@ -110,7 +110,7 @@ contains
     words(6)%text = 'quit'
   end function correction_words
 
-  !> The number of the first answer that is wrong, and that of the first question without its answer; 0 if there is none.
+  !> Find the first answer that is wrong, and the first question that lacks its answer; 0 if there is none.
   pure subroutine find_first(conversation, faults, first, missing)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(fault_type), intent(in) :: faults(:)             !< errors, each with its entry in the draft
@@ -132,7 +132,7 @@ contains
     missing = 0
   end subroutine find_first
 
-  !> A question becomes due, and the conversation will return to the present one after it.
+  !> Go to a question, and note that the conversation returns to the present one after it.
   subroutine begin_correction(conversation, number)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     integer, intent(in) :: number                            !< number of the question
@@ -144,8 +144,8 @@ contains
     conversation%heading = ''
   end subroutine begin_correction
 
-  !> The request in a line is carried out: an answer is changed by its number or its name, at once if the line has a value
-  !> as in "time end = 2"; a group is added; an answer or a group is removed.
+  !> Carry out the request in a line. It changes an answer by its number or its name, at once if it has a value as in
+  !> "time end = 2". It adds a group, or removes an answer or a group.
   subroutine change(conversation, line, done)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: line                     !< the line that was typed
@@ -172,7 +172,7 @@ contains
     if (present(done)) done = found
   end subroutine change
 
-  !> The question of a named answer becomes due, or gets its answer at once.
+  !> Go to the question of a named answer, or note its new value at once.
   subroutine change_answer(conversation, line, found)
     class(conversation_type), intent(inout) :: conversation !< the conversation as it stands
     character(len=*), intent(in) :: line         !< number or name of the answer, with the value behind an equals sign or without it
@@ -198,7 +198,7 @@ contains
     end if
   end subroutine change_answer
 
-  !> The first question of a new group becomes due.
+  !> Go to the first question of a new group.
   subroutine add_group(conversation, group, found)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: group                    !< name of the group
@@ -243,7 +243,7 @@ contains
     end do
   end function addable
 
-  !> An answer is taken away, or a group.
+  !> Remove an answer or a group.
   subroutine remove(conversation, what, found)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: what                     !< number or name of the answer, or name and number of the group

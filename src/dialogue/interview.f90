@@ -1,5 +1,4 @@
-!> A conversation without its words: the draft, the questions, the question that is due, and the order in which they
-!> follow.
+!> A conversation without its words: the draft, the questions, the current question, and the order of the questions.
 module mech9_interview
   use mech9_text, only: to_text
   use mech9_grammar, only: group_table, item_table, rows_of_group, for_forces
@@ -25,7 +24,7 @@ module mech9_interview
     type(draft_type) :: draft
     type(outline_type) :: outline
     type(question_type), allocatable :: questions(:)
-    integer :: at = 1                              !< number of the question that is due
+    integer :: at = 1                              !< number of the current question
     !> The label of the question to return to after a correction; empty: questions follow in order.
     character(len=:), allocatable :: return_to
     logical :: adding = .false.                    !< during a correction, all questions of one group are asked
@@ -51,9 +50,9 @@ module mech9_interview
 
 contains
 
-  !> The interview begins with a draft, which is empty or was read from a file.
+  !> Begin with a draft, which is empty or was read from a file.
   pure subroutine start(self, program, draft)
-    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
+    class(interview_type), intent(inout) :: self  !< draft, questions and the current question
     integer, intent(in) :: program                !< kinematics or dynamics
     type(draft_type), intent(in) :: draft         !< draft to begin with
 
@@ -71,18 +70,18 @@ contains
     call self%refresh('')
   end subroutine start
 
-  !> The question that is due.
+  !> The current question.
   pure type(question_type) function due(self)
-    class(interview_type), intent(in) :: self  !< draft, questions and the question that is due
+    class(interview_type), intent(in) :: self  !< draft, questions and the current question
 
     due = self%questions(self%at)
   end function due
 
-  !> The structure, groups and questions that follow from the draft are made anew. The question with this label becomes
-  !> due; if there is none, the number of the question stays.
+  !> Make anew the structure, groups and questions that follow from the draft. The question with this label becomes the
+  !> current one; if there is none, the number of the question stays.
   pure subroutine refresh(self, label)
-    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
-    character(len=*), intent(in) :: label         !< label of the question that is due then; empty: the number of the question stays
+    class(interview_type), intent(inout) :: self  !< draft, questions and the current question
+    character(len=*), intent(in) :: label         !< label of the question to go to; empty: the number of the question stays
     character(len=:), allocatable :: pairs
     integer :: found
 
@@ -119,16 +118,16 @@ contains
 
   !> Whether the structure has so few parts that a conversation can ask about them one by one.
   pure logical function counts_agree(self)
-    type(interview_type), intent(in) :: self  !< draft, questions and the question that is due
+    type(interview_type), intent(in) :: self  !< draft, questions and the current question
 
     counts_agree = .false.
     if (allocated(self%structure%links)) counts_agree = size(self%structure%links, 2) <= most_parts
   end function counts_agree
 
-  !> The next question becomes due. During a correction this is the first question that lacks its answer, and after these
-  !> the question at which the correction began.
+  !> Go to the next question. During a correction this is the first question that lacks its answer, and after these the
+  !> question at which the correction began.
   pure subroutine step(self)
-    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
+    class(interview_type), intent(inout) :: self  !< draft, questions and the current question
     integer :: i, goal
 
     if (self%return_to == '') then
@@ -158,17 +157,17 @@ contains
 
   !> Whether two questions are about names of one group.
   pure logical function same_group(one, other)
-    type(question_type), intent(in) :: one    !< the question that is due
+    type(question_type), intent(in) :: one    !< the current question
     type(question_type), intent(in) :: other  !< the question after it
 
     same_group = one%kind == ask_item .and. other%kind == ask_item .and. one%group_row == other%group_row .and. &
                  one%place == other%place .and. .not. other%is_new
   end function same_group
 
-  !> The question before becomes due; checks, and questions that begin groups on request, are passed over. `done` is false at
-  !> the first question.
+  !> Go to the question before, except for checks and questions that begin groups on request. `done` is false at the
+  !> first question.
   pure subroutine back(self, done)
-    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
+    class(interview_type), intent(inout) :: self  !< draft, questions and the current question
     logical, intent(out) :: done                  !< false at the first question
     integer :: i
 
@@ -181,10 +180,10 @@ contains
     end do
   end subroutine back
 
-  !> Whether the question that is due is the first of a group that can be left out and still lacks answers. Such a group
-  !> may have been begun by mistake.
+  !> Whether the current question is the first of a group that can be left out and still lacks answers. Such a group may
+  !> have been begun by mistake.
   pure logical function is_begun(self)
-    class(interview_type), intent(in) :: self  !< draft, questions and the question that is due
+    class(interview_type), intent(in) :: self  !< draft, questions and the current question
     integer, allocatable :: rows(:)
     integer :: i
 
@@ -202,9 +201,9 @@ contains
     end associate
   end function is_begun
 
-  !> The load, point or body of the question that is due is taken away. The next question is whether there is another one.
+  !> Remove the load, point or body of the current question. The next question is whether there is another one.
   pure subroutine leave_out(self, done)
-    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
+    class(interview_type), intent(inout) :: self  !< draft, questions and the current question
     logical, intent(out) :: done                  !< false where the question belongs to no group that can be left out
     type(question_type) :: question
     character(len=:), allocatable :: group
@@ -221,10 +220,10 @@ contains
     call self%refresh(group//'('//to_text(question%place)//').'//trim(item_table(rows(1))%name))
   end subroutine leave_out
 
-  !> The question about an entry of the draft becomes due, and the conversation will return to the present question.
-  !> `found` is false if this program has no question about it.
+  !> Go to the question about an entry of the draft, and note that the conversation returns to the present question. The
+  !> argument `found` is false if this program has no question about it.
   pure subroutine correct(self, group, place, name, found)
-    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
+    class(interview_type), intent(inout) :: self  !< draft, questions and the current question
     character(len=*), intent(in) :: group         !< name of the group
     character(len=*), intent(in) :: name          !< name with its subscript
     integer, intent(in) :: place                  !< place among the groups of that name, from 1
@@ -248,11 +247,11 @@ contains
     if (self%return_to == '') self%return_to = here
   end subroutine correct
 
-  !> The reason against an answer that makes too many coordinates independent, or too few in open chains; empty if there
-  !> is none. Each closed chain makes at least one coordinate dependent, and at least three unless its pairs are of a
-  !> special kind.
+  !> Find the reason against an answer that makes too many coordinates independent, or too few in open chains; empty if
+  !> there is none. Each closed chain makes at least one coordinate dependent, and at least three unless its pairs are
+  !> of a special kind.
   pure subroutine miscount(self, answer, problem, certain)
-    class(interview_type), intent(in) :: self              !< draft, questions and the question that is due
+    class(interview_type), intent(in) :: self              !< draft, questions and the current question
     character(len=*), intent(in) :: answer                 !< the answer as a data file writes it
     character(len=:), allocatable, intent(out) :: problem  !< the reason against the answer; empty: none
     logical, intent(out) :: certain                        !< the answer is wrong whatever the pairs are
@@ -284,9 +283,9 @@ contains
     end if
   end subroutine miscount
 
-  !> An answer to the question that is due is noted. Other questions may follow from it.
+  !> Note an answer to the current question. Other questions may follow from it.
   pure subroutine note(self, text)
-    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
+    class(interview_type), intent(inout) :: self  !< draft, questions and the current question
     character(len=*), intent(in) :: text          !< the answer as a data file writes it
     type(question_type) :: question
     logical :: with_forces, was_known
@@ -302,10 +301,10 @@ contains
         self%return_to == '') self%return_to = label_of(self%questions(min(self%at + 1, size(self%questions))))
   end subroutine note
 
-  !> A correction that asks for forces leads on to the questions about bodies, gravity and loads, if these come only now, and none
-  !> has its answer yet.
+  !> Go on to the questions about bodies, gravity and loads after a correction that asks for forces. This is done if
+  !> these questions come only now, and none has its answer yet.
   pure subroutine go_on_with_masses(self)
-    type(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
+    type(interview_type), intent(inout) :: self  !< draft, questions and the current question
     integer :: i
 
     if (self%return_to == '' .or. self%draft%count_of('body') > 0) return
@@ -318,19 +317,20 @@ contains
   end subroutine go_on_with_masses
 
 
-  !> The answer to the question that is due is taken back.
+  !> Remove the answer to the current question.
   pure subroutine unnote(self)
-    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
+    class(interview_type), intent(inout) :: self  !< draft, questions and the current question
     type(question_type) :: question
 
     question = self%due()
     call self%draft%take_away(trim(group_table(question%group_row)%name), question%place, entry_name(question))
     call self%refresh(label_of(question))
   end subroutine unnote
-  !> The facts that are needed beside the draft to resume a conversation: the question that is due, the way of giving the
-  !> structure, and the rarely used names that the user wants, such as "pair(1).axis; pairs; pair.zero pair.moving_point".
+  !> The facts that are needed beside the draft to resume a conversation. They are the current question, the way of
+  !> giving the structure, and the rarely used names that the user wants. An example is "pair(1).axis; pairs; pair.zero
+  !> pair.moving_point".
   pure function bookmark(self) result(text)
-    class(interview_type), intent(in) :: self  !< draft, questions and the question that is due
+    class(interview_type), intent(in) :: self  !< draft, questions and the current question
     character(len=:), allocatable :: text
     integer :: row
 
@@ -341,9 +341,9 @@ contains
     end do
   end function bookmark
 
-  !> The interview is resumed at a bookmark. Unknown parts of a bookmark are ignored.
+  !> Resume at a bookmark. Unknown parts of a bookmark are ignored.
   pure subroutine open_at(self, text)
-    class(interview_type), intent(inout) :: self  !< draft, questions and the question that is due
+    class(interview_type), intent(inout) :: self  !< draft, questions and the current question
     character(len=*), intent(in) :: text          !< the bookmark, in the form of `bookmark`
     integer :: first, second, row
 

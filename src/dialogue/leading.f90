@@ -1,4 +1,4 @@
-!> The questions and checks of a conversation are led through one after the other.
+!> Questions and checks of a conversation, one after the other.
 module mech9_leading
   use mech9_task, only: task_type
   use mech9_questions, only: check_structure, check_start, check_all
@@ -11,7 +11,7 @@ module mech9_leading
 
 contains
 
-  !> Questions are asked and checks are made until every question is answered or the user leaves.
+  !> Ask questions and make checks until every question is answered or the user leaves.
   subroutine lead(conversation, task)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics

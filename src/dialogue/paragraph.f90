@@ -8,7 +8,7 @@ module mech9_paragraph
 
 contains
 
-  !> A text is printed from a column on, broken at blanks. Its own line ends are kept.
+  !> Print a text from a column on, broken at blanks. Line ends within the text are kept.
   subroutine print_paragraph(unit, text, indent)
     integer, intent(in) :: unit           !< number of the output unit
     character(len=*), intent(in) :: text  !< words with blanks between, any number of lines

@@ -18,7 +18,7 @@ module mech9_program
 
 contains
 
-  !> The whole program is run. There is no return from it.
+  !> Run the whole program. There is no return from it.
   subroutine run_program(task)
     class(task_type), intent(in) :: task  !< computation of the program: kinematics or dynamics
     integer :: code
@@ -28,7 +28,7 @@ contains
     call exit_program(code)
   end subroutine run_program
 
-  !> The command line is carried out. Its words are deallocated before the program ends.
+  !> Carry out the command line. Its words are deallocated before the program ends.
   subroutine run_command_line(task, code)
     class(task_type), intent(in) :: task  !< computation of the program: kinematics or dynamics
     integer, intent(out) :: code          !< exit code of the program
@@ -38,7 +38,7 @@ contains
     call run_words(task, words, code)
   end subroutine run_command_line
 
-  !> The words of a command line are carried out. `code` is the exit code of the program.
+  !> Carry out the words of a command line. `code` is the exit code of the program.
   subroutine run_words(task, words, code)
     class(task_type), intent(in) :: task       !< computation of the program: kinematics or dynamics
     type(string_type), intent(in) :: words(:)  !< words of the command line without the program's name

@@ -22,7 +22,7 @@ module mech9_running
 
 contains
 
-  !> A data file is run, and run again as often as the user wants. `code` is that of the last run.
+  !> Run a data file, and run it again as often as the user wants. `code` is that of the last run.
   subroutine run_by_turns(conversation, task, options, path, code)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
@@ -68,7 +68,7 @@ contains
     conversation%state = finished
   end subroutine run_by_turns
 
-  !> An answer about the mechanism as it stands is given. Changes since the last run are in the draft.
+  !> Give an answer about the mechanism with the values that it has now. Changes since the last run are in the draft.
   subroutine answer(conversation, task, path, changed, request)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
@@ -104,7 +104,7 @@ contains
     end if
   end subroutine answer
 
-  !> The user is told in which file the answers are, unless this was told when the data file was saved.
+  !> Tell the user in which file the answers are, unless this was told when the data file was saved.
   subroutine tell_what_is_kept(conversation, path, changed, saved_again)
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: path                  !< name of the file that was run
@@ -125,7 +125,7 @@ contains
     end if
   end subroutine tell_what_is_kept
 
-  !> The file that is run is written if something was changed.
+  !> Write the file that is run if something was changed.
   subroutine keep_changes(conversation, path, changed)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: path                     !< name of the file that was run
@@ -142,7 +142,7 @@ contains
     if (allocated(err)) call conversation%say(err%message)
   end subroutine keep_changes
 
-  !> The results of the last run become those of the run before.
+  !> Make the results of the last run those of the run before.
   subroutine hand_over(kept, earlier)
     type(kept_rows_type), intent(inout) :: kept     !< results of the last run; empty afterwards
     type(kept_rows_type), intent(inout) :: earlier  !< receives them

@@ -1,4 +1,4 @@
-!> A structure is drawn as text: its chains of links and pairs, and its mobility by the count.
+!> A drawing of a structure as text: its chains of links and pairs, and its mobility by the count.
 module mech9_structure_sketch
   use mech9_text, only: to_text
   use mech9_counted, only: counted
@@ -15,9 +15,9 @@ module mech9_structure_sketch
 
 contains
 
-  !> The chains are drawn in the order of computation, each as links joined by pairs, such as "1 =5= 2 -4- 3", where =5=
-  !> is an independent coordinate. A joint with several freedoms is one step with all its coordinates, as in "2 -5,6,7- 3"; where
-  !> only some of them are independent, these stand as in "2 -5,=6=,7- 3". The mobility by the count follows.
+  !> Draw the chains in the order of computation, each as links joined by pairs. In "1 =5= 2 -4- 3", =5= is an
+  !> independent coordinate. A joint with several freedoms is one step with all its coordinates, as in "2 -5,6,7- 3".
+  !> Where only some of them are independent, these stand as in "2 -5,=6=,7- 3". The mobility by the count follows.
   subroutine print_sketch(unit, structure, partition)
     integer, intent(in) :: unit                           !< number of the output unit
     type(structure_type), intent(in) :: structure         !< links of the pairs
@@ -55,7 +55,7 @@ contains
     text = to_text(coordinates - loops*each)//' = '//to_text(coordinates)//' - '//to_text(loops)//' x '//to_text(each)
   end function count_text
 
-  !> One chain is printed, on as many lines as it needs.
+  !> Print one chain, on as many lines as it needs.
   subroutine print_chain(unit, structure, independent, vectors, chain)
     integer, intent(in) :: unit                           !< number of the output unit
     type(structure_type), intent(in) :: structure         !< links of the pairs

@@ -16,7 +16,7 @@ module mech9_summary
 
 contains
 
-  !> All answers are printed with their numbers. Each group has one line or more.
+  !> Print all answers with their numbers. Each group has one line or more.
   subroutine print_summary(unit, draft)
     integer, intent(in) :: unit            !< number of the output unit
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
@@ -74,7 +74,7 @@ contains
     end if
   end function title_of
 
-  !> The entry with a number of the list; the group is 0 if there is none.
+  !> Find the entry with a number of the list; the group is 0 if there is none.
   pure subroutine entry_with_number(draft, number, group, entry)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     integer, intent(in) :: number          !< the number that the list shows
@@ -111,8 +111,8 @@ contains
     end do
   end function number_of_entry
 
-  !> The entry that is named by the number of an answer or by words: a group, its place, and a name, which is empty if
-  !> only a group is named. `group` is empty if the text names nothing.
+  !> Find the entry that is named by the number of an answer or by words. It is a group, its place, and a name, which is
+  !> empty if only a group is named. The argument `group` is empty if the text names nothing.
   pure subroutine entry_meant(draft, which, group, place, name, by_number)
     type(draft_type), intent(in) :: draft                !< groups and names with their values as text
     character(len=*), intent(in) :: which                !< the words that were typed
@@ -134,9 +134,9 @@ contains
     end if
   end subroutine entry_meant
 
-  !> The entry that is named by words such as "pair 3 axis", "time end" or "load 2": a group, its place, and a name, which
-  !> is empty if none is given. A group for each coordinate is named by the number of the coordinate. `group` is empty if
-  !> the words name nothing.
+  !> Find the entry that is named by words such as "pair 3 axis", "time end" or "load 2". It is a group, its place, and
+  !> a name, which is empty if none is given. A group for each coordinate is named by the number of the coordinate.
+  !> `group` is empty if the words name nothing.
   pure subroutine named_entry(draft, line, group, place, name)
     type(draft_type), intent(in) :: draft                !< groups and names with their values as text
     character(len=*), intent(in) :: line                 !< the words that were typed

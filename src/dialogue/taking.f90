@@ -1,4 +1,4 @@
-!> The answer to a question is checked like a data file, and kept.
+!> Check answers to questions as the reader of data files does, and note them.
 module mech9_taking
   use mech9_text, only: to_text, lower, nearest_name
   use mech9_grammar, only: group_table, item_table, words_of
@@ -19,7 +19,7 @@ module mech9_taking
 
 contains
 
-  !> An answer to the question that is due is taken.
+  !> Check and note an answer to the current question.
   subroutine take_answer(conversation, line)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: line                     !< the answer, without blanks around it
@@ -40,7 +40,7 @@ contains
     end select
   end subroutine take_answer
 
-  !> The answer to a question about a name is taken.
+  !> Check and note the answer to a question about a name.
   subroutine take_item(conversation, question, line)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(question_type), intent(in) :: question              !< the question
@@ -62,8 +62,8 @@ contains
     end if
   end subroutine take_item
 
-  !> The number of coordinates that an answer makes independent is checked. An answer that the structure hardly allows is
-  !> refused once, and taken if it is given again.
+  !> Check the number of coordinates that an answer makes independent. Refuse an answer that the structure hardly allows
+  !> once, and accept it if it is given again.
   subroutine count_independent(conversation, text, problem)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: text                     !< the answer as a data file writes it
@@ -77,7 +77,7 @@ contains
     conversation%doubted = text
   end subroutine count_independent
 
-  !> An answer is noted, and the next question becomes due.
+  !> Note an answer, and go on to the next question.
   subroutine keep_answer(conversation, text)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: text                     !< the answer as a data file writes it
@@ -87,7 +87,7 @@ contains
     call move_on(conversation)
   end subroutine keep_answer
 
-  !> The names that the last answer made meaningless are told.
+  !> Tell the names that the last answer made meaningless.
   subroutine tell_dropped(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
 
@@ -95,7 +95,7 @@ contains
       call conversation%say('(dropped, as it has no meaning any more: '//conversation%interview%dropped//')')
   end subroutine tell_dropped
 
-  !> The next question becomes due, and the answers are kept in the draft's file.
+  !> Go on to the next question, and save the answers in the draft's file.
   subroutine move_on(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
 
@@ -103,8 +103,8 @@ contains
     call conversation%keep()
   end subroutine move_on
 
-  !> An answer is checked against the other answers, as the reader of data files would. Structural data that belong
-  !> together are checked together when the structure is complete.
+  !> Check an answer against the other answers, as the reader of data files would. Structural data that belong together
+  !> are checked together when the structure is complete.
   subroutine hold_against_rest(conversation, question, text, problem)
     class(conversation_type), intent(in) :: conversation   !< the conversation as it stands
     type(question_type), intent(in) :: question            !< the question
@@ -136,7 +136,7 @@ contains
     end associate
   end subroutine hold_against_rest
 
-  !> The answer about the rarely used names of a group is taken.
+  !> Read the answer about the rarely used names of a group.
   subroutine take_seldom(conversation, question, line)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(question_type), intent(in) :: question              !< the question
@@ -161,7 +161,7 @@ contains
     call move_on(conversation)
   end subroutine take_seldom
 
-  !> Names separated by blanks or commas are read.
+  !> Read names separated by blanks or commas.
   pure subroutine take_names(line, rows, asked, problem)
     character(len=*), intent(in) :: line                   !< the answer, without blanks around it
     integer, intent(in) :: rows(:)                         !< rows in item_table of the names that can be meant
@@ -192,7 +192,7 @@ contains
     problem = ''
   end subroutine take_names
 
-  !> The answer about the way of giving the structure is taken. Data that were given in another way are forgotten.
+  !> Read the answer about the way of giving the structure. Data that were given in another way are removed.
   subroutine take_way(conversation, line)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: line                     !< the answer, without blanks around it
@@ -217,7 +217,7 @@ contains
     call move_on(conversation)
   end subroutine take_way
 
-  !> The answer about joints with several freedoms is taken.
+  !> Read the answer about joints with several freedoms.
   subroutine take_joints(conversation, line)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: line                     !< the answer, without blanks around it
@@ -239,7 +239,7 @@ contains
     call move_on(conversation)
   end subroutine take_joints
 
-  !> The answer about guesses of the dependent coordinates at the start is taken.
+  !> Read the answer about guesses of the dependent coordinates at the start.
   subroutine take_guesses(conversation, line)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: line                     !< the answer, without blanks around it

@@ -44,7 +44,7 @@ module mech9_draft
 
 contains
 
-  !> The draft becomes empty.
+  !> Remove all groups and comments.
   pure subroutine clear(self)
     class(draft_type), intent(inout) :: self  !< groups and names with their values as text
 
@@ -179,7 +179,7 @@ contains
     has = self%find_entry(group, place, name) > 0
   end function has
 
-  !> An empty group is added behind the groups of its name, or at the place that the table of groups gives it.
+  !> Add an empty group behind the groups of its name, or at the place that the table of groups gives it.
   pure subroutine add(self, group)
     class(draft_type), intent(inout) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group     !< name of the group
@@ -208,7 +208,7 @@ contains
     if (rank == 0) rank = huge(rank)
   end function rank_of
 
-  !> The content of a group is moved to another group.
+  !> Move the content of a group to another group.
   pure subroutine move_group(from, to)
     type(draft_group_type), intent(inout) :: from  !< loses its contents
     type(draft_group_type), intent(inout) :: to    !< receives them
@@ -218,7 +218,7 @@ contains
     call move_alloc(from%entries, to%entries)
   end subroutine move_group
 
-  !> A name gets a value, in the place of an earlier one. A group that is not there yet is added.
+  !> Set the value of a name, in the place of an earlier one. Add the group if it is not there yet.
   pure subroutine give(self, group, place, name, text)
     class(draft_type), intent(inout) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group     !< name of the group
@@ -234,7 +234,7 @@ contains
     self%groups(i)%entries(number)%text = text
   end subroutine give
 
-  !> An entry is added in the order of the table of names. Rows of a matrix stand in the order of their numbers.
+  !> Add an entry in the order of the table of names. Rows of a matrix stand in the order of their numbers.
   pure subroutine add_entry(group, name, number)
     type(draft_group_type), intent(inout) :: group  !< the group
     character(len=*), intent(in) :: name            !< name with its subscript
@@ -283,7 +283,7 @@ contains
     if (first > 0) subscript = integer_of(name(first + 1:first + scan(name(first + 1:)//')', ',:)') - 1))
   end function subscript_of
 
-  !> The entry of a name is taken away.
+  !> Remove the entry of a name.
   pure subroutine take_away(self, group, place, name)
     class(draft_type), intent(inout) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group     !< name of the group
@@ -306,7 +306,7 @@ contains
     call move_alloc(shorter, self%groups(i)%entries)
   end subroutine take_away
 
-  !> A group is removed with its entries.
+  !> Remove a group with its entries.
   pure subroutine remove(self, group, place)
     class(draft_type), intent(inout) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group     !< name of the group

@@ -1,4 +1,4 @@
-!> A draft is made from an existing data file: its values, and the comments above its groups.
+!> Conversion of an existing data file to a draft: its values, and the comments above its groups.
 module mech9_draft_source
   use mech9_error, only: place_type
   use mech9_text, only: to_text, join, string_type
@@ -16,8 +16,8 @@ module mech9_draft_source
 
 contains
 
-  !> The values of a document are taken over: one entry for each name, and the coincidence matrix by rows. Values that
-  !> cannot be read are left out; they were reported when the document was read.
+  !> Copy the values of a document: one entry for each name, and the coincidence matrix by rows. Values that cannot be
+  !> read are left out; they were reported when the document was read.
   pure subroutine draft_from_document(document, draft)
     type(document_type), intent(in) :: document  !< the data file as groups and items
     type(draft_type), intent(out) :: draft       !< groups and names with their values as text
@@ -43,7 +43,7 @@ contains
     end do
   end subroutine draft_from_document
 
-  !> A group of a document is taken over, with the comment above it.
+  !> Copy a group of a document, with the comment above it.
   pure subroutine take_group(document, group, draft)
     type(document_type), intent(in) :: document  !< the data file as groups and items
     type(group_type), intent(in) :: group        !< the group of the data file
@@ -65,7 +65,7 @@ contains
     end do
   end subroutine take_group
 
-  !> The coincidence matrix is taken over as rows, however it is given.
+  !> Copy the coincidence matrix as rows, however it is given.
   pure subroutine take_matrix(document, group, draft)
     type(document_type), intent(in) :: document  !< the data file as groups and items
     type(group_type), intent(in) :: group        !< the group of the data file
@@ -77,7 +77,7 @@ contains
 
     if (.not. any([(group%items(i)%name == 'c', i=1, size(group%items))])) return
     if (all([(group%items(i)%name /= 'c' .or. is_row(group%items(i)), i=1, size(group%items))])) then
-      ! rows are taken over even if others are still missing
+      ! rows are copied even if others are still missing
       do i = 1, size(group%items)
         if (group%items(i)%name == 'c') &
           call draft%give('structure', 1, 'c('//to_text(group%items(i)%subscripts(1)%first)//',:)', &
@@ -118,8 +118,8 @@ contains
     text = join(words, ', ')
   end function values_text
 
-  !> The comment lines directly above a byte; or, with `to_the_top`, the lines from the top of the file that stand above
-  !> these and a blank line.
+  !> Find the comment lines directly above a byte. With `to_the_top`, find those from the top of the file that stand
+  !> above these and a blank line.
   pure subroutine find_comment(source, byte, to_the_top, comment)
     type(source_type), intent(in) :: source                !< text of the data file
     integer, intent(in) :: byte                            !< number of the byte below the comment
@@ -142,7 +142,8 @@ contains
     end if
   end subroutine find_comment
 
-  !> Comment lines and blank lines, without a blank line at the end. The text is empty if any other line is among them.
+  !> Copy comment lines and blank lines, without a blank line at the end. The text is empty if any other line is among
+  !> them.
   pure subroutine take_lines(source, from, to, text)
     type(source_type), intent(in) :: source             !< text of the data file
     integer, intent(in) :: from                         !< number of the first line

@@ -24,7 +24,7 @@ module mech9_draft_text
 
 contains
 
-  !> A draft is written as text. `remark` is a comment line for its end; empty: none.
+  !> Write a draft as text. `remark` is a comment line for its end; empty: none.
   pure subroutine write_draft(draft, remark, written)
     type(draft_type), intent(in) :: draft          !< groups and names with their values as text
     character(len=*), intent(in) :: remark         !< comment line for the end of the text; empty: none
@@ -50,7 +50,7 @@ contains
     written%text = written%text(:written%used)
   end subroutine write_draft
 
-  !> A blank line is appended, and a comment on the groups of this name unless the group has a comment of its own.
+  !> Append a blank line, and a comment on the groups of this name unless the group has a comment of its own.
   pure subroutine begin_kind(group, written)
     type(draft_group_type), intent(in) :: group      !< the group
     type(draft_text_type), intent(inout) :: written  !< text to which the heading is appended
@@ -76,7 +76,7 @@ contains
     written%used = written%used + len(piece)
   end subroutine append
 
-  !> A group is appended to the text, and the ranges of bytes are noted.
+  !> Append a group to the text, and note the ranges of bytes.
   pure subroutine write_group(group, number, written)
     type(draft_group_type), intent(in) :: group      !< the group
     integer, intent(in) :: number                    !< index of the group in the draft
@@ -123,7 +123,7 @@ contains
     is_matrix = .false.
   end function is_matrix
 
-  !> The beginning of a range of bytes is noted; its end follows later.
+  !> Note the beginning of a range of bytes; its end follows later.
   pure subroutine note(written, group, entry, first)
     type(draft_text_type), intent(inout) :: written  !< text to which the group is appended, with the place of each entry
     integer, intent(in) :: group                     !< index of the group in the draft
@@ -136,8 +136,8 @@ contains
     written%first(written%count) = first
   end subroutine note
 
-  !> The group and the entry to which a byte of the text belongs. The group is 0 if there is none; the entry is 0 for the
-  !> group as a whole.
+  !> Find the group and the entry to which a byte of the text belongs. The group is 0 if there is none; the entry is 0
+  !> for the group as a whole.
   pure subroutine locate(written, byte, group, entry)
     type(draft_text_type), intent(in) :: written  !< text of the draft, with the place of each entry
     integer, intent(in) :: byte                   !< number of the byte in the text

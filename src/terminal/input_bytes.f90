@@ -1,6 +1,6 @@
 !> Standard input byte by byte, until an interrupt.
 !>
-!> It calls the system's own `poll` and `read`: gfortran's runtime library goes on waiting after a signal, reads
+!> It calls the system's own `poll` and `read`. The runtime library of gfortran goes on waiting after a signal, reads
 !> lines of a fixed length, and buffers bytes that a line editor would need.
 module mech9_input_bytes
   use, intrinsic :: iso_c_binding, only: c_int, c_short, c_long, c_size_t, c_char
@@ -9,8 +9,8 @@ module mech9_input_bytes
   private
   public :: input_bytes_type, input_read, input_ended, input_interrupted
 
-  !> Results of a request for input: a byte or line was read; the input ended (end of file, Ctrl-D, a terminal that was
-  !> closed); the user interrupted (Ctrl-C, a request to terminate).
+  !> Results of a request for input: a byte or line was read, or there is none. The input ended (end of file, Ctrl-D, a
+  !> closed terminal), or the user interrupted (Ctrl-C, a request to terminate).
   integer, parameter :: input_read = 0, input_ended = 1, input_interrupted = 2
 
   !> Longest wait before the next check for an interrupt [ms]: a signal that arrives just before the wait begins
@@ -55,8 +55,8 @@ module mech9_input_bytes
 
 contains
 
-  !> Wait for the next byte. With `disturbed`, the procedure also returns, without a byte, after a signal that does not
-  !> interrupt: the program was stopped and continued, or the size of the window changed.
+  !> Wait for the next byte. With `disturbed`, return also, without a byte, after a signal that does not interrupt. Such
+  !> a signal comes when the program was stopped and continued, or the size of the window changed.
   subroutine next_byte(self, byte, status, disturbed)
     class(input_bytes_type), intent(inout) :: self  !< standard input
     character, intent(out) :: byte                  !< the byte; zero where there is none

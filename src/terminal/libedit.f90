@@ -1,8 +1,8 @@
 !> Interfaces of the functions of libedit that this program calls, as declared in histedit.h.
 !>
-!> Some of them take a variable list of arguments, which Fortran cannot declare. They are declared with the largest number
-!> of machine words that a call here needs: on the processors for which CMake allows libedit, integers and addresses
-!> are passed to such a function as to any other, and arguments that it does not read do no harm.
+!> Some of them take a variable list of arguments, which Fortran cannot declare. They are declared with the largest
+!> number of machine words that a call here needs. CMake allows libedit on processors that pass integers and addresses
+!> to such a function as to any other. Arguments that it does not read do no harm.
 module mech9_libedit
   use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_ptr, c_char
   implicit none
@@ -110,13 +110,13 @@ module mech9_libedit
       integer(c_intptr_t), value :: operand             !< number or address of a text, by the operation
     end function history_w
 
-    !> Another number for an open file.
+    !> Duplicate the number of an open file.
     integer(c_int) function c_dup(descriptor) bind(c, name='dup')
       import :: c_int
       integer(c_int), value :: descriptor  !< number of the open file
     end function c_dup
 
-    !> A stream of C on an open file.
+    !> Open a stream of C on an open file.
     type(c_ptr) function c_fdopen(descriptor, mode) bind(c, name='fdopen')
       import :: c_ptr, c_int, c_char
       integer(c_int), value :: descriptor            !< number of the open file

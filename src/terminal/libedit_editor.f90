@@ -120,8 +120,8 @@ contains
     call set_text(self%editor, el_setty, '-d', 'intr=')
   end subroutine set_up
 
-  !> Store the data of a prompt. This is a procedure of its own because gfortran 12 does not allocate a component on assignment
-  !> when it is reached through a pointer in a polymorphic variable.
+  !> Store the data of a prompt. This is a procedure of its own because of gfortran 12. When a component is reached
+  !> through a pointer in a polymorphic variable, that compiler does not allocate it on assignment.
   subroutine fill_box(box, prompt, words)
     type(box_type), intent(inout) :: box                 !< gets the data
     character(len=*), intent(in) :: prompt               !< text before the line

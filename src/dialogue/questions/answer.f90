@@ -1,4 +1,4 @@
-!> The answer to a question is checked against its row of the grammar, as the reader of data files does.
+!> The check of an answer to a question against its row of the grammar, the same as that of the reader of data files.
 module mech9_answer
   use mech9_text, only: lower, to_text
   use mech9_source, only: source_type, span_type, source_from_text
@@ -20,8 +20,8 @@ module mech9_answer
 
 contains
 
-  !> An answer is read as values in the form of a data file. If this is impossible, `problem` has one message or several,
-  !> a line each. Texts need no quotes, a switch may be answered by yes or no, and short forms are written in full.
+  !> Read an answer as values in the form of a data file. If this is impossible, `problem` has one message or several, a
+  !> line each. Texts need no quotes, a switch may be answered by yes or no, and short forms are written in full.
   pure subroutine read_answer(row, line, text, problem)
     type(item_row_type), intent(in) :: row                 !< row of the table of names for the question
     character(len=*), intent(in) :: line                   !< the answer, without blanks around it
@@ -70,7 +70,7 @@ contains
     wants_quotes = index(line, ' ') > 0 .and. scan(line, '''"') /= 1
   end function wants_quotes
 
-  !> Values in full form are read and checked against a row of the grammar.
+  !> Read values in full form, and check them against a row of the grammar.
   pure subroutine read_values(row, written, text, problem)
     type(item_row_type), intent(in) :: row                   !< row of the table of names for the question
     character(len=*), intent(in) :: written                  !< values in full form

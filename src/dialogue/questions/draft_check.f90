@@ -1,4 +1,4 @@
-!> A draft is checked by reading it as the data file that it will be. Each error gets its place in the draft.
+!> The check of a draft, made by reading it as the data file that it will be. Each error gets its place in the draft.
 module mech9_draft_check
   use mech9_program_kind, only: dynamics
   use mech9_text, only: to_text
@@ -30,7 +30,7 @@ module mech9_draft_check
 
 contains
 
-  !> The mechanism of a draft is read. It is of use only if there are no errors.
+  !> Read the mechanism of a draft. It is of use only if there are no errors.
   subroutine read_draft(draft, path, program, model, written, diagnostics)
     type(draft_type), intent(in) :: draft               !< groups and names with their values as text
     character(len=*), intent(in) :: path                !< path of the data file; tables of drives are sought beside it
@@ -45,7 +45,7 @@ contains
     call read_model(document, program, model, diagnostics)
   end subroutine read_draft
 
-  !> The structure of a draft is read. It is of use only if there are no faults.
+  !> Read the structure of a draft. It is of use only if there are no faults.
   pure subroutine read_draft_structure(draft, outline, structure, partition, faults)
     type(draft_type), intent(in) :: draft                    !< groups and names with their values as text
     type(outline_type), intent(in) :: outline                !< facts known beside the draft
@@ -62,7 +62,7 @@ contains
     call translate(part, draft, faults)
   end subroutine read_draft_structure
 
-  !> The structural part of a draft is read like a data file.
+  !> Read the structural part of a draft like a data file.
   pure subroutine read_part(part, structure, partition, written, diagnostics)
     type(draft_type), intent(in) :: part                   !< draft with the structure alone
     type(structure_type), intent(out) :: structure         !< links of the pairs
@@ -76,9 +76,9 @@ contains
     call read_structure_only(document, structure, partition, diagnostics)
   end subroutine read_part
 
-  !> The part of a draft that gives the structure: counts, structural data, and the pairs if the structure is given by them or
-  !> has joints with several freedoms. Plain pairs get some kind, since they cannot be read without one. Where the structure is
-  !> not given by the pairs, they have the links that it gives them.
+  !> The part of a draft that gives the structure: counts and structural data. It has the pairs if they give the
+  !> structure or if there are joints with several freedoms. Plain pairs get some kind, since they cannot be read
+  !> without one. Where the structure is not given by the pairs, they have the links that it gives them.
   pure function structural_part(draft, outline) result(part)
     type(draft_type), intent(in) :: draft      !< groups and names with their values as text
     type(outline_type), intent(in) :: outline  !< facts known beside the draft
@@ -110,8 +110,8 @@ contains
     end do
   end function structural_part
 
-  !> A pair gets the links between which its first coordinate stands in the coincidence matrix or in the second set; none where
-  !> it does not stand there.
+  !> Give a pair the links between which its first coordinate stands in the coincidence matrix or in the second set. It
+  !> gets none where the coordinate does not stand there.
   pure subroutine give_links(draft, way, part, place)
     type(draft_type), intent(in) :: draft     !< the whole draft
     character(len=*), intent(in) :: way       !< way in which the structure is given: matrix or vectors
@@ -137,7 +137,7 @@ contains
     end do
   end subroutine give_links
 
-  !> Places in a part of a draft are replaced by those in the whole, which are found by names.
+  !> Replace places in a part of a draft by those in the whole, found by names.
   pure subroutine translate(part, draft, faults)
     type(draft_type), intent(in) :: part          !< draft with the structure alone
     type(draft_type), intent(in) :: draft         !< the whole draft
@@ -156,7 +156,7 @@ contains
     end do
   end subroutine translate
 
-  !> The errors with the entries of the draft that they concern, in the order in which they were found.
+  !> List the errors with the entries of the draft that they concern, in the order in which they were found.
   pure subroutine find_faults(diagnostics, written, faults)
     type(diagnostics_type), intent(in) :: diagnostics        !< gets the errors
     type(draft_text_type), intent(in) :: written             !< text of the draft, with the place of each entry
@@ -171,7 +171,7 @@ contains
     end do
   end subroutine find_faults
 
-  !> The errors of a draft that was read by read_draft.
+  !> List the errors of a draft that was read by read_draft.
   pure subroutine faults_of(diagnostics, written, faults)
     type(diagnostics_type), intent(in) :: diagnostics        !< gets the errors
     type(draft_text_type), intent(in) :: written             !< text of the draft, with the place of each entry
@@ -180,8 +180,8 @@ contains
     call find_faults(diagnostics, written, faults)
   end subroutine faults_of
 
-  !> The errors of one entry of a draft, as far as they can be told now; empty if there are none. Values that the group
-  !> still lacks are taken from the examples of the table of names.
+  !> Find the errors of one entry of a draft, as far as they can be known now; `problem` is empty if there are none.
+  !> Values that the group still lacks are taken from the examples of the table of names.
   subroutine problem_with(draft, outline, path, group, place, name, problem)
     type(draft_type), intent(in) :: draft                  !< groups and names with their values as text
     type(outline_type), intent(in) :: outline              !< facts known beside the draft
@@ -220,7 +220,8 @@ contains
     end do
   end subroutine problem_with
 
-  !> The errors of the kind and the coordinates of a pair, once it has as many coordinates as its kind; empty if there are none.
+  !> Find the errors of the kind and the coordinates of a pair, once it has as many coordinates as its kind. Without
+  !> errors `problem` is empty.
   subroutine problem_with_joint(draft, outline, path, place, problem)
     type(draft_type), intent(in) :: draft                  !< groups and names with their values as text
     type(outline_type), intent(in) :: outline              !< facts known beside the draft
@@ -240,7 +241,7 @@ contains
       call problem_with(trial, outline, path, 'pair', now, 'coordinates', problem)
   end subroutine problem_with_joint
 
-  !> The values that a group needs and lacks are taken from the examples of the table of names.
+  !> Take the values that a group needs and lacks from the examples of the table of names.
   pure subroutine complete(draft, group, place, without)
     type(draft_type), intent(inout) :: draft  !< draft whose group is completed
     character(len=*), intent(in) :: group     !< name of the group
@@ -263,7 +264,7 @@ contains
     end do
   end subroutine complete
 
-  !> Rows of the coincidence matrix that are not given yet are filled by its symmetry, and otherwise with zeros.
+  !> Fill rows of the coincidence matrix that are not given yet by its symmetry, and otherwise with zeros.
   pure subroutine complete_matrix(draft)
     type(draft_type), intent(inout) :: draft  !< draft whose coincidence matrix is completed
     integer :: n, i, j
@@ -287,8 +288,7 @@ contains
     end do
   end subroutine complete_matrix
 
-  !> Numbers are read from text such as "1, 2, 3". Numbers beyond the size are left out, and missing ones stay as they
-  !> were.
+  !> Read numbers from text such as "1, 2, 3". Numbers beyond the size are left out, and missing ones stay as they were.
   pure subroutine take_row(text, numbers)
     character(len=*), intent(in) :: text  !< numbers with commas between them
     integer, intent(inout) :: numbers(:)  !< the numbers; those that are missing in the text stay as they were

@@ -22,8 +22,8 @@ module mech9_draft_file
 
 contains
 
-  !> A draft is written as a data file. With a bookmark the conversation can be resumed there. The former content of the
-  !> file is kept until everything is written.
+  !> Write a draft as a data file. With a bookmark the conversation can be resumed there. The former content of the file
+  !> is kept until everything is written.
   subroutine save_draft(draft, path, bookmark, program, err)
     type(draft_type), intent(in) :: draft              !< groups and names with their values as text
     character(len=*), intent(in) :: path               !< name of the file
@@ -39,7 +39,7 @@ contains
     call replace_text(path, written%text, err)
   end subroutine save_draft
 
-  !> A data file is read as a draft with its bookmark, which is empty if there is none. Errors go to the diagnostics.
+  !> Read a data file as a draft with its bookmark, which is empty if there is none. Errors go to the diagnostics.
   subroutine load_draft(path, most_parts, draft, bookmark, diagnostics)
     character(len=*), intent(in) :: path                    !< name of the file
     integer, intent(in) :: most_parts                       !< largest number of links or coordinates in a conversation
@@ -65,7 +65,7 @@ contains
     draft%comments_left_out = draft%comments_left_out - 1
   end subroutine load_draft
 
-  !> A file is removed if it is there.
+  !> Delete a file if it is there.
   subroutine delete_file(path)
     character(len=*), intent(in) :: path  !< name of the file
     integer :: unit, status

@@ -102,8 +102,8 @@ contains
     end do
   end function has_joints
 
-  !> The kind of motion of a coordinate: the kind of its pair, and prismatic or revolute in a joint with several freedoms;
-  !> empty where it is not known.
+  !> The kind of motion of a coordinate: the kind of its pair, and prismatic or revolute in a joint with several
+  !> freedoms. It is empty where it is not known.
   pure function kind_of_coordinate(draft, coordinate) result(kind)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     integer, intent(in) :: coordinate      !< number of the coordinate
@@ -121,8 +121,8 @@ contains
     kind = trim(merge('prismatic', 'revolute ', slides))
   end function kind_of_coordinate
 
-  !> Each pair gets as many coordinates as its kind has: where the kind has changed, the number of the pair and those after it.
-  !> Plain pairs of coordinates that belong to such a joint are removed.
+  !> Give each pair as many coordinates as its kind has: where the kind has changed, the number of the pair and those
+  !> after it. Remove plain pairs of coordinates that belong to such a joint.
   pure subroutine settle_joints(draft, dropped)
     type(draft_type), intent(inout) :: draft               !< groups and names with their values as text
     character(len=:), allocatable, intent(out) :: dropped  !< pairs with data that were removed, with commas between; empty: none
@@ -149,7 +149,7 @@ contains
     if (has_joints(draft)) call remove_covered(draft, dropped)
   end subroutine settle_joints
 
-  !> Plain pairs of coordinates that belong to a joint with several freedoms are removed.
+  !> Remove plain pairs of coordinates that belong to a joint with several freedoms.
   pure subroutine remove_covered(draft, dropped)
     type(draft_type), intent(inout) :: draft                  !< groups and names with their values as text
     character(len=:), allocatable, intent(inout) :: dropped   !< gets the pairs with data that were removed, with commas between
@@ -190,8 +190,8 @@ contains
     end do
   end function joints_text
 
-  !> The joints with several freedoms become those of an answer such as "4 spherical, 8 universal". Others become plain pairs
-  !> without a kind. A joint that stays as it was keeps its data.
+  !> Replace the joints with several freedoms by those of an answer such as "4 spherical, 8 universal". Others become
+  !> plain pairs without a kind. A joint that stays as it was keeps its data.
   pure subroutine give_joints(draft, answer, problem)
     type(draft_type), intent(inout) :: draft               !< groups and names with their values as text
     character(len=*), intent(in) :: answer                 !< numbers and kinds in turn, with blanks or commas between; empty: none
@@ -219,7 +219,7 @@ contains
     end do
   end subroutine give_joints
 
-  !> The numbers and kinds of joints are read.
+  !> Read the numbers and kinds of joints.
   pure subroutine read_joints(answer, m, firsts, kinds, problem)
     character(len=*), intent(in) :: answer                 !< numbers and kinds in turn, with blanks or commas between
     integer, intent(in) :: m                               !< number of coordinates of the mechanism

@@ -1,5 +1,5 @@
-!> The facts that a conversation knows beside the draft: the way in which the structure is given, the rarely used names
-!> that the user wants, and the independent coordinates. The groups that follow from them are made here.
+!> The facts that a conversation knows beside the draft, and the groups that follow from them. They are the way in which
+!> the structure is given, the rarely used names that the user wants, and the independent coordinates.
 module mech9_outline
   use mech9_program_kind, only: kinematics
   use mech9_text, only: to_text
@@ -62,7 +62,7 @@ contains
     end do
   end function wants_forces
 
-  !> Pairs are made for the coordinates that have none; each pair gets as many coordinates as its kind has.
+  !> Make pairs for the coordinates that have none, and give each pair as many coordinates as its kind has.
   pure subroutine make_pairs(draft, dropped)
     type(draft_type), intent(inout) :: draft               !< groups and names with their values as text
     character(len=:), allocatable, intent(out) :: dropped  !< pairs with data that were removed, with commas between; empty: none
@@ -73,8 +73,8 @@ contains
     call make_numbered(draft, 'pair', all)
   end subroutine make_pairs
 
-  !> The groups that are needed beside the pairs are made: a drive or initial values for each independent
-  !> coordinate (in mech9d initial values for those without a drive), and guesses for the other coordinates if they are wanted.
+  !> Make the groups that are needed beside the pairs. Each independent coordinate gets a drive or initial values (in
+  !> mech9d initial values if it has no drive). Other coordinates get guesses if these are wanted.
   pure subroutine make_groups(draft, outline)
     type(draft_type), intent(inout) :: draft   !< groups and names with their values as text
     type(outline_type), intent(in) :: outline  !< facts known beside the draft
@@ -90,7 +90,8 @@ contains
     if (outline%guesses) call make_numbered(draft, 'initial', .not. outline%independent)
   end subroutine make_groups
 
-  !> Initial values of driven coordinates are removed if they hold nothing but their coordinate: their drives tell them.
+  !> Remove initial values of driven coordinates if they hold nothing but their coordinate: their drives give the
+  !> values.
   pure subroutine drop_driven_starts(draft)
     type(draft_type), intent(inout) :: draft  !< groups and names with their values as text
     integer :: i, k, place
@@ -118,7 +119,7 @@ contains
     end do
   end function has_drive
 
-  !> The pairs get their links from the structure, unless they have them already in either order.
+  !> Give the pairs their links from the structure, unless they have them already in either order.
   pure subroutine give_links(draft, links)
     type(draft_type), intent(inout) :: draft  !< groups and names with their values as text
     integer, intent(in) :: links(:, :)        !< (2,M) reference link and moving link of each pair; of a joint at its first coordinate
@@ -134,7 +135,7 @@ contains
     end do
   end subroutine give_links
 
-  !> A group is made for each wanted coordinate that has none yet.
+  !> Make a group for each wanted coordinate that has none yet.
   pure subroutine make_numbered(draft, group, wanted)
     type(draft_type), intent(inout) :: draft  !< groups and names with their values as text
     character(len=*), intent(in) :: group     !< name of the groups
@@ -157,7 +158,7 @@ contains
     end do
   end subroutine make_numbered
 
-  !> Initial values are removed if they hold nothing but their coordinate.
+  !> Remove initial values if they hold nothing but their coordinate.
   pure subroutine drop_empty_guesses(draft)
     type(draft_type), intent(inout) :: draft  !< groups and names with their values as text
     integer :: place
@@ -167,12 +168,12 @@ contains
     end do
   end subroutine drop_empty_guesses
 
-  !> Names that do not belong to a group since its kind has changed are taken away, as are drives and velocities of
+  !> Remove names that do not belong to a group since its kind has changed. Remove also drives and velocities of
   !> coordinates that are no longer independent.
   pure subroutine drop_foreign(draft, outline, dropped)
     type(draft_type), intent(inout) :: draft               !< groups and names with their values as text
     type(outline_type), intent(in) :: outline              !< facts known beside the draft
-    character(len=:), allocatable, intent(out) :: dropped  !< names of what was taken away, with commas between; empty: nothing
+    character(len=:), allocatable, intent(out) :: dropped  !< names that were removed, with commas between; empty: nothing
     character(len=:), allocatable :: name, entry_name
     integer :: i, j, k, place
 
@@ -201,7 +202,7 @@ contains
     end do
   end subroutine drop_foreign
 
-  !> A name is put in front of a list.
+  !> Put a name in front of a list.
   pure subroutine note(what, list)
     character(len=*), intent(in) :: what                  !< name that is put in front
     character(len=:), allocatable, intent(inout) :: list  !< names with commas between

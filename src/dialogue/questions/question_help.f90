@@ -1,5 +1,5 @@
-!> The texts about a question beyond its prompt: one line where a name comes up first, the answer to `?`, and the answer
-!> to an empty line where the question has no default.
+!> The texts about a question beyond its prompt: one line where a name comes up first, and the answer to `?`. The answer
+!> to an empty line is here too, where the question has no default.
 module mech9_question_help
   use mech9_grammar, only: group_table, item_table, item_row_type
   use mech9_data_help, only: values_text, default_text

@@ -1,5 +1,5 @@
-!> The words of questions: headings, prompts, defaults, and the words that can be completed. They are made from the table
-!> of names.
+!> The words of questions: headings, prompts, defaults, and the words that can be completed, all from the table of
+!> names.
 module mech9_question_words
   use mech9_text, only: to_text, string_type
   use mech9_grammar, only: group_table, item_table, words_of
@@ -27,8 +27,8 @@ module mech9_question_words
 
 contains
 
-  !> The answer that Enter gives to a question about a name: the earlier answer, a likely value if the name must be given,
-  !> or the default of the table.
+  !> The answer that Enter gives to a question about a name: the earlier answer if there is one. Otherwise it is a
+  !> likely value for a name that must be given, or the default of the table.
   pure function default_of(question, draft, outline, table_file) result(default)
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
@@ -74,9 +74,9 @@ contains
     if (text == '.false.') word = 'no'
   end function switch_word
 
-  !> A likely value for a name that must be given: the axis of the revolute pair before, the first of the words allowed,
-  !> or the default for a value at the start. It is empty if nothing is likely. A slide gives neither its kind nor its
-  !> axis to the pair after it.
+  !> A likely value for a name that must be given. It is the axis of the revolute pair before, the first of the words
+  !> allowed, or the default for a value at the start. It is empty if nothing is likely. A slide gives neither its kind
+  !> nor its axis to the pair after it.
   pure function likely_value(question, draft) result(text)
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
@@ -162,8 +162,8 @@ contains
     if (coordinate >= 1 .and. coordinate <= size(outline%independent)) is_independent = outline%independent(coordinate)
   end function is_independent
 
-  !> The heading of the questions of one group, such as "Pair 5, from link 1 to link 2"; empty if there is only one group
-  !> of this name.
+  !> The heading of the questions of one group, such as "Pair 5, from link 1 to link 2". It is empty if there is only
+  !> one group of this name.
   pure function heading_of(question, draft) result(text)
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
@@ -220,8 +220,8 @@ contains
     text = text//': '
   end function prompt_of
 
-  !> The unit of a name in this data file: angles in rad or degrees, coordinates by the kind of their pair, and loads on
-  !> coordinates by the kind of the pair.
+  !> The unit of a name in this data file. Angles are in rad or degrees; the units of coordinates, and of loads on them,
+  !> follow from the kind of their pair.
   pure function unit_here(question, draft) result(unit)
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
@@ -278,7 +278,7 @@ contains
     if (unquoted(draft%value('mechanism', 1, 'angle_unit')) == 'deg') unit = 'deg'
   end function angle_unit
 
-  !> The first occurrence of a word is replaced by another word.
+  !> Replace the first occurrence of a word by another word.
   pure subroutine replace(word, by, text)
     character(len=*), intent(in) :: word                  !< word to be replaced
     character(len=*), intent(in) :: by                    !< word that takes its place
@@ -330,7 +330,7 @@ contains
     end do
   end function seldom_names
 
-  !> The words that can be completed at a question: those that it takes, and the commands.
+  !> List the words that can be completed at a question: those that it takes, and the commands.
   pure subroutine words_for(question, outline, words)
     type(question_type), intent(in) :: question              !< the question
     type(outline_type), intent(in) :: outline                !< facts known beside the draft

@@ -1,4 +1,4 @@
-!> The questions of a conversation are made from the tables of topics, groups and names and from the answers so far.
+!> The questions of a conversation, made from the tables of topics, groups and names and from the answers so far.
 !>
 !> The list is made anew after each answer, since an answer may open or close other questions. A question is the same in
 !> two lists if it has the same label.
@@ -18,8 +18,9 @@ module mech9_questions
   public :: question_type, make_questions, label_of, find_question, entry_name, is_open
   public :: ask_item, ask_seldom, ask_way, ask_guesses, ask_joints, check_structure, check_start, check_all
 
-  !> The kinds of questions: a name of a group, the rarely used names of a group, the way in which the structure is given,
-  !> joints with several freedoms, and guesses of dependent coordinates. Checks between the questions are kinds of their own.
+  !> The kinds of questions. Two are about a name of a group, and about the rarely used names of a group. Others are
+  !> about the way in which the structure is given, joints with several freedoms, and guesses of dependent coordinates.
+  !> Checks between the questions are kinds of their own.
   integer, parameter :: ask_item = 1, ask_seldom = 2, ask_way = 3, ask_guesses = 4, ask_joints = 5
   integer, parameter :: check_structure = 6, check_start = 7, check_all = 8
 
@@ -40,7 +41,7 @@ module mech9_questions
 
 contains
 
-  !> All questions are made in order. The last one is the check of everything.
+  !> Make all questions in order. The last one is the check of everything.
   pure subroutine make_questions(draft, outline, questions)
     type(draft_type), intent(in) :: draft                          !< groups and names with their values as text
     type(outline_type), intent(in) :: outline                      !< facts known beside the draft
@@ -58,7 +59,7 @@ contains
     questions = questions(:count)
   end subroutine make_questions
 
-  !> The questions about the groups of a topic that the program uses are appended.
+  !> Append the questions about the groups of a topic that the program uses.
   pure subroutine ask_about_topic(draft, outline, topic, with_masses, questions, count)
     type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
     type(outline_type), intent(in) :: outline                        !< facts known beside the draft
@@ -79,7 +80,7 @@ contains
     end do
   end subroutine ask_about_topic
 
-  !> The questions about bodies, gravity and loads are appended. In mech9k they come after the results, which need them only
+  !> Append the questions about bodies, gravity and loads. In mech9k they come after the results, which need them only
   !> where these hold forces.
   pure subroutine ask_about_masses(draft, outline, questions, count)
     type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
@@ -95,7 +96,7 @@ contains
     end do
   end subroutine ask_about_masses
 
-  !> The questions about all groups of a name are appended.
+  !> Append the questions about all groups of a name.
   pure subroutine ask_about_group(draft, outline, topic, group_row, questions, count)
     type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
     type(outline_type), intent(in) :: outline                        !< facts known beside the draft
@@ -123,8 +124,9 @@ contains
     else if (any(item_table(rows)%seldom) .and. group /= 'mechanism' .and. &
              (draft%count_of(group) > 0 .or. .not. (is_on_request(group_row) .or. &
                                                      any(group == ['load    ', 'motor   ', 'cam     ', 'coupling'])))) then
-      ! a conversation does not begin with rarely used names; those of the mechanism can be changed by their names, and
-      ! those of loads, motors, cams, couplings and of groups that are begun on request are for the ones that are there
+      ! A conversation does not begin with rarely used names. Those of the mechanism can be changed by their names.
+      ! Those of loads, motors, cams, couplings and of groups that are begun on request are asked for in groups that
+      ! exist.
       call append(questions, count, question_type(kind=ask_seldom, topic=topic, group_row=group_row))
     end if
     may_begin = can_be_left_out(group_row, outline%program)
@@ -137,7 +139,7 @@ contains
     if (group == 'initial') call append(questions, count, question_type(kind=check_start, topic=topic))
   end subroutine ask_about_group
 
-  !> The questions about the names of one group are appended.
+  !> Append the questions about the names of one group.
   pure subroutine ask_about_one(draft, outline, template, rows, questions, count)
     type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
     type(outline_type), intent(in) :: outline                        !< facts known beside the draft
@@ -261,8 +263,8 @@ contains
     end do
   end function may_have_cams
 
-  !> The questions about the structure are appended: the way in which it is given, its data, the independent coordinates
-  !> and the check.
+  !> Append the questions about the structure: the way in which it is given, its data, the independent coordinates and
+  !> the check.
   pure subroutine ask_about_structure(draft, outline, topic, group_row, questions, count)
     type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
     type(outline_type), intent(in) :: outline                        !< facts known beside the draft
@@ -315,7 +317,7 @@ contains
     end select
   end function has_place_in
 
-  !> The questions about the rows of the coincidence matrix are appended.
+  !> Append the questions about the rows of the coincidence matrix.
   pure subroutine ask_about_matrix(draft, template, questions, count)
     type(draft_type), intent(in) :: draft                            !< groups and names with their values as text
     type(question_type), intent(in) :: template                      !< question about the coincidence matrix, without a row
@@ -331,7 +333,7 @@ contains
     end do
   end subroutine ask_about_matrix
 
-  !> A question is appended to a list that grows when it is full.
+  !> Append a question to a list that grows when it is full.
   pure subroutine append(questions, count, question)
     type(question_type), allocatable, intent(inout) :: questions(:)  !< questions in order; the first `count` are in use
     integer, intent(inout) :: count                                  !< number of questions in use
@@ -356,7 +358,7 @@ contains
     if (question%line > 0) name = name//'('//to_text(question%line)//',:)'
   end function entry_name
 
-  !> The label that tells a question from all others, such as "pair(3).axis".
+  !> The label that distinguishes a question from all others, such as "pair(3).axis".
   pure function label_of(question) result(label)
     type(question_type), intent(in) :: question  !< the question
     character(len=:), allocatable :: label

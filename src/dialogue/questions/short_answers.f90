@@ -64,8 +64,8 @@ contains
     end select
   end function kind_of_pair
 
-  !> The word of a list that an answer means: the answer itself, or the only word that begins with it; empty if there is
-  !> no such word or more than one.
+  !> The word of a list that an answer means: the answer itself, or the only word that begins with it. It is empty if
+  !> there is no such word or more than one.
   pure function word_meant(line, words) result(word)
     character(len=*), intent(in) :: line      !< the answer, without blanks around it
     character(len=*), intent(in) :: words(:)  !< the words allowed, in lower case

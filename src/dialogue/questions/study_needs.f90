@@ -8,8 +8,8 @@ module mech9_study_needs
 
 contains
 
-  !> Whether the study of a draft needs a name of a parameter: a grid its range and its count, a study that draws values
-  !> its spread where it has no range, and the whole range where it has a part of it.
+  !> Whether the study of a draft needs a name of a parameter. A grid needs its range and its count. A study that draws
+  !> values needs its spread where it has no range, and the whole range where it has a part of it.
   pure logical function is_for_study(draft, place, name)
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     integer, intent(in) :: place           !< place of the parameter among the parameters, from 1

@@ -78,7 +78,7 @@ contains
     has_word = index(' '//trim(words)//' ', ' '//trim(word)//' ') > 0
   end function has_word
 
-  !> Whether the groups of a name are told apart by the number of a coordinate. There is then one for each coordinate
+  !> Whether the groups of a name are distinguished by the number of a coordinate. There is then one for each coordinate
   !> concerned, and no question about the number itself.
   pure logical function is_numbered(group_row)
     integer, intent(in) :: group_row  !< row of the group in group_table
