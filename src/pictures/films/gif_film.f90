@@ -26,8 +26,8 @@ module mech9_gif_film
 
   !> The largest number of frames; a GIF of more frames would be too large for its use.
   integer, parameter :: most_frames = 120
-  !> The number of dots for each px of other pictures. gnuplot does not smooth the edges of a GIF, but a program that
-  !> shows the picture smaller does.
+  !> The number of dots for each px of other pictures. Programs that show the picture smaller smooth the edges of a GIF,
+  !> which gnuplot does not do.
   real(wp), parameter :: zoom = 1.5_wp
   !> The font: any one without serifs that can be scaled, and its size [pt].
   character(len=*), parameter :: font = 'sans,12'
@@ -48,7 +48,7 @@ module mech9_gif_film
 
 contains
 
-  !> The film is drawn by gnuplot. Errors are exit_file, also if gnuplot is not installed.
+  !> Draw the film by gnuplot. Errors are exit_file, also if gnuplot is not installed.
   subroutine save_gif_film(path, title, scene, film, projection, err)
     character(len=*), intent(in) :: path               !< name of the file
     character(len=*), intent(in) :: title              !< title of the mechanism, any text
@@ -83,7 +83,7 @@ contains
     call add_place(err, 'no moving picture '//path)
   end subroutine save_gif_film
 
-  !> One frame of the film is appended to the script.
+  !> Append one frame of the film to the script.
   subroutine put_frame(title, scene, film, projection, frame, decimals, script)
     character(len=*), intent(in) :: title            !< title of the mechanism, any text
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
@@ -119,7 +119,7 @@ contains
     call script%page%line('plot NaN notitle')
   end subroutine put_frame
 
-  !> The bar of the scale is drawn.
+  !> Draw the bar of the scale.
   subroutine put_scale(projection, script)
     type(projection_type), intent(in) :: projection  !< from space to the page
     type(script_type), intent(inout) :: script       !< script to which the commands are appended
@@ -132,7 +132,7 @@ contains
     call put_text(to_text(scale_length(projection), 3)//' m', [right + 8.0_wp, foot - 2.0_wp], 'left', ink, script)
   end subroutine put_scale
 
-  !> The axes of link 1 are drawn, except an axis that points to the viewer.
+  !> Draw the axes of link 1, except an axis that points to the viewer.
   subroutine put_axes(projection, script)
     type(projection_type), intent(in) :: projection  !< from space to the page
     type(script_type), intent(inout) :: script       !< script to which the commands are appended
@@ -149,7 +149,7 @@ contains
     end do
   end subroutine put_axes
 
-  !> The title is drawn, in two lines if one has no room for it. Fonts of GIFs have only one size.
+  !> Draw the title, in two lines if one has no room for it. Fonts of GIFs have only one size.
   subroutine put_title(title, width, script)
     character(len=*), intent(in) :: title       !< title of the mechanism, any text
     real(wp), intent(in) :: width               !< width of the picture [px]
@@ -164,7 +164,7 @@ contains
     end do
   end subroutine put_title
 
-  !> A polygon is drawn. It is not filled if the colour of its inside is empty.
+  !> Draw a polygon. It is not filled if the colour of its inside is empty.
   subroutine polygon(self, corners, fill, line, width)
     class(script_type), intent(inout) :: self  !< script to which the commands are appended
     real(wp), intent(in) :: corners(:, :)      !< (2,n) corners of the polygon [px]
@@ -188,7 +188,7 @@ contains
     call self%page%line(' border lc rgb "'//line//'" lw '//decimal(width))
   end subroutine polygon
 
-  !> A line from corner to corner is drawn, as a polygon that runs forth and back.
+  !> Draw a line from corner to corner, as a polygon that runs forth and back.
   subroutine polyline(self, corners, line, width)
     class(script_type), intent(inout) :: self  !< script to which the commands are appended
     real(wp), intent(in) :: corners(:, :)      !< (2,n) corners of the line [px]
@@ -209,7 +209,7 @@ contains
     numbers = [(i, i=1, n), (i, i=n - 1, 1, -1)]
   end function forth_and_back
 
-  !> A filled circle is drawn.
+  !> Draw a filled circle.
   subroutine circle(self, centre, radius, fill, line, width)
     class(script_type), intent(inout) :: self  !< script to which the commands are appended
     real(wp), intent(in) :: centre(2)          !< centre of the circle [px]
@@ -224,7 +224,7 @@ contains
                         decimal(width))
   end subroutine circle
 
-  !> An item that is a path, plate, band or spring is drawn.
+  !> Draw an item that is a path, plate, band or spring.
   subroutine put_path(item, corners, script)
     type(item_type), intent(in) :: item         !< one thing to draw
     real(wp), intent(in) :: corners(:, :)       !< (2,n) corners of the item [px]
@@ -253,7 +253,7 @@ contains
     end associate
   end subroutine put_path
 
-  !> One segment of an item is drawn: a line, or a band with cut or round ends.
+  !> Draw one segment of an item: a line, or a band with cut or round ends.
   subroutine put_segment(style, ends, light, dark, script)
     type(style_type), intent(in) :: style       !< style of the item
     real(wp), intent(in) :: ends(2, 2)          !< (2,2) the two ends [px]
@@ -299,7 +299,7 @@ contains
     end do
   end function band
 
-  !> A mark is drawn like that of mech9_picture_style.
+  !> Draw a mark like that of mech9_picture_style.
   subroutine put_mark(item, at, script)
     type(item_type), intent(in) :: item         !< one thing to draw
     real(wp), intent(in) :: at(2)               !< place on the page [px]
@@ -338,7 +338,7 @@ contains
     end select
   end subroutine put_mark
 
-  !> A label of the scene is drawn.
+  !> Draw a label of the scene.
   subroutine put_label(item, at, script)
     type(item_type), intent(in) :: item         !< one thing to draw
     real(wp), intent(in) :: at(2)               !< place on the page [px]
@@ -360,7 +360,7 @@ contains
     end select
   end subroutine put_label
 
-  !> A text is drawn at a place.
+  !> Draw a text at a place.
   subroutine put_text(text, at, side, colour, script)
     character(len=*), intent(in) :: text        !< any text
     real(wp), intent(in) :: at(2)               !< place on the page [px]

@@ -26,7 +26,7 @@ module mech9_html_film
 
 contains
 
-  !> The page is written to a file. Errors are exit_file.
+  !> Write the page to a file. Errors are exit_file.
   subroutine save_html_film(path, title, scene, film, projection, planar, err)
     character(len=*), intent(in) :: path  !< name of the file
     character(len=*), intent(in) :: title !< title of the mechanism, any text
@@ -61,7 +61,7 @@ contains
     call page%save(path, err)
   end subroutine save_html_film
 
-  !> The data for the script are appended as one constant.
+  !> Append the data for the script as one constant.
   subroutine put_film(scene, film, projection, planar, page)
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
@@ -101,8 +101,8 @@ contains
     call page%line('};')
   end subroutine put_film
 
-  !> The nodes are appended: the number of the link, and the place in it. Places of link 1 are relative to the middle of
-  !> the picture.
+  !> Append the nodes: the number of the link, and the place in it. Places of link 1 are relative to the middle of the
+  !> picture.
   subroutine put_nodes(scene, numbers, centre, unit, page)
     type(scene_type), intent(in) :: scene   !< nodes and items of the picture
     integer, intent(in) :: numbers(:)       !< (links) number of each link in the script; 0: the link has no nodes, or is link 1
@@ -126,7 +126,7 @@ contains
     call page%line('],')
   end subroutine put_nodes
 
-  !> Numbers are appended as whole numbers, each with a comma behind it.
+  !> Append numbers as whole numbers, each with a comma behind it.
   subroutine put_steps(values, page)
     real(wp), intent(in) :: values(:)       !< the numbers, rounded here
     type(page_type), intent(inout) :: page  !< text to which the page is appended
@@ -137,7 +137,7 @@ contains
     end do
   end subroutine put_steps
 
-  !> The items are appended, with numbers of nodes from 0. Items of link 1 alone stand still.
+  !> Append the items, with numbers of nodes from 0. Items of link 1 alone stand still.
   subroutine put_items(scene, page)
     type(scene_type), intent(in) :: scene   !< nodes and items of the picture
     type(page_type), intent(inout) :: page  !< text to which the page is appended
@@ -162,7 +162,7 @@ contains
     call page%line('],')
   end subroutine put_items
 
-  !> The times are appended, and for each frame the place and the quaternion of each link.
+  !> Append the times, and for each frame the place and the quaternion of each link.
   subroutine put_frames(film, numbers, count, centre, unit, page)
     type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
     integer, intent(in) :: numbers(:)       !< (links) number of each link in the script; 0: the link has no nodes, or is link 1
@@ -192,7 +192,7 @@ contains
     call page%line('],')
   end subroutine put_frames
 
-  !> The names and units of the recorded columns are appended, and their values in each frame.
+  !> Append the names and units of the recorded columns, and their values in each frame.
   subroutine put_values(film, page)
     type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
     type(page_type), intent(inout) :: page  !< text to which the page is appended
@@ -211,7 +211,7 @@ contains
     call page%line('],')
   end subroutine put_values
 
-  !> A list of words is appended, such as names of columns and units. The words have no quotes in them.
+  !> Append a list of words, such as names of columns and units. The words have no quotes in them.
   subroutine put_words(name, words, page)
     character(len=*), intent(in) :: name       !< name of the list
     type(string_type), intent(in) :: words(:)  !< the words, without quotes in them

@@ -21,7 +21,7 @@ module mech9_svg_film
 
 contains
 
-  !> The moving picture is written to a file. Errors are exit_file.
+  !> Write the moving picture to a file. Errors are exit_file.
   subroutine save_svg_film(path, title, scene, film, projection, err)
     character(len=*), intent(in) :: path               !< name of the file
     character(len=*), intent(in) :: title              !< title of the mechanism, any text
@@ -58,7 +58,7 @@ contains
     call page%save(path, err)
   end subroutine save_svg_film
 
-  !> The clock is appended: the times of all frames stand below each other on a strip that moves behind a window.
+  !> Append the clock: the times of all frames stand below each other on a strip that moves behind a window.
   subroutine put_clock(film, foot, page)
     type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
     real(wp), intent(in) :: foot            !< height at which the time stands on the page, downwards [px]
@@ -82,15 +82,15 @@ contains
     call page%line('</g></svg>')
   end subroutine put_clock
 
-  !> The time that a film takes to play: the time of the motion, but not so short or so long that nobody could watch it
-  !> [s].
+  !> The time that a film takes to play [s]. It is the time of the motion, but not so short or so long that nobody could
+  !> watch it.
   pure real(wp) function duration_of(film) result(duration)
     type(film_type), intent(in) :: film  !< poses and values at the outputs of the run
 
     duration = max(shortest, min(longest, abs(film%times(film%n_frames) - film%times(1))))
   end function duration_of
 
-  !> An item is appended with its form in each frame. A viewer without motion, or a print, shows the first frame.
+  !> Append an item with its form in each frame. A viewer without motion, or a print, shows the first frame.
   subroutine put_moving(item, number, drawings, symbol, duration, page)
     type(item_type), intent(in) :: item            !< one thing to draw
     integer, intent(in) :: number                  !< number of the item in the scene
@@ -119,7 +119,7 @@ contains
     call page%line('</g>')
   end subroutine put_moving
 
-  !> A path is appended with its form in each frame.
+  !> Append a path with its form in each frame.
   subroutine put_moving_path(item, drawings, symbol, duration, class, page)
     type(item_type), intent(in) :: item            !< one thing to draw
     type(drawing_type), intent(in) :: drawings(:)  !< (frames) places of the nodes on the page in each frame
@@ -143,7 +143,7 @@ contains
     text = ' calcMode="discrete" repeatCount="indefinite" dur="'//decimal(duration)//'s" values="'
   end function timing
 
-  !> The forms of an item in all frames are appended, with semicolons between them.
+  !> Append the forms of an item in all frames, with semicolons between them.
   subroutine put_values(item, drawings, symbol, page)
     type(item_type), intent(in) :: item            !< one thing to draw
     type(drawing_type), intent(in) :: drawings(:)  !< (frames) places of the nodes on the page in each frame

@@ -19,7 +19,7 @@ module mech9_fit_request
 
 contains
 
-  !> A request is read. An unknown name is an error of the command line (exit_usage).
+  !> Read a request. An unknown name is an error of the command line (exit_usage).
   pure subroutine read_fit_request(text, names, request, err)
     character(len=*), intent(in) :: text               !< the argument of --plot
     type(string_type), intent(in) :: names(:)          !< of the objectives that have targets; others are empty
@@ -42,7 +42,7 @@ contains
       call raise(err, exit_usage, '--plot: beside --optimize it shows targets, and no &objective of this file has any')
   end subroutine read_fit_request
 
-  !> The objectives of a name are wanted.
+  !> Mark the objectives of a name as wanted.
   pure subroutine want(name, names, wanted, err)
     character(len=*), intent(in) :: name               !< without blanks around it
     type(string_type), intent(in) :: names(:)          !< of the objectives; empty for those that have no targets

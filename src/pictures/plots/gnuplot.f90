@@ -1,4 +1,4 @@
-!> gnuplot runs as a child process, and texts are written so that they are harmless in its scripts.
+!> The run of gnuplot as a child process, and texts in a form that is harmless in its scripts.
 module mech9_gnuplot
   use, intrinsic :: iso_fortran_env, only: int64
   use mech9_error, only: error_type, raise, exit_file
@@ -13,7 +13,7 @@ module mech9_gnuplot
 
   !> The name of gnuplot and of its package, for messages.
   character(len=*), parameter :: gnuplot_package = 'gnuplot (Debian: apt-get install gnuplot-nox)'
-  !> The number of bytes at the end of a picture that hold its last mark and what may follow it: line ends or a check sum.
+  !> The number of bytes at the end of a picture that hold its last mark, and line ends or a check sum behind it.
   integer, parameter :: longest_end = 12
   !> The trailer of a GIF, which is its last byte.
   character(len=*), parameter :: gif_end = ';'
@@ -21,9 +21,9 @@ module mech9_gnuplot
 contains
 
   !> Any text as a string of gnuplot. Between single quotes only the single quote has a meaning. A text that holds one
-  !> stands between double quotes, and letters with a meaning there are written as octal numbers. (gnuplot also takes two
-  !> single quotes for one, but not at the beginning of a string, and not four of them.) Control characters, which could
-  !> end the line, become blanks.
+  !> stands between double quotes, and letters with a meaning there are written as octal numbers. Doubled single quotes
+  !> are no remedy: gnuplot does not take them at the beginning of a string, and not four of them. Control characters,
+  !> which could end the line, become blanks.
   pure function quoted(text) result(string)
     character(len=*), intent(in) :: text  !< any bytes
     character(len=:), allocatable :: string
@@ -85,7 +85,7 @@ contains
     string = string//'"'
   end function quoted_path
 
-  !> A script is carried out by gnuplot. If gnuplot is not installed `found` is false; if it fails, the error gives the
+  !> Let gnuplot carry out a script. If gnuplot is not installed `found` is false; if it fails, the error gives the
   !> reason. If gnuplot cannot open the picture it draws on standard output, and with `picture` this output is dropped.
   subroutine run_gnuplot(script, found, err, folder, picture)
     character(len=*), intent(in) :: script             !< commands of gnuplot
@@ -107,8 +107,8 @@ contains
       call raise(err, exit_file, 'gnuplot ended with '//to_text(outcome%code)//': '//trim(printable(outcome%error_output)))
   end subroutine run_gnuplot
 
-  !> The picture must be one that can be written and was written to its end, since gnuplot does not notice that a disk is
-  !> full. Otherwise there is an error.
+  !> Check that a picture can be written and was written to its end, since gnuplot does not notice that a disk is full.
+  !> Otherwise there is an error.
   subroutine check_picture(path, failed, err)
     character(len=*), intent(in) :: path               !< file of the picture
     logical, intent(in) :: failed                      !< gnuplot ended with an error, so that only the reason is sought
@@ -137,7 +137,7 @@ contains
     if (.not. whole) call raise(err, exit_file, 'the picture could not be written to its end; is the disk full?')
   end subroutine check_picture
 
-  !> The last bytes of a file, or blanks for a file without enough bytes, such as a device.
+  !> Read the last bytes of a file; they are blanks for a file without enough bytes, such as a device.
   subroutine read_end(path, last)
     character(len=*), intent(in) :: path             !< name of the file
     character(len=longest_end), intent(out) :: last  !< last bytes of the file, or blanks

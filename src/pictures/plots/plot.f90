@@ -1,4 +1,4 @@
-!> A plot of results is requested before the run, receives its rows, and is drawn at its end by gnuplot.
+!> The plot of results of a run: it is requested before the run, receives its rows, and is drawn at its end by gnuplot.
 module mech9_plot
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -34,7 +34,7 @@ module mech9_plot
 
 contains
 
-  !> The request is read before the run, so that a wrong name costs no time (exit_usage).
+  !> Read the request before the run, so that a wrong name costs no time (exit_usage).
   subroutine open_plot(self, text, title, names, units, expected, picture, table, err)
     class(plot_type), intent(inout) :: self            !< request and rows of the plot
     character(len=*), intent(in) :: text               !< the argument of --plot
@@ -57,7 +57,7 @@ contains
     self%is_open = .true.
   end subroutine open_plot
 
-  !> Rows of results are taken.
+  !> Keep the values of the next rows of results.
   subroutine write_rows(self, rows, err)
     class(plot_type), intent(inout) :: self            !< request and rows of the plot
     real(wp), intent(in), contiguous :: rows(:, :)     !< (columns,rows) rows of the results
@@ -69,8 +69,8 @@ contains
     end do
   end subroutine write_rows
 
-  !> The rows that were taken are drawn, either in the terminal or as a picture with its script beside it. If gnuplot is
-  !> not installed the script of a picture is kept all the same.
+  !> Draw the rows that were kept, either in the terminal or as a picture with its script beside it. If gnuplot is not
+  !> installed keep the script of a picture all the same.
   subroutine close_plot(self, err)
     class(plot_type), intent(inout) :: self            !< request and rows of the plot
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
@@ -94,7 +94,7 @@ contains
     if (allocated(self%said)) words = self%said
   end function words
 
-  !> The plot is drawn in the terminal.
+  !> Draw the plot in the terminal.
   subroutine draw_letters(self, err)
     class(plot_type), intent(in) :: self               !< request and rows of the plot
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
@@ -104,7 +104,7 @@ contains
     call draw_in_terminal(terminal_script(self%request%curves, self%data, columns, rows), err)
   end subroutine draw_letters
 
-  !> The plot is drawn as a picture. Its script reads the table where that is in the same folder.
+  !> Draw the plot as a picture. Its script reads the table where that is in the same folder.
   subroutine draw_curves(self, err)
     class(plot_type), intent(inout) :: self            !< request and rows of the plot
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
@@ -123,8 +123,8 @@ contains
     can_be_read = table /= '' .and. table /= '-' .and. ending_of(table) /= 'csv'
   end function can_be_read
 
-  !> The file of the picture that a plot makes. If no name is given it stands beside the table, or else in the current
-  !> folder under the name of the data file.
+  !> Choose the file of the picture that a plot makes. If no name is given it stands beside the table, or else in the
+  !> current folder under the name of the data file.
   pure subroutine picture_of_plot(text, table, data_file, i, picture)
     character(len=*), intent(in) :: text                   !< the argument of --plot
     character(len=*), intent(in) :: table                  !< file with the whole results; empty or '-': none
@@ -143,7 +143,7 @@ contains
     picture = picture//'.svg'
   end subroutine picture_of_plot
 
-  !> Rows in memory are plotted.
+  !> Plot rows that are in memory.
   subroutine plot_columns(text, title, names, units, rows, picture, said, err)
     character(len=*), intent(in) :: text                !< request in the form of the argument of --plot
     character(len=*), intent(in) :: title               !< title of the mechanism

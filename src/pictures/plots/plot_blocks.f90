@@ -13,7 +13,7 @@ module mech9_plot_blocks
 
 contains
 
-  !> The places of the panels and the size of the picture.
+  !> Compute the places of the panels and the size of the picture.
   pure subroutine find_layout(panels, across, down, width, height)
     integer, intent(in) :: panels    !< how many there are
     integer, intent(out) :: across   !< panels in a row

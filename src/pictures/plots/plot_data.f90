@@ -1,5 +1,4 @@
-!> The rows of a run that a plot needs: the columns of its curves, thinned out if there are more rows than a picture can
-!> show.
+!> The rows of a run that a plot needs: the columns of its curves, thinned out if a picture cannot show all rows.
 module mech9_plot_data
   use mech9_kinds, only: wp
   use mech9_text, only: string_type
@@ -42,7 +41,7 @@ contains
     allocate (data%values(size(data%columns), 1 + (max(expected, 1) - 1)/data%stride))
   end function new_plot_data
 
-  !> The needed columns of the next row are kept, if it is the turn of this row.
+  !> Keep the needed columns of the next row, if it is the turn of this row.
   pure subroutine take(self, row)
     class(plot_data_type), intent(inout) :: self  !< rows and columns that are plotted
     real(wp), intent(in) :: row(:)                !< all columns of the results

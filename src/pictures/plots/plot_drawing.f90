@@ -1,4 +1,4 @@
-!> A plot is drawn by gnuplot, as a picture with its script beside it, or in the terminal.
+!> The drawing of a plot by gnuplot, as a picture with its script beside it, or in the terminal.
 module mech9_plot_drawing
   use, intrinsic :: iso_fortran_env, only: output_unit
   use mech9_error, only: error_type, raise, add_place, exit_file
@@ -13,8 +13,8 @@ module mech9_plot_drawing
 
 contains
 
-  !> The script of a picture is written, and gnuplot draws the picture. Where gnuplot is not installed, the script is kept all the
-  !> same.
+  !> Write the script of a picture, and let gnuplot draw the picture. Where gnuplot is not installed, keep the script
+  !> all the same.
   subroutine draw_picture(picture, script, said, is_lacking, err)
     character(len=*), intent(in) :: picture              !< file of the picture
     character(len=*), intent(in) :: script               !< commands of gnuplot
@@ -44,7 +44,7 @@ contains
     end if
   end subroutine draw_picture
 
-  !> The plot is drawn in the terminal.
+  !> Draw the plot in the terminal.
   subroutine draw_in_terminal(script, err)
     character(len=*), intent(in) :: script             !< commands of gnuplot
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed

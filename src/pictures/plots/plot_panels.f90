@@ -9,8 +9,8 @@ module mech9_plot_panels
 contains
 
   !> The number of the panel of each curve, from 1 in the order of their first curves. Curves with the same unit upwards
-  !> share a panel if they are over the same column, or over columns of the same unit other than the time. The closure, a
-  !> length near zero, stands alone.
+  !> share a panel if they are over the same column. They share it too if they are over columns of the same unit other
+  !> than the time. The closure, a length near zero, stands alone.
   pure function panels_of(curves, names, units) result(panels)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(string_type), intent(in) :: names(:)  !< names of all columns of the results

@@ -34,7 +34,7 @@ module mech9_plot_request
 
 contains
 
-  !> A request is read. An unknown name is an error of the command line (exit_usage).
+  !> Read a request. An unknown name is an error of the command line (exit_usage).
   pure subroutine read_plot_request(text, names, request, err)
     character(len=*), intent(in) :: text               !< the argument of --plot
     type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
@@ -62,7 +62,8 @@ contains
     end do
   end subroutine read_plot_request
 
-  !> The place where a plot is to be drawn: the file of a picture, '-' for the terminal, or empty if nothing is said.
+  !> Find the place where a plot is to be drawn: the file of a picture, '-' for the terminal, or empty if nothing is
+  !> said.
   pure subroutine target_of_plot(text, target)
     character(len=*), intent(in) :: text                  !< the argument of --plot
     character(len=:), allocatable, intent(out) :: target  !< file of the picture; '-': the terminal; empty: not said
@@ -86,7 +87,7 @@ contains
     end select
   end function is_picture
 
-  !> The target before the names is read: a picture or the terminal. `at` is the place where the names begin.
+  !> Read the target before the names: a picture or the terminal. `at` is the place where the names begin.
   pure subroutine take_target(text, request, at)
     character(len=*), intent(in) :: text               !< the argument of --plot
     type(plot_request_type), intent(inout) :: request  !< request for the plot
@@ -111,7 +112,7 @@ contains
     end do
   end subroutine take_target
 
-  !> The coordinates q1, q2 and so on are requested, up to the number of colours.
+  !> Request the coordinates q1, q2 and so on, up to the number of colours.
   pure subroutine take_coordinates(names, request)
     type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
     type(plot_request_type), intent(inout) :: request  !< request for the plot
@@ -125,7 +126,7 @@ contains
     end do
   end subroutine take_coordinates
 
-  !> A curve is read, written as NAME or NAME:NAME, and `at` moves behind it. A single name is drawn over the column of the
+  !> Read a curve, written as NAME or NAME:NAME, and move `at` behind it. A single name is drawn over the column of the
   !> curve before it.
   pure subroutine take_curve(text, names, at, curve, err)
     character(len=*), intent(in) :: text               !< the argument of --plot
@@ -141,7 +142,7 @@ contains
     call take_name(text, names, at, curve%y, err)
   end subroutine take_curve
 
-  !> The name that begins at a place is read, and `at` moves behind it. Names may hold commas and colons: the longest name
+  !> Read the name that begins at a place, and move `at` behind it. Names may hold commas and colons: the longest name
   !> that fits and ends where an item can end is taken.
   pure subroutine take_name(text, names, at, column, err)
     character(len=*), intent(in) :: text               !< the argument of --plot
@@ -167,7 +168,7 @@ contains
     call skip_blanks(text, at)
   end subroutine take_name
 
-  !> A place in a text moves over the blanks that begin there.
+  !> Move a place in a text over the blanks that begin there.
   pure subroutine skip_blanks(text, at)
     character(len=*), intent(in) :: text  !< the argument of --plot
     integer, intent(inout) :: at          !< place in `text`; afterwards the next place without a blank
@@ -177,7 +178,7 @@ contains
     end do
   end subroutine skip_blanks
 
-  !> An unknown name is refused, with the nearest name or a list of the names.
+  !> Refuse an unknown name, with the nearest name or a list of the names.
   pure subroutine refuse_name(word, names, err)
     character(len=*), intent(in) :: word               !< the unknown name
     type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first

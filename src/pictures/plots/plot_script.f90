@@ -80,7 +80,7 @@ contains
     end do
   end function terminal_script
 
-  !> The size of a picture, from the number of its panels or from the shape of its ranges.
+  !> Choose the size of a picture, from the number of its panels or from the shape of its ranges.
   pure subroutine find_size(curves, panels, data, width, height)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     integer, intent(in) :: panels(:)           !< number of the panel of each curve
@@ -97,7 +97,7 @@ contains
     end if
   end subroutine find_size
 
-  !> The size of a picture with equal scales, whose area has the shape of the ranges of its axes.
+  !> Compute the size of a picture with equal scales, whose area has the shape of the ranges of its axes.
   pure subroutine true_shape(curves, data, width, height)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
@@ -203,7 +203,7 @@ contains
                                 with=trim(merge('linespoints', 'lines      ', data%count <= few_rows)))
   end function panel
 
-  !> The commands for labels and ranges. Numbers are written with as many digits as tell them apart.
+  !> The commands for labels and ranges. Numbers are written with as many digits as distinguish them.
   pure function axes(curves, data, label) result(text)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted

@@ -10,8 +10,8 @@ module mech9_plot_style
   public :: plot_style, picture_terminal, picture_title, axis_format, axis_step, digits_needed, first_colour, second_colour
 
   character, parameter :: line_end = achar(10)
-  !> Colours that people with any kind of colour vision tell apart (Okabe and Ito), the dark ones first;
-  !> they differ in grey as well.
+  !> Colours that people with any kind of colour vision can distinguish (Okabe and Ito), the dark ones first; they
+  !> differ in grey as well.
   character(len=7), parameter :: colours(7) = &
     ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#000000']
   character(len=*), parameter :: first_colour = '#0072b2', second_colour = '#d55e00'
@@ -53,7 +53,7 @@ contains
     end select
   end function picture_terminal
 
-  !> The title in lines that fit above the plot. gnuplot copies `]]>` into an SVG, where it must not stand; a space
+  !> The title in lines that fit above the plot. In an SVG `]]>` must not stand, which gnuplot would copy; a space
   !> without width is therefore put into it.
   pure function picture_title(title, picture, width) result(lines)
     character(len=*), intent(in) :: title      !< title of the mechanism
@@ -82,8 +82,8 @@ contains
     text = quoted('%.'//to_text(digits_needed(ends))//'g')
   end function axis_format
 
-  !> The distance of the numbers below a horizontal axis, for a script: 1, 2 or 5 times a power of ten, with which they stand
-  !> apart. It is empty where all values are equal.
+  !> The distance of the numbers below a horizontal axis, for a script. It is 1, 2 or 5 times a power of ten, with which
+  !> the numbers stand apart. It is empty where all values are equal.
   pure function axis_step(ends, width) result(text)
     real(wp), intent(in) :: ends(2)  !< least and greatest value on the axis
     integer, intent(in) :: width     !< length of the axis [px]

@@ -20,19 +20,19 @@ module mech9_structure_graph
   public :: save_structure_graph, text_of_graph
 
   character, parameter :: line_end = achar(10)
-  !> Colours that people with any kind of colour vision tell apart; the blocks take them in turn.
+  !> Colours that people with any kind of colour vision can distinguish; the blocks take them in turn.
   character(len=7), parameter :: colours(6) = &
     ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#b07800', '#56b4e9']
-  !> The number of links up to which dot lays the graph out in layers, which takes a second; larger graphs are laid out by
-  !> forces between links.
+  !> The number of links up to which dot lays the graph out in layers, which takes a second. Larger graphs are laid out
+  !> by forces between links.
   integer, parameter :: most_layered = 300
   !> The largest number of coordinates of a block that a label lists.
   integer, parameter :: most_listed = 8
 
 contains
 
-  !> The graph is written into a file. By the ending of its name this is a text (.dot, .gv), or a picture (.svg, .png,
-  !> .pdf) with the text beside it. If dot is not installed the text is kept, and `said` tells how to use it.
+  !> Write the graph into a file. By the ending of its name this is a text (.dot, .gv), or a picture (.svg, .png, .pdf)
+  !> with the text beside it. If dot is not installed keep the text; `said` tells how to use it.
   subroutine save_structure_graph(path, mechanism, plan, drawn, said, err)
     character(len=*), intent(in) :: path                !< file of the graph or of its picture
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
@@ -65,7 +65,7 @@ contains
     end select
   end function text_of_graph
 
-  !> The picture is drawn by dot.
+  !> Let dot draw the picture.
   subroutine draw(path, text, text_path, drawn, said, err)
     character(len=*), intent(in) :: path                  !< file of the picture
     character(len=*), intent(in) :: text                  !< text of the graph

@@ -37,9 +37,9 @@ module mech9_study_figures
 
 contains
 
-  !> The histogram of numbers. The width of its bars follows from the distance of the quartiles (D. Freedman and P. Diaconis, "On
-  !> the histogram as a density estimator", Zeitschrift für Wahrscheinlichkeitstheorie 57, 453-476, 1981). A few values at equal
-  !> distances have a bar each.
+  !> Form the histogram of numbers. The width of its bars follows from the distance of the quartiles (D. Freedman and P.
+  !> Diaconis, "On the histogram as a density estimator", Zeitschrift für Wahrscheinlichkeitstheorie 57, 453-476, 1981).
+  !> A few values at equal distances have a bar each.
   pure subroutine find_histogram(numbers, histogram)
     real(wp), intent(in) :: numbers(:)                 !< at least one
     type(histogram_type), intent(out) :: histogram     !< of them
@@ -88,8 +88,8 @@ contains
     is_resolved = high - low > 1e3_wp*epsilon(low)*max(abs(low), abs(high))
   end function is_resolved
 
-  !> The mean and the deviation of numbers over others: for each value of these where they have few, else in groups of equally many
-  !> runs.
+  !> Compute the mean and the deviation of numbers over others: for each value of these if there are few, else in groups
+  !> of equally many runs.
   pure subroutine find_effect(x, y, effect)
     real(wp), intent(in) :: x(:)               !< (runs) at least one
     real(wp), intent(in) :: y(:)               !< (runs)
@@ -114,7 +114,7 @@ contains
     effect%deviation = sqrt(effect%deviation/max(1, counts - 1))
   end subroutine find_effect
 
-  !> The greatest number of each group.
+  !> Find the greatest number of each group.
   pure subroutine find_last_of_groups(x, last)
     real(wp), intent(in) :: x(:)                       !< (runs) at least one
     real(wp), allocatable, intent(out) :: last(:)      !< (groups) ascending
@@ -133,7 +133,7 @@ contains
     call find_values([(sorted(ceiling(real(i, wp)*size(x)/n)), i=1, n)], last)
   end subroutine find_last_of_groups
 
-  !> The different ones of some numbers, ascending. Numbers that differ by round-off are one, its greatest.
+  !> List the different ones of some numbers, ascending. Numbers that differ by round-off are one, its greatest.
   pure subroutine find_values(x, values)
     real(wp), intent(in) :: x(:)                       !< at least one
     real(wp), allocatable, intent(out) :: values(:)    !< of them
@@ -172,7 +172,8 @@ contains
     end do
   end function first_not_below
 
-  !> The means of numbers over two others: for each pair of values where these have few, else in equal rectangles.
+  !> Compute the means of numbers over two others: for each pair of values where these have few, else in equal
+  !> rectangles.
   pure subroutine find_map(x, y, z, map)
     real(wp), intent(in) :: x(:)         !< (runs) at least one
     real(wp), intent(in) :: y(:)         !< (runs)
@@ -192,7 +193,8 @@ contains
     end do
   end subroutine find_map
 
-  !> The edges of intervals that hold numbers: one interval about each value where there are few, else equal ones.
+  !> Choose the edges of intervals that hold numbers: one interval about each value where there are few, else equal
+  !> ones.
   pure subroutine find_edges(x, edges)
     real(wp), intent(in) :: x(:)                       !< at least one
     real(wp), allocatable, intent(out) :: edges(:)     !< (intervals+1) ascending

@@ -27,7 +27,7 @@ module mech9_study_plot
 
 contains
 
-  !> The request is read before the runs, so that a wrong name costs no time (exit_usage).
+  !> Read the request before the runs, so that a wrong name costs no time (exit_usage).
   subroutine open_plot(self, text, title, names, units, n_parameters, picture, err)
     class(study_plot_type), intent(inout) :: self      !< the plot
     character(len=*), intent(in) :: text               !< the argument of --plot
@@ -48,7 +48,7 @@ contains
     if (self%request%target /= '') self%picture = self%request%target
   end subroutine open_plot
 
-  !> Rows of a study are drawn.
+  !> Draw rows of a study.
   subroutine draw(self, rows, err)
     class(study_plot_type), intent(inout) :: self      !< the plot
     real(wp), intent(in) :: rows(:, :)                 !< (columns,runs) parameters and quantities of runs that went to their end

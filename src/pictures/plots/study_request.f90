@@ -2,8 +2,9 @@
 !>
 !>     [TARGET:]NAME,NAME:NAME,NAME:NAME:NAME,...
 !>
-!> A single name is drawn as its histogram; of a pair the second is drawn over the first, with its mean and its scatter; of three
-!> names the third is the colour of a map over the first two. Without names the histograms of the quantities are drawn.
+!> A single name is drawn as its histogram. Of a pair the second is drawn over the first, with its mean and its scatter.
+!> Of three names the third is the colour of a map over the first two. Without names the histograms of the quantities
+!> are drawn.
 module mech9_study_request
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type
@@ -29,7 +30,7 @@ module mech9_study_request
 
 contains
 
-  !> A request is read. An unknown name is an error of the command line (exit_usage).
+  !> Read a request. An unknown name is an error of the command line (exit_usage).
   pure subroutine read_study_request(text, names, n_parameters, request, err)
     character(len=*), intent(in) :: text               !< the argument of --plot
     type(string_type), intent(in) :: names(:)          !< names of the parameters, and of the quantities behind them
@@ -62,7 +63,7 @@ contains
     call judge_request(request, err)
   end subroutine read_study_request
 
-  !> A panel is read, written as up to three names with colons between them, and `at` moves behind it.
+  !> Read a panel, written as up to three names with colons between them, and move `at` behind it.
   pure subroutine take_panel(text, names, at, panel, err)
     character(len=*), intent(in) :: text               !< the argument of --plot
     type(string_type), intent(in) :: names(:)          !< names of the columns

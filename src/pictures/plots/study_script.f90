@@ -89,8 +89,9 @@ contains
     name = '$figure'//to_text(i)
   end function block_name
 
-  !> The numbers of a panel as blocks of data. A histogram has middle, runs and width of each bar; a pair has x, mean and deviation
-  !> of each group, and some of the runs in a block of their own; a map has the edges of each rectangle and its mean.
+  !> The numbers of a panel as blocks of data. A histogram has middle, runs and width of each bar. A pair has x, mean
+  !> and deviation of each group, and some of the runs in a block of their own. A map has the edges of each rectangle
+  !> and its mean.
   pure function figure(i, panel, rows) result(text)
     integer, intent(in) :: i                   !< number of the panel
     type(panel_type), intent(in) :: panel      !< the panel

@@ -17,7 +17,8 @@ module mech9_cam_figures
 
 contains
 
-  !> The first roller on each cam and the profile on which it runs are added, where the run turns the cam once. Faces are not drawn.
+  !> Add the first roller on each cam and the profile on which it runs, where the run turns the cam once. Faces are not
+  !> drawn.
   subroutine find_cam_figures(cams, film, skeleton)
     type(cam_request_type), intent(in) :: cams(:)   !< in the order of the data file
     type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
@@ -37,8 +38,8 @@ contains
     end do
   end subroutine find_cam_figures
 
-  !> The places of the centre of the roller in the system of the cam, one turn without its last point; none where the run is not one
-  !> turn.
+  !> Find the places of the centre of the roller in the system of the cam, one turn without its last point. There are
+  !> none where the run is not one turn.
   subroutine find_pitch_curve(cam, film, pitch)
     type(cam_request_type), intent(in) :: cam           !< the cam
     type(film_type), intent(in) :: film                 !< poses and values at the outputs of the run
@@ -71,7 +72,7 @@ contains
     end function place
   end subroutine find_pitch_curve
 
-  !> A closed plane curve moved towards its inside. Points at which it stands still are left out.
+  !> Move a closed plane curve towards its inside. Points at which it stands still are left out.
   pure subroutine move_inwards(curve, axis, distance, moved)
     real(wp), intent(in) :: curve(:, :)                 !< (3,n) its points in turn [m]
     real(wp), intent(in) :: axis(3)                     !< unit normal of its plane
@@ -97,7 +98,7 @@ contains
     moved = moved(:, :used)
   end subroutine move_inwards
 
-  !> The circle of a roller is added to its follower.
+  !> Add the circle of a roller to its follower.
   subroutine add_roller(cam, film, skeleton)
     type(cam_request_type), intent(in) :: cam       !< the cam
     type(film_type), intent(in) :: film             !< poses and values at the outputs of the run

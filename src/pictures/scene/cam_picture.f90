@@ -1,5 +1,6 @@
-!> The drawing of a cam in its own system: the profile, the pitch curve, the circle about the axis that the profile does not enter,
-!> the follower where the motion begins, and the places of extreme values. Parts that are undercut are red.
+!> The drawing of a cam in its own system. It shows the profile, the pitch curve, and the circle about the axis that the
+!> profile does not enter. It shows the follower where the motion begins, and the places of extreme values. Parts that
+!> are undercut are red.
 module mech9_cam_picture
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -122,7 +123,7 @@ contains
     text = decimal(0.5_wp*width + place(1))//' '//decimal(0.5_wp*(height + top) - place(2))
   end function on_page
 
-  !> The profile, its undercut parts, and the pitch curve of a roller.
+  !> Draw the profile, its undercut parts, and the pitch curve of a roller.
   subroutine put_cam(cam, profile, sheet, page)
     type(cam_request_type), intent(in) :: cam       !< the cam
     type(cam_profile_type), intent(in) :: profile   !< its profile
@@ -148,7 +149,7 @@ contains
     call page%line('"/>')
   end subroutine put_cam
 
-  !> The corners of a part of the profile, or of the pitch curve.
+  !> Append the corners of a part of the profile, or of the pitch curve.
   subroutine put_curve(profile, sheet, first, last, pitch, page)
     type(cam_profile_type), intent(in) :: profile   !< the profile
     type(sheet_type), intent(in) :: sheet           !< from the plane to the page
@@ -172,7 +173,7 @@ contains
     end do
   end subroutine put_curve
 
-  !> The roller, or the flat face as far as it is used, at the first contact.
+  !> Draw the roller, or the flat face as far as it is used, at the first contact.
   subroutine put_follower(cam, profile, sheet, page)
     type(cam_request_type), intent(in) :: cam       !< the cam
     type(cam_profile_type), intent(in) :: profile   !< its profile
@@ -202,7 +203,7 @@ contains
     end associate
   end subroutine put_follower
 
-  !> The axis of the cam, and the circle about it that touches the profile from inside.
+  !> Draw the axis of the cam, and the circle about it that touches the profile from inside.
   subroutine put_axis(profile, centre, sheet, page)
     type(cam_profile_type), intent(in) :: profile   !< the profile
     real(wp), intent(in) :: centre(3)               !< a point of the axis, in the cam's system [m]
@@ -220,7 +221,7 @@ contains
                    '" style="fill:none;stroke:#555555;stroke-dasharray:3 3"/><circle class="w" r="5"/></g>')
   end subroutine put_axis
 
-  !> Dots at the greatest pressure angle and at the least radii of curvature, with their values.
+  !> Draw dots at the greatest pressure angle and at the least radii of curvature, with their values.
   subroutine put_extremes(model, profile, sheet, page)
     type(model_type), intent(in) :: model           !< the model
     type(cam_profile_type), intent(in) :: profile   !< the profile
@@ -238,7 +239,7 @@ contains
         call put_dot(profile%concave, 'radius '//to_text(profile%contacts(profile%concave)%radius, 4)//' m', '28')
     end if
   contains
-    !> One dot with its words.
+    !> Draw one dot with its words.
     subroutine put_dot(number, words, dy)
       integer, intent(in) :: number           !< of the contact
       character(len=*), intent(in) :: words   !< the value there
@@ -250,7 +251,7 @@ contains
     end subroutine put_dot
   end subroutine put_extremes
 
-  !> The title of the mechanism, and the cam below it.
+  !> Write the title of the mechanism, and the cam below it.
   subroutine put_title(title, name, page)
     character(len=*), intent(in) :: title    !< title of the mechanism, any text
     character(len=*), intent(in) :: name     !< the cam and its follower in words
@@ -262,7 +263,7 @@ contains
     call page%line('<text class="small" x="14" y="42">'//xml_text(name)//'</text>')
   end subroutine put_title
 
-  !> A bar of a round length.
+  !> Draw a bar of a round length.
   subroutine put_scale(sheet, page)
     type(sheet_type), intent(in) :: sheet    !< from the plane to the page
     type(page_type), intent(inout) :: page   !< gets the bar

@@ -1,5 +1,5 @@
-!> A drawing of a scene: the places of its nodes on the page, the order in which items cover each other, and the lines
-!> that make up each item.
+!> A drawing of a scene: places of nodes on the page, the order in which items cover each other, and the lines of each
+!> item.
 module mech9_drawing
   use mech9_kinds, only: wp
   use mech9_film, only: film_type
@@ -39,7 +39,7 @@ contains
   end function draw_frame
 
   !> The numbers of the items in the order in which they are drawn. Bodies are drawn from the farthest to the nearest,
-  !> each by the mean depth of its nodes, but no body before those that it lies upon.
+  !> each by the mean depth of its nodes. No body is drawn before those that it lies upon.
   pure function drawing_order(scene, drawing) result(order)
     type(scene_type), intent(in) :: scene      !< nodes and items of the picture
     type(drawing_type), intent(in) :: drawing  !< places of the nodes on the page
@@ -60,7 +60,7 @@ contains
     call sort(keys, order, scene%first_sorted, scene%last_sorted)
   end function drawing_order
 
-  !> The numbers order(first:last) are sorted by their keys; numbers with equal keys keep their order (merge sort).
+  !> Sort the numbers order(first:last) by their keys; numbers with equal keys keep their order (merge sort).
   pure recursive subroutine sort(keys, order, first, last)
     integer, intent(in) :: keys(:)      !< key of each item, by the number of the item
     integer, intent(in) :: first        !< first place of the part of `order` that is sorted

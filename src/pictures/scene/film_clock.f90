@@ -1,4 +1,4 @@
-!> The clock of a film is the time of a frame as text, with enough decimals to tell one frame from the next.
+!> The clock of a film: the time of a frame as text, with enough decimals to distinguish one frame from the next.
 module mech9_film_clock
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -10,16 +10,16 @@ module mech9_film_clock
   !> Times that need more decimals than these, or are larger than this, are written with powers of ten.
   integer, parameter :: most_decimals = 7
   real(wp), parameter :: largest = 1.0e6_wp
-  !> A time agrees with its rounded text if they differ by less than this part of the last decimal, or of the time between
-  !> frames where that is less.
+  !> A time agrees with its rounded text if the two differ by less than this part of the last decimal. If the time
+  !> between frames is less than the last decimal, this part of it counts.
   real(wp), parameter :: near = 0.01_wp
-  !> Frames can be told apart if they differ by at least this number of units of the last decimal.
+  !> Frames can be distinguished if they differ by at least this number of units of the last decimal.
   real(wp), parameter :: enough = 3.0_wp
 
 contains
 
-  !> The number of decimals of the times of a film: the fewest with which all times agree, or else the fewest that tell
-  !> the frames apart. It is negative where no number of decimals serves.
+  !> The number of decimals of the times of a film. It is the least with which all times agree, or else the least that
+  !> distinguishes the frames. It is negative where no number of decimals serves.
   pure integer function clock_decimals(film) result(decimals)
     type(film_type), intent(in) :: film  !< poses and values at the outputs of the run
     real(wp) :: step, scaled(film%n_frames)

@@ -1,8 +1,8 @@
 !> Arrows of the forces in pairs, in films and sketches. An arrow begins where the force acts on the moving link; the longest one
 !> of a film is a part of the mechanism's size.
 !>
-!> The tip and the two barbs of an arrow are drawn as points of links of their own, which the film gets: they move from frame to
-!> frame as the force does.
+!> The tip and the two barbs of an arrow are drawn as points of additional links, which the film gets. These links move
+!> from frame to frame as the force does.
 module mech9_force_arrows
   use mech9_kinds, only: wp
   use mech9_rotation, only: identity, cross, unit
@@ -22,7 +22,7 @@ module mech9_force_arrows
 
 contains
 
-  !> The tips of all arrows; none where a film has no forces.
+  !> Compute the tips of all arrows; none where a film has no forces.
   subroutine find_tips(mechanism, film, size_drawn, tips)
     type(mechanism_type), intent(in) :: mechanism          !< the mechanism
     type(film_type), intent(in) :: film                    !< poses, values and forces at the outputs of the run
@@ -57,7 +57,7 @@ contains
     foot = film%position(frame, axes%links(2), axes%points(:, 2))
   end function foot_of
 
-  !> The film with three more links for each arrow: its tip and its barbs.
+  !> Form the film with three more links for each arrow: its tip and its barbs.
   subroutine take_arrows(mechanism, film, tips, projection, with_arrows)
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     type(film_type), intent(in) :: film               !< poses, values and forces at the outputs of the run
@@ -85,7 +85,7 @@ contains
     call move_alloc(p, with_arrows%p)
   end subroutine take_arrows
 
-  !> The tip and the ends of the barbs of one arrow; the barbs lie across the view.
+  !> Compute the tip and the ends of the barbs of one arrow; the barbs lie across the view.
   pure subroutine place_arrow(foot, tip, projection, places)
     real(wp), intent(in) :: foot(3)                  !< its beginning, in the system of link 1 [m]
     real(wp), intent(in) :: tip(3)                   !< its end [m]
@@ -105,7 +105,7 @@ contains
     places(:, 3) = places(:, 1) - length*(along - slope*across)
   end subroutine place_arrow
 
-  !> The arrows are added to the scene.
+  !> Add the arrows to the scene.
   subroutine add_force_arrows(mechanism, film, scene)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< with the links of the arrows

@@ -11,8 +11,8 @@ module mech9_label_obstacles
   private
   public :: find_obstacles, clear_radius
 
-  !> The distance to which lines and marks reach on each side at full size of symbols [px], and the cost of covering them,
-  !> by the style numbers of mech9_scene. Styles with zeros are no obstacles.
+  !> The distance to which lines and marks reach on each side at full size of symbols [px], and the cost of covering
+  !> them. There is an entry for each style of mech9_scene. Styles with zeros are no obstacles.
   real(wp), parameter :: reach(*) = [1.0_wp, 1.0_wp, 1.0_wp, 5.0_wp, 0.0_wp, 4.7_wp, 8.7_wp, 7.2_wp, 6.2_wp, 0.0_wp, 6.5_wp, &
                                      4.0_wp, 2.8_wp, 1.0_wp, 7.0_wp, 6.0_wp, 8.5_wp, 4.0_wp, 5.5_wp, 7.5_wp, &
                                      0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 6.0_wp, 13.0_wp, 17.0_wp]
@@ -24,7 +24,7 @@ module mech9_label_obstacles
 
 contains
 
-  !> The obstacles of all lines and marks of a scene, of the title, the foot and the axes.
+  !> List the obstacles of all lines and marks of a scene, of the title, the foot and the axes.
   pure subroutine find_obstacles(scene, drawing, projection, obstacles)
     type(scene_type), intent(in) :: scene            !< without labels
     type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page of the first frame
@@ -46,7 +46,7 @@ contains
     end do
   end subroutine find_obstacles
 
-  !> The obstacles of one item are added.
+  !> Add the obstacles of one item.
   pure subroutine add_item(item, drawing, symbol, obstacles)
     type(item_type), intent(in) :: item               !< one thing to draw
     type(drawing_type), intent(in) :: drawing         !< places of the nodes on the page
@@ -86,7 +86,7 @@ contains
     if (norm2(across) > 0.0_wp) across = across/norm2(across)
   end function across_of
 
-  !> One line of an item. The number of a link may stand on the bars and plates of this link.
+  !> Add one line of an item. The number of a link may stand on the bars and plates of this link.
   pure subroutine add_line(item, from, to, half, obstacles)
     type(item_type), intent(in) :: item               !< one thing to draw
     real(wp), intent(in) :: from(2)                   !< first end of the line [px]
@@ -100,7 +100,7 @@ contains
     call obstacles%add(from, to, half, weights(item%style), owner)
   end subroutine add_line
 
-  !> A stand: its triangle from the joint to the ground, and the hatched ground.
+  !> Add a stand: its triangle from the joint to the ground, and the hatched ground.
   pure subroutine add_stand(at, symbol, obstacles)
     real(wp), intent(in) :: at(2)                     !< place of the joint [px]
     real(wp), intent(in) :: symbol                    !< scale of symbols, 1 at full size; negative for a stand above its joint

@@ -1,5 +1,5 @@
-!> The places of labels, chosen so that they can be read: each label takes the one of its possible spots that covers least
-!> of the drawing and of the other labels.
+!> The places of labels, chosen so that they can be read. Each label takes the one of its possible spots that covers
+!> least of the drawing and of the other labels.
 module mech9_label_places
   use mech9_kinds, only: wp
   implicit none
@@ -17,8 +17,8 @@ module mech9_label_places
     procedure :: add => add_obstacle
   end type obstacles_type
 
-  !> A possible place for a label: a box, a leading line from the labelled thing to the box, and the cost of this place
-  !> whatever else is drawn.
+  !> A possible place for a label: a box, a leading line from the labelled thing to the box, and the cost of this place.
+  !> The cost does not depend on the rest of the drawing.
   type :: spot_type
     real(wp) :: low(2) = 0.0_wp, high(2) = 0.0_wp     !< corners of the box [px]
     real(wp) :: from(2) = 0.0_wp, to(2) = 0.0_wp      !< ends of the leading line [px]; equal ends: no line
@@ -45,7 +45,7 @@ module mech9_label_places
 
 contains
 
-  !> One more line is added that labels should not cover.
+  !> Add one more line that labels should not cover.
   pure subroutine add_obstacle(self, from, to, half, weight, owner)
     class(obstacles_type), intent(inout) :: self  !< lines that labels should not cover
     real(wp), intent(in) :: from(2)               !< first end of the line [px]
@@ -127,7 +127,7 @@ contains
     spot%cost = cost
   end function box_at
 
-  !> A spot is chosen for every label: first for each label alone, then again in view of the others until none moves. The
+  !> Choose a spot for every label: first for each label alone, then again in view of the others until none moves. The
   !> order of the labels decides where either of two could give way.
   pure subroutine place_labels(obstacles, page, labels)
     type(obstacles_type), intent(in) :: obstacles  !< lines that labels should not cover
@@ -260,7 +260,7 @@ contains
     leads = any(abs(spot%to - spot%from) > 0.0_wp)
   end function leads
 
-  !> The part of a line that lies within a box.
+  !> Compute the part of a line that lies within a box.
   pure subroutine look_within(from, to, low, high, length, meets)
     real(wp), intent(in) :: from(2)  !< first end of the line [px]
     real(wp), intent(in) :: to(2)    !< second end of the line [px]
@@ -298,7 +298,7 @@ contains
     cross_each_other = side(a, b, c)*side(a, b, d) < 0.0_wp .and. side(c, d, a)*side(c, d, b) < 0.0_wp
   end function cross_each_other
 
-  !> The sign of this number tells on which side of a line a point lies.
+  !> A number whose sign shows on which side of a line a point lies.
   pure real(wp) function side(from, to, point)
     real(wp), intent(in) :: from(2)   !< first point of the line [px]
     real(wp), intent(in) :: to(2)     !< second point of the line [px]

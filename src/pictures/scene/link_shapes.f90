@@ -1,4 +1,4 @@
-!> The shape of a link is found from its points: a bar, a plate around them, or bars from one to the next.
+!> The shape of a link by its points: a bar, a plate around them, or bars from one to the next.
 module mech9_link_shapes
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross, unit
@@ -27,8 +27,8 @@ contains
     chosen = pack([(i, i=1, size(new))], new)
   end function distinct_points
 
-  !> The outline of a set of distinct points. It is closed around a plate where the points lie in one plane; otherwise, or
-  !> where all points but one lie on a rail, it consists of pairs of points that bars join.
+  !> Form the outline of a set of distinct points. It is closed around a plate where the points lie in one plane.
+  !> Otherwise, or where all points but one lie on a rail, it consists of pairs of points that bars join.
   pure subroutine find_shape(points, tolerance, rails, order, closed)
     real(wp), intent(in) :: points(:, :)           !< (3,n) points in the system of the link, all different [m]
     real(wp), intent(in) :: tolerance              !< distance up to which a point lies on a line or in a plane [m]

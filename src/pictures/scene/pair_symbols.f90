@@ -1,6 +1,6 @@
 !> The symbols of pairs: rings, pins, balls and blocks, the guides of blocks, and stands on the frame.
 !>
-!> Pairs at one place are drawn as one joint. Two axes make a universal joint and three a ball; an axis along which one
+!> Pairs at one place are drawn as one joint. Two axes make a universal joint and three a ball. An axis along which one
 !> pair slides and about which another one turns makes a cylindrical joint.
 module mech9_pair_symbols
   use mech9_kinds, only: wp
@@ -29,13 +29,13 @@ module mech9_pair_symbols
 
   !> Sizes on the page [px].
   real(wp), parameter :: block_side = 10.0_wp, hatch_step = 7.0_wp, hatch_length = 7.0_wp
-  !> Pairs nearer to each other than this part of the mechanism's size are one joint; axes with a sine of their angle
+  !> Pairs nearer to each other than this part of the mechanism's size are one joint. Axes with a sine of their angle
   !> below the second number are parallel.
   real(wp), parameter :: same = 0.004_wp, parallel = 0.01_wp
 
 contains
 
-  !> The nodes of all pairs are added to the scene, and the joints that they make are found.
+  !> Add the nodes of all pairs to the scene, and find the joints that they make.
   subroutine prepare_symbols(film, skeleton, projection, planar, scene, symbols)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
@@ -132,7 +132,7 @@ contains
                .and. place%links(place%carrier) /= link
   end function at_guide
 
-  !> The guides on the frame are added: a centre line, and hatched ground beside it.
+  !> Add the guides on the frame: a centre line, and hatched ground beside it.
   subroutine add_guides(skeleton, projection, scene, symbols)
     type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -158,8 +158,8 @@ contains
     end do
   end subroutine add_guides
 
-  !> The plane of a planar joint on the frame is added: its rim, hatched on the side that is lowest in the picture. The plane of a
-  !> joint on a moving link is a part of the link's shape.
+  !> Add the plane of a planar joint on the frame: its rim, hatched on the side that is lowest in the picture. The plane
+  !> of a joint on a moving link is a part of the link's shape.
   subroutine add_plane(projection, rim, scene)
     type(projection_type), intent(in) :: projection !< from space to the page
     integer, intent(in) :: rim(4)                   !< numbers of the nodes at its corners, in turn
@@ -185,7 +185,7 @@ contains
     end associate
   end subroutine add_plane
 
-  !> A hatched line of the frame is added, beside a guide or where a spring ends.
+  !> Add a hatched line of the frame, beside a guide or where a spring ends.
   subroutine add_ground(projection, ends, axis, down, aside, scene)
     type(projection_type), intent(in) :: projection !< from space to the page
     real(wp), intent(in) :: ends(3, 2)      !< (3,2) ends of the guide, in the system of link 1 [m]
@@ -212,7 +212,7 @@ contains
     call scene%add_item(segments, in_hatch, hatches)
   end subroutine add_ground
 
-  !> The stands of the joints that turn on the frame are added. A stand is below its joint, unless the links hang from it.
+  !> Add the stands of the joints that turn on the frame. A stand is below its joint, unless the links hang from it.
   subroutine add_stands(film, skeleton, projection, scene, symbols)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
@@ -236,8 +236,8 @@ contains
     end do
   end subroutine add_stands
 
-  !> Whether the links at a joint of the frame are below it in all frames. The other joints of these links tell it, since pairs of
-  !> one joint stand at one place.
+  !> Whether the links at a joint of the frame are below it in all frames. This follows from the other joints of these
+  !> links, since pairs of one joint stand at one place.
   pure logical function hangs(film, skeleton, projection, joint, k)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
@@ -272,7 +272,7 @@ contains
     hangs = hangs .and. below > 0.0_wp
   end function hangs
 
-  !> The symbols of all joints are added.
+  !> Add the symbols of all joints.
   subroutine add_symbols(film, skeleton, projection, shapes, scene, symbols)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
@@ -290,7 +290,7 @@ contains
     end do
   end subroutine add_symbols
 
-  !> The symbols of one joint are added.
+  !> Add the symbols of one joint.
   subroutine add_joint(film, skeleton, projection, shapes, pairs, scene, symbols)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
@@ -345,8 +345,7 @@ contains
     end do
   end function names_of
 
-  !> The turning pairs of a joint that have axes of their own: neither parallel to the axis of an earlier pair nor to that
-  !> of a sliding one.
+  !> The turning pairs of a joint that are drawn: those not parallel to the axis of an earlier pair or of a sliding one.
   pure function turning_axes(film, skeleton, pairs) result(chosen)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn

@@ -1,6 +1,6 @@
 !> The style of pictures: colours, widths, and the marks of joints and points.
 !>
-!> The colours are those of Okabe and Ito, which people with any kind of colour vision can tell apart. Each has a light
+!> The colours are those of Okabe and Ito, which people with any kind of colour vision can distinguish. Each has a light
 !> tint, and outlines are dark, so that pictures can also be read in grey.
 module mech9_picture_style
   use mech9_kinds, only: wp, pi
@@ -18,8 +18,8 @@ module mech9_picture_style
   character(len=7), parameter :: light_colours(*) = [ &
     '#a9d4ee', '#f7c29b', '#a3dec9', '#ecc4da', '#d6ecfa', '#f7dd8f', '#d9d9d9']
 
-  !> The style in which an item is drawn. A style with an edge is a band: a line of its width in the light colour, with an
-  !> edge of the dark colour on both sides.
+  !> The style in which an item is drawn. A style with an edge is a band: a line of its width in the light colour. An
+  !> edge of the dark colour is on both sides.
   type :: style_type
     character(len=10) :: name = ''
     character(len=7) :: colour = ''       !< colour of the line; empty: the dark colour of the link

@@ -42,8 +42,8 @@ module mech9_projection
 
 contains
 
-  !> The projection in which the whole motion fits the page. A picture that can be `turned` has room for the mechanism as
-  !> it is seen from every side.
+  !> Choose the projection in which the whole motion fits the page. A picture that can be `turned` has room for the
+  !> mechanism as it is seen from every side.
   subroutine fit_projection(mechanism, film, skeleton, view, turned, tips, projection)
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     type(film_type), intent(in) :: film               !< poses and values at the outputs of the run
@@ -82,7 +82,7 @@ contains
     projection%symbol = max(0.25_wp, min(1.0_wp, projection%scale*usual_distance(film, skeleton, view)/roomy))
   end subroutine fit_projection
 
-  !> The box around pairs, points, springs and paths, in frames that represent the film.
+  !> Enclose pairs, points, springs and paths in a box, in frames that represent the film.
   subroutine enclose_motion(mechanism, film, skeleton, view, box)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
@@ -132,7 +132,7 @@ contains
     end do
   end subroutine enclose_motion
 
-  !> The box is enlarged by the curve on which a pair guides its moving link, at the place that the curve has in a frame.
+  !> Enlarge the box by the curve on which a pair guides its moving link, at the place that the curve has in a frame.
   pure subroutine enclose_curve(film, view, place, frame, box)
     type(film_type), intent(in) :: film   !< poses and values at the outputs of the run
     type(view_type), intent(in) :: view   !< direction from which the mechanism is seen
@@ -151,7 +151,7 @@ contains
     end do
   end subroutine enclose_curve
 
-  !> The box is enlarged by a place.
+  !> Enlarge the box by a place.
   pure subroutine enclose(view, place, box)
     type(view_type), intent(in) :: view   !< direction from which the mechanism is seen
     real(wp), intent(in) :: place(3)      !< place in the system of link 1 [m]
@@ -203,7 +203,7 @@ contains
     at = film%position(1, place%links(place%carrier), place%points(:, place%carrier))
   end function place_of
 
-  !> The place on the page [px] of a place in the system of link 1, and its distance towards the viewer [m].
+  !> Compute the place on the page [px] of a place in the system of link 1, and its distance towards the viewer [m].
   pure subroutine on_page(self, place, xy, depth)
     class(projection_type), intent(in) :: self  !< from space to the page
     real(wp), intent(in) :: place(3)            !< place in the system of link 1 [m]

@@ -15,7 +15,7 @@ module mech9_scene
   !> counterclockwise, is turned to the viewer. Segments join each node of an odd number to the next one.
   integer, parameter :: open_path = 0, closed_path = 1, facing_path = 2, segments = 3, spring = 4, mark = 5, label = 6
 
-  !> The style of an item, which tells what it stands for and how it is drawn.
+  !> The style of an item: its meaning, and how it is drawn.
   integer, parameter :: in_trace = 1, in_curve = 2, in_guide = 3, in_ground = 4, in_hatch = 5, in_plate = 6, in_block = 7, &
                         in_tube = 8, in_pin = 9, in_pin_end = 10, in_spring = 11, in_thread = 12, in_cross = 13, in_cam = 14, &
                         as_stand = 15, as_ring = 16, as_ball = 17, as_dot = 18, as_centre = 19, as_free = 20, &
@@ -30,13 +30,13 @@ module mech9_scene
     integer, allocatable :: nodes(:)
     integer :: above(4) = 0                   !< items below this one, whatever their depth
     character(len=:), allocatable :: text     !< text of a label, or names of the coordinates of a joint
-    !> For a label, its place relative to its node, to the right and down [px]; for a stand, its direction; for a leading
-    !> line, its end, also to the right and down. For a spring or damper, the first number is its distance from the line
-    !> between its nodes.
+    !> For a label, its place relative to its node, to the right and down [px]. For a stand, its direction; for a
+    !> leading line, its end, also to the right and down. For a spring or damper, the first number is its distance from
+    !> the line between its nodes.
     real(wp) :: shift(2) = 0.0_wp
   end type item_type
 
-  !> Nodes are points of links. Items stand in the order in which they are drawn; those from `first_sorted` to
+  !> Nodes are points of links. Items stand in the order in which they are drawn. Those from `first_sorted` to
   !> `last_sorted` are bodies in space, and a nearer body covers a farther one.
   type :: scene_type
     integer :: n_nodes = 0, n_items = 0
@@ -52,14 +52,14 @@ module mech9_scene
 
 contains
 
-  !> Whether the corners of an item belong together in twos, each two the ends of a line of their own.
+  !> Whether the corners of an item belong together in twos, each two the ends of a separate line.
   pure logical function in_pairs(item)
     type(item_type), intent(in) :: item  !< one thing to draw
 
     in_pairs = item%shape == segments .or. item%style == in_damper
   end function in_pairs
 
-  !> One more point of a link is added.
+  !> Add one more point of a link.
   pure subroutine add_node(self, link, at, node)
     class(scene_type), intent(inout) :: self  !< nodes and items of the picture
     integer, intent(in) :: link               !< number of the link that carries the point
@@ -82,7 +82,7 @@ contains
     self%node_at(:, node) = at
   end subroutine add_node
 
-  !> One more thing to draw is added, above those that are there.
+  !> Add one more thing to draw, above those that are there.
   pure subroutine add_item(self, shape, style, nodes, link, above, text, shift)
     class(scene_type), intent(inout) :: self        !< nodes and items of the picture
     integer, intent(in) :: shape                    !< shape of the item, one of the numbers from open_path to label
@@ -115,7 +115,7 @@ contains
     end associate
   end subroutine add_item
 
-  !> The content of an item is moved to another item.
+  !> Move the content of an item to another item.
   pure subroutine move_item(from, to)
     type(item_type), intent(inout) :: from  !< loses its nodes and its text
     type(item_type), intent(inout) :: to    !< receives them

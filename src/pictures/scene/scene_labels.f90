@@ -39,7 +39,7 @@ module mech9_scene_labels
 
 contains
 
-  !> The labels are added to a scene that is otherwise complete.
+  !> Add the labels to a scene that is otherwise complete.
   subroutine add_labels(mechanism, film, projection, symbols, nodes, shapes, scene)
     type(mechanism_type), intent(in) :: mechanism !< the mechanism
     type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
@@ -83,7 +83,7 @@ contains
     end do
   end subroutine add_labels
 
-  !> The label with the name of a point.
+  !> Form the label with the name of a point.
   subroutine enter_name(name, node, scene, drawing, projection, entry, label)
     character(len=*), intent(in) :: name             !< name of the point
     integer, intent(in) :: node                      !< number of the node of the point
@@ -103,7 +103,7 @@ contains
     end associate
   end subroutine enter_name
 
-  !> The label with the names of the coordinates of a joint, in a row or one below the other.
+  !> Form the label with the names of the coordinates of a joint, in a row or one below the other.
   subroutine enter_coordinates(joint, independent, symbols, scene, drawing, projection, entry, label)
     integer, intent(in) :: joint                     !< number of the first pair of the joint
     logical, intent(in) :: independent(:)            !< (M) which coordinates are independent
@@ -140,8 +140,8 @@ contains
     end associate
   end subroutine enter_coordinates
 
-  !> The label with the number of a link: on its bars or its plate, beside them, or with a leading line. The number of a
-  !> link that is drawn at one place only stands beside this place.
+  !> Form the label with the number of a link: on its bars or its plate, beside them, or with a leading line. The number
+  !> of a link that is drawn at one place only stands beside this place.
   subroutine enter_number(link, shape, film, scene, drawing, projection, entry, label)
     integer, intent(in) :: link                      !< number of the link
     integer, intent(in) :: shape(2)                  !< number of the item that shows the link, and of a node of the link; 0: none
@@ -178,7 +178,7 @@ contains
     end associate
   end subroutine enter_number
 
-  !> Spots within a plate: in its middle, and between the middle and its corners.
+  !> List spots within a plate: in its middle, and between the middle and its corners.
   subroutine look_in_plate(corners, projection, size_of_box, places, spots)
     real(wp), intent(in) :: corners(:, :)                  !< (3,n) corners in the system of link 1 [m]
     type(projection_type), intent(in) :: projection        !< from space to the page
@@ -208,7 +208,7 @@ contains
     end do
   end subroutine look_in_plate
 
-  !> Spots on bars, beside bars, and at the end of a leading line.
+  !> List spots on bars, beside bars, and at the end of a leading line.
   subroutine look_on_bars(ends, apart, projection, size_of_box, places, spots)
     real(wp), intent(in) :: ends(:, :)     !< (3,n) ends of the bars in the system of link 1 [m]
     logical, intent(in) :: apart           !< each bar has two ends of its own; else each bar goes on from the end of the one before
@@ -270,7 +270,7 @@ contains
     spot%to = at + offset*(1.0_wp - 0.6_wp*number_height/norm2(offset))
   end function spot_at
 
-  !> A label is added at its chosen spot, with its leading line.
+  !> Add a label at its chosen spot, with its leading line.
   subroutine add_entry(entry, placed, independent, film, drawing, projection, scene)
     type(entry_type), intent(in) :: entry            !< text and node of the label
     type(label_type), intent(in) :: placed           !< the label with its chosen spot
@@ -303,8 +303,8 @@ contains
     end associate
   end subroutine add_entry
 
-  !> The names of coordinates are added within their common box, each as a label of its own, since only independent
-  !> coordinates have a colour.
+  !> Add the names of coordinates within their common box, each as a separate label, since only independent coordinates
+  !> have a colour.
   subroutine add_coordinates(entry, node, spot, stacked, at, independent, scene)
     type(entry_type), intent(in) :: entry     !< text and node of the label
     integer, intent(in) :: node               !< number of the node at the joint

@@ -30,7 +30,7 @@ module mech9_scene_making
 
 contains
 
-  !> The scene of a film. It is made for one projection, since the symbols have a fixed size on the page.
+  !> Make the scene of a film. It is made for one projection, since the symbols have a fixed size on the page.
   subroutine make_scene(mechanism, film, skeleton, projection, planar, with_masses, scene)
     type(mechanism_type), intent(in) :: mechanism    !< the mechanism
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
@@ -71,8 +71,8 @@ contains
     end associate
   end subroutine make_scene
 
-  !> The points that a link joins: its pairs, traced points and ends of springs, and its mass centre if it has one pair
-  !> only.
+  !> List the points that a link joins: its pairs, traced points and ends of springs. Its mass centre is among them if
+  !> it has one pair only.
   subroutine find_outline(mechanism, skeleton, symbols, link, scene, outline)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(skeleton_type), intent(in) :: skeleton    !< places at which the pairs are drawn
@@ -117,8 +117,8 @@ contains
     end do
   end subroutine find_outline
 
-  !> The place of a planar or a free joint on its moving link is added to the outline of the link, and the plane of a planar joint
-  !> to that of its reference link.
+  !> Add the place of a planar or a free joint on its moving link to the outline of the link. The plane of a planar
+  !> joint is added to the outline of its reference link.
   subroutine add_whole_joint(skeleton, symbols, k, link, scene, outline)
     type(skeleton_type), intent(in) :: skeleton   !< places at which the pairs are drawn
     type(symbols_type), intent(in) :: symbols     !< nodes and joints of the pairs
@@ -139,7 +139,7 @@ contains
     end associate
   end subroutine add_whole_joint
 
-  !> A point of a link gets a node, and is added to the outline of the link.
+  !> Make a node at a point of a link, and add it to the outline of the link.
   subroutine add_place(scene, link, at, outline)
     type(scene_type), intent(inout) :: scene      !< nodes and items of the picture
     integer, intent(in) :: link                   !< number of the link
@@ -151,7 +151,7 @@ contains
     call add_to_outline(outline, at, node)
   end subroutine add_place
 
-  !> A point and its node are added to an outline.
+  !> Add a point and its node to an outline.
   pure subroutine add_to_outline(outline, point, node)
     type(outline_type), intent(inout) :: outline  !< points that give the link its shape
     real(wp), intent(in) :: point(3)              !< the point, in the system of the link [m]
@@ -172,7 +172,7 @@ contains
     outline%nodes(outline%count) = node
   end subroutine add_to_outline
 
-  !> The plate of a link is added, or its bars.
+  !> Add the plate of a link, or its bars.
   subroutine add_shape(skeleton, symbols, link, plates, scene, outline, shape)
     type(skeleton_type), intent(in) :: skeleton   !< places at which the pairs are drawn
     type(symbols_type), intent(in) :: symbols     !< nodes and joints of the pairs
@@ -217,7 +217,7 @@ contains
     end do
   end function rails_of
 
-  !> The lines from a link to the pairs that move along it are added.
+  !> Add the lines from a link to the pairs that move along it.
   subroutine add_reach(skeleton, symbols, cams, link, scene, outline, shape)
     type(skeleton_type), intent(in) :: skeleton   !< places at which the pairs are drawn
     type(symbols_type), intent(in) :: symbols     !< nodes and joints of the pairs
@@ -249,7 +249,7 @@ contains
     end associate
   end subroutine add_reach
 
-  !> The wheels, racks and belts of couplings and the cams are added.
+  !> Add the wheels, racks and belts of couplings and the cams.
   subroutine add_figures(skeleton, scene, shapes)
     type(skeleton_type), intent(in) :: skeleton   !< places at which the pairs are drawn, and figures of couplings
     type(scene_type), intent(inout) :: scene      !< nodes and items of the picture
@@ -278,7 +278,7 @@ contains
     end do
   end subroutine add_figures
 
-  !> The marks of points and mass centres are added.
+  !> Add the marks of points and mass centres.
   subroutine add_points(mechanism, with_masses, nodes, scene)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     logical, intent(in) :: with_masses             !< mark the mass centres
@@ -299,8 +299,8 @@ contains
     end do
   end subroutine add_points
 
-  !> The numbers of the item that shows each link and of a node of the link; zeros where there is none. A cam has an item
-  !> of its own.
+  !> The numbers of the item that shows each link and of a node of the link; zeros where there is none. A cam is an item
+  !> by itself.
   pure function shown_by(outlines, shapes, scene) result(shown)
     type(outline_type), intent(in) :: outlines(:)  !< (links) points that give each link its shape
     integer, intent(in) :: shapes(:)               !< (links) number of the item of each link; 0: none

@@ -10,14 +10,14 @@ module mech9_scene_paths
   private
   public :: add_paths, add_curves
 
-  !> A straight line may replace part of a curve if it leaves the curve by at most this distance [px] and skips at most
-  !> this number of points.
+  !> Bounds for a straight line that replaces part of a curve: its largest distance from the curve [px], and the largest
+  !> number of points that it skips.
   real(wp), parameter :: straight = 0.15_wp
   integer, parameter :: longest_straight = 40
 
 contains
 
-  !> The paths of the points are added.
+  !> Add the paths of the points.
   subroutine add_paths(mechanism, film, px, scene)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
@@ -39,8 +39,8 @@ contains
     end do
   end subroutine add_paths
 
-  !> The numbers of the points of a path that are kept, chosen so that no other point lies farther than `tolerance` from
-  !> the lines between them.
+  !> The numbers of the points of a path that are kept. No other point lies farther than `tolerance` from the lines
+  !> between them.
   pure function bends_of(path, tolerance) result(kept)
     real(wp), intent(in) :: path(:, :)  !< (3,n) points of the path, in the system of link 1 [m]
     real(wp), intent(in) :: tolerance   !< largest distance of a point that is left out from the line [m]
@@ -76,8 +76,8 @@ contains
     distance = norm2(point - from - part*along)
   end function distance
 
-  !> The curves on which pairs guide their moving links are added: those of path pairs as a whole, those of users' pairs as far as
-  !> the origins of their moving links come. A closed curve of a moving link is the edge of a cam.
+  !> Add the curves on which pairs guide their moving links. Curves of path pairs are shown as a whole, those of users'
+  !> pairs as far as the origins of their moving links come. A closed curve of a moving link is the edge of a cam.
   subroutine add_curves(film, skeleton, px, scene, cams)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn
@@ -106,7 +106,7 @@ contains
     end do
   end subroutine add_curves
 
-  !> The curve of a path pair is added; a closed one of a moving link is the edge of a cam.
+  !> Add the curve of a path pair; a closed one of a moving link is the edge of a cam.
   subroutine add_guide(guide, link, px, scene)
     real(wp), intent(in) :: guide(:, :)       !< (3,n) places of the curve, in the link [m]
     integer, intent(in) :: link               !< number of the link to which it belongs

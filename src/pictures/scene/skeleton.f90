@@ -1,6 +1,6 @@
 !> The skeleton of a mechanism's picture: the point of its axis at which each pair is drawn.
 !>
-!> A data file may give any point of an axis. It usually gives the one where a designer would put the bearing, and this
+!> A data file may give any point of an axis. It usually gives the one where a designer would put the bearing. This
 !> point is kept unless it lies far from everything else; then the pair is moved along its axis to its links.
 module mech9_skeleton
   use mech9_kinds, only: wp
@@ -19,18 +19,18 @@ module mech9_skeleton
     integer :: carrier = 1
     !> Travel of the carrier's point along the other side's axis, from that side's point [m].
     real(wp) :: least = 0.0_wp, most = 0.0_wp
-    !> The two links are a tube and a rod in it. The carrier's point is the mouth of the tube; `pins` are the far ends of
-    !> the tube and of the rod, each in the system of its link.
+    !> The two links are a tube and a rod in it. The carrier's point is the mouth of the tube. The points `pins` are the
+    !> far ends of the tube and of the rod, each in the system of its link.
     logical :: telescopic = .false.
     real(wp) :: pins(3, 2) = 0.0_wp
-    !> A planar or a free joint is drawn as a whole at its last pair, which has this number; 0: the pair is in no such joint.
+    !> A planar or a free joint is drawn as a whole at its last pair, whose number this is; 0: in no such joint.
     integer :: drawn_by = 0
     logical :: ball = .false.          !< the pair is one of the three of a spherical joint
     integer :: plane_from = 0          !< of a planar joint that is drawn as a whole, its first pair; 0: of a free one
   end type place_type
 
-  !> The kinds of figures: a wheel or a rack is a thick line of its link, a straight part of a belt does not move as its link does,
-  !> and a cam or a roller is closed and filled.
+  !> The kinds of figures. A wheel or a rack is a thick line of its link. A straight part of a belt does not move as its
+  !> link does, and a cam or a roller is closed and filled.
   integer, parameter :: wheel_figure = 1, belt_figure = 2, cam_figure = 3
 
   !> A line that shows a wheel, a rack, a belt or a cam.
@@ -56,7 +56,7 @@ module mech9_skeleton
 
 contains
 
-  !> The places of all pairs but the sliding ones, which mech9_slide_places finds from these.
+  !> Find the places of all pairs but the sliding ones, which mech9_slide_places finds from these.
   subroutine make_skeleton(mechanism, film, skeleton)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< poses of the run; only the first frame is used
@@ -76,7 +76,7 @@ contains
     skeleton%size = size_of(mechanism, film, skeleton%places)
   end subroutine make_skeleton
 
-  !> A line of a link is added to the figures.
+  !> Add a line of a link to the figures.
   subroutine append_figure(link, points, kind, skeleton)
     integer, intent(in) :: link                     !< number of the link
     real(wp), intent(in) :: points(:, :)            !< (3,n) points that the line joins, in the system of the link [m]
@@ -96,7 +96,7 @@ contains
     call move_alloc(grown, skeleton%figures)
   end subroutine append_figure
 
-  !> The pairs of planar and free joints get the number of the pair that draws them, and those of balls are marked.
+  !> Give the pairs of planar and free joints the number of the pair that draws them, and mark those of balls.
   pure subroutine mark_joints(mechanism, places)
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     type(place_type), intent(inout) :: places(:)      !< (M) places at which the pairs are drawn
@@ -118,7 +118,7 @@ contains
     end do
   end subroutine mark_joints
 
-  !> Points that are far from everything else are moved along their axes.
+  !> Move points that are far from everything else along their axes.
   subroutine draw_near(film, skeleton)
     type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
     type(skeleton_type), intent(inout) :: skeleton  !< places at which the pairs are drawn
@@ -145,8 +145,8 @@ contains
     end associate
   end subroutine draw_near
 
-  !> The signed distance along the axis of a turning pair to the nearest pair of its links. `widest` grows to the largest
-  !> distance of such a pair from the axis.
+  !> Compute the signed distance along the axis of a turning pair to the nearest pair of its links. Enlarge `widest` to
+  !> the largest distance of such a pair from the axis.
   pure subroutine look_along(skeleton, given, axis, k, along, widest)
     type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn
     real(wp), intent(in) :: given(:, :)          !< (3,M) given point of each axis, in the system of link 1 [m]
@@ -219,7 +219,7 @@ contains
     if (.not. size_of > 0.0_wp) size_of = 1.0_wp
   end function size_of
 
-  !> The bounds of a box are enlarged by a place.
+  !> Enlarge the bounds of a box by a place.
   pure subroutine enclose(place, low, high)
     real(wp), intent(in) :: place(3)    !< place in the system of link 1 [m]
     real(wp), intent(inout) :: low(3)   !< smallest coordinates so far [m]

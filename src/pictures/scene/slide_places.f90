@@ -1,5 +1,5 @@
-!> The places of sliding pairs: the link that carries the block and the one that guides it, the seat of the block, its
-!> travel, and the pairs that are a tube and a rod in it.
+!> The places of sliding pairs: the link that carries the block and the one that guides it, the place of the block, and
+!> its travel. Some of these pairs are a tube and a rod in it.
 module mech9_slide_places
   use mech9_kinds, only: wp
   use mech9_mechanism, only: mechanism_type
@@ -27,7 +27,7 @@ module mech9_slide_places
 
 contains
 
-  !> The places of all sliding pairs are found; those of the other pairs must be known.
+  !> Find the places of all sliding pairs; those of the other pairs must be known.
   subroutine place_slides(mechanism, film, skeleton)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
@@ -50,8 +50,8 @@ contains
     end do
   end subroutine place_slides
 
-  !> The places of the other pairs of a link that turn or are the user's; if there are none, the places of its traced
-  !> points.
+  !> List the places of the other pairs of a link that turn or are the user's. If there are none, list the places of its
+  !> traced points.
   subroutine find_pins(mechanism, skeleton, k, slide_side, pins)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(skeleton_type), intent(in) :: skeleton    !< places at which the pairs are drawn
@@ -84,7 +84,7 @@ contains
     end associate
   end subroutine find_pins
 
-  !> A point is added to the pins of a link.
+  !> Add a point to the pins of a link.
   pure subroutine add_pin(pins, point)
     type(pins_type), intent(inout) :: pins  !< places of the other pairs of the link
     real(wp), intent(in) :: point(3)        !< the point, in the system of the link [m]
@@ -119,9 +119,9 @@ contains
     across = across - dot_product(across, axis)*axis
   end function off_line
 
-  !> A sliding pair is a tube and a rod if each of its two moving links has its pins at one place of the axis, and these
-  !> places never come together. Other points of the links may stand beside the tube and the rod, but not beyond their ends, as the
-  !> tip of a lever does that slides through a block.
+  !> Find whether a sliding pair is a tube and a rod. It is if each of its two moving links has its pins at one place of
+  !> the axis, and these places never come together. Other points of the links may stand beside the tube and the rod,
+  !> but not beyond their ends. The tip of a lever that slides through a block would be beyond.
   subroutine judge_telescopic(film, pins, size, place)
     type(film_type), intent(in) :: film       !< poses and values at the outputs of the run
     type(pins_type), intent(in) :: pins(2)    !< pins of the reference link and of the moving link
@@ -154,8 +154,8 @@ contains
     place%points(:, 1) = place%pins(:, 1) + mouth*least*place%axes(:, 1)
   end subroutine judge_telescopic
 
-  !> The frame always guides. Otherwise the link whose pins are all at one place of the axis carries the block; if this
-  !> holds for neither link the moving link does.
+  !> Choose the link that carries the block. The frame always guides. Otherwise the link whose pins are all at one place
+  !> of the axis carries the block. If this holds for neither link the moving link does.
   subroutine choose_carrier(pins, size, place)
     type(pins_type), intent(in) :: pins(2)    !< pins of the reference link and of the moving link
     real(wp), intent(in) :: size              !< size of the mechanism at the start [m]
@@ -174,7 +174,7 @@ contains
     if (place%links(2) == 1) place%carrier = 1
   end subroutine choose_carrier
 
-  !> The block is put at the nearest pin of its link if that is on the axis, and otherwise beside that pin, unless the
+  !> Put the block at the nearest pin of its link if that is on the axis. Otherwise put it beside that pin, unless the
   !> given point is near that place.
   subroutine seat_block(pins, size, place)
     type(pins_type), intent(in) :: pins       !< pins of the link that carries the block
@@ -200,7 +200,7 @@ contains
     end associate
   end subroutine seat_block
 
-  !> The travel of the carrier's point in the other link.
+  !> Find the travel of the carrier's point in the other link.
   subroutine find_travel(film, place)
     type(film_type), intent(in) :: film       !< poses and values at the outputs of the run
     type(place_type), intent(inout) :: place  !< place and travel of the sliding pair

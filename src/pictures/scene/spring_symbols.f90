@@ -15,15 +15,15 @@ module mech9_spring_symbols
   private
   public :: add_springs
 
-  !> Half the length of a wall, and the distance of a spring and of a damper between the same points from the line between
-  !> these [px].
+  !> Half the length of a wall, and the distance of a spring and of a damper from the line between their common points
+  !> [px].
   real(wp), parameter :: half_wall = 11.0_wp, beside = 7.0_wp
   !> Places nearer to each other than this part of the mechanism's size are drawn as one.
   real(wp), parameter :: same = 0.004_wp
 
 contains
 
-  !> All springs and dampers are added. A load that has neither, such as a constant force on a coordinate, is not drawn.
+  !> Add all springs and dampers. A load that has neither, such as a constant force on a coordinate, is not drawn.
   subroutine add_springs(mechanism, film, skeleton, projection, shapes, scene, symbols)
     type(mechanism_type), intent(in) :: mechanism    !< the mechanism
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
@@ -53,7 +53,7 @@ contains
     end do
   end subroutine add_springs
 
-  !> A spring, a damper, or both side by side are added.
+  !> Add a spring, a damper, or both side by side.
   subroutine add_between(nodes, is_spring, is_damper, above, scene)
     integer, intent(in) :: nodes(2)           !< numbers of the nodes at its ends
     logical, intent(in) :: is_spring          !< there is a spring
@@ -68,8 +68,8 @@ contains
     if (is_damper) call scene%add_item(spring, in_damper, nodes, above=above, shift=-aside)
   end subroutine add_between
 
-  !> A spring and damper on a coordinate are added. For a turning pair they are around the joint; for a sliding pair they
-  !> are along the guide, between the block and a support beyond an end of the guide, or in a tube from end to end.
+  !> Add a spring and damper on a coordinate. For a turning pair they are around the joint. For a sliding pair they are
+  !> along the guide, between the block and a support beyond an end of the guide. Those in a tube go from end to end.
   subroutine add_on_coordinate(load, film, skeleton, projection, above, scene, symbols)
     type(coordinate_load_type), intent(in) :: load   !< stiffness and damping on the coordinate
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
@@ -102,8 +102,8 @@ contains
     end associate
   end subroutine add_on_coordinate
 
-  !> A support beyond an end of a guide is added, and the guide is lengthened to it, so that a spring to the block can be
-  !> seen. It is beyond the first end, or beyond the second one if the page ends before.
+  !> Add a support beyond an end of a guide, and lengthen the guide to it, so that a spring to the block can be seen. It
+  !> is beyond the first end, or beyond the second one if the page ends before.
   subroutine add_support(guide, projection, node, scene)
     integer, intent(in) :: guide(2)                  !< numbers of the nodes at the ends of the guide
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -128,8 +128,8 @@ contains
     call scene%add_item(open_path, in_guide, [guide(min(side, 2)), node])
   end subroutine add_support
 
-  !> The hatched wall that holds the fixed end of a spring is added, at right angles to the spring as it is seen in the
-  !> first frame. There is no wall where a joint of the frame has a stand already.
+  !> Add the hatched wall that holds the fixed end of a spring, at right angles to the spring as it is in the first
+  !> frame. There is no wall where a joint of the frame has a stand already.
   subroutine add_wall(film, skeleton, projection, fixed, other, scene)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn

@@ -27,7 +27,7 @@ module mech9_svg_picture
 
 contains
 
-  !> One frame of the film is written as a picture of its own. Errors are exit_file.
+  !> Write one frame of the film as a separate picture. Errors are exit_file.
   subroutine save_sketch(path, title, scene, film, projection, frame, err)
     character(len=*), intent(in) :: path               !< name of the file
     character(len=*), intent(in) :: title              !< title of the mechanism, any text
@@ -43,7 +43,7 @@ contains
     call page%save(path, err)
   end subroutine save_sketch
 
-  !> The picture of one frame is appended to a page.
+  !> Append the picture of one frame to a page.
   subroutine put_picture(title, scene, film, projection, frame, all_axes, page)
     character(len=*), intent(in) :: title           !< title of the mechanism, any text
     type(scene_type), intent(in) :: scene           !< nodes and items of the picture
@@ -71,7 +71,7 @@ contains
     call page%line('</svg>')
   end subroutine put_picture
 
-  !> The beginning of a picture, up to its items, is appended to a page.
+  !> Append the beginning of a picture, up to its items, to a page.
   subroutine put_opening(title, projection, page)
     character(len=*), intent(in) :: title            !< title of the mechanism, any text
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -86,7 +86,7 @@ contains
     call page%line('<rect width="100%" height="100%" fill="#ffffff"/>')
   end subroutine put_opening
 
-  !> One item of the scene is appended; scripts find it by its `number`.
+  !> Append one item of the scene; scripts find it by its `number`.
   subroutine put_item(item, number, drawing, symbol, page)
     type(item_type), intent(in) :: item        !< one thing to draw
     integer, intent(in) :: number              !< number of the item in the scene
@@ -180,7 +180,7 @@ contains
     path = path(:used)
   end function path_of
 
-  !> The title, the scale and the axes are appended.
+  !> Append the title, the scale and the axes.
   subroutine put_surroundings(title, projection, all_axes, page)
     character(len=*), intent(in) :: title            !< title of the mechanism, any text
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -198,7 +198,7 @@ contains
     call put_axes(projection, all_axes, page)
   end subroutine put_surroundings
 
-  !> The title is appended, in one line if it fits, otherwise in up to three smaller ones.
+  !> Append the title, in one line if it fits, otherwise in up to three smaller ones.
   subroutine put_title(title, projection, page)
     character(len=*), intent(in) :: title            !< title of the mechanism, any text
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -238,7 +238,7 @@ contains
     end if
   end function round_length
 
-  !> The axes of link 1 are appended as they are seen. An axis that points to the viewer is not drawn.
+  !> Append the axes of link 1 as they are seen. An axis that points to the viewer is not drawn.
   subroutine put_axes(projection, all_axes, page)
     type(projection_type), intent(in) :: projection  !< from space to the page
     logical, intent(in) :: all_axes                  !< draw also an axis that points to the viewer

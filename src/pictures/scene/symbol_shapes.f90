@@ -20,7 +20,7 @@ module mech9_symbol_shapes
 
 contains
 
-  !> The block of a sliding pair is added, or the nut of a helical one with the thread on which it runs.
+  !> Add the block of a sliding pair, or the nut of a helical one with the thread on which it runs.
   subroutine add_block(place, guide, projection, above, names, scene)
     type(place_type), intent(in) :: place            !< place and axes of the pair
     integer, intent(in) :: guide(2)                  !< numbers of the nodes at the ends of its guide
@@ -40,7 +40,7 @@ contains
     end associate
   end subroutine add_block
 
-  !> The block that runs along the curve of a path pair and turns with it is added.
+  !> Add the block that runs along the curve of a path pair and turns with it.
   subroutine add_runner(place, projection, above, names, scene)
     type(place_type), intent(in) :: place            !< place of the pair
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -55,7 +55,7 @@ contains
     call scene%add_item(open_path, in_block, ends, place%links(2), above=above, text=names)
   end subroutine add_runner
 
-  !> A pin is added: a short cylinder along the axis. Only the end that is turned to the viewer is drawn.
+  !> Add a pin: a short cylinder along the axis. Only the end that is turned to the viewer is drawn.
   subroutine add_pin(place, px, crossed, above, names, scene)
     type(place_type), intent(in) :: place     !< place and axes of the pair
     real(wp), intent(in) :: px                !< length of 1 px in the mechanism [m]
@@ -86,8 +86,8 @@ contains
     end associate
   end subroutine add_pin
 
-  !> A small square on the moving link is added: the face with which the link lies on the plane of a planar joint, or the shoe that
-  !> a curve leads without turning it.
+  !> Add a small square on the moving link. It is the face with which the link lies on the plane of a planar joint. For
+  !> a curve it is the shoe that the curve leads without turning it.
   subroutine add_square(link, point, sides, projection, above, names, scene)
     integer, intent(in) :: link                      !< number of the moving link
     real(wp), intent(in) :: point(3)                 !< the middle of the square, in the system of the link [m]
@@ -105,7 +105,7 @@ contains
     call scene%add_item(closed_path, in_plate, nodes, link, above=above, text=names)
   end subroutine add_square
 
-  !> The symbol of a planar or a free joint is added.
+  !> Add the symbol of a planar or a free joint.
   subroutine add_whole_joint(place, projection, above, names, scene)
     type(place_type), intent(in) :: place            !< place of the last pair of the joint
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -120,8 +120,8 @@ contains
     end if
   end subroutine add_whole_joint
 
-  !> The symbol of a pair along a curve is added: a block that turns with the curve, or a square that does not turn. The pair of a
-  !> user's procedure has a symbol of its own.
+  !> Add the symbol of a pair along a curve: a block that turns with the curve, or a square that does not turn. The pair
+  !> of a user's procedure has a special symbol.
   subroutine add_led_link(place, node, projection, above, names, scene)
     type(place_type), intent(in) :: place            !< place of the pair
     integer, intent(in) :: node                      !< number of its node
@@ -139,7 +139,7 @@ contains
     end if
   end subroutine add_led_link
 
-  !> Three short lines along the axes of the moving link are added, the symbol of a free joint.
+  !> Add three short lines along the axes of the moving link, the symbol of a free joint.
   subroutine add_star(place, projection, above, names, scene)
     type(place_type), intent(in) :: place            !< place of the last pair of the joint
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -158,8 +158,8 @@ contains
     call scene%add_item(segments, in_damper, nodes, above=above, text=names)
   end subroutine add_star
 
-  !> The rectangle that stands for the plane of a planar joint, in its reference link: it reaches around all places of the
-  !> moving point.
+  !> Find the rectangle that stands for the plane of a planar joint, in its reference link: it reaches around all places
+  !> of the moving point.
   subroutine find_plane(film, skeleton, first, last, projection, link, rim)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn

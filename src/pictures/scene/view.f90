@@ -1,4 +1,4 @@
-!> A view is the direction from which a mechanism is seen in parallel projection.
+!> A view: the direction from which a mechanism is seen in parallel projection.
 module mech9_view
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise
@@ -60,8 +60,8 @@ contains
     view%toward = cross(view%right, view%up)
   end function view_of_axes
 
-  !> A view is read from text: two axes, the first to the right and the second up (xy, xz, zy, and so on); `iso`; or a
-  !> direction towards the viewer as three numbers with commas. An error gets the exit code `code`.
+  !> Read a view from text. It is two axes, the first to the right and the second up (xy, xz, zy, and so on), or `iso`.
+  !> It can be a direction towards the viewer as three numbers with commas. An error gets the exit code `code`.
   pure subroutine read_view(text, code, view, err)
     character(len=*), intent(in) :: text               !< the view as the user wrote it
     integer, intent(in) :: code                        !< exit code of the error, one of the exit_ codes
@@ -94,7 +94,7 @@ contains
                'or the direction towards the viewer, as in 1,-2,0.5')
   end subroutine read_view
 
-  !> A direction is read: three numbers with commas between them, not all zero.
+  !> Read a direction: three numbers with commas between them, not all zero.
   pure subroutine read_direction(text, direction, known)
     character(len=*), intent(in) :: text   !< the text, in small letters
     real(wp), intent(out) :: direction(3)  !< the direction, in the axes of link 1

@@ -1,5 +1,5 @@
-!> The choice of the view that shows a mechanism best. A planar mechanism is seen along the normal of its plane, a spatial
-!> one from a direction in which its links are long and its pairs lie apart.
+!> The choice of the view that shows a mechanism best. A planar mechanism is seen along the normal of its plane. A
+!> spatial one is seen from a direction in which its links are long and its pairs lie apart.
 module mech9_view_choice
   use mech9_kinds, only: wp, pi
   use mech9_rotation, only: cross, unit, turn, turn_back
@@ -21,7 +21,7 @@ module mech9_view_choice
 
 contains
 
-  !> The view that is taken unless the user asks for another one.
+  !> Choose the view that is taken unless the user asks for another one.
   pure subroutine choose_view(mechanism, film, skeleton, view, planar)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
@@ -47,8 +47,8 @@ contains
     end if
   end subroutine choose_view
 
-  !> Whether all links move parallel to one plane: every pair turns about the normal of the plane or slides in the plane,
-  !> and every user's pair does one of these in all frames of the film.
+  !> Find whether all links move parallel to one plane. Then every pair turns about the normal of the plane or slides in
+  !> the plane. This holds for every user's pair in all frames of the film.
   pure subroutine is_planar(film, skeleton, planar, normal)
     type(film_type), intent(in) :: film      !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton !< places at which the pairs are drawn
@@ -77,8 +77,8 @@ contains
     end do
   end subroutine is_planar
 
-  !> A possible normal of the plane of motion: the axis of a turning pair, or the normal of two sliding directions if no
-  !> pair turns, or zero.
+  !> Find a possible normal of the plane of motion: the axis of a turning pair, or zero. If no pair turns it is the
+  !> normal of two sliding directions.
   pure subroutine find_normal(film, skeleton, normal)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn
@@ -159,8 +159,7 @@ contains
     end do
   end function best_view
 
-  !> The score of a view: the part of the links' length that is seen, and the distance between the two pairs that lie
-  !> nearest to each other.
+  !> The score of a view: the part of the links' length that is seen, and the distance between the two nearest pairs.
   pure real(wp) function score_of(film, skeleton, view, frame) result(score)
     type(film_type), intent(in) :: film          !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton  !< places at which the pairs are drawn

@@ -1,7 +1,7 @@
 !> The figures of couplings in a picture: the pitch circles of gears and of pinions, racks, pulleys and belts.
 !>
-!> The data file gives no shape of a wheel. Its pitch circle follows from the ratio and from the places of both axes: it goes
-!> through the line on which both wheels have the same velocity.
+!> The data file gives no shape of a wheel. Its pitch circle follows from the ratio and from the places of both axes. It
+!> goes through the line on which both wheels have the same velocity.
 module mech9_wheel_figures
   use mech9_kinds, only: wp, pi
   use mech9_rotation, only: cross, unit
@@ -33,7 +33,7 @@ module mech9_wheel_figures
 
 contains
 
-  !> The figures of all couplings between two pairs of one link are added to a skeleton whose places are known.
+  !> Add the figures of all couplings between two pairs of one link to a skeleton whose places are known.
   subroutine find_figures(mechanism, film, skeleton)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
@@ -62,7 +62,7 @@ contains
     end do
   end subroutine find_figures
 
-  !> Both pairs of a coupling, as seen from the link that they share; no link: 0.
+  !> Find both pairs of a coupling, as seen from the link that they share; no link: 0.
   subroutine find_partners(skeleton, coordinates, pair, common)
     type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     integer, intent(in) :: coordinates(2)            !< numbers of the pairs
@@ -94,7 +94,7 @@ contains
     end do
   end subroutine find_partners
 
-  !> The pitch circles of two gears, of parallel shafts or of shafts whose axes meet.
+  !> Add the pitch circles of two gears, of parallel shafts or of shafts whose axes meet.
   subroutine add_gears(pair, ratio, skeleton)
     type(partner_type), intent(in) :: pair(2)       !< both gears
     real(wp), intent(in) :: ratio                   !< turn of the second one about its axis per turn of the first one
@@ -125,8 +125,8 @@ contains
     call add_cone(pair(2), reach(2), part*line, skeleton)
   end subroutine add_gears
 
-  !> The point of the first axis that is nearest to the second axis, and the ways along both axes from the points of the pairs
-  !> to the nearest points.
+  !> Find the point of the first axis that is nearest to the second axis, and the ways along both axes to the nearest
+  !> points. The ways begin at the points of the pairs.
   pure subroutine find_apex(pair, apex, reach)
     type(partner_type), intent(in) :: pair(2)   !< two pairs whose axes are not parallel
     real(wp), intent(out) :: apex(3)            !< in the common link [m]
@@ -140,8 +140,8 @@ contains
     apex = pair(1)%point + reach(1)*pair(1)%axis
   end subroutine find_apex
 
-  !> The length along the line of contact, with its sign, at which the wheel of the pair nearer to the apex stands at the point
-  !> of the pair; 0 where both points are at the apex.
+  !> The length along the line of contact, with its sign, at which a wheel stands at the point of its pair. The wheel is
+  !> that of the pair nearer to the apex. The length is 0 where both points are at the apex.
   pure real(wp) function nearer_bearing(pair, line, reach, least) result(length)
     type(partner_type), intent(in) :: pair(2)   !< both bevel gears
     real(wp), intent(in) :: line(3)             !< direction of the line on which they touch, of unit length
@@ -159,7 +159,7 @@ contains
     end do
   end function nearer_bearing
 
-  !> The circle of a bevel gear through the end of the line of contact.
+  !> Add the circle of a bevel gear through the end of the line of contact.
   subroutine add_cone(gear, reach, line, skeleton)
     type(partner_type), intent(in) :: gear          !< the gear
     real(wp), intent(in) :: reach                   !< way along its axis from its point to the apex [m]
@@ -171,7 +171,7 @@ contains
     call add_circle(gear, reach + along, norm2(line - along*gear%axis), .false., skeleton)
   end subroutine add_cone
 
-  !> A pinion, and the rack over the part that comes into mesh.
+  !> Add a pinion, and the rack over the part that comes into mesh.
   subroutine add_rack(film, pair, common, travel, skeleton)
     type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
     type(partner_type), intent(in) :: pair(2)       !< the pinion and the rack
@@ -198,7 +198,8 @@ contains
                                               first + (high + abs(travel))*pair(2)%own_axis], [3, 2]), wheel_figure, skeleton)
   end subroutine add_rack
 
-  !> Two pulleys, and the straight parts of the belt, which stand still relative to the link that carries the pulleys.
+  !> Add two pulleys, and the straight parts of the belt, which stand still relative to the link that carries the
+  !> pulleys.
   subroutine add_belt(pair, common, radii, crossed, skeleton)
     type(partner_type), intent(in) :: pair(2)       !< both pulleys
     integer, intent(in) :: common                   !< number of the link that carries both
@@ -225,8 +226,8 @@ contains
     end do
   end subroutine add_belt
 
-  !> A circle of a wheel about its axis is added, with a spoke that shows how it turns; a wheel with inner teeth has a short mark
-  !> outside. A wheel that meshes with several others is added once.
+  !> Add a circle of a wheel about its axis, with a spoke that shows how it turns. A wheel with inner teeth has a short
+  !> mark outside. A wheel that meshes with several others is added once.
   subroutine add_circle(wheel, along, radius, inner, skeleton)
     type(partner_type), intent(in) :: wheel         !< pair and link of the wheel
     real(wp), intent(in) :: along                   !< place of its middle on its axis, from the point of the pair [m]

@@ -62,7 +62,7 @@ contains
     path = with_ending(hdf5_path, 'xdmf')
   end function xdmf_path
 
-  !> Rows of results are counted.
+  !> Count rows of results.
   subroutine write_rows(self, rows, err)
     class(xdmf_type), intent(inout) :: self            !< names, counts and times for the description
     real(wp), intent(in), contiguous :: rows(:, :)     !< (columns,rows) rows of the results, which are only counted
@@ -71,7 +71,7 @@ contains
     self%rows = self%rows + size(rows, 2)
   end subroutine write_rows
 
-  !> The description is written when the results are complete. Errors are exit_file.
+  !> Write the description when the results are complete. Errors are exit_file.
   subroutine save_description(self, err)
     class(xdmf_type), intent(inout) :: self            !< names, counts and times for the description
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
@@ -93,7 +93,7 @@ contains
     call page%save(self%path, err)
   end subroutine save_description
 
-  !> One output is appended: lines between vertices, and the link of each line.
+  !> Append one output: lines between vertices, and the link of each line.
   subroutine put_step(self, row, page)
     type(xdmf_type), intent(in) :: self     !< names, counts and times for the description
     integer, intent(in) :: row              !< number of the row in the HDF5 file, from 0
