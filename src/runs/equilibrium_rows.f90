@@ -39,7 +39,7 @@ contains
     call columns%append('growth', '1/s', 'largest real part of the eigenvalues of the linearised equations of motion')
   end function columns_of_equilibria
 
-  !> The rows of a table of equilibria. Fails where forces are asked for and a load fails, or they are infinite.
+  !> Form the rows of a table of equilibria. Fail where forces are requested and a load fails, or they are infinite.
   subroutine rows_of_equilibria(model, columns, list, rows, err)
     type(model_type), intent(in) :: model                   !< the model
     type(columns_type), intent(in) :: columns               !< of the table
@@ -103,7 +103,7 @@ contains
     end do
   end function columns_of_modes
 
-  !> The rows of a table of modes.
+  !> Form the rows of a table of modes.
   subroutine rows_of_modes(equilibrium, rows)
     type(equilibrium_type), intent(inout) :: equilibrium   !< with its modes
     real(wp), allocatable, intent(out) :: rows(:, :)       !< (columns, rows)

@@ -30,7 +30,7 @@ module mech9_cam_task
 
 contains
 
-  !> Compute the profiles of all cams that are asked for, and write their files.
+  !> Compute the profiles of all requested cams, and write their files.
   subroutine work_on_cams(options, model, plan, start, diagnostics, reported, err)
     type(command_line_type), intent(in) :: options      !< the command line
     type(model_type), intent(in), target :: model       !< the model
@@ -78,7 +78,8 @@ contains
     call json%save(options%argument('report'), err)
   end subroutine work_on_cams
 
-  !> The files of --cam. Cams that do not exist, and files whose cam is not told, are errors (exit_usage).
+  !> Read the files of --cam. Cams that do not exist, and files that name no cam where there are several, are errors
+  !> (exit_usage).
   subroutine read_files(options, n_cams, files, err)
     type(command_line_type), intent(in) :: options                !< the command line
     integer, intent(in) :: n_cams                                 !< cams of the data file
@@ -110,7 +111,7 @@ contains
     end do
   end subroutine read_files
 
-  !> The table of a profile, with a row for each output at which the follower moves against the cam.
+  !> Write the table of a profile, with a row for each output at which the follower moves against the cam.
   subroutine save_table(path, model, number, profile, err)
     character(len=*), intent(in) :: path                !< of the table; '-' is standard output
     type(model_type), intent(in) :: model               !< the model
@@ -141,7 +142,7 @@ contains
     if (.not. allocated(err)) call move_alloc(at_close, err)
   end subroutine save_table
 
-  !> The columns of the table.
+  !> List the columns of the table.
   subroutine list_columns(model, cam, has_pressure, names, units)
     type(model_type), intent(in) :: model                     !< the model
     type(cam_request_type), intent(in) :: cam                 !< the cam

@@ -1,5 +1,5 @@
-!> The choice of the independent coordinates judged apart from their drives: where it is wrong, it explains why drives are
-!> missing.
+!> The judgement of the choice of the independent coordinates, apart from their drives. Where the choice is wrong, it
+!> explains why drives are missing.
 module mech9_choice_check
   use mech9_program_kind, only: dynamics
   use mech9_error, only: error_type, exit_structure
@@ -39,7 +39,8 @@ contains
     if (err%code == exit_structure) call wrong%add_error(err)
   end subroutine judge_choice_of
 
-  !> A document without its drives. The groups are copied in a loop: an array constructor of them would leak (gfortran 12).
+  !> Copy a document without its drives. The groups are copied in a loop: an array constructor of them would leak
+  !> (gfortran 12).
   pure subroutine leave_drives_out(document, bare)
     type(document_type), intent(in) :: document   !< the data file as groups and items
     type(document_type), intent(out) :: bare      !< the data file without groups &drive

@@ -33,7 +33,7 @@ module mech9_dynamic_report
 
 contains
 
-  !> The short report of a run.
+  !> Print the short report of a run.
   subroutine print_report(unit, motion, table_path, outcome)
     integer, intent(in) :: unit                               !< Fortran unit to write to
     type(model_motion_type), intent(inout) :: motion          !< the motion, as far as it went
@@ -112,7 +112,7 @@ contains
     if (name == '') name = trim(integration_methods(1)%name)
   end function method_of
 
-  !> The coefficients of motion a(p,r) at the start, p and r the numbers of the independent coordinates.
+  !> Print the coefficients of motion a(p,r) at the start, p and r the numbers of the independent coordinates.
   subroutine print_coefficients(unit, plan, coefficients)
     integer, intent(in) :: unit                  !< the output unit
     type(plan_type), intent(in) :: plan          !< the plan of the mechanism
@@ -128,7 +128,7 @@ contains
     end do
   end subroutine print_coefficients
 
-  !> The facts about a run, for reports that programs read.
+  !> List the facts about a run, for reports that programs read.
   subroutine find_facts(motion, outcome, facts)
     type(model_motion_type), intent(inout) :: motion          !< the motion, as far as it went
     type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
@@ -139,7 +139,7 @@ contains
     call facts_of(simulation%model, motion%plan, outcome, simulation, facts)
   end subroutine find_facts
 
-  !> The facts about a free motion.
+  !> List the facts about a free motion.
   subroutine facts_of(model, plan, outcome, simulation, facts)
     type(model_type), intent(in) :: model                     !< the model
     type(plan_type), intent(in) :: plan                       !< the plan of the mechanism

@@ -27,7 +27,7 @@ module mech9_kinematic_report
 
 contains
 
-  !> The short report of a run.
+  !> Print the short report of a run.
   subroutine print_report(unit, motion, table_path, outcome)
     integer, intent(in) :: unit                           !< Fortran unit to write to
     type(model_motion_type), intent(inout) :: motion      !< the motion, as far as it went
@@ -77,7 +77,7 @@ contains
     iterations_each = real(driven%iterations, wp)/max(1, outcome%rows)
   end function iterations_each
 
-  !> The facts about a run, for reports that programs read.
+  !> List the facts about a run, for reports that programs read.
   subroutine find_facts(motion, outcome, facts)
     type(model_motion_type), intent(inout) :: motion      !< the motion, as far as it went
     type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
@@ -88,7 +88,7 @@ contains
     call facts_of(simulation%plan, outcome, simulation%driven, facts)
   end subroutine find_facts
 
-  !> The facts about a driven motion.
+  !> List the facts about a driven motion.
   subroutine facts_of(plan, outcome, driven, facts)
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(recording_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing

@@ -48,7 +48,7 @@ contains
     call work_driven(options, model, variable, diagnostics, reported, kept)
   end subroutine work
 
-  !> The work on a mechanism whose independent coordinates are all driven.
+  !> Carry out the work on a mechanism whose independent coordinates are all driven.
   subroutine work_driven(options, model, variable, diagnostics, reported, kept)
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in), target :: model               !< the model

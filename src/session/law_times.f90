@@ -1,4 +1,4 @@
-!> Laws of time held against the times of a run, before it begins.
+!> The check of laws of time at the times of a run, before it begins.
 module mech9_law_times
   use mech9_error, only: error_type
   use mech9_law, only: law_type

@@ -28,7 +28,7 @@ module mech9_run_report
       type(recording_outcome_type), intent(in) :: outcome     !< number of rows, and the times for solving and writing
     end subroutine print_interface
 
-    !> The facts about a run, for reports that programs read.
+    !> List the facts about a run, for reports that programs read.
     subroutine facts_interface(motion, outcome, facts)
       import :: model_motion_type, recording_outcome_type, facts_type
       type(model_motion_type), intent(inout) :: motion        !< the motion, as far as it went

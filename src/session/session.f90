@@ -163,7 +163,7 @@ contains
     call diagnostics%report(error_unit)
   end subroutine run_file
 
-  !> The files that are read: the data file, those that its groups name, and one of Dakota.
+  !> List the files that are read: the data file, those that its groups name, and one of Dakota.
   pure subroutine list_inputs(path, options, document, inputs)
     character(len=*), intent(in) :: path                       !< of the data file
     type(command_line_type), intent(in) :: options             !< the command line

@@ -154,8 +154,8 @@ contains
     end if
   end subroutine draw_graph
 
-  !> Fail in a check where a run would fail: at a start from which the motion cannot begin, or at drives without values at the end of
-  !> the time.
+  !> Fail in a check where a run would fail. The motion cannot begin at the start, or drives have no values at the end
+  !> of the time.
   subroutine check_motion(model, variable, run, err)
     type(model_type), intent(in), target :: model                   !< the model
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters

@@ -1,5 +1,6 @@
-!> The linear propagation of errors in a study whose values are drawn: by how much each parameter lets a quantity scatter, from the exact
-!> derivatives of the quantities where all parameters have their means. It costs one run with derivatives.
+!> The linear propagation of errors in a study whose values are drawn: by how much each parameter lets a quantity
+!> scatter. It uses the exact derivatives of the quantities where all parameters have their means. It costs one run with
+!> derivatives.
 module mech9_study_propagation
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp
@@ -25,7 +26,7 @@ module mech9_study_propagation
 
 contains
 
-  !> Find how all quantities scatter to first order. Fails where the run with derivatives does.
+  !> Find how all quantities scatter to first order. Fail where the run with derivatives fails.
   subroutine propagate(model, varied, interruption, found, err)
     type(model_type), intent(in) :: model                              !< the model with the values of the data file
     class(variable_model_type), intent(inout) :: varied                !< the model as a function of its parameters
@@ -53,7 +54,7 @@ contains
     end do
   end subroutine propagate
 
-  !> The shares of the parameters in the variance of a quantity.
+  !> Compute the shares of the parameters in the variance of a quantity.
   subroutine share_out(parameters, number, gradient, found)
     type(parameter_type), intent(in) :: parameters(:)   !< with their distributions
     real(wp), intent(in) :: number                      !< the quantity

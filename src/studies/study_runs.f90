@@ -1,8 +1,8 @@
-!> The runs of a study, or of a part of it: which one is made next, and what becomes of those that are made.
+!> The runs of a study, or of a part of it: choosing the next one to be made, and keeping those that are made.
 !>
-!> Whoever makes runs asks for a number (`hand_out`) and gives the run back when it is made (`take`); it does not matter how many
-!> do so at a time, in which order runs come back, or whether they are threads or processes, as long as the calls come one after
-!> the other. Results are written and added up in the order of the numbers, hence with the same bits in any case. Runs that are
+!> A maker of runs asks for a number (`hand_out`) and gives the run back when it is made (`take`). Several may do so at
+!> a time, threads or processes, and runs may come back in any order. Only the calls must come one after the other.
+!> Results are written and added up in the order of the numbers, hence with the same bits in any case. Runs that are
 !> made before their turn wait; so few numbers are handed out ahead that memory stays bounded.
 module mech9_study_runs
   use mech9_kinds, only: wp
@@ -20,8 +20,8 @@ module mech9_study_runs
   private
   public :: study_runs_type, all_handed_out, wait_for_others
 
-  !> Answers in place of the number of a run: there are no more runs, or so many are handed out ahead that others must be taken
-  !> first.
+  !> Answers in place of the number of a run: there are no more runs, or some must be taken before others are handed
+  !> out.
   integer, parameter :: all_handed_out = 0, wait_for_others = -1
 
   type :: study_runs_type

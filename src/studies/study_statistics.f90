@@ -59,7 +59,7 @@ contains
     if (size(self%sample%rows, 2) > 0) call self%sample%take([values, numbers])
   end subroutine add
 
-  !> The quantiles of a quantity. There is at least one run.
+  !> Compute the quantiles of a quantity. There is at least one run.
   subroutine quantiles(self, quantity, found)
     class(study_statistics_type), intent(in) :: self    !< the statistics
     integer, intent(in) :: quantity                     !< its number
@@ -74,7 +74,7 @@ contains
     end do
   end subroutine quantiles
 
-  !> The shares of the parameters in the variance of each quantity.
+  !> Compute the shares of the parameters in the variance of each quantity.
   subroutine shares(self, found)
     class(study_statistics_type), intent(in) :: self               !< the statistics
     type(shares_type), allocatable, intent(out) :: found(:)        !< (quantities)

@@ -46,7 +46,7 @@ contains
     allocate (self%power(n_quantities), source=minexponent(0.0_wp))
   end subroutine begin
 
-  !> Add a run that went to its end. The moments are brought up to date by Pébay's formulas, without loss of digits; they are those
+  !> Add a run that went to its end. The moments are updated by Pébay's formulas, without loss of digits. They are those
   !> of scaled numbers, since fourth powers of large ones would be infinite.
   pure subroutine add(self, numbers)
     class(study_sums_type), intent(inout) :: self   !< the sums

@@ -18,7 +18,7 @@ contains
     beginning = text(scan(text, separators, back=.true.) + 1:)
   end function beginning_of_word
 
-  !> The words with the same beginning, in their order.
+  !> List the words with the same beginning, in their order.
   pure subroutine completions(words, beginning, found)
     type(string_type), intent(in) :: words(:)                !< the words offered
     character(len=*), intent(in) :: beginning                !< the beginning of the word that is typed

@@ -25,8 +25,8 @@ module mech9_fit_script
   character, parameter :: line_end = achar(10)
   !> Most targets that are numbered in a plane, and along a function, where their order can be seen.
   integer, parameter :: most_in_plane = 60, most_of_function = 12
-  !> Room of a digit, and the height of a number [px]; and the parts of a picture and of a panel that axes and legend
-  !> leave free.
+  !> Room of a digit, and the height of a number [px]; and the parts of a picture and panel that axes and legend leave
+  !> free.
   real(wp), parameter :: digit = 9.0_wp, line_height = 15.0_wp, free_part(2) = [0.75_wp, 0.6_wp]
   !> Length of a direction in parts of the size of the targets.
   real(wp), parameter :: arrow = 0.08_wp

@@ -1,4 +1,5 @@
-!> The plot of results of a run: it is requested before the run, receives its rows, and is drawn at its end by gnuplot.
+!> The plot of the results of a run. It reads its request before the run, keeps the rows, and lets gnuplot draw them at
+!> the end.
 module mech9_plot
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

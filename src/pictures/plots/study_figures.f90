@@ -88,8 +88,8 @@ contains
     is_resolved = high - low > 1e3_wp*epsilon(low)*max(abs(low), abs(high))
   end function is_resolved
 
-  !> Compute the mean and the deviation of numbers over others: for each value of these if there are few, else in groups
-  !> of equally many runs.
+  !> Compute the mean and the deviation of numbers over others: for each value of these if they are few, else in groups
+  !> of equal size.
   pure subroutine find_effect(x, y, effect)
     real(wp), intent(in) :: x(:)               !< (runs) at least one
     real(wp), intent(in) :: y(:)               !< (runs)

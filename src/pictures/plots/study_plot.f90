@@ -1,4 +1,4 @@
-!> The plots of a study: each is requested before the runs, and is drawn after them from a sample of their rows.
+!> The plots of a study. Each reads its request before the runs, and draws a sample of their rows afterwards.
 module mech9_study_plot
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

@@ -10,8 +10,8 @@ module mech9_scene_paths
   private
   public :: add_paths, add_curves
 
-  !> Bounds for a straight line that replaces part of a curve: its largest distance from the curve [px], and the largest
-  !> number of points that it skips.
+  !> Bounds for a straight line that replaces part of a curve: its distance from the curve [px], and the number of
+  !> points that it skips.
   real(wp), parameter :: straight = 0.15_wp
   integer, parameter :: longest_straight = 40
 

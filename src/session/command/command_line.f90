@@ -37,7 +37,7 @@ module mech9_command_line
 
 contains
 
-  !> The words of this program's own command line, without the program's name.
+  !> Get the words of this program's own command line, without the program's name.
   subroutine get_command_words(words)
     type(string_type), allocatable, intent(out) :: words(:)  !< the words, without the program's name
     integer :: i, length
@@ -113,7 +113,7 @@ contains
     end do
   end function shell_length
 
-  !> A word in the form for a shell: in quotes where it holds letters with a meaning for the shell.
+  !> Write a word in the form for a shell: in quotes where it holds letters with a meaning for the shell.
   pure subroutine write_for_shell(word, text)
     character(len=*), intent(in) :: word     !< one word of the command line
     character(len=*), intent(inout) :: text  !< the word for the shell, of length shell_length(word)
@@ -317,7 +317,7 @@ contains
     if (place > 0) text = self%given(place)%argument
   end function argument
 
-  !> The arguments of an option that may be repeated, or has several, in their order.
+  !> List the arguments of an option that may be repeated, or has several, in their order.
   pure subroutine arguments(self, name, texts)
     class(command_line_type), intent(in) :: self             !< the command line
     character(len=*), intent(in) :: name                     !< name of the option, without the dashes
@@ -386,8 +386,8 @@ contains
     name = rest_of(self%given%name)
   end function rest
 
-  !> The table of an equilibrium or of modes: the file that is named, or standard output where no other result is asked for;
-  !> empty for none.
+  !> The table of an equilibrium or of modes: the file that is named, or standard output where no other result is
+  !> requested. It is empty for none.
   pure function table_of_answer(self) result(path)
     class(command_line_type), intent(in) :: self  !< the command line
     character(len=:), allocatable :: path

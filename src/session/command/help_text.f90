@@ -1,5 +1,5 @@
-!> The help of a program: its purpose, its options, its exit codes. --help, the manual page and the completion of the
-!> shell are made from these.
+!> The help of a program: its purpose, its options, its exit codes. These are also used by --help, the manual page and
+!> the completion of the shell.
 module mech9_help_text
   use mech9_program_kind, only: dynamics, program_names, belongs_to
   use mech9_error, only: exit_done, exit_internal, exit_usage, exit_data, exit_structure, exit_assembly, &

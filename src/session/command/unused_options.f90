@@ -53,7 +53,7 @@ contains
     if (allocated(model%request%output%animation)) pictures_of = pictures_of .or. model%request%output%animation /= ''
   end function pictures_of
 
-  !> The given ones of some options, as a list: "--table, --hdf5".
+  !> List the given ones of some options: "--table, --hdf5".
   pure subroutine list_given(options, names, list)
     type(command_line_type), intent(in) :: options      !< the command line
     character(len=*), intent(in) :: names(:)            !< names of options, without the dashes

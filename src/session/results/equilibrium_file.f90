@@ -15,8 +15,8 @@ module mech9_equilibrium_file
 
 contains
 
-  !> Put rows into a file: the first column is the scale of the others, columns of coordinates become one data set, and those of
-  !> forces are left to put_forces.
+  !> Put rows into a file. The first column is the scale of the others. Columns of coordinates become one data set, and
+  !> those of forces are left to put_forces.
   subroutine put_rows(file, columns, rows, first, n_coordinates, suffixes)
     type(hdf5_file_type), intent(inout) :: file       !< the open file
     type(columns_type), intent(in) :: columns         !< of the rows

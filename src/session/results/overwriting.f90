@@ -1,4 +1,4 @@
-!> Check that no file to be written is a file of the input or another result, before any file is changed.
+!> The check that no file to be written is a file of the input or another result, before any file is changed.
 module mech9_overwriting
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type
@@ -14,7 +14,7 @@ module mech9_overwriting
 
 contains
 
-  !> Fails with exit_usage where a file of the input, or another result, would be written over.
+  !> Fail with exit_usage where a file of the input, or another result, would be written over.
   subroutine refuse_overwriting(options, inputs, err, output)
     type(command_line_type), intent(in) :: options               !< the command line
     type(string_type), intent(in) :: inputs(:)                   !< paths of the files that are read
@@ -77,9 +77,9 @@ contains
     end do
   end subroutine refuse_output
 
-  !> Whether two results of one place are written one after the other: on standard output itself, or in a pipe, which
-  !> loses nothing, if one of them is written to standard output. There are two arguments because a list of them, made for
-  !> the call, would leak (gfortran 12).
+  !> Whether two results of one place are written one after the other. They are on standard output itself; or in a pipe,
+  !> which loses nothing, if one of them is written to standard output. There are two arguments because a list of them,
+  !> made for the call, would leak (gfortran 12).
   pure logical function follow_each_other(first, second, place)
     type(written_file_type), intent(in) :: first    !< the result that is named first
     type(written_file_type), intent(in) :: second   !< the other result

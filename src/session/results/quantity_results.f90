@@ -12,7 +12,7 @@ module mech9_quantity_results
 
 contains
 
-  !> The quantities as facts, for the HDF5 file.
+  !> List the quantities as facts, for the HDF5 file.
   subroutine find_facts(quantities, facts)
     type(quantity_record_type), intent(in) :: quantities   !< of a run
     type(facts_type), intent(out) :: facts                 !< the quantities; NaN before the end of the run
@@ -79,7 +79,7 @@ contains
     end do
   end subroutine print_quantities
 
-  !> The quantities as a list in a report:
+  !> Write the quantities as a list in a report:
   !> [{"name": "stroke", "value": 0.6, "unit": "m", "gradient": [{"parameter": "crank", "value": 2.0}]}, ...]
   subroutine report_quantities(quantities, json)
     type(quantity_record_type), intent(in) :: quantities   !< of a run

@@ -34,9 +34,9 @@ module mech9_recording
 
 contains
 
-  !> Record the rows at all output times in the results, which stay open. When the motion cannot go on, or the
-  !> user interrupts, the computed rows are written first. A motion that takes long to its next output pauses: rows before reach
-  !> the files, and the user is told where it stands.
+  !> Record the rows at all output times in the results, which stay open. When the motion cannot go on, or the user
+  !> interrupts, the computed rows are written first. A motion that takes long to its next output pauses: earlier rows
+  !> reach the files, and the user is told its place.
   subroutine record(source, model, results, quiet, outcome, err, kept)
     type(row_source_type), intent(inout) :: source              !< computes the rows
     type(model_type), intent(in) :: model       !< the model

@@ -1,4 +1,4 @@
-!> The interruption of motions by the user of a program, who is told where a motion stands that takes long.
+!> The interruption of motions by the user of a program, and the message on the place of a motion that takes long.
 module mech9_signal_interruption
   use mech9_clock, only: pacer_type
   use mech9_system, only: interrupted

@@ -1,4 +1,4 @@
-!> Words while nothing new can be shown, since a run goes on: a line after ten seconds tells where its motion is.
+!> Words while a run goes on without new rows: a line after ten seconds that tells the place of its motion.
 module mech9_waiting_words
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -88,7 +88,7 @@ contains
     end associate
   end subroutine look
 
-  !> The result is there, or there will be none.
+  !> End the waiting: the result is there, or there will be none.
   subroutine finish(self)
     class(waiting_words_type), intent(inout) :: self   !< the words
 

@@ -32,8 +32,8 @@ module mech9_written_files
 
 contains
 
-  !> The paths of the results of a run: the command line comes before the data file. If no result is requested, the table
-  !> is written to standard output.
+  !> Choose the paths of the results of a run: the command line comes before the data file. If no result is requested,
+  !> the table is written to standard output.
   pure subroutine find_result_paths(options, output, paths)
     type(command_line_type), intent(in) :: options     !< the command line
     type(output_settings_type), intent(in) :: output   !< the group &output of the data file

@@ -1,8 +1,8 @@
 !> The files by which Dakota asks for one evaluation of a model, and gets its answer.
 !>
-!> The parameters file has its standard form, in which each line is a value and a tag, or that of APREPRO, `{ tag = value }`: the
-!> variables, the active set vector, and the variables of the derivatives, each list with its length before it. See "Parameters file
-!> format" and "Results file format" in the manual of Dakota.
+!> The parameters file has its standard form, in which each line is a value and a tag, or that of APREPRO, `{ tag =
+!> value }`. It lists the variables, the active set vector, and the variables of the derivatives, each list with its
+!> length before it. See "Parameters file format" and "Results file format" in the manual of Dakota.
 module mech9_dakota_file
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, add_place, exit_data

@@ -26,8 +26,8 @@ module mech9_dakota_task
 
 contains
 
-  !> Make the run that Dakota asks for, and write its quantities. A run that fails is told to Dakota, and is no failure of the
-  !> program; a request that cannot be understood is one, and leaves no results.
+  !> Make the run that Dakota asks for, and write its quantities. A run that fails is reported to Dakota, and is no
+  !> failure of the program. A request that cannot be understood is one, and leaves no results.
   subroutine work_for_dakota(options, varied, model, diagnostics)
     type(command_line_type), intent(in) :: options          !< the command line, with --dakota
     class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters

@@ -1,4 +1,5 @@
-!> All columns of the runs of a study in its HDF5 file, over the runs and time, under the names that the file of a single run has.
+!> All columns of the runs of a study in its HDF5 file, over the runs and time. They have the names of the columns of a
+!> single run.
 !>
 !> A row of the data sets is a run with the columns of all its times, one time after the other. Rows are written one by one, so that
 !> a run is in the file before its exit code is.
@@ -117,7 +118,8 @@ contains
     call fill_rows(self%series, file, self%numbers, runs)
   end subroutine create_like
 
-  !> Open the data sets of a file that is continued. It is a failure of the file where they are not those of the runs of the model.
+  !> Open the data sets of a file that is continued. It is a failure of the file where they are not those of the runs of
+  !> the model.
   subroutine open_columns(self, file, columns, model, runs)
     class(study_columns_type), intent(inout) :: self   !< the columns
     type(hdf5_file_type), intent(inout) :: file        !< the open file

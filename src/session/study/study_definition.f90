@@ -23,8 +23,9 @@ module mech9_study_definition
 
 contains
 
-  !> The program, the groups of the data file with the changes by --set, and a digest of each file that the groups name: one line
-  !> for each. Blanks, comments, the files of the results and the number of starts do not matter. Fails with exit_file where a file cannot be read.
+  !> Form the definition. It has a line for the program, for each group of the data file with the changes by --set, and
+  !> for each file that groups name. The line of a file is its digest. Blanks, comments, the files of the results and
+  !> the number of starts do not matter. Fail with exit_file where a file cannot be read.
   subroutine define_study(program, document, text, err)
     integer, intent(in) :: program                           !< kinematics or dynamics
     type(document_type), intent(in) :: document              !< the data file as groups and items, with the changes by --set
@@ -47,7 +48,7 @@ contains
     end do
   end subroutine define_study
 
-  !> A group as a line; empty where nothing in it changes numbers.
+  !> Write a group as a line; empty where nothing in it changes numbers.
   subroutine write_group(group, line)
     type(group_type), intent(in) :: group                    !< the group
     character(len=:), allocatable, intent(out) :: line       !< the line with its end

@@ -1,6 +1,6 @@
-!> The HDF5 file of a study. It has a place for every run of the part from the beginning, which is NaN, with the exit code -1, until
-!> the run is made; so a program that is killed at any moment leaves a file whose runs are either whole or not made. Columns of a run,
-!> where the file has them, are written before its exit code.
+!> The HDF5 file of a study. It has a place for every run of the part from the beginning. The place is NaN, with the
+!> exit code -1, until the run is made. A program that is killed at any moment thus leaves a file whose runs are either
+!> whole or not made. Columns of a run, where the file has them, are written before its exit code.
 module mech9_study_file
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_interrupted
@@ -104,7 +104,8 @@ contains
     call self%tell(err)
   end subroutine copy_columns
 
-  !> Open the columns of a file that is continued. Fails with exit_file where they are not those of the runs of the model.
+  !> Open the columns of a file that is continued. Fail with exit_file where they are not those of the runs of the
+  !> model.
   subroutine open_columns(self, columns, model, err)
     class(study_file_type), intent(inout) :: self             !< the file
     type(columns_type), intent(in) :: columns                 !< of a run
@@ -165,8 +166,8 @@ contains
     call numbers%close(self%file)
   end subroutine write_numbers
 
-  !> Open a file that is there: to make what is missing in it, or to read it. Fails with exit_file where it is not the file of a
-  !> study, or that of another study than the one that is defined.
+  !> Open an existing file, to make what is missing in it or to read it. Fail with exit_file where it is not the file of
+  !> a study, or that of another study than the one that is defined.
   subroutine open(self, path, writable, definition, err)
     class(study_file_type), intent(out) :: self               !< the file
     character(len=*), intent(in) :: path                      !< of the file
@@ -286,7 +287,7 @@ contains
     call self%tell(err)
   end subroutine write_row
 
-  !> Write all runs and close the file. Does nothing to a file that is not open.
+  !> Write all runs and close the file. Do nothing to a file that is not open.
   subroutine close_file(self, err)
     class(study_file_type), intent(inout) :: self       !< the file
     type(error_type), allocatable, intent(out) :: err   !< allocated if it cannot be written

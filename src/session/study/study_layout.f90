@@ -34,7 +34,7 @@ contains
     if (self%part(1) <= self%runs) n = 1 + (self%runs - self%part(1))/self%part(2)
   end function runs_of_part
 
-  !> The layout of a study.
+  !> Form the layout of a study.
   subroutine layout_of(model, quantities, definition, part, layout)
     type(model_type), intent(in) :: model                     !< the model with the values of the data file
     type(quantity_record_type), intent(in) :: quantities      !< with their columns

@@ -62,7 +62,7 @@ contains
     end if
   end subroutine merge_studies
 
-  !> Open all files. Fails with exit_file where one is not of the study of the first one.
+  !> Open all files. Fail with exit_file where one is not of the study of the first one.
   subroutine open_files(paths, files, err)
     type(string_type), intent(in) :: paths(:)               !< of the files
     type(study_file_type), intent(inout) :: files(:)        !< the files
@@ -219,8 +219,8 @@ contains
     if (allocated(from%failure)) call to%fail("the origin in '"//from%path//"' cannot be read")
   end subroutine copy_provenance
 
-  !> Gather runs that follow each other from the files; not made where none has them. Fails with exit_file where two files have
-  !> different numbers for one run.
+  !> Gather runs that follow each other from the files; not made where none has them. Fail with exit_file where two
+  !> files have different numbers for one run.
   subroutine gather(paths, files, first, rows, source, overlap, err)
     type(string_type), intent(in) :: paths(:)               !< of the files
     type(study_file_type), intent(inout) :: files(:)        !< the files
@@ -300,7 +300,7 @@ contains
     end if
   end subroutine count_run
 
-  !> Tell what the whole study has, what it lacks, and what more than one part had.
+  !> Tell which runs the whole study has, which it lacks, and which more than one part had.
   subroutine print_merge(options, paths, runs, sums, overlap)
     type(command_line_type), intent(in) :: options     !< the command line
     type(string_type), intent(in) :: paths(:)          !< of the files

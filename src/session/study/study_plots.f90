@@ -53,7 +53,7 @@ contains
     end do
   end subroutine open_plots
 
-  !> Draw all plots, and print a line about each. The first failure is told; the other plots are drawn all the same.
+  !> Draw all plots, and print a line about each. Return the first failure; the other plots are drawn all the same.
   subroutine draw_plots(self, statistics, unit, quiet, err)
     class(study_plots_type), intent(inout) :: self          !< the plots
     type(study_statistics_type), intent(in) :: statistics   !< with a sample of the runs

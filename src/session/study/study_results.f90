@@ -104,7 +104,7 @@ contains
     end if
   end subroutine begin_columns
 
-  !> Open the file that is continued, of the part that it knows itself.
+  !> Open the file to be continued, for the part of the study that is noted in it.
   subroutine continue_file(self, options, definition, err)
     class(study_results_type), intent(inout) :: self          !< the files
     type(command_line_type), intent(in) :: options            !< the command line

@@ -1,4 +1,4 @@
-!> The work on a study: its files are opened, its runs are made, and it is told how they went.
+!> The work on a study: opening its files, making its runs, and telling how they went.
 module mech9_study_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
@@ -121,7 +121,7 @@ contains
     threads = max(1, min(threads, most_threads, model%request%study%runs))
   end function threads_of_study
 
-  !> Tell what the user may have expected of the study, and does not get.
+  !> Note what the user may expect of the study but does not get.
   subroutine print_notes(options, model)
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in) :: model                   !< the model

@@ -19,7 +19,8 @@ module mech9_study_words
 
 contains
 
-  !> Print how the study went: failed runs by code, and the quantities. For values that were drawn, means and deviations are told.
+  !> Print how the study went: failed runs by code, and the quantities. For values that were drawn, print means and
+  !> deviations.
   subroutine print_study(unit, model, quantities, sums, statistics, propagation, time)
     integer, intent(in) :: unit                            !< Fortran unit to write to
     type(model_type), intent(in) :: model                  !< the model
@@ -137,8 +138,8 @@ contains
     end if
   end subroutine print_propagation
 
-  !> Write the report of a study as JSON: the runs, the failed ones by code, the ranges of parameters and quantities, and of values
-  !> that were drawn how the quantities scatter.
+  !> Write the report of a study as JSON: the runs, the failed ones by code, and the ranges of parameters and
+  !> quantities. For values that were drawn it has the scatter of the quantities.
   subroutine save_study_report(path, model, quantities, values, sums, statistics, propagation, table_path, &
                                diagnostics, err)
     character(len=*), intent(in) :: path                   !< of the report

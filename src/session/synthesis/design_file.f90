@@ -17,7 +17,8 @@ module mech9_design_file
 
 contains
 
-  !> The text of the data file with other values of its parameters, and with the coordinates of an assembly at its start.
+  !> Form the text of the data file with other values of its parameters, and with the coordinates of an assembly at its
+  !> start.
   pure subroutine text_of_design(document, model, values, q, history, text)
     type(document_type), intent(in) :: document            !< the data file, without changes by --set
     type(model_type), intent(in) :: model                  !< the model of the design

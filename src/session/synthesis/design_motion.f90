@@ -46,8 +46,8 @@ contains
     call motion%run%motion%assemble(motion%model, err)
   end subroutine new_design_motion
 
-  !> The places of a point of a link, the direction of the x axis of the link, and the coordinates, at times in their order from the
-  !> start of the run on.
+  !> Compute the places of a point of a link, the direction of the x axis of the link, and the coordinates. The times
+  !> stand in their order from the start of the run on.
   subroutine visit(self, times, link, point, places, directions, q, err)
     class(design_motion_type), intent(inout), target :: self  !< the motion
     real(wp), intent(in) :: times(:)                          !< (n) times [s]

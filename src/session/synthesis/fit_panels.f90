@@ -26,8 +26,8 @@ module mech9_fit_panels
 
 contains
 
-  !> Append the panels of an objective: of a path and of poses the plane, or the three planes; of a function its curve and the
-  !> differences at the targets.
+  !> Append the panels of an objective. A path and poses have the plane, or the three planes; a function has its curve
+  !> and the differences at the targets.
   subroutine append_panels(motion, synthesis, number, name, panels, err)
     type(design_motion_type), intent(inout), target :: motion        !< of the best design
     type(synthesis_type), intent(in) :: synthesis                    !< with its targets, and its optima, best first

@@ -1,4 +1,4 @@
-!> Judges before a search begins whether it can be made: its methods, its quantities, its limits.
+!> The judgement before a search whether it can be made: by its methods, its quantities, its limits.
 module mech9_optimum_check
   use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp

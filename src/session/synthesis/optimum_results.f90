@@ -1,5 +1,5 @@
-!> The files of a synthesis: a table with a row for each distinct design, an HDF5 file with the starts and the designs, and the data
-!> file of the best design.
+!> The files of a synthesis: a table of the distinct designs, an HDF5 file of starts and designs, and the best design's
+!> data file.
 module mech9_optimum_results
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
@@ -28,8 +28,9 @@ module mech9_optimum_results
 
 contains
 
-  !> Make room for all starts, read those that were made before, and open the HDF5 file, where one is asked for. A file that is
-  !> continued is written anew, with all places and with the starts that it has; until that is done it stays as it is.
+  !> Make room for all starts, read those that were made before, and open the HDF5 file, where one is requested. A file
+  !> that is continued is written anew, with all places and with the starts that it has. Until that is done it stays as
+  !> it is.
   subroutine open_starts(options, document, model, synthesis, starts, err)
     type(command_line_type), intent(in) :: options          !< the command line
     type(document_type), intent(in) :: document             !< the data file as groups and items, with the changes by --set
@@ -66,8 +67,8 @@ contains
     end do
   end subroutine write_made
 
-  !> Write the file anew, with the designs, and close it. Where that fails, as on a full disk, the file stays as it is, with all starts,
-  !> and the search can be continued.
+  !> Write the file anew, with the designs, and close it. Where that fails, as on a full disk, the file stays as it is,
+  !> with all starts. The search can then be continued.
   subroutine write_whole_file(options, document, model, synthesis, starts, err)
     type(command_line_type), intent(in) :: options          !< the command line
     type(document_type), intent(in) :: document             !< the data file
@@ -141,7 +142,7 @@ contains
     end subroutine tell
   end subroutine write_results
 
-  !> The data file of the best design.
+  !> Form the data file of the best design.
   subroutine text_of_best(document, model, synthesis, text)
     type(document_type), intent(in) :: document             !< the data file
     type(model_type), intent(in) :: model                   !< the model

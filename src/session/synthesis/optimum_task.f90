@@ -125,7 +125,7 @@ contains
     end do
   end function changes_design
 
-  !> Make all starts that are missing. Fails where the user interrupts; the starts so far then count.
+  !> Make all starts that are missing. Fail where the user interrupts; the starts so far then count.
   subroutine make_starts(options, variable, model, synthesis, starts, err)
     type(command_line_type), intent(in) :: options           !< the command line
     class(variable_model_type), intent(in) :: variable       !< the model as a function of its parameters

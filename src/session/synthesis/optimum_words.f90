@@ -67,7 +67,7 @@ contains
     end function at_bound
   end subroutine print_optimum
 
-  !> Comments that tell where a design comes from.
+  !> Write comments that tell where a design comes from.
   subroutine history_of_design(model, synthesis, text)
     type(model_type), intent(in) :: model                    !< the model
     type(synthesis_type), intent(in) :: synthesis            !< with its optima, best first

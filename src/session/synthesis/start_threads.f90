@@ -1,7 +1,8 @@
 !> The starts of a synthesis on the cores of one machine.
 !>
-!> Compiled without OpenMP, its directives are comments, and one thread makes all starts. The designs to which a start leads depend on
-!> its number alone, and are added in the order of these numbers, so that the result does not depend on the threads.
+!> Compiled without OpenMP, its directives are comments, and one thread makes all starts. The designs to which a start
+!> leads depend on its number alone. They are added in the order of these numbers, so that the result does not depend on
+!> the threads.
 module mech9_start_threads
   use mech9_variable_model, only: variable_model_type
   use mech9_design_search, only: found_design_type

@@ -1,7 +1,7 @@
-!> The starts of a synthesis: which one is made next, and what becomes of those that are made.
+!> The starts of a synthesis: choosing the next one to be made, and keeping those that are made.
 !>
-!> Whoever makes starts asks for a number (`hand_out`) and gives the designs back when the start is made (`take`); it does not matter
-!> how many do so at a time, as long as the calls come one after the other. A start is in the file as soon as it is taken.
+!> A maker of starts asks for a number (`hand_out`) and gives the designs back when the start is made (`take`). Several
+!> may do so at a time, as long as the calls come one after the other. A start is in the file as soon as it is taken.
 module mech9_starts
   use mech9_program_kind, only: program_names
   use mech9_kinds, only: wp

@@ -1,5 +1,6 @@
-!> The starts of a synthesis in its HDF5 file. It has a place for every start from the beginning, which is empty, with the count -1,
-!> until the start is made; so a program that is killed at any moment leaves a file whose starts are either whole or not made.
+!> The starts of a synthesis in its HDF5 file. It has a place for every start from the beginning. The place is empty,
+!> with the count -1, until the start is made. A program that is killed at any moment thus leaves a file whose starts
+!> are either whole or not made.
 module mech9_starts_file
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
@@ -23,8 +24,8 @@ module mech9_starts_file
     type(found_design_type), allocatable :: found(:)
   end type start_type
 
-  !> Extents of the designs of one start, and their places in its row: for each design its value, parameters, coordinates and
-  !> times, one design behind the other, and their number at the end.
+  !> Extents of the designs of one start, and their places in its row. The row has for each design its value,
+  !> parameters, coordinates and times, one design behind the other, and their number at the end.
   type :: layout_type
     integer :: parameters = 0
     integer :: coordinates = 0
@@ -189,7 +190,7 @@ contains
     call self%series%hand_over(self%file)
   end subroutine write_start
 
-  !> Close the file. Does nothing to a file that is not open.
+  !> Close the file. Do nothing to a file that is not open.
   subroutine close_file(self, err)
     class(starts_file_type), intent(inout) :: self      !< the file
     type(error_type), allocatable, intent(out) :: err   !< allocated if it cannot be written
@@ -210,8 +211,8 @@ contains
     err = self%file%failure
   end subroutine tell
 
-  !> Read the starts of a file that is there. Fails with exit_file where it is not the file of a search, or that of another problem,
-  !> or where it has more starts than are wanted.
+  !> Read the starts of an existing file. Fail with exit_file where it is not the file of a search, is that of another
+  !> problem, or has too many starts.
   subroutine read_starts(path, model, synthesis, definition, starts, err)
     character(len=*), intent(in) :: path                    !< of the file
     type(model_type), intent(in) :: model                   !< the model
@@ -236,7 +237,7 @@ contains
     if (allocated(file%failure)) err = file%failure
   end subroutine read_starts
 
-  !> It is a failure of the file where it is not one of this problem, or has more starts than are wanted.
+  !> Let the file fail where it is not one of this problem, or has more starts than are wanted.
   subroutine judge_definition(file, definition, most, wanted)
     type(hdf5_file_type), intent(inout) :: file             !< the open file
     character(len=*), intent(in) :: definition              !< text that determines the search but for the number of starts

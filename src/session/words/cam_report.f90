@@ -54,7 +54,7 @@ contains
       call json%end_object()
     end associate
   contains
-    !> An extreme value with its place.
+    !> Add an extreme value with its place.
     subroutine add_extreme(name, contact, value)
       character(len=*), intent(in) :: name              !< name in the report
       type(cam_contact_type), intent(in) :: contact     !< the contact with this value
@@ -66,7 +66,7 @@ contains
       call json%end_object()
     end subroutine add_extreme
 
-    !> A place along the profile.
+    !> Add a place along the profile.
     subroutine add_place(name, contact)
       character(len=*), intent(in) :: name              !< name in the report
       type(cam_contact_type), intent(in) :: contact     !< the contact
@@ -76,7 +76,7 @@ contains
       call json%end_object()
     end subroutine add_place
 
-    !> Coordinate of the cam and time.
+    !> Add the coordinate of the cam and the time.
     subroutine add_position(contact)
       type(cam_contact_type), intent(in) :: contact     !< the contact
 

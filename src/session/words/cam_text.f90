@@ -99,7 +99,7 @@ contains
     call print_undercut(unit, model, number, profile)
     call print_jumps(unit, model)
   contains
-    !> The least radius of curvature of one kind.
+    !> Print the least radius of curvature of one kind.
     subroutine print_radius(kind, contact)
       character(len=*), intent(in) :: kind              !< convex or concave
       type(cam_contact_type), intent(in) :: contact     !< the contact with this radius
@@ -155,7 +155,7 @@ contains
       ' does not move its follower as asked: take a larger base circle'// &
       trim(merge(' or a smaller roller', '                    ', model%request%cams(number)%roller > 0.0_wp))
   contains
-    !> One range.
+    !> Print one range.
     subroutine print_range(first, last)
       type(cam_contact_type), intent(in) :: first   !< its first contact
       type(cam_contact_type), intent(in) :: last    !< its last contact

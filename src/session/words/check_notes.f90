@@ -18,7 +18,8 @@ module mech9_check_notes
   integer, parameter :: longest_list = 24
   !> A rate from `fast` on that is a multiple of `whole` [rad/s] was probably meant in degrees.
   real(wp), parameter :: fast = 45.0_wp, whole = 15.0_wp
-  !> An angle in degrees whose number is so near, relatively, to that of a few quarters of a turn in radians was probably
+  !> An angle in degrees may have a number that is so near, relatively, to that of a few quarters of a turn in radians.
+  !> It was probably meant in radians: pi is often rounded to 3.14.
 !> meant in radians: pi is often rounded to 3.14.
   real(wp), parameter :: rounded_pi = 1.0e-3_wp
   integer, parameter :: most_quarters = 8

@@ -30,7 +30,7 @@ contains
     end do
   end subroutine print_jumps
 
-  !> The lines for one drive.
+  !> Print the lines for one drive.
   subroutine print_jumps_of(unit, drive, start, end)
     integer, intent(in) :: unit             !< Fortran unit to write to
     class(law_type), intent(in) :: drive    !< the drive
@@ -62,7 +62,7 @@ contains
                                                        .not. changes(1, :n) > least_jump*largest(1)))
   end subroutine print_jumps_of
 
-  !> One line with the times of jumps; none where there are none.
+  !> Print one line with the times of jumps; none where there are none.
   subroutine print_times(unit, drive, name, times)
     integer, intent(in) :: unit             !< Fortran unit to write to
     class(law_type), intent(in) :: drive    !< the drive

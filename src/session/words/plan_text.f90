@@ -126,7 +126,8 @@ contains
     end associate
   end subroutine print_plane
 
-  !> Write the directions in which the links of a chain can move, as in "turning about (0, 0, 1), sliding along (1, 0, 0),
+  !> Write the directions in which the links of a chain can move. An example is "turning about (0, 0, 1), sliding along
+  !> (1, 0, 0), (0, 1, 0) of link 1". Write nothing where all six motions are possible.
 !> (0, 1, 0) of link 1"; nothing where all six motions are possible.
   subroutine print_basis(unit, structure, plan, closure)
     integer, intent(in) :: unit                !< Fortran unit to write to
