@@ -1,4 +1,5 @@
-!> A system of ordinary differential equations as an integrator uses it: its rate of change, and the correction of an accepted step.
+!> A system of ordinary differential equations as an integrator uses it: its rate of change, and the projection of an
+!> accepted step.
 module mech9_ode_system
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_internal, exit_singular, exit_integrator
@@ -9,13 +10,13 @@ module mech9_ode_system
 
   !> A system of ordinary differential equations y' = f(t, y), with its data.
   type, abstract :: ode_system_type
-    !> Whether `settle` is to be called after each accepted step.
-    logical :: settles = .false.
+    !> Whether `project` is to be called after each accepted step.
+    logical :: projects = .false.
     !> Whether `jacobian` can be called; otherwise methods that need a Jacobian take differences of the rate.
     logical :: has_jacobian = .false.
   contains
     procedure(rate_interface), deferred :: rate
-    procedure :: settle => nothing_to_settle
+    procedure :: project => no_projection
     procedure :: jacobian => no_jacobian
   end type ode_system_type
 
@@ -37,15 +38,15 @@ module mech9_ode_system
 
 contains
 
-  !> Correct y after an accepted step, so that it satisfies conditions that the equations do not keep exactly, by a change
-  !> not much larger than the tolerance. After a failure the step is made again, smaller, by the rule of `rate`. (This
-  !> procedure, for systems without such conditions, does nothing.)
-  subroutine nothing_to_settle(self, t, y, err)
+  !> Project y after an accepted step onto conditions that the equations do not keep exactly, by a change not much
+  !> larger than the tolerance. After a failure the step is made again, smaller, by the rule of `rate`. (This procedure,
+  !> for systems without such conditions, does nothing.)
+  subroutine no_projection(self, t, y, err)
     class(ode_system_type), intent(inout) :: self       !< the equations, with their data and scratch
     real(wp), intent(in) :: t                           !< [s]
-    real(wp), intent(inout) :: y(:)                     !< values at t; the settled ones afterwards
+    real(wp), intent(inout) :: y(:)                     !< values at t; the projected ones afterwards
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-  end subroutine nothing_to_settle
+  end subroutine no_projection
 
   !> Derivatives of the rate: jac(i, j) = d ydot(i)/d y(j). Fails by the rule of `rate`. (This procedure, for systems
   !> without a Jacobian, always fails.)

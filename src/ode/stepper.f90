@@ -48,8 +48,8 @@ module mech9_stepper
   end type stepper_type
 
   abstract interface
-    !> One accepted and settled step, at most to t_stop, which is met exactly. Without success t and y
-    !> mean nothing, and the method must be restarted.
+    !> One accepted step and its projection, at most to t_stop, which is met exactly. Without success t and y mean
+    !> nothing, and the method must be restarted.
     subroutine advance_interface(self, t_stop, t, y, outcome)
       import :: stepper_type, wp
       class(stepper_type), intent(inout) :: self   !< the method at work

@@ -167,18 +167,18 @@ contains
     flag = FCVode(self%memory, t_stop, self%vector, t_reached, CV_ONE_STEP)
   end subroutine make_step
 
-  !> CVODE goes on after a failure of any kind, and lets no system settle.
+  !> CVODE goes on after a failure of any kind, and lets no system project.
   subroutine finish_step(self, t, y, outcome)
     class(multistep_type), intent(inout) :: self   !< the method at work
     real(wp), intent(in) :: t                      !< end of the step [s]
     real(wp), intent(inout) :: y(:)                !< values there
     integer, intent(out) :: outcome                !< `stepped`, or why it failed
-    logical :: settled
+    logical :: projected
 
     outcome = merge(evaluation_failed, stepped, self%box%broken)
-    if (self%box%broken .or. .not. self%box%system%settles) return
-    call self%box%settle(t, y, settled)
-    if (settled) then
+    if (self%box%broken .or. .not. self%box%system%projects) return
+    call self%box%project(t, y, projected)
+    if (projected) then
       self%history = y
     else
       outcome = evaluation_failed

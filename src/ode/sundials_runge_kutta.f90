@@ -9,7 +9,7 @@ module mech9_sundials_runge_kutta
   use mech9_stepper, only: stepper_counts_type
   use mech9_sundials, only: N_Vector, last_stage_mistaken, silence_erkstep, form_own_sums
   use mech9_sundials_stepper, only: sundials_stepper_type, most_failures, meaning
-  use mech9_sundials_system, only: evaluate_rate, settle_step
+  use mech9_sundials_system, only: evaluate_rate, project_step
   use farkode_mod, only: FARKodeButcherTable_Create, FARKodeButcherTable_Free, ARK_ONE_STEP, ARK_MEM_FAIL, ARK_ILL_INPUT, &
     ARKODE_DORMAND_PRINCE_7_4_5, ARKODE_VERNER_8_5_6, ARKODE_FEHLBERG_13_7_8
   use farkode_erkstep_mod, only: FERKStepCreate, FERKStepFree, FERKStepReset, FERKStepEvolve, FERKStepSVtolerances, &
@@ -130,8 +130,8 @@ contains
     if (flag == 0) flag = FERKStepSetMaxErrTestFails(self%memory, most_failures)
     if (flag /= 0) return
     self%box%reuses_last_rate = last_stage_mistaken .and. method%reuses_last
-    if (self%box%system%settles .or. (last_stage_mistaken .and. .not. method%reuses_last)) &
-      flag = FERKStepSetPostprocessStepFn(self%memory, c_funloc(settle_step))
+    if (self%box%system%projects .or. (last_stage_mistaken .and. .not. method%reuses_last)) &
+      flag = FERKStepSetPostprocessStepFn(self%memory, c_funloc(project_step))
   end subroutine set_options
 
   !> SUNDIALS calls this function for the length of the next step, or of a new trial. It answers 0.

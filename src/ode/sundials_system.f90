@@ -10,7 +10,7 @@ module mech9_sundials_system
   use fsunmatrix_dense_mod, only: FSUNDenseMatrix_Data
   implicit none
   private
-  public :: system_box_type, evaluate_rate, settle_step, evaluate_jacobian
+  public :: system_box_type, evaluate_rate, project_step, evaluate_jacobian
 
   !> The box that is passed through C: the system, and the outcomes of its evaluations.
   type :: system_box_type
@@ -23,7 +23,7 @@ module mech9_sundials_system
     integer(long) :: failed_at = 0             !< rate evaluations up to this failure
     integer(long) :: rate_evaluations = 0      !< in all
     integer(long) :: refusals = 0              !< failures that a smaller step may help
-    !> Whether the rate after settling is taken from the last stage, of the same time and nearly the same y.
+    !> Whether the rate after a projection is taken from the last stage, of the same time and nearly the same y.
     logical :: reuses_last_rate = .false.
     logical :: watches = .false.               !< the reaction of the equations to changes is watched
     real(wp) :: t_from = 0.0_wp                !< start of the step that is made [s]
@@ -32,10 +32,10 @@ module mech9_sundials_system
     real(wp), allocatable :: direction(:)      !< change of the rate in these evaluations
     real(wp), allocatable, private :: y_before(:), rate_before(:)   !< of the last evaluation
     real(wp), private :: t_before = 0.0_wp     !< of the last evaluation [s]
-    logical :: has_settled = .false.                    !< the step has just settled, and SUNDIALS evaluates the rate there next
+    logical :: has_projected = .false.                  !< y was just projected, and SUNDIALS evaluates the rate there next
     real(c_double), pointer :: last_rate(:) => null()   !< the rate of the last stage, in SUNDIALS' memory
   contains
-    procedure :: settle
+    procedure :: project
     procedure :: has_cause
     procedure :: watch
   end type system_box_type
@@ -57,8 +57,8 @@ contains
     if (box%broken) return   ! CVODE's iteration goes on after a failure of any kind
     y_values => FN_VGetArrayPointer(y)
     ydot_values => FN_VGetArrayPointer(ydot)
-    if (box%has_settled) then
-      box%has_settled = .false.
+    if (box%has_projected) then
+      box%has_projected = .false.
       do i = 1, size(ydot_values)
         ydot_values(i) = box%last_rate(i)
       end do
@@ -110,22 +110,21 @@ contains
     end do
   end subroutine compare
 
-  !> SUNDIALS calls this function after a step that passed its error test, to let the system settle. It answers as
-  !> evaluate_rate.
-  integer(c_int) function settle_step(t, y, context) bind(c) result(answer)
+  !> Project y. SUNDIALS calls this function after a step that passed its error test. It answers as evaluate_rate.
+  integer(c_int) function project_step(t, y, context) bind(c) result(answer)
     real(c_double), value :: t      !< time from the origin [s]
-    type(N_Vector), target :: y     !< values at t; the settled ones afterwards
+    type(N_Vector), target :: y     !< values at t; the projected ones afterwards
     type(c_ptr), value :: context   !< address of the box
     type(system_box_type), pointer :: box
     real(c_double), pointer :: y_values(:)
-    logical :: settled
+    logical :: projected
 
     call c_f_pointer(context, box)
     y_values => FN_VGetArrayPointer(y)
-    call box%settle(t, y_values, settled)
-    box%has_settled = settled .and. box%reuses_last_rate
-    answer = merge(0, 1, settled)
-  end function settle_step
+    call box%project(t, y_values, projected)
+    box%has_projected = projected .and. box%reuses_last_rate
+    answer = merge(0, 1, projected)
+  end function project_step
 
   !> SUNDIALS calls this function for the derivatives of f in y. It answers as evaluate_rate.
   integer(c_int) function evaluate_jacobian(t, y, ydot, jac, context, work1, work2, work3) bind(c) result(answer)
@@ -154,18 +153,18 @@ contains
     answer = answer_to(box, t)
   end function evaluate_jacobian
 
-  !> Let the system settle after a step, if it is one that settles.
-  subroutine settle(self, t, y, settled)
+  !> Project y after a step, if the system has a projection.
+  subroutine project(self, t, y, projected)
     class(system_box_type), intent(inout) :: self   !< the box
     real(wp), intent(in) :: t                       !< time from the origin [s]
-    real(wp), intent(inout) :: y(:)                 !< values at t; the settled ones afterwards
-    logical, intent(out) :: settled                 !< false: the step must be made again
+    real(wp), intent(inout) :: y(:)                 !< values at t; the projected ones afterwards
+    logical, intent(out) :: projected               !< false: the step must be made again
 
-    settled = .true.
-    if (.not. self%system%settles) return
-    call self%system%settle(self%origin + t, y, self%err)
-    settled = answer_to(self, t) == 0
-  end subroutine settle
+    projected = .true.
+    if (.not. self%system%projects) return
+    call self%system%project(self%origin + t, y, self%err)
+    projected = answer_to(self, t) == 0
+  end subroutine project
 
   !> Whether a failure of the system explains why the integration cannot go on: one that no smaller step helps against, or
   !> one so recent that the steps became short because of it.

@@ -68,7 +68,7 @@ contains
     class(dense_output_type), intent(inout) :: self     !< the dense output
     type(motion_system_type), intent(inout) :: system   !< the system, evaluated at the end
     real(wp), intent(in) :: t                           !< time of the end [s]
-    real(wp), intent(in) :: y(:)                        !< settled
+    real(wp), intent(in) :: y(:)                        !< projected values
 
     self%last = mod(self%last, most) + 1
     self%count = min(self%count + 1, most)

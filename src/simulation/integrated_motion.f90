@@ -101,7 +101,7 @@ contains
     changed = .false.
     self%system%refuse_below = 0.0_wp
     ! the state of the last accepted step, with the rates of all coordinates
-    call self%system%settle(self%t, self%y, failure)
+    call self%system%project(self%t, self%y, failure)
     if (.not. allocated(failure)) call self%system%present(failure)
     if (gives_up(failure, err)) return
     call best_independent(self%system%plan, self%system%state, independent)
@@ -205,7 +205,7 @@ contains
 
     changed = .false.
     if (.not. (any(self%angles%in_doubt(self%y)) .or. self%angles%held%in_doubt(self%system%state))) return
-    call self%system%settle(self%t, self%y, failure)
+    call self%system%project(self%t, self%y, failure)
     if (.not. allocated(failure)) call self%system%present(failure)
     if (.not. allocated(failure)) call self%show_angles(failure)
     if (gives_up(failure, err)) return

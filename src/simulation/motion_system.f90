@@ -46,11 +46,11 @@ module mech9_motion_system
     class(plan_type), allocatable :: plan
     class(dynamics_plan_type), allocatable :: dynamics
     class(lagrange_work_type), allocatable :: work
-    class(state_type), allocatable :: state          !< of the last evaluation, or as settled
+    class(state_type), allocatable :: state          !< of the last evaluation, or after the projection
     integer(long) :: iterations = 0                  !< of Newton's method, all blocks
     !> Trials with a worse conditioned block are refused: a step must not cross a singular position unseen.
     real(wp) :: refuse_below = 0.0_wp
-    logical, private :: just_settled = .false.
+    logical, private :: just_projected = .false.
     logical, private :: has_inertia = .false.        !< all free coordinates had inertia in the position with which it was made
     type(smooth_interval_type) :: interval           !< in which the present steps lie
     type(motion_sensitivity_type), allocatable :: sensitivity   !< derivatives by parameters, where they are integrated, too
@@ -64,7 +64,7 @@ module mech9_motion_system
     procedure :: vector
     procedure :: rate
     procedure :: take_vector
-    procedure :: settle
+    procedure :: project
     procedure :: close_near
     procedure :: move_to
     procedure :: resume
@@ -96,7 +96,7 @@ contains
     class(motion_system_type), intent(in), optional :: known   !< the system in other coordinates, whose plan has the same frames
 
     call system%make_room()
-    system%settles = .true.
+    system%projects = .true.
     system%model => model
     system%partition = partition
     if (.not. allocated(system%drives)) call copy_drives(model%problem%drives, system%drives)
@@ -312,7 +312,7 @@ contains
       call raise(err, exit_singular, failure_singular_step)
       return
     end if
-    if (self%just_settled) call remember(self)
+    if (self%just_projected) call remember(self)
     call find_motor_rates(self%model%mechanism, self%state, err)
     if (allocated(err)) return
     call pack_rates(self%plan, self%state, self%work%accelerations, ydot)
@@ -327,14 +327,14 @@ contains
   pure subroutine remember(self)
     class(motion_system_type), intent(inout) :: self   !< the motion system
 
-    self%just_settled = .false.
+    self%just_projected = .false.
     ! there are no accelerations to expect where all coordinates are independent
     if (size(self%plan%closures) == 0) return
     call self%work%expectation%remember(self%state%t, self%work%jacobian%b, self%state%ddq)
   end subroutine remember
 
   !> Close the chains after an accepted step, and put the closed positions into the vector.
-  subroutine settle(self, t, y, err)
+  subroutine project(self, t, y, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     real(wp), intent(in) :: t                           !< time of the end of the step [s]
     real(wp), intent(inout) :: y(:)   !< the vector: coordinates, free rates, motors; closed on return
@@ -352,8 +352,8 @@ contains
       return
     end if
     call pack_state(self%plan, self%state, y)
-    self%just_settled = .true.
-  end subroutine settle
+    self%just_projected = .true.
+  end subroutine project
 
   !> Close the chains of the present state. A block fails if it does not close, or changes a coordinate by more than is trusted.
   subroutine close_chains(self, trusted, failed, err)
@@ -379,7 +379,7 @@ contains
   !> `ok` is false where they are not certain to close on the same branch.
   subroutine close_near(self, t, y, ok, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
-    real(wp), intent(in) :: t                           !< time between the settled states [s]
+    real(wp), intent(in) :: t                           !< time between the projected states [s]
     real(wp), intent(in) :: y(:)                        !< the vector: all coordinates, rates of the free ones, states of motors
     logical, intent(out) :: ok                          !< the chains are certain to close on the same branch
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -399,7 +399,7 @@ contains
   subroutine move_to(self, t, y, err)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     real(wp), intent(in) :: t                           !< time [s]
-    real(wp), intent(in) :: y(:)                        !< as settled
+    real(wp), intent(in) :: y(:)                        !< projected values
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call take_vector(self, t, y, err)
@@ -414,7 +414,7 @@ contains
     type(expectation_type), intent(in) :: expectation   !< continuation of rates from the positions before the steps aside
 
     self%work%expectation = expectation
-    self%just_settled = .false.
+    self%just_projected = .false.
   end subroutine resume
 
   !> Find all velocities and accelerations of a state whose frames are in place, and show the state in work%view as loads see

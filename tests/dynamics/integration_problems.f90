@@ -72,13 +72,13 @@ module mech9_integration_problems
 
   !> A point that turns once per 2 pi: (x, y). Settling puts it back on the unit circle, and counts.
   type, extends(ode_system_type) :: rotation_type
-    integer :: settled = 0
-    real(wp) :: refuse_longer_than = huge(1.0_wp)   !< settling refuses steps longer than this [s]
-    real(wp) :: t_settled = 0.0_wp
+    integer :: projected = 0
+    real(wp) :: refuse_longer_than = huge(1.0_wp)   !< a projection refuses steps longer than this [s]
+    real(wp) :: t_projected = 0.0_wp
     real(wp) :: largest_correction = 0.0_wp
   contains
     procedure :: rate => rotation_rate
-    procedure :: settle => rotation_settle
+    procedure :: project => rotation_project
   end type rotation_type
 
 contains
@@ -254,21 +254,21 @@ contains
     ydot = [-y(2), y(1)]
   end subroutine rotation_rate
 
-  subroutine rotation_settle(self, t, y, err)
+  subroutine rotation_project(self, t, y, err)
     class(rotation_type), intent(inout) :: self         !< the system
     real(wp), intent(in) :: t                           !< time [s]
     real(wp), intent(inout) :: y(:)                     !< the integrated vector
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    if (t - self%t_settled > self%refuse_longer_than) then
-      call raise(err, exit_singular, 'too far to settle')
+    if (t - self%t_projected > self%refuse_longer_than) then
+      call raise(err, exit_singular, 'too far to project')
       return
     end if
-    self%settled = self%settled + 1
-    self%t_settled = t
+    self%projected = self%projected + 1
+    self%t_projected = t
     self%largest_correction = max(self%largest_correction, abs(norm2(y) - 1.0_wp))
     y = y/norm2(y)
-  end subroutine rotation_settle
+  end subroutine rotation_project
 
   !> Integrate from (0, y) to t_end, with one tolerance for everything, or with equal steps that pass every error test.
   subroutine integrate(system, method, tolerance, t_end, y, statistics, err, equal_step, outputs)

@@ -219,11 +219,11 @@ contains
     y(2:4) = closed(2:4) + 5.0e-3_wp*[1.0_wp, -2.0_wp, 1.0_wp]
     call system%close_near(0.0_wp, y, ok, err)
     call test%is_true(.not. ok, 'a large error inside a step is not trusted')
-    call system%settle(0.0_wp, y, err)
+    call system%project(0.0_wp, y, err)
     call test%no_error(err, 'a large error at the end of a step is no failure')
     call test%near(maxval(abs(y(:4) - closed(:4))), 0.0_wp, 1.0e-13_wp, 'a large error at the end of a step is closed')
     y(2:4) = closed(2:4) + 0.1_wp*[1.0_wp, -2.0_wp, 1.0_wp]
-    call system%settle(0.0_wp, y, err)
+    call system%project(0.0_wp, y, err)
     call test%has_error(err, exit_singular, 'a still larger error at the end of a step is refused')
     call system%rate(0.0_wp, closed, ydot, err)
     call test%no_error(err, 'a state with any conditioning is accepted without a limit')

@@ -37,7 +37,7 @@ contains
     call check_explosion(test, name)
     call check_obstacles(test, name)
     call check_start(test, name)
-    call check_refused_settling(test, name)
+    call check_refused_projection(test, name)
     call check_many_steps(test, name)
     call check_accuracy(test, name)
   end subroutine check_method
@@ -127,8 +127,8 @@ contains
     call test%is_true(statistics%rate_evaluations <= 2, method//' does not try the start again')
   end subroutine check_start
 
-  !> A step after which the system cannot settle is made again, smaller; where nothing helps, it ends.
-  subroutine check_refused_settling(test, method)
+  !> A step after which the projection fails is made again, smaller; where nothing helps, it ends.
+  subroutine check_refused_projection(test, method)
     type(tester_type), intent(inout) :: test   !< counts the checks
     character(len=*), intent(in) :: method     !< name of the method
     type(rotation_type), target :: rotation
@@ -136,11 +136,11 @@ contains
     type(error_type), allocatable :: err
     real(wp) :: y(2)
 
-    rotation%settles = .true.
+    rotation%projects = .true.
     rotation%refuse_longer_than = 0.02_wp
     y = [1.0_wp, 0.0_wp]
     call integrate(rotation, method, 1.0e-4_wp, 1.0_wp, y, statistics, err)
-    call test%no_error(err, method//' makes steps smaller until the system can settle')
+    call test%no_error(err, method//' makes steps smaller until the system can project')
     call test%is_true(statistics%refusals > 0, method//' counts what was refused')
     ! at most 1/0.02 steps and those made again, each with an error of the tolerance
     call test%near(norm2(y - [cos(1.0_wp), sin(1.0_wp)]), 0.0_wp, 1.0e-2_wp, method//' is right all the same')
@@ -148,9 +148,9 @@ contains
     rotation%refuse_longer_than = -1.0_wp
     y = [1.0_wp, 0.0_wp]
     call integrate(rotation, method, 1.0e-4_wp, 1.0_wp, y, statistics, err)
-    call test%has_error(err, exit_singular, method//' ends where the system never settles')
-    call check_words(test, err, ['too far to settle'], method//' says why')
-  end subroutine check_refused_settling
+    call test%has_error(err, exit_singular, method//' ends where the projection always fails')
+    call check_words(test, err, ['too far to project'], method//' says why')
+  end subroutine check_refused_projection
 
   !> More steps than allowed to one stop: said so, and one may go on by asking for less.
   subroutine check_many_steps(test, method)

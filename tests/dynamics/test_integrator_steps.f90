@@ -1,4 +1,4 @@
-!> Steps of an integration: stops met exactly, settling and corrections, restarts, limits, no memory per step.
+!> Steps of an integration: stops met exactly, projections and corrections, restarts, limits, no memory per step.
 !>
 !> Compares the program with itself in part: integrations alone and side by side; orbits have closed forms.
 module test_integrator_steps
@@ -40,7 +40,7 @@ contains
     call check_inside_steps(test, name)
     call check_short_rest(test, name)
     call check_turning_back(test, name)
-    call check_settling(test, i)
+    call check_projection(test, i)
     call check_corrections(test, i)
     call check_restart(test, name)
     call check_limits(test, name)
@@ -189,44 +189,44 @@ contains
     call integrator%destroy()
   end subroutine check_turning_back
 
-  !> A system that settles is asked once per step; what it gives is what the steps give; and it costs no
-  !> accuracy and no steps: projecting the circle on itself leaves the order as it is.
-  subroutine check_settling(test, method)
+  !> A system that projects is asked once per step; its values are those of the steps. This costs no accuracy and no
+  !> steps: projecting the circle on itself leaves the order as it is.
+  subroutine check_projection(test, method)
     type(tester_type), intent(inout) :: test   !< counts the checks
     integer, intent(in) :: method              !< its number among all methods
     type(rotation_type), target :: rotation
-    type(integration_statistics_type) :: free, settled
+    type(integration_statistics_type) :: free, projected
     type(error_type), allocatable :: err
-    real(wp) :: y(2), free_error, settled_error
+    real(wp) :: y(2), free_error, projected_error
     integer :: k
 
     associate (m => integration_methods(method))
       do k = 6, 12, 3
-        rotation%settles = .false.
+        rotation%projects = .false.
         y = [1.0_wp, 0.0_wp]
         call integrate(rotation, m%name, 10.0_wp**(-k), 20.0_wp, y, free, err)
         free_error = norm2(y - [cos(20.0_wp), sin(20.0_wp)])
-        rotation%settles = .true.
-        rotation%settled = 0
-        rotation%t_settled = 0.0_wp
+        rotation%projects = .true.
+        rotation%projected = 0
+        rotation%t_projected = 0.0_wp
         rotation%largest_correction = 0.0_wp
         y = [1.0_wp, 0.0_wp]
-        call integrate(rotation, m%name, 10.0_wp**(-k), 20.0_wp, y, settled, err)
-        settled_error = norm2(y - [cos(20.0_wp), sin(20.0_wp)])
-        call test%no_error(err, trim(m%name)//' goes on with settling')
-        call test%is_true(rotation%settled == settled%steps, trim(m%name)//' settles once per step')
-        call test%near(norm2(y), 1.0_wp, 4.0_wp*epsilon(1.0_wp), trim(m%name)//' gives what was settled')
+        call integrate(rotation, m%name, 10.0_wp**(-k), 20.0_wp, y, projected, err)
+        projected_error = norm2(y - [cos(20.0_wp), sin(20.0_wp)])
+        call test%no_error(err, trim(m%name)//' goes on with projections')
+        call test%is_true(rotation%projected == projected%steps, trim(m%name)//' projects once per step')
+        call test%near(norm2(y), 1.0_wp, 4.0_wp*epsilon(1.0_wp), trim(m%name)//' gives the projected values')
         call test%is_true(rotation%largest_correction < 1.0e2_wp*10.0_wp**(-k), &
                           trim(m%name)//': corrections are about as large as the tolerance')
         if (k == 6) call test%is_true(rotation%largest_correction > 1.0e-10_wp, trim(m%name)//' needs corrections')
-        call test%is_true(settled_error < 2.0_wp*free_error + 0.1_wp*10.0_wp**(-k), &
-                          trim(m%name)//' loses nothing by settling')
-        call test%is_true(settled%rate_evaluations <= 1.2_wp*free%rate_evaluations + 2, &
-                          trim(m%name)//' works out no more rates with settling')
-        call test%is_true(settled%last_order >= free%last_order - 1, trim(m%name)//' keeps its order with settling')
+        call test%is_true(projected_error < 2.0_wp*free_error + 0.1_wp*10.0_wp**(-k), &
+                          trim(m%name)//' loses nothing by projection')
+        call test%is_true(projected%rate_evaluations <= 1.2_wp*free%rate_evaluations + 2, &
+                          trim(m%name)//' works out no more rates with projections')
+        call test%is_true(projected%last_order >= free%last_order - 1, trim(m%name)//' keeps its order with projections')
       end do
     end associate
-  end subroutine check_settling
+  end subroutine check_projection
 
   !> The same correction made by the caller after each step.
   subroutine check_corrections(test, method)
@@ -337,7 +337,7 @@ contains
 
     t = 0.0_wp
     y = [1.0_wp, 0.0_wp]
-    rotation%settles = .true.
+    rotation%projects = .true.
     stiff%has_jacobian = .true.
     if (method == 'bdf') then
       call integrator%create(stiff, method, 1.0e-8_wp, [1.0e-8_wp, 1.0e-8_wp], t, y, err)

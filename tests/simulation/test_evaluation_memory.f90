@@ -112,7 +112,7 @@ contains
     end do
     call system%rate(t, y, ydot, err)
     if (allocated(err)) return
-    call system%settle(t, y, err)
+    call system%project(t, y, err)
     if (allocated(err)) return
     call system%present(err)
   end subroutine step_on
