@@ -149,15 +149,15 @@ contains
   end subroutine set_rigid_body
 
   !> The wrench that a rigid body requires for a motion, about the origin of its frame:
-  !>   torque = h x fall + J alpha + omega x J omega,   force = m fall + alpha x h + omega x (omega x h).
+  !>   torque = h x a + J alpha + omega x J omega,   force = m a + alpha x h + omega x (omega x h).
   !> All vectors are in the same axes.
-  pure subroutine body_wrench(mass, h, j, omega, alpha, fall, wrench)
+  pure subroutine body_wrench(mass, h, j, omega, alpha, proper, wrench)
     real(wp), intent(in) :: mass         !< of the body [kg]
     real(wp), intent(in) :: h(3)         !< mass times centre [kg m]
     real(wp), intent(in) :: j(3, 3)      !< inertia about the frame's origin [kg m^2]
     real(wp), intent(in) :: omega(3)     !< angular velocity [rad/s]
     real(wp), intent(in) :: alpha(3)     !< angular acceleration [rad/s^2]
-    real(wp), intent(in) :: fall(3)      !< acceleration of the frame's origin less that of free fall [m/s^2]
+    real(wp), intent(in) :: proper(3)    !< proper acceleration of the frame's origin: less that of free fall [m/s^2]
     real(wp), intent(out) :: wrench(6)   !< torque and force [N m, N]
     real(wp) :: spin(3), change(3), along, square
 
@@ -166,12 +166,12 @@ contains
     change = j(:, 1)*alpha(1) + j(:, 2)*alpha(2) + j(:, 3)*alpha(3)
     along = omega(1)*h(1) + omega(2)*h(2) + omega(3)*h(3)
     square = omega(1)**2 + omega(2)**2 + omega(3)**2
-    wrench(1) = h(2)*fall(3) - h(3)*fall(2) + change(1) + omega(2)*spin(3) - omega(3)*spin(2)
-    wrench(2) = h(3)*fall(1) - h(1)*fall(3) + change(2) + omega(3)*spin(1) - omega(1)*spin(3)
-    wrench(3) = h(1)*fall(2) - h(2)*fall(1) + change(3) + omega(1)*spin(2) - omega(2)*spin(1)
-    wrench(4) = mass*fall(1) + alpha(2)*h(3) - alpha(3)*h(2) + omega(1)*along - square*h(1)
-    wrench(5) = mass*fall(2) + alpha(3)*h(1) - alpha(1)*h(3) + omega(2)*along - square*h(2)
-    wrench(6) = mass*fall(3) + alpha(1)*h(2) - alpha(2)*h(1) + omega(3)*along - square*h(3)
+    wrench(1) = h(2)*proper(3) - h(3)*proper(2) + change(1) + omega(2)*spin(3) - omega(3)*spin(2)
+    wrench(2) = h(3)*proper(1) - h(1)*proper(3) + change(2) + omega(3)*spin(1) - omega(1)*spin(3)
+    wrench(3) = h(1)*proper(2) - h(2)*proper(1) + change(3) + omega(1)*spin(2) - omega(2)*spin(1)
+    wrench(4) = mass*proper(1) + alpha(2)*h(3) - alpha(3)*h(2) + omega(1)*along - square*h(1)
+    wrench(5) = mass*proper(2) + alpha(3)*h(1) - alpha(1)*h(3) + omega(2)*along - square*h(2)
+    wrench(6) = mass*proper(3) + alpha(1)*h(2) - alpha(2)*h(1) + omega(3)*along - square*h(3)
   end subroutine body_wrench
 
   !> The tensor r t r^T, by its lower triangle.

@@ -1,9 +1,10 @@
 !> Articulated bodies of a closed cluster whose links move in one plane, while the plane moves in space with the base of the
 !> cluster.
 !>
-!> Columns, the coefficients A and the forces on the coordinates are those of mech9_planar_cluster. Only the base feels wrenches out
-!> of the plane: the inertia of all bodies together, as one rigid body, and the torque by which each column tilts the plane. All
-!> vectors are in the plane's axes, the third of which is the normal, and are turned into fixed axes for the base.
+!> Columns, the coefficients A and the forces on the coordinates are those of mech9_planar_cluster. Wrenches out of the
+!> plane act on the base alone: the inertia of all bodies together, as one rigid body, and the torque by which each
+!> column tilts the plane. All vectors are in the plane's axes, the third of which is the normal, and are turned into
+!> fixed axes for the base.
 module mech9_moving_plane
   use mech9_kinds, only: wp
   use mech9_rotation, only: turn, turn_back
@@ -25,7 +26,7 @@ module mech9_moving_plane
     real(wp) :: axes(3, 3) = 0.0_wp   !< turns components in the plane's axes into those in fixed axes
     real(wp) :: omega(3) = 0.0_wp     !< angular velocity [rad/s]
     real(wp) :: alpha(3) = 0.0_wp     !< angular acceleration [rad/s^2]
-    real(wp) :: fall(3) = 0.0_wp      !< acceleration of the plane's origin less that of free fall [m/s^2]
+    real(wp) :: proper(3) = 0.0_wp    !< proper acceleration of the plane's origin: less that of free fall [m/s^2]
   end type plane_motion_type
 
 contains
@@ -58,7 +59,7 @@ contains
     plane%axes = axes
     plane%omega = turn_back(axes, omega)
     plane%alpha = turn_back(axes, alpha)
-    plane%fall = turn_back(axes, a - gravity)
+    plane%proper = turn_back(axes, a - gravity)
   end function seen_motion
 
   !> Begin the sums of mech9_cluster_bodies with the bodies of those frames of a cluster that carry nothing else, and add these
@@ -89,14 +90,14 @@ contains
     real(wp), intent(inout) :: rest(n)                    !< Q - S^T p
     real(wp), intent(inout) :: rigid(n)                   !< bound of the diagonal of A, as if rigid
     type(plane_body_type) :: total
-    real(wp) :: h(3), j(3, 3), own(6), felt(6), in_plane(6), extent(4), mass, x, y, z
+    real(wp) :: h(3), j(3, 3), required(6), resultant(6), in_plane(6), extent(4), mass, x, y, z
     integer :: i, k, e, c
 
-    felt = 0.0_wp
+    resultant = 0.0_wp
     do i = 1, n_frames
       k = frames(i)
       mass = bodies(i)%mass
-      call carry_body(bodies(i), plane, f(:, k), height(k), v(:, k), a(:, k), h, j, own)
+      call carry_body(bodies(i), plane, f(:, k), height(k), v(:, k), a(:, k), h, j, required)
       in_plane = [j(3, 3), -h(2), h(1), mass, 0.0_wp, mass]
       extent = [mass, h(1), h(2), j(3, 3)]
       x = f(3, k) - f(3, place)
@@ -104,42 +105,42 @@ contains
       z = height(k) - height(place)
       do e = first(k), first(k + 1) - 1
         c = local(e)
-        call add_column(n, c, e, first(k + 1) - 1, n_entries, local, s, in_plane, own(3:5), extent, x, y, factors, &
+        call add_column(n, c, e, first(k + 1) - 1, n_entries, local, s, in_plane, required(3:5), extent, x, y, factors, &
                         column(3:5, c), rest(c), rigid(c))
         column(1, c) = column(1, c) + j(1, 3)*s(1, e) - h(3)*s(3, e) - z*(mass*s(3, e) + h(1)*s(1, e))
         column(2, c) = column(2, c) + j(2, 3)*s(1, e) + h(3)*s(2, e) + z*(mass*s(2, e) - h(2)*s(1, e))
       end do
       if (base == 0) cycle
       call add_as_rigid(mass, h, j, [x, y, z], total)
-      felt(1) = felt(1) + own(1) + y*own(6) - z*own(5)
-      felt(2) = felt(2) + own(2) + z*own(4) - x*own(6)
-      felt(3) = felt(3) + own(3) + x*own(5) - y*own(4)
-      felt(4:6) = felt(4:6) + own(4:6)
+      resultant(1) = resultant(1) + required(1) + y*required(6) - z*required(5)
+      resultant(2) = resultant(2) + required(2) + z*required(4) - x*required(6)
+      resultant(3) = resultant(3) + required(3) + x*required(5) - y*required(4)
+      resultant(4:6) = resultant(4:6) + required(4:6)
     end do
-    if (base > 0) call pass_to_base(n, plane%axes, total, felt, inertia, wrench, amount, column)
+    if (base > 0) call pass_to_base(n, plane%axes, total, resultant, inertia, wrench, amount, column)
   end subroutine gather_bodies
 
-  !> Turn what the base of a cluster feels into fixed axes.
-  pure subroutine pass_to_base(n, axes, total, felt, inertia, wrench, amount, column)
+  !> Add the inertia and the wrench of the bodies to those of the base, in fixed axes.
+  pure subroutine pass_to_base(n, axes, total, resultant, inertia, wrench, amount, column)
     integer, intent(in) :: n                      !< number of independent coordinates of the cluster
     real(wp), intent(in) :: axes(3, 3)            !< axes of the plane, in fixed axes
     type(plane_body_type), intent(in) :: total    !< the bodies together, about the base's origin, in the plane's axes
-    real(wp), intent(in) :: felt(6)               !< their wrench about that origin, in the plane's axes [N m, N]
+    real(wp), intent(in) :: resultant(6)          !< their wrench about that origin, in the plane's axes [N m, N]
     real(wp), intent(inout) :: inertia(3, 9)      !< J, H, M of the base, fixed axes
     real(wp), intent(inout) :: wrench(6)          !< torque and force on the base, fixed axes [N m, N]
     real(wp), intent(inout) :: amount(5)          !< mass, moment and sum of m r^2 of the base, fixed axes
     real(wp), intent(inout) :: column(6, n)       !< U in the plane's axes in, in fixed axes out
-    real(wp) :: own(3, 9), extent(5)
+    real(wp) :: rigid(3, 9), extent(5)
     integer :: c
 
     do c = 1, n
       column(1:3, c) = turn(axes, column(1:3, c))
       column(4:6, c) = column(4, c)*axes(:, 1) + column(5, c)*axes(:, 2)
     end do
-    wrench(1:3) = wrench(1:3) + turn(axes, felt(1:3))
-    wrench(4:6) = wrench(4:6) + turn(axes, felt(4:6))
-    call set_rigid_body(total%mass, turn(axes, total%moment), in_fixed_axes(axes, total%tensor), own, extent)
-    inertia = inertia + own
+    wrench(1:3) = wrench(1:3) + turn(axes, resultant(1:3))
+    wrench(4:6) = wrench(4:6) + turn(axes, resultant(4:6))
+    call set_rigid_body(total%mass, turn(axes, total%moment), in_fixed_axes(axes, total%tensor), rigid, extent)
+    inertia = inertia + rigid
     amount = amount + extent
   end subroutine pass_to_base
 
@@ -155,7 +156,7 @@ contains
     real(wp), intent(out) :: h(3)                  !< mass moment [kg m]
     real(wp), intent(out) :: j(3, 3)               !< inertia [kg m^2]
     real(wp), intent(out) :: wrench(6)             !< torque and force [N m, N]
-    real(wp) :: omega(3), alpha(3), fall(3), slip(3), square, double, mixed
+    real(wp) :: omega(3), alpha(3), proper(3), slip(3), square, double, mixed
 
     associate (c => f(1), s => f(2), t => body%tensor)
       h(1) = c*body%moment(1) - s*body%moment(2)
@@ -180,11 +181,11 @@ contains
       slip(1) = turning(2)*height - turning(3)*f(4) + 2.0_wp*v(2)
       slip(2) = turning(3)*f(3) - turning(1)*height + 2.0_wp*v(3)
       slip(3) = turning(1)*f(4) - turning(2)*f(3)
-      fall(1) = plane%fall(1) + a(2) + plane%alpha(2)*height - plane%alpha(3)*f(4) + turning(2)*slip(3) - turning(3)*slip(2)
-      fall(2) = plane%fall(2) + a(3) + plane%alpha(3)*f(3) - plane%alpha(1)*height + turning(3)*slip(1) - turning(1)*slip(3)
-      fall(3) = plane%fall(3) + plane%alpha(1)*f(4) - plane%alpha(2)*f(3) + turning(1)*slip(2) - turning(2)*slip(1)
+      proper(1) = plane%proper(1) + a(2) + plane%alpha(2)*height - plane%alpha(3)*f(4) + turning(2)*slip(3) - turning(3)*slip(2)
+      proper(2) = plane%proper(2) + a(3) + plane%alpha(3)*f(3) - plane%alpha(1)*height + turning(3)*slip(1) - turning(1)*slip(3)
+      proper(3) = plane%proper(3) + plane%alpha(1)*f(4) - plane%alpha(2)*f(3) + turning(1)*slip(2) - turning(2)*slip(1)
     end associate
-    call body_wrench(body%mass, h, j, omega, alpha, fall, wrench)
+    call body_wrench(body%mass, h, j, omega, alpha, proper, wrench)
   end subroutine carry_body
 
   !> Add the bodies of a frame to a rigid body with another origin: J' = J + (2 h . arm + m arm^2) 1 - h arm^T - arm h^T - m arm arm^T.

@@ -291,8 +291,8 @@ contains
     n_entries = size(dynamics%column)
     found = .true.
     call set_applied(plan, dynamics, state, work)
-    associate (steps => plan%planar%steps, motion => state%planar, own => work%planar, columns => work%jacobian%flat)
-      call set_bodies(m, self%bodies, self%gravity, motion%pose, motion%velocity, motion%acceleration, own)
+    associate (steps => plan%planar%steps, motion => state%planar, frames => work%planar, columns => work%jacobian%flat)
+      call set_bodies(m, self%bodies, self%gravity, motion%pose, motion%velocity, motion%acceleration, frames)
       do i = size(dynamics%stages), 1, -1
         associate (stage => dynamics%stages(i), cluster => work%clusters(i))
           if (stage%closed) then
@@ -301,13 +301,13 @@ contains
                                                          dynamics%local, work%jacobian%b, work%sum%generalized, cluster%rest)
             call eliminate_cluster(size(stage%places), size(stage%held), stage%held, size(stage%frames), stage%frames, &
                                    stage%base, m, n_entries, dynamics%first, dynamics%local, columns, motion%pose, &
-                                   own%inertia, own%wrench, own%amount, cluster%factors, cluster%column, cluster%rest, &
+                                   frames%inertia, frames%wrench, frames%amount, cluster%factors, cluster%column, cluster%rest, &
                                    cluster%rigid, found)
           else if (stage%driven) then
-            call pass_inward(stage%first_step, stage%last_step, m, steps, motion%pose, own%inertia, own%wrench, own%amount)
+            call pass_inward(stage%first_step, stage%last_step, m, steps, motion%pose, frames%inertia, frames%wrench, frames%amount)
           else
             call go_inward(stage%first_step, stage%last_step, m, steps, motion%pose, motion%slide, work%sum%generalized, &
-                           own%inertia, own%wrench, own%amount, own%column, own%pivot, own%rest, found)
+                           frames%inertia, frames%wrench, frames%amount, frames%column, frames%pivot, frames%rest, found)
           end if
         end associate
         if (.not. found) return
@@ -316,14 +316,14 @@ contains
         associate (stage => dynamics%stages(i), cluster => work%clusters(i))
           if (stage%closed) then
             call find_accelerations(size(stage%places), stage%places, 3, cluster%factors, cluster%column, cluster%rest, &
-                                    own%motion(:, stage%base), cluster%ddq, work%accelerations)
+                                    frames%motion(:, stage%base), cluster%ddq, work%accelerations)
             call move_cluster(size(stage%places), size(stage%feet), stage%feet, stage%base, m, n_entries, dynamics%first, &
-                              dynamics%local, columns, motion%pose, cluster%ddq, own%motion)
+                              dynamics%local, columns, motion%pose, cluster%ddq, frames%motion)
           else if (stage%driven) then
-            call pass_outward(stage%first_step, stage%last_step, m, steps, motion%pose, own%motion)
+            call pass_outward(stage%first_step, stage%last_step, m, steps, motion%pose, frames%motion)
           else
             call go_outward(stage%first_step, stage%last_step, m, steps, dynamics%place_of, motion%pose, motion%slide, &
-                            own%column, own%pivot, own%rest, own%motion, work%accelerations)
+                            frames%column, frames%pivot, frames%rest, frames%motion, work%accelerations)
           end if
         end associate
       end do
@@ -365,24 +365,24 @@ contains
       work%jacobian%flat(1, dynamics%first(i)) = plan%planar%steps(i)%turn
       work%jacobian%flat(2:3, dynamics%first(i)) = merge(0.0_wp, state%planar%slide(:, i), plan%planar%steps(i)%turns)
     end do
-    associate (motion => state%planar, own => work%planar, columns => work%jacobian%flat)
+    associate (motion => state%planar, frames => work%planar, columns => work%jacobian%flat)
       call set_applied(plan, dynamics, state, work)
-      call set_bodies(m, self%bodies, self%gravity, motion%pose, motion%velocity, motion%acceleration, own)
+      call set_bodies(m, self%bodies, self%gravity, motion%pose, motion%velocity, motion%acceleration, frames)
       call collect_in_plane([1, m], m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, &
-                            own%wrench, n, whole)
-      own%applied = 0.0_wp
-      call set_bodies(m, self%bodies, 0.0_wp*self%gravity, motion%pose, motion%velocity, motion%acceleration, own)
+                            frames%wrench, n, whole)
+      frames%applied = 0.0_wp
+      call set_bodies(m, self%bodies, 0.0_wp*self%gravity, motion%pose, motion%velocity, motion%acceleration, frames)
       call collect_in_plane([1, m], m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, &
-                            own%wrench, n, work%velocity_terms)
+                            frames%wrench, n, work%velocity_terms)
       work%forces = work%velocity_terms - whole
       call find_reach(m, n_entries, dynamics%first, dynamics%column, dynamics%support, n, reach)
-      own%motion = 0.0_wp
+      frames%motion = 0.0_wp
       do i = 1, n
         call accelerate_in_plane(i, reach(:, i), m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, &
-                                 motion%pose, own%inertia, own%motion, own%wrench)
+                                 motion%pose, frames%inertia, frames%motion, frames%wrench)
         call collect_in_plane(reach(:, i), m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, &
-                              own%wrench, n, whole)
-        own%motion(:, reach(1, i):reach(2, i)) = 0.0_wp
+                              frames%wrench, n, whole)
+        frames%motion(:, reach(1, i):reach(2, i)) = 0.0_wp
         work%coefficients(i:, i) = whole(i:)
       end do
     end associate

@@ -194,9 +194,9 @@ contains
     n_entries = size(dynamics%column)
     found = .true.
     call set_applied(plan, dynamics, state, work)
-    associate (chains => self%articulated, own => work%articulated, jacobian => work%jacobian)
+    associate (chains => self%articulated, frames => work%articulated, jacobian => work%jacobian)
       call set_bodies(m, dynamics%in_space, chains%mass, chains%moment, chains%inertia, dynamics%gravity, state%r, state%omega, &
-                      state%alpha, state%a, own%applied, own%inertia, own%wrench, own%amount)
+                      state%alpha, state%a, frames%applied, frames%inertia, frames%wrench, frames%amount)
       do i = size(dynamics%stages), 1, -1
         associate (stage => dynamics%stages(i), cluster => work%clusters(i))
           if (stage%closed) then
@@ -206,18 +206,20 @@ contains
             cluster%rigid = 0.0_wp
             if (work%sum%any_generalized) call find_rest(stage%steps, stage%coordinates, dynamics%first, dynamics%local, &
                                                          jacobian%b, work%sum%generalized, cluster%rest)
-            if (stage%plane > 0) call gather_in_plane(plan, dynamics, stage, state, jacobian, own, cluster)
+            if (stage%plane > 0) call gather_in_plane(plan, dynamics, stage, state, jacobian, frames, cluster)
             call add_frames(size(stage%places), size(stage%frames), stage%frames, stage%base, m, n_entries, dynamics%first, &
-                            dynamics%local, jacobian%w, jacobian%v, state%p, own%inertia, own%wrench, own%amount, &
+                            dynamics%local, jacobian%w, jacobian%v, state%p, frames%inertia, frames%wrench, frames%amount, &
                             cluster%factors, cluster%column, cluster%rest, cluster%rigid)
-            call eliminate_cluster(m, size(stage%places), size(stage%held), stage%held, stage%base, own%inertia(:, :, stage%base), &
-                                   own%wrench(:, stage%base), cluster%factors, cluster%column, cluster%rest, cluster%rigid, found)
+            call eliminate_cluster(m, size(stage%places), size(stage%held), stage%held, stage%base, &
+                                   frames%inertia(:, :, stage%base), frames%wrench(:, stage%base), cluster%factors, &
+                                   cluster%column, cluster%rest, cluster%rigid, found)
           else if (stage%driven) then
-            call pass_inward(stage%first_step, stage%last_step, m, chains%parent, state%p, own%inertia, own%wrench, own%amount)
+            call pass_inward(stage%first_step, stage%last_step, m, chains%parent, state%p, frames%inertia, frames%wrench, &
+                             frames%amount)
           else
             call go_inward(stage%first_step, stage%last_step, m, chains%parent, chains%coordinate, chains%slides, state%p, &
-                           state%axis_w, state%axis_v, work%sum%generalized, own%inertia, own%wrench, own%amount, own%column, &
-                           own%pivot, own%rest, found)
+                           state%axis_w, state%axis_v, work%sum%generalized, frames%inertia, frames%wrench, frames%amount, &
+                           frames%column, frames%pivot, frames%rest, found)
           end if
         end associate
         if (.not. found) return
@@ -226,14 +228,14 @@ contains
         associate (stage => dynamics%stages(i), cluster => work%clusters(i))
           if (stage%closed) then
             call find_accelerations(size(stage%places), stage%places, 6, cluster%factors, cluster%column, cluster%rest, &
-                                    own%motion(:, stage%base), cluster%ddq, work%accelerations)
+                                    frames%motion(:, stage%base), cluster%ddq, work%accelerations)
             call move_cluster(size(stage%places), size(stage%feet), stage%feet, stage%base, m, n_entries, dynamics%first, &
-                              dynamics%local, jacobian%w, jacobian%v, state%p, cluster%ddq, own%motion)
+                              dynamics%local, jacobian%w, jacobian%v, state%p, cluster%ddq, frames%motion)
           else if (stage%driven) then
-            call pass_outward(stage%first_step, stage%last_step, m, chains%parent, state%p, own%motion)
+            call pass_outward(stage%first_step, stage%last_step, m, chains%parent, state%p, frames%motion)
           else
             call go_outward(stage%first_step, stage%last_step, m, chains%parent, chains%place, state%p, state%axis_w, &
-                            state%axis_v, own%column, own%pivot, own%rest, own%motion, work%accelerations)
+                            state%axis_v, frames%column, frames%pivot, frames%rest, frames%motion, work%accelerations)
           end if
         end associate
       end do
@@ -241,13 +243,13 @@ contains
   end subroutine solve_tree
 
   !> Add the bodies of a cluster that move in its plane only.
-  pure subroutine gather_in_plane(plan, dynamics, stage, state, jacobian, own, cluster)
+  pure subroutine gather_in_plane(plan, dynamics, stage, state, jacobian, frames, cluster)
     type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics       !< the plan of dynamics
     type(stage_type), intent(in) :: stage                  !< the cluster
     type(state_type), intent(in) :: state                  !< with the accelerations that rates alone give
     type(jacobian_type), intent(in) :: jacobian            !< with the columns of its frames
-    type(articulated_work_type), intent(inout) :: own      !< inertia and wrench of the cluster's base grow
+    type(articulated_work_type), intent(inout) :: frames   !< inertia and wrench of the cluster's base grow
     type(cluster_work_type), intent(inout) :: cluster      !< its sums grow
 
     associate (planar => plan%planar, motion => state%planar, support => plan%planar%planes(stage%plane)%base)
@@ -256,8 +258,8 @@ contains
                                      state%alpha(:, support), state%a(:, support), dynamics%gravity), &
                          stage%base, stage%place, plan%n_coordinates, size(dynamics%column), dynamics%first, dynamics%local, &
                          jacobian%flat, motion%pose, planar%height, motion%velocity, motion%acceleration, &
-                         own%inertia(:, :, stage%base), own%wrench(:, stage%base), own%amount(:, stage%base), cluster%factors, &
-                         cluster%column, cluster%rest, cluster%rigid)
+                         frames%inertia(:, :, stage%base), frames%wrench(:, stage%base), frames%amount(:, stage%base), &
+                         cluster%factors, cluster%column, cluster%rest, cluster%rigid)
     end associate
   end subroutine gather_in_plane
 
@@ -298,26 +300,26 @@ contains
       work%jacobian%w(:, dynamics%first(i)) = state%axis_w(:, i)
       work%jacobian%v(:, dynamics%first(i)) = state%axis_v(:, i)
     end do
-    associate (chains => self%articulated, own => work%articulated, jacobian => work%jacobian)
+    associate (chains => self%articulated, frames => work%articulated, jacobian => work%jacobian)
       call set_applied(plan, dynamics, state, work)
       call set_bodies(m, all_frames, chains%mass, chains%moment, chains%inertia, dynamics%gravity, state%r, state%omega, &
-                      state%alpha, state%a, own%applied, own%inertia, own%wrench, own%amount)
+                      state%alpha, state%a, frames%applied, frames%inertia, frames%wrench, frames%amount)
       call collect_in_space([1, m], m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, &
-                            state%p, own%wrench, n, whole)
-      own%applied = 0.0_wp
+                            state%p, frames%wrench, n, whole)
+      frames%applied = 0.0_wp
       call set_bodies(m, all_frames, chains%mass, chains%moment, chains%inertia, 0.0_wp*dynamics%gravity, state%r, state%omega, &
-                      state%alpha, state%a, own%applied, own%inertia, own%wrench, own%amount)
+                      state%alpha, state%a, frames%applied, frames%inertia, frames%wrench, frames%amount)
       call collect_in_space([1, m], m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, &
-                            state%p, own%wrench, n, work%velocity_terms)
+                            state%p, frames%wrench, n, work%velocity_terms)
       work%forces = work%velocity_terms - whole
       call find_reach(m, n_entries, dynamics%first, dynamics%column, dynamics%support, n, reach)
-      own%motion = 0.0_wp
+      frames%motion = 0.0_wp
       do i = 1, n
         call accelerate_in_space(i, reach(:, i), m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, &
-                                 jacobian%v, state%p, own%inertia, own%motion, own%wrench)
+                                 jacobian%v, state%p, frames%inertia, frames%motion, frames%wrench)
         call collect_in_space(reach(:, i), m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, &
-                              jacobian%v, state%p, own%wrench, n, whole)
-        own%motion(:, reach(1, i):reach(2, i)) = 0.0_wp
+                              jacobian%v, state%p, frames%wrench, n, whole)
+        frames%motion(:, reach(1, i):reach(2, i)) = 0.0_wp
         work%coefficients(i:, i) = whole(i:)
       end do
     end associate

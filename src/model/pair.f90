@@ -1,9 +1,9 @@
 !> A pair is a joint of two links with one degree of freedom; all kinds of pairs have this interface.
 !>
 !> A pair is any one-parameter motion of a frame of its moving link in a frame of its reference link. Most pairs turn
-!> about or slide along one fixed axis, or both in proportion: `as_screw` tells their axis,
-!> and the plan then never calls `evaluate` for them. Others may lead the moving link along a curve: `guide` tells it.
-!> A pair without a fixed axis may depend on numbers beside those of its frames: `constants` tells them, and `vary` the motion by a
+!> about or slide along one fixed axis, or both in proportion: `as_screw` gives their axis,
+!> and the plan then never calls `evaluate` for them. Others may lead the moving link along a curve: `guide` gives it.
+!> A pair without a fixed axis may depend on numbers beside those of its frames: `constants` gives them, and `vary` the motion by a
 !> change of them.
 module mech9_pair
   use mech9_kinds, only: wp

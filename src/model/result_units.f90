@@ -95,7 +95,7 @@ contains
     case ('N or N m')
       unit = force_unit_name(mechanism, k)
     case default
-      ! a comma or a blank word stands between units of which the table does not tell the right one
+      ! a comma or a blank word stands between units among which the table does not choose
       unit = target%unit
       if (scan(unit, ',') > 0 .or. index(unit, ' or ') > 0 .or. index(unit, ' per ') > 0) unit = ''
     end select

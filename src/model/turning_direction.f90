@@ -1,4 +1,4 @@
-!> A search that tells whether a link can turn about one direction only, as all links of a planar mechanism do.
+!> A search that finds whether a link can turn about one direction only, as all links of a planar mechanism do.
 !>
 !> A path of pairs leads from the link to link 1. Where each of its pairs slides, or turns about the direction, no
 !> other path lets the link turn otherwise. The search goes through all such pairs until it reaches link 1.
@@ -38,13 +38,13 @@ contains
     allocate (search%direction(3, structure%n_links), source=0.0_wp)
   end subroutine new_turning_search
 
-  !> Tell whether a link can turn about a direction only.
+  !> Find whether a link can turn about a direction only.
   pure subroutine turns_only_about(self, link, direction, slack, answer, barrier)
     class(turning_search_type), intent(inout) :: self   !< the turning search
     integer, intent(in) :: link   !< number of the link
     real(wp), intent(in) :: direction(3)       !< of length 1, in the axes of the link
     real(wp), intent(in) :: slack   !< angle that counts as zero [rad]
-    logical, intent(out) :: answer   !< whether the link turns about the direction only, as far as the search can tell
+    logical, intent(out) :: answer   !< whether the link turns about the direction only, as far as the search can find
     integer, intent(out) :: barrier            !< a pair by which the link may turn otherwise; 0: none, or none is known
     logical :: reached(self%graph%n_links)
     integer :: queue(self%graph%n_links), n, next, i, other

@@ -14,7 +14,7 @@ contains
 
   !> Scale a square matrix A to D^-1 A D with a diagonal matrix D, so that each row and the column of the same number
   !> become equally long outside the diagonal (Osborne in docs/reference/bibliography.md). The eigenvalues stay; the Frobenius
-  !> norm falls towards the least value that any choice of units can give it.
+  !> norm decreases towards the least value that any choice of units can give it.
   pure subroutine balance(n, a)
     integer, intent(in) :: n             !< order of the matrix
     real(wp), intent(inout) :: a(n, n)   !< the matrix, which becomes D^-1 A D

@@ -2,7 +2,7 @@
 !>
 !> Central differences over a wide symmetric stencil: the interpolating polynomial of degree 16
 !> through x +- h, +- 2h, ... +- 8h. With h around 1/16 of the length over which the function changes,
-!> truncation falls to round-off while the differences stay large, so that both derivatives keep
+!> truncation decreases to round-off while the differences stay large, so that both derivatives keep
 !> twelve and more digits. A few steps h are tried; the one whose two highest orders agree best wins.
 module mech9_differentiation
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite

@@ -136,7 +136,7 @@ contains
     integer, intent(in) :: nullity                  !< dimension of the null space of K
     type(eigenmodes_type), intent(inout) :: modes   !< gets the modes
     real(wp), dimension(size(damping, 1), size(damping, 1)) :: u, v
-    real(wp) :: s(size(damping, 1)), tempo
+    real(wp) :: s(size(damping, 1)), frequency
     real(wp), allocatable :: system(:, :)
     integer :: n, r, i
 
@@ -144,18 +144,18 @@ contains
     r = n - nullity
     call decompose(stiffness, u, s, v)
     ! time is counted in units in which no root is much larger than 1
-    tempo = max(maxval(abs(damping)), sqrt(maxval([s, 0.0_wp])))
-    if (.not. tempo > 0.0_wp) tempo = 1.0_wp
+    frequency = max(maxval(abs(damping)), sqrt(maxval([s, 0.0_wp])))
+    if (.not. frequency > 0.0_wp) frequency = 1.0_wp
     allocate (system(n + r, n + r), source=0.0_wp)
     system(:r, r + 1:) = transpose(v(:, :r))
     do i = 1, r
-      system(r + 1:, i) = -u(:, i)*s(i)/tempo**2
+      system(r + 1:, i) = -u(:, i)*s(i)/frequency**2
     end do
-    system(r + 1:, r + 1:) = -damping/tempo
+    system(r + 1:, r + 1:) = -damping/frequency
     i = undamped_null_vectors(damping, u(:, r + 1:), v(:, r + 1:))
     call take_out_zeros(i, system)
     call add_zero_modes(v(:, r + 1:), i, modes)
-    call add_other_modes(system, tempo, damping, stiffness, modes)
+    call add_other_modes(system, frequency, damping, stiffness, modes)
   end subroutine damped_modes
 
   !> The number of null vectors of K along which C makes no force that K does not balance.
@@ -187,7 +187,7 @@ contains
     system = matmul(transpose(v(:, :n)), matmul(system, v(:, :n)))
   end subroutine take_out_zeros
 
-  !> A mode of root zero for each null vector of K. Which combinations are double roots is not told apart.
+  !> A mode of root zero for each null vector of K. The double roots among their combinations are not identified.
   subroutine add_zero_modes(vectors, number, modes)
     real(wp), intent(in) :: vectors(:, :)           !< (n,nullity) right null vectors of K
     integer, intent(in) :: number                   !< number of double roots
@@ -200,9 +200,9 @@ contains
   end subroutine add_zero_modes
 
   !> The modes whose roots are not zero by structure.
-  subroutine add_other_modes(system, tempo, damping, stiffness, modes)
+  subroutine add_other_modes(system, frequency, damping, stiffness, modes)
     real(wp), intent(in) :: system(:, :)            !< matrix whose eigenvalues are the roots, in the unit of time
-    real(wp), intent(in) :: tempo                   !< one over the unit of time [1/s]
+    real(wp), intent(in) :: frequency               !< one over the unit of time [1/s]
     real(wp), intent(in) :: damping(:, :)           !< (n,n) C
     real(wp), intent(in) :: stiffness(:, :)         !< (n,n) K
     type(eigenmodes_type), intent(inout) :: modes   !< gets the modes
@@ -219,7 +219,7 @@ contains
     where (abs(re) <= round_off) re = 0.0_wp
     do i = 1, n
       if (im(i) < 0.0_wp) cycle
-      root = tempo*cmplx(re(i), im(i), wp)
+      root = frequency*cmplx(re(i), im(i), wp)
       call find_shape(root, damping, stiffness, modes, shape)
       call add_mode(modes, root, shape, .false.)
     end do

@@ -1,6 +1,6 @@
 !> The sparse QR factorization by fronts, solutions with it, and the distance from a singular matrix.
 !>
-!> Reflections are as stable in any order of columns. But the diagonal of R tells the rank only where columns are exchanged.
+!> Reflections are as stable in any order of columns. But the diagonal of R shows the rank only where columns are exchanged.
 !> Instead, the distance of each column from the span of all others is found: it is 1 over the length of its row of R^-1. The
 !> least of them is at least the least singular value, and at most that times the root of the number of columns. The squares of
 !> these lengths are the diagonal of the covariance (R^T R)^-1, and of that each front needs only the part of its own columns,
@@ -74,7 +74,7 @@ contains
     self%sign_of_det = self%plan%sign
     do f = 1, size(self%plan%fronts)
       associate (front => self%plan%fronts(f), plan => self%plan)
-        call gather(front%own, plan%rows(front%row + 1:), front%columns, plan%columns(front%column + 1:), plan%m, plan%n, &
+        call gather(front%original, plan%rows(front%row + 1:), front%columns, plan%columns(front%column + 1:), plan%m, plan%n, &
                     matrix, front%rows, self%values(front%value + 1:))
         call eliminate(front%rows, front%pivots, front%columns, self%values(front%value + 1:), &
                        self%scales(front%pivot + 1:), self%reciprocals(front%pivot + 1:), self%sign_of_det)
@@ -164,8 +164,8 @@ contains
     total = 0.0_wp
     do f = 1, size(self%plan%fronts)
       associate (front => self%plan%fronts(f), plan => self%plan)
-        if (front%own > 0) call add_differences(front%own, plan%rows(front%row + 1:), front%columns, &
-                                                plan%columns(front%column + 1:), plan%m, plan%n, a, b, total)
+        if (front%original > 0) call add_differences(front%original, plan%rows(front%row + 1:), front%columns, &
+                                                     plan%columns(front%column + 1:), plan%m, plan%n, a, b, total)
       end associate
     end do
     distance = sqrt(total)
@@ -183,7 +183,7 @@ contains
     square = 0.0_wp
     do f = 1, size(self%plan%fronts)
       associate (front => self%plan%fronts(f), plan => self%plan)
-        call take_rows(front%own, plan%rows(front%row + 1:), plan%m, b, self%sides(front%row + 1:))
+        call take_rows(front%original, plan%rows(front%row + 1:), plan%m, b, self%sides(front%row + 1:))
         call reflect(front%rows, front%pivots, self%values(front%value + 1:), self%scales(front%pivot + 1:), &
                      self%sides(front%row + 1:))
         if (front%parent == 0) then
@@ -259,7 +259,7 @@ contains
         end do
         call reflect_back(front%rows, front%pivots, self%values(front%value + 1:), self%scales(front%pivot + 1:), &
                           self%sides(front%row + 1:))
-        do i = 1, front%own
+        do i = 1, front%original
           y(plan%rows(front%row + i)) = self%sides(front%row + i)
         end do
       end associate

@@ -10,10 +10,10 @@ module mech9_front_kernels
 
 contains
 
-  !> Take a front's own rows out of the matrix.
-  pure subroutine gather(own, rows, n, columns, m_matrix, n_matrix, matrix, m, a)
-    integer, intent(in) :: own                           !< number of own rows
-    integer, intent(in) :: rows(own)                     !< their numbers in the matrix
+  !> Take a front's original rows out of the matrix.
+  pure subroutine gather(original, rows, n, columns, m_matrix, n_matrix, matrix, m, a)
+    integer, intent(in) :: original                      !< number of original rows
+    integer, intent(in) :: rows(original)                !< their numbers in the matrix
     integer, intent(in) :: n                             !< columns of the front
     integer, intent(in) :: columns(n)                    !< their numbers in the matrix
     integer, intent(in) :: m_matrix                      !< rows of the matrix
@@ -23,7 +23,7 @@ contains
     real(wp), intent(inout) :: a(m, n)                   !< gets the first rows of the front
     integer :: i, j
 
-    if (is_spatial_closure(own, rows)) then
+    if (is_spatial_closure(original, rows)) then
       do j = 1, n
         do i = 1, 6
           a(i, j) = matrix(rows(1) + i - 1, columns(j))
@@ -32,39 +32,39 @@ contains
       return
     end if
     do j = 1, n
-      do i = 1, own
+      do i = 1, original
         a(i, j) = matrix(rows(i), columns(j))
       end do
     end do
   end subroutine gather
 
-  !> Take a front's own rows out of a right-hand side.
-  pure subroutine take_rows(own, rows, m_matrix, right, sides)
-    integer, intent(in) :: own                  !< number of own rows
-    integer, intent(in) :: rows(own)            !< their numbers in the matrix
+  !> Take a front's original rows out of a right-hand side.
+  pure subroutine take_rows(original, rows, m_matrix, right, sides)
+    integer, intent(in) :: original             !< number of original rows
+    integer, intent(in) :: rows(original)       !< their numbers in the matrix
     integer, intent(in) :: m_matrix             !< rows of the matrix
     real(wp), intent(in) :: right(m_matrix)     !< the right-hand side
-    real(wp), intent(inout) :: sides(own)       !< gets the right-hand side of these rows
+    real(wp), intent(inout) :: sides(original)  !< gets the right-hand side of these rows
     integer :: i
 
-    if (is_spatial_closure(own, rows)) then
+    if (is_spatial_closure(original, rows)) then
       do i = 1, 6
         sides(i) = right(rows(1) + i - 1)
       end do
       return
     end if
-    do i = 1, own
+    do i = 1, original
       sides(i) = right(rows(i))
     end do
   end subroutine take_rows
 
-  !> Whether the own rows of a front are the six rows of one spatial closure, one behind the other.
-  pure logical function is_spatial_closure(own, rows)
-    integer, intent(in) :: own         !< number of own rows
-    integer, intent(in) :: rows(own)   !< their numbers in the matrix
+  !> Whether the original rows of a front are the six rows of one spatial closure, one behind the other.
+  pure logical function is_spatial_closure(original, rows)
+    integer, intent(in) :: original        !< number of original rows
+    integer, intent(in) :: rows(original)  !< their numbers in the matrix
 
     is_spatial_closure = .false.
-    if (own == 6) is_spatial_closure = rows(6) == rows(1) + 5
+    if (original == 6) is_spatial_closure = rows(6) == rows(1) + 5
   end function is_spatial_closure
 
   !> Eliminate the pivots of a front by reflections.
@@ -154,10 +154,10 @@ contains
     end do
   end subroutine add_squares
 
-  !> Add the squares of the differences between two matrices in the own rows of a front.
-  pure subroutine add_differences(own, rows, n, columns, m_matrix, n_matrix, a, b, total)
-    integer, intent(in) :: own                      !< number of own rows
-    integer, intent(in) :: rows(own)                !< their numbers in the matrix
+  !> Add the squares of the differences between two matrices in the original rows of a front.
+  pure subroutine add_differences(original, rows, n, columns, m_matrix, n_matrix, a, b, total)
+    integer, intent(in) :: original                 !< number of original rows
+    integer, intent(in) :: rows(original)           !< their numbers in the matrix
     integer, intent(in) :: n                        !< columns of the front
     integer, intent(in) :: columns(n)               !< their numbers in the matrix
     integer, intent(in) :: m_matrix                 !< rows of the matrix
@@ -168,7 +168,7 @@ contains
     real(wp) :: sums(6)
     integer :: i, j, k, before
 
-    if (is_spatial_closure(own, rows)) then
+    if (is_spatial_closure(original, rows)) then
       before = rows(1) - 1
       sums = 0.0_wp
       do j = 1, n
@@ -184,7 +184,7 @@ contains
     end if
     do j = 1, n
       k = columns(j)
-      do i = 1, own
+      do i = 1, original
         total = total + (a(rows(i), k) - b(rows(i), k))**2
       end do
     end do

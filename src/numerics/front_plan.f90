@@ -23,7 +23,7 @@ module mech9_front_plan
     integer :: rows = 0         !< number of rows
     integer :: pivots = 0       !< number of columns that are eliminated
     integer :: columns = 0      !< number of all columns
-    integer :: own = 0          !< number of rows that are rows of the matrix; the rest comes from earlier fronts
+    integer :: original = 0     !< number of rows that are rows of the matrix; the rest comes from earlier fronts
     integer :: value = 0        !< number of values of all fronts before it
     integer :: row = 0          !< number of rows of all fronts before it
     integer :: column = 0       !< number of columns of all fronts before it
@@ -41,7 +41,7 @@ module mech9_front_plan
     integer :: m = 0                        !< rows of the matrix
     integer :: n = 0                        !< columns of the matrix
     type(front_type), allocatable :: fronts(:)
-    integer, allocatable :: rows(:)         !< row of the matrix, at the place of each own row of each front
+    integer, allocatable :: rows(:)         !< row of the matrix, at the place of each original row of each front
     integer, allocatable :: columns(:)      !< column of the matrix, at the place of each column of each front
     integer, allocatable :: places(:)       !< its number among the columns of the parent, the same for columns beyond the pivots
     integer :: sign = 1                     !< of the determinant of the permutations of rows and columns, where m = n
@@ -279,8 +279,8 @@ contains
       g = groups(i)
       if (graph%made_by(g) == 0) plan%rows = [plan%rows, (graph%first_row(g) + j - 1, j=1, graph%rows(g))]
     end do
-    front%own = size(plan%rows) - front%row
-    front%rows = front%own
+    front%original = size(plan%rows) - front%row
+    front%rows = front%original
     do i = 1, size(groups)
       g = groups(i)
       if (graph%made_by(g) == 0) cycle

@@ -1,10 +1,10 @@
 !> A method of integration that goes over from Prince-Dormand's explicit method to backward differences where the motion is stiff,
 !> and back where it no longer is.
 !>
-!> Two evaluations of the explicit method at the end of a step tell how fast the equations react to a change (Hairer and Wanner
+!> Two evaluations of the explicit method at the end of a step show how fast the equations react to a change (Hairer and Wanner
 !> in docs/reference/bibliography.md). Where the product with the length of steps stays at the limit of stability, stability and not
 !> accuracy holds the steps down: the implicit method goes on. While it does, this measure is found by a power iteration of its own
-!> now and then, and tells how long the steps of the explicit method could be.
+!> now and then, and shows how long the steps of the explicit method could be.
 module mech9_automatic_stepper
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type
@@ -23,9 +23,9 @@ module mech9_automatic_stepper
   !> The same product of the steps that the explicit method would make on the implicit one's way.
   real(wp), parameter :: stable_product = 6.0_wp
   !> Stiff steps after which the implicit method goes on: at first, growing with each time that it did not pay, and at most.
-  integer, parameter :: first_patience = 3, patience_growth = 4, most_patience = 3000
-  !> Calm steps in a row after which earlier stiff ones do not count.
-  integer, parameter :: calm = 3
+  integer, parameter :: first_limit = 3, limit_growth = 4, largest_limit = 3000
+  !> Steps in a row without stiffness after which earlier stiff ones do not count.
+  integer, parameter :: most_nonstiff = 3
   !> The start of the implicit method costs as much as so many steps: it does not go on where fewer of the same length lead to the
   !> end, unless so many were stiff.
   real(wp), parameter :: few_steps = 120.0_wp
@@ -49,15 +49,15 @@ module mech9_automatic_stepper
     type(multistep_type), pointer :: implicit => null()     !< owned; null until it is needed first
     class(stepper_type), pointer :: active => null()        !< the one that made the last step
     logical :: is_implicit = .false.                        !< it is the implicit one
-    logical :: goes_over = .false.                          !< the other one makes the next step
+    logical :: changes_method = .false.                          !< the other one makes the next step
     type(tolerances_type) :: tolerances                     !< as the user gave them
     real(wp) :: largest_step = 0.0_wp                       !< 0: no limit [s]
     real(wp) :: t = 0.0_wp                                  !< end of the last step [s]
     real(wp), allocatable :: y(:)                           !< values there
     real(wp) :: stiff_from = stiff_product                  !< product of step and stiffness
-    integer :: patience = first_patience                    !< stiff steps after which the implicit method goes on
+    integer :: stiff_limit = first_limit                    !< stiff steps after which the implicit method goes on
     integer :: stiff_steps = 0                              !< of the explicit method
-    integer :: calm_steps = 0                               !< after the last stiff one
+    integer :: nonstiff_steps = 0                           !< after the last stiff one
     integer :: steps_since = 0                              !< of the implicit method, since the last look at the stiffness
     integer :: looks = 0                                    !< at the stiffness, since the implicit method went on
     real(wp) :: t_since = 0.0_wp                            !< time of that look [s]
@@ -107,8 +107,8 @@ contains
     real(wp), intent(out) :: y(:)                  !< values there
     integer, intent(out) :: outcome                !< `stepped`, or why it failed
 
-    if (self%goes_over) then
-      call go_over(self, t_stop, outcome)
+    if (self%changes_method) then
+      call change_method(self, t_stop, outcome)
       if (outcome /= stepped) return
     end if
     if (.not. self%is_implicit) call watch_last_stages(self, t_stop)
@@ -141,11 +141,11 @@ contains
 
     if (step*self%box%reaction > self%stiff_from) then
       self%stiff_steps = self%stiff_steps + 1
-      self%calm_steps = 0
-      self%goes_over = self%stiff_steps >= self%patience .and. (rest > few_steps*step .or. self%stiff_steps >= many_stiff)
+      self%nonstiff_steps = 0
+      self%changes_method = self%stiff_steps >= self%stiff_limit .and. (rest > few_steps*step .or. self%stiff_steps >= many_stiff)
     else
-      self%calm_steps = self%calm_steps + 1
-      if (self%calm_steps == calm) self%stiff_steps = 0
+      self%nonstiff_steps = self%nonstiff_steps + 1
+      if (self%nonstiff_steps == most_nonstiff) self%stiff_steps = 0
     end if
   end subroutine judge_explicit
 
@@ -154,7 +154,7 @@ contains
     class(automatic_type), intent(inout) :: self   !< the method at work
     real(wp), intent(in) :: t                      !< end of the last step [s]
     real(wp), intent(in) :: y(:)                   !< values there
-    real(wp) :: stiffness, explicit_cost, own_cost
+    real(wp) :: stiffness, explicit_cost, cost_so_far
     integer(long) :: evaluations
 
     self%counted%implicit_steps = self%counted%implicit_steps + 1
@@ -165,8 +165,8 @@ contains
     call find_stiffness(self, t, y, stiffness)
     if (stiffness > 0.0_wp) then
       explicit_cost = explicit_evaluations*stiffness/stable_product
-      own_cost = implicit_cost*(evaluations - self%evaluations_since)/abs(t - self%t_since)
-      self%goes_over = explicit_cost < worthwhile*own_cost
+      cost_so_far = implicit_cost*(evaluations - self%evaluations_since)/abs(t - self%t_since)
+      self%changes_method = explicit_cost < worthwhile*cost_so_far
     end if
     call begin_look(self, t)
   end subroutine judge_implicit
@@ -207,13 +207,13 @@ contains
   end subroutine find_stiffness
 
   !> Start the other method from the end of the last step.
-  subroutine go_over(self, t_stop, outcome)
+  subroutine change_method(self, t_stop, outcome)
     class(automatic_type), intent(inout) :: self   !< the method at work
     real(wp), intent(in) :: t_stop                 !< the next step goes towards this time [s]
     integer, intent(out) :: outcome                !< `stepped`, or why it failed
     real(wp) :: first_step
 
-    self%goes_over = .false.
+    self%changes_method = .false.
     self%counted%method_changes = self%counted%method_changes + 1
     self%is_implicit = .not. self%is_implicit
     self%box%watches = .not. self%is_implicit
@@ -225,17 +225,17 @@ contains
       call begin_look(self, self%t)
     else
       if (self%looks > few_looks) then
-        self%patience = first_patience
+        self%stiff_limit = first_limit
       else
-        self%patience = min(patience_growth*self%patience, most_patience)
+        self%stiff_limit = min(limit_growth*self%stiff_limit, largest_limit)
       end if
       self%stiff_steps = 0
-      self%calm_steps = 0
+      self%nonstiff_steps = 0
       first_step = sign(0.5_wp*stable_product/self%last_ratio, t_stop - self%t)
       self%active => self%explicit
       call self%explicit%restart(self%t, self%y, first_step, outcome)
     end if
-  end subroutine go_over
+  end subroutine change_method
 
   !> Start the implicit method from the end of the last step; make it where it is needed first.
   subroutine start_implicit(self, outcome)
@@ -256,12 +256,12 @@ contains
     self%active => self%implicit
   end subroutine start_implicit
 
-  !> The method that made the last step tells the values within it.
+  !> The values within the last step, by the method that made it.
   subroutine interpolate(self, t, y, found)
     class(automatic_type), intent(inout) :: self   !< the method at work
     real(wp), intent(in) :: t                      !< a time within the last step [s]
     real(wp), intent(out) :: y(:)                  !< values at t
-    logical, intent(out) :: found                  !< whether the method can tell them
+    logical, intent(out) :: found                  !< whether the method can compute them
 
     call self%active%interpolate(t, y, found)
   end subroutine interpolate
@@ -287,9 +287,9 @@ contains
 
     self%t = t
     self%y = y
-    self%goes_over = .false.
+    self%changes_method = .false.
     self%stiff_steps = 0
-    self%calm_steps = 0
+    self%nonstiff_steps = 0
     call begin_look(self, t)
     call self%active%restart(t, y, first_step, outcome)
   end subroutine restart

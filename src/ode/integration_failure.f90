@@ -94,7 +94,7 @@ contains
 
     err = box%failure
     if (allocated(err%failure)) then
-      ! this message tells all
+      ! this message is complete
       if (err%failure%kind == failure_off_curve .or. err%failure%kind == failure_off_table) return
     end if
     allocate (err%stopped)

@@ -149,7 +149,7 @@ contains
     class(integrator_type), intent(inout) :: self   !< the integrator
     real(wp), intent(in) :: t                       !< [s]
     real(wp), intent(out) :: y(:)                   !< values at t
-    logical, intent(out) :: found                   !< whether the method can tell them; else y has no meaning
+    logical, intent(out) :: found                   !< whether the method can compute them; else y has no meaning
 
     call self%stepper%interpolate(t - self%box%origin, y, found)
   end subroutine interpolate

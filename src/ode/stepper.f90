@@ -66,7 +66,7 @@ module mech9_stepper
       class(stepper_type), intent(inout) :: self   !< the method at work
       real(wp), intent(in) :: t                    !< a time within the last step [s]
       real(wp), intent(out) :: y(:)                !< values at t
-      logical, intent(out) :: found                !< whether the method can tell them
+      logical, intent(out) :: found                !< whether the method can compute them
     end subroutine interpolate_interface
 
     !> Go on from y, which differs little from the result of the last step.

@@ -19,7 +19,7 @@ module mech9_sundials_6
   !> Kind of the integers that count the parts of vectors and matrices.
   integer, parameter :: index_kind = c_int64_t
   !> ERKStep takes the last stage for the rate at the end of the step wherever that stage stands at the end in
-  !> time. All methods but Dormand-Prince's lose their order by this: Verner's falls to 3. With a function that is
+  !> time. All methods but Dormand-Prince's lose their order by this: Verner's decreases to 3. With a function that is
   !> called after each step it evaluates the rate there, for all methods.
   logical, parameter :: last_stage_mistaken = .true.
 

@@ -190,7 +190,7 @@ contains
     class(multistep_type), intent(inout) :: self   !< the method at work
     real(wp), intent(in) :: t                      !< a time within the last step [s]
     real(wp), intent(out) :: y(:)                  !< values at t
-    logical, intent(out) :: found                  !< whether the method can tell them
+    logical, intent(out) :: found                  !< whether the method can compute them
 
     found = FCVodeGetDky(self%memory, t, 0_c_int, self%vector) == 0
     y = self%values
@@ -211,7 +211,7 @@ contains
     end if
   end subroutine correct
 
-  !> The method falls back to the first order, as all multistep methods must.
+  !> The method returns to the first order, as all multistep methods must.
   subroutine begin_anew(self, time, flag)
     class(multistep_type), intent(inout) :: self   !< the method at work
     real(wp), intent(in) :: time                   !< length of the first step with its sign; 0: to be found [s]

@@ -1,15 +1,16 @@
-!> Tolerances by which a free motion has the accuracy that is asked for, and its errors, which other runs tell.
+!> Tolerances by which a free motion has the accuracy that is asked for, and its errors, estimated from other runs.
 !>
 !> The motion is run with small tolerances, and with others that are ten thousand times as large. The difference is the error of
 !> the second run, since that of the first is small beside it. (Estimates from the steps alone do not know how the motion itself
 !> enlarges or reduces an error on the way.) The error at the end is nearly proportional to the tolerance: where it is too large,
-!> it tells the tolerances of the next run.
+!> it gives the tolerances of the next run.
 !>
-!> At the least tolerances of a method the first run has an error that is not small: that of round-off, which adds up over its steps.
-!> A run with twice these tolerances makes other steps and tells it, with a margin since runs by one method share a part of it. Where
-!> this is not small against the accuracy, a run by prince-dormand, which loses least, is the truth. Where no larger tolerances serve,
-!> the run with the least ones is judged, too. Where `auto` cannot have the accuracy by backward differences, prince-dormand makes all
-!> steps. In a very stiff motion it would make too many: then it is neither the truth nor taken.
+!> At the least tolerances of a method the first run has an error that is not small: that of round-off, which adds up
+!> over its steps. A run with twice these tolerances makes other steps and shows it, with a margin since runs by one
+!> method share a part of it. Where this is not small against the accuracy, a run by prince-dormand, which loses least,
+!> is the reference. Where no larger tolerances serve, the run with the least ones is judged, too. Where `auto` cannot
+!> have the accuracy by backward differences, prince-dormand makes all steps. In a very stiff motion it would make too
+!> many: then it is neither the reference nor the result.
 module mech9_accuracy
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type, exit_interrupted
@@ -29,10 +30,10 @@ module mech9_accuracy
 
   !> The largest tolerance of a first run: steps of no tolerance at all may meet what the motion does not.
   real(wp), parameter :: loosest = 1.0e-3_wp
-  !> Tolerances of the run that stands for the truth, as a part of those of the run that is judged. With a hundredth the largest
+  !> Tolerances of the reference run, as a part of those of the run that is judged. With a hundredth the largest
   !> error is right to a third, but small errors at single outputs are wrong by up to 800 times; with this part, by three.
   real(wp), parameter :: control_part = 1.0e-4_wp
-  !> The largest such part by which a run is judged again without another run that stands for the truth.
+  !> The largest such part by which a run is judged again without another reference run.
   real(wp), parameter :: largest_part = 1.0e-3_wp
   !> An estimate that is this part of the allowed error may be wrong by the rest.
   real(wp), parameter :: certain_part = 0.8_wp
@@ -40,7 +41,7 @@ module mech9_accuracy
   real(wp), parameter :: aimed_part = 0.3_wp
   !> Runs that are judged, before the least tolerances are taken.
   integer, parameter :: most_trials = 6
-  !> Tolerances of the run that tells the round-off of another one by the same method, over those of this one.
+  !> Tolerances of the run that shows the round-off of another one by the same method, over those of this one.
   real(wp), parameter :: tolerance_of_other = 2.0_wp
   !> The error of a run by prince-dormand with the least tolerances, over this difference: it is as large if it is truncation.
   real(wp), parameter :: of_difference = 2.0_wp
@@ -74,9 +75,9 @@ module mech9_accuracy
     real(wp) :: least = 0.0_wp                               !< its least tolerance
     logical :: is_met = .false.                              !< the errors are below the allowed one
     type(course_type) :: with_least                          !< the run with the least tolerances, as soon as there is one
-    type(course_type) :: truth                               !< the run with small tolerances
+    type(course_type) :: reference                           !< the run with small tolerances
     logical :: is_too_stiff = .false.                        !< prince-dormand would take too many steps
-    real(wp), allocatable :: round_off(:)                    !< (outputs) error of the truth; 0: small beside others [rad, m]
+    real(wp), allocatable :: round_off(:)                    !< (outputs) error of the reference; 0: small beside others [rad, m]
   end type search_type
 
   !> A run stops where the user wants it, or after a number of steps.
@@ -125,7 +126,7 @@ contains
       else
         search%method = best_method()
         search%least = least_tolerance(search%method)
-        search%with_least = search%truth
+        search%with_least = search%reference
         call find_tolerance(search, errors, err)
       end if
     end if
@@ -141,7 +142,7 @@ contains
 
   !> Find the tolerances by the method of the search, and the errors of the run with them.
   subroutine find_tolerance(search, errors, err)
-    type(search_type), intent(inout) :: search             !< by one method; a truth that is known already stays
+    type(search_type), intent(inout) :: search             !< by one method; a reference that is known already stays
     type(estimated_errors_type), intent(inout) :: errors   !< with the allowed one; get method, tolerance and errors
     type(error_type), allocatable, intent(out) :: err      !< allocated if the user interrupts
     type(course_type) :: judged
@@ -152,8 +153,8 @@ contains
     tolerance = min(loosest, max(0.1_wp*errors%allowed, 10.0_wp*search%least))
     do trial = 1, most_trials
       if (trial == most_trials) tolerance = search%least
-      if (search%truth%tolerance > max(largest_part*tolerance, search%least)) then
-        call find_truth(search, max(control_part*tolerance, search%least), errors, err)
+      if (search%reference%tolerance > max(largest_part*tolerance, search%least)) then
+        call find_reference(search, max(control_part*tolerance, search%least), errors, err)
         if (allocated(err)) return
       end if
       if (tolerance <= 10.0_wp*search%least) exit
@@ -166,36 +167,36 @@ contains
     call judge(search, search%with_least, errors%allowed, errors)
   end subroutine find_tolerance
 
-  !> The errors of a run, with the round-off of the truth.
+  !> The errors of a run, with the round-off of the reference.
   subroutine judge(search, judged, largest, errors)
-    type(search_type), intent(inout) :: search             !< with the truth
+    type(search_type), intent(inout) :: search             !< with the reference
     type(course_type), intent(in) :: judged                !< the run
     real(wp), intent(in) :: largest                        !< error by which the accuracy is met [rad, m]
     type(estimated_errors_type), intent(inout) :: errors   !< get tolerance and errors
 
-    call compare(search%truth, judged, errors)
+    call compare(search%reference, judged, errors)
     errors%at = errors%at + search%round_off(:size(errors%at))
     errors%tolerance = judged%tolerance
     search%is_met = maxval(errors%at) <= largest
   end subroutine judge
 
-  !> The run that stands for the truth. With the least tolerances it has an error by round-off. Where this counts, prince-dormand's run
-  !> is the truth, unless it takes too many steps.
-  subroutine find_truth(search, tolerance, errors, err)
+  !> The reference run. With the least tolerances it has an error by round-off. Where this counts, prince-dormand's run
+  !> is the reference, unless it takes too many steps.
+  subroutine find_reference(search, tolerance, errors, err)
     type(search_type), intent(inout) :: search             !< gets this run and its round-off
     real(wp), intent(in) :: tolerance                      !< relative, and absolute [rad, m, per s]
     type(estimated_errors_type), intent(inout) :: errors   !< counts the work
     type(error_type), allocatable, intent(out) :: err      !< allocated if the user interrupts
     type(course_type) :: best
 
-    call run(search, search%method, tolerance, search%truth, errors, err)
+    call run(search, search%method, tolerance, search%reference, errors, err)
     if (allocated(err)) return
     if (allocated(search%round_off)) deallocate (search%round_off)
-    allocate (search%round_off(search%truth%outputs), source=0.0_wp)
-    if (search%truth%is_implicit) search%least = least_tolerance(search%method)
+    allocate (search%round_off(search%reference%outputs), source=0.0_wp)
+    if (search%reference%is_implicit) search%least = least_tolerance(search%method)
     if (tolerance > search%least) return
-    search%with_least = search%truth
-    if (search%method%family == automatic .and. .not. search%truth%is_implicit .or. &
+    search%with_least = search%reference
+    if (search%method%family == automatic .and. .not. search%reference%is_implicit .or. &
         search%method%table == prince_dormand_table) then
       call find_round_off(search, best_method(), of_difference, errors, err)
       return
@@ -207,13 +208,13 @@ contains
     if (allocated(err)) return
     search%is_too_stiff = best%is_too_long
     if (search%is_too_stiff) return
-    search%truth = best
+    search%reference = best
     call find_round_off(search, best_method(), of_difference, errors, err)
-  end subroutine find_truth
+  end subroutine find_reference
 
-  !> The round-off of the truth, from another run by the same method.
+  !> The round-off of the reference, from another run by the same method.
   subroutine find_round_off(search, method, factor, errors, err)
-    type(search_type), intent(inout) :: search             !< with the truth; gets its round-off
+    type(search_type), intent(inout) :: search             !< with the reference; gets its round-off
     type(integration_method_type), intent(in) :: method    !< by which it was run
     real(wp), intent(in) :: factor                         !< error over difference
     type(estimated_errors_type), intent(inout) :: errors   !< counts the work
@@ -224,9 +225,9 @@ contains
 
     call run(search, method, tolerance_of_other*least_tolerance(method), other, errors, err)
     if (allocated(err)) return
-    call compare(search%truth, other, differences)
-    search%truth%outputs = size(differences%at)
-    if (allocated(differences%failure)) search%truth%failure = differences%failure
+    call compare(search%reference, other, differences)
+    search%reference%outputs = size(differences%at)
+    if (allocated(differences%failure)) search%reference%failure = differences%failure
     search%round_off = [(factor*maxval(differences%at(:i)), i=1, size(differences%at))]
   end subroutine find_round_off
 
@@ -332,24 +333,24 @@ contains
     end do
   end subroutine take_places
 
-  !> The errors of a run at the outputs that it and the truth reached. None is less than the last digit of the numbers.
-  pure subroutine compare(truth, judged, errors)
-    type(course_type), intent(in) :: truth                 !< the run with small tolerances
+  !> The errors of a run at the outputs that it and the reference reached. None is less than the last digit of the numbers.
+  pure subroutine compare(reference, judged, errors)
+    type(course_type), intent(in) :: reference             !< the run with small tolerances
     type(course_type), intent(in) :: judged                !< the other run
     type(estimated_errors_type), intent(inout) :: errors   !< gets the errors, and the failure that ended one of the runs
     integer :: i, n
 
-    n = min(truth%outputs, judged%outputs)
+    n = min(reference%outputs, judged%outputs)
     if (allocated(errors%at)) deallocate (errors%at)
     allocate (errors%at(n))
     do i = 1, n
-      associate (a => truth%places(:, i - 1), b => judged%places(:, i - 1))
+      associate (a => reference%places(:, i - 1), b => judged%places(:, i - 1))
         errors%at(i) = max(maxval(abs(a - b)), spacing(maxval(abs(a))))
       end associate
     end do
     if (allocated(errors%failure)) deallocate (errors%failure)
-    if (allocated(truth%failure) .and. truth%outputs == n) then
-      errors%failure = truth%failure
+    if (allocated(reference%failure) .and. reference%outputs == n) then
+      errors%failure = reference%failure
     else if (allocated(judged%failure)) then
       errors%failure = judged%failure
     end if

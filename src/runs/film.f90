@@ -14,14 +14,14 @@ module mech9_film
   private
   public :: film_type, new_film
 
-  !> The number of frames is limited by what a viewer can tell apart. Mechanisms of many links get fewer frames, so that a
+  !> The number of frames is limited by what a viewer can distinguish. Mechanisms of many links get fewer frames, so that a
   !> film of a thousand links still fits into a few megabytes.
   integer, parameter :: most_frames = 300, most_poses = 60000
   !> The points of a path lie closer together than a line is wide. Where outputs are few, points are put in between them,
   !> except where a point travels more than `detour` times the straight distance, since the curve is then not known well
   !> enough.
   integer, parameter :: most_path_points = 1200, most_between = 8
-  real(wp), parameter :: detour = 2.5_wp
+  real(wp), parameter :: largest_arc_ratio = 2.5_wp
 
   !> Frames and paths are in the system of link 1. Outputs that are not kept are left out evenly.
   type :: film_type
@@ -148,7 +148,7 @@ contains
     integer :: n
 
     chord = to(:, 1) - from(:, 1)
-    if (max(norm2(from(:, 2)), norm2(to(:, 2)))*abs(duration) > detour*norm2(chord)) then
+    if (max(norm2(from(:, 2)), norm2(to(:, 2)))*abs(duration) > largest_arc_ratio*norm2(chord)) then
       do n = 1, size(way, 2)
         way(:, n) = from(:, 1) + chord*n/(size(way, 2) + 1)
       end do

@@ -164,7 +164,7 @@ contains
         return
       end if
       self%outputs = self%outputs + 1
-      call let_wait(self, .true., t, rows, count, err)
+      call defer(self, .true., t, rows, count, err)
       return
     end if
     ! positions before this one may fail, too
@@ -239,13 +239,13 @@ contains
       call self%simulation%visit(times(i), err)
       if (.not. allocated(err)) self%visited = i
       if (.not. allocated(err)) call fill_row(self, self%between(:, self%waiting + 1), err)
-      if (.not. allocated(err)) call let_wait(self, .false., t, rows, count, err)
+      if (.not. allocated(err)) call defer(self, .false., t, rows, count, err)
       if (allocated(err)) return
     end do
   end subroutine visit_between
 
   !> Let a row wait for its derivatives, until enough of them wait. Rows without derivatives do not wait.
-  subroutine let_wait(self, is_output, t, rows, count, err)
+  subroutine defer(self, is_output, t, rows, count, err)
     type(row_source_type), intent(inout) :: self              !< the row source
     logical, intent(in) :: is_output                          !< the row is an output
     real(wp), intent(in) :: t                                 !< time of this output, or of the next one [s]
@@ -260,7 +260,7 @@ contains
       if (self%waiting < self%sensitivity%at_once .and. .not. allocated(self%film)) return
     end if
     call self%complete(rows, count, err)
-  end subroutine let_wait
+  end subroutine defer
 
   !> Complete all rows that wait for their derivatives, as far as these exist.
   subroutine complete(self, rows, count, err)

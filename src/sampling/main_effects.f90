@@ -130,7 +130,7 @@ contains
     real(wp), intent(in) :: numbers(:, :)               !< (quantities,runs)
     type(fit_type), intent(inout) :: fit                !< with coefficients; gets the variances
     real(wp), dimension(size(fit%factors, 1)) :: functions, weights
-    real(wp) :: own, deviation
+    real(wp) :: leverage, deviation
     integer :: i, j
 
     allocate (fit%variances(size(functions), size(numbers, 1)), source=0.0_wp)
@@ -140,12 +140,12 @@ contains
       weights = functions
       call cholesky_solve(size(functions), fit%factors, weights)
       ! the share of a run in its own fitted number
-      own = min(dot_product(functions, weights), 1.0_wp - sqrt(epsilon(own)))
+      leverage = min(dot_product(functions, weights), 1.0_wp - sqrt(epsilon(leverage)))
       do i = 1, size(numbers, 1)
         deviation = numbers(i, j) - numbers(i, 1) - dot_product(functions, fit%coefficients(:, i))
         fit%second(i) = fit%second(i) + deviation**2
         fit%fourth(i) = fit%fourth(i) + deviation**4
-        fit%variances(:, i) = fit%variances(:, i) + (deviation/(1.0_wp - own)*weights)**2
+        fit%variances(:, i) = fit%variances(:, i) + (deviation/(1.0_wp - leverage)*weights)**2
       end do
     end do
   end subroutine judge_coefficients

@@ -3,7 +3,7 @@
 !> The plan of the integrated motion differs from that of the data file in the steps of the joints whose angles are replaced.
 !> The angles of the data file follow from the rotation of the joint and its history: of all angles that give the rotation,
 !> those that continue the angles before. `continue_to` carries them on over ways that are short against the distance from the
-!> lock, as `may_continue` tells.
+!> lock, as `may_continue` finds.
 module mech9_ball_angles
   use mech9_kinds, only: wp
   use mech9_tracking_tolerances, only: doubtful_margin

@@ -234,10 +234,10 @@ contains
     end do
   end subroutine divide
 
-  !> The plan and the state in other independent coordinates. Blocks that do not change are taken over; where that cannot be, the
+  !> The plan and the state in other independent coordinates. Blocks that do not change are copied; where that cannot be, the
   !> plan is made from the beginning. Fails with exit_singular where these coordinates cannot serve or the state cannot be
   !> carried over, and with the code of the failure where a pair or the program itself fails.
-  subroutine carry_over(mechanism, partition, plan, state, requested, new_plan, new_state, err, wanted, in_vain, same_frames, &
+  subroutine carry_over(mechanism, partition, plan, state, requested, new_plan, new_state, err, wanted, rejected, same_frames, &
                         other_turns)
     type(mechanism_type), intent(in) :: mechanism        !< the mechanism
     type(partition_type), intent(in) :: partition        !< with the other independent coordinates
@@ -248,7 +248,7 @@ contains
     type(state_type), intent(out) :: new_state           !< the same position and motion, for the new plan
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(wanted_type), intent(in), optional :: wanted    !< conditioning for which the change is worthwhile; any unless given
-    logical, intent(out), optional :: in_vain            !< it is not worthwhile, and no plan was made
+    logical, intent(out), optional :: rejected           !< it is not worthwhile, and no plan was made
     logical, intent(out), optional :: same_frames        !< the plan has the frames of the present one, perhaps in another order
     logical, intent(in), optional :: other_turns         !< the present plan has other angles of ball joints than the mechanism, so that
                                                          !< none can be made from the beginning; not unless given
@@ -257,9 +257,9 @@ contains
 
     if (present(wanted)) enough = wanted
     call replan(plan, state, partition%independent(), partition%driven(), requested, enough, new_plan, new_state, replanning, err)
-    if (present(in_vain)) in_vain = replanning%in_vain
+    if (present(rejected)) rejected = replanning%rejected
     if (present(same_frames)) same_frames = replanning%serves
-    if (allocated(err) .or. replanning%in_vain) return
+    if (allocated(err) .or. replanning%rejected) return
     if (.not. replanning%serves) then
       if (present(other_turns)) then
         if (other_turns) call raise(err, exit_singular, failure_other_branch)

@@ -155,7 +155,7 @@ contains
     to = from
   end subroutine copy_driven_motion
 
-  !> Tell the motion which angles it has, so that it pauses near their singular positions.
+  !> Give the motion its angles, so that it pauses near their singular positions.
   pure subroutine note_angles(angles, driven)
     type(ball_angles_type), intent(in) :: angles        !< of the ball joints
     type(driven_motion_type), intent(inout) :: driven   !< the driven motion

@@ -37,7 +37,7 @@ module mech9_free_simulation
     real(wp), allocatable :: coefficients(:, :)   !< a_pr at the start, lower triangle [kg m^2, kg m, kg]
     real(wp) :: end = 0.0_wp                      !< steps go to this time at most, unless a later one is asked for [s]
     logical, private :: steps_onto = .false.      !< no step may go beyond the time that is asked for
-    type(stall_watch_type), private :: stall      !< tells whether steps stay short
+    type(stall_watch_type), private :: stall      !< whether steps stay short
   contains
     procedure :: begin
     procedure :: go_to

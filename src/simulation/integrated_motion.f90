@@ -96,7 +96,7 @@ contains
     type(motion_system_type), pointer :: other
     type(ball_angles_type) :: angles
     type(error_type), allocatable :: failure
-    logical :: independent(self%system%plan%n_coordinates), in_vain
+    logical :: independent(self%system%plan%n_coordinates), rejected
 
     changed = .false.
     self%system%refuse_below = 0.0_wp
@@ -111,8 +111,8 @@ contains
     end if
     allocate (other)
     call other%make_room()
-    call take_coordinates(self, independent, requested, other, angles, in_vain, failure, err)
-    if (.not. (in_vain .or. allocated(failure) .or. allocated(err))) &
+    call take_coordinates(self, independent, requested, other, angles, rejected, failure, err)
+    if (.not. (rejected .or. allocated(failure) .or. allocated(err))) &
       changed = other%conditioning() >= worthwhile_improvement*self%system%conditioning()
     if (changed) then
       call hand_on_sensitivity(self, angles, other, err)
@@ -152,29 +152,29 @@ contains
     err%failure%t = t
   end subroutine refuse_angles
 
-  !> Make the system in other independent coordinates, at the present state. What belongs to frames and blocks that do not change
-  !> is taken over. `failure` tells that these coordinates cannot serve, `err` that the motion ends.
-  subroutine take_coordinates(self, independent, requested, other, angles, in_vain, failure, err)
+  !> Make the system in other independent coordinates, at the present state. Data of frames and blocks that do not
+  !> change are copied. `failure` means that these coordinates cannot serve, `err` that the motion ends.
+  subroutine take_coordinates(self, independent, requested, other, angles, rejected, failure, err)
     class(integrated_motion_type), intent(inout) :: self       !< the motion
     logical, intent(in) :: independent(:)                      !< (M) the coordinate is independent
     type(requested_type), intent(in) :: requested              !< the part of the motion that is worked out
     type(motion_system_type), intent(inout) :: other           !< the system in these coordinates
     type(ball_angles_type), intent(inout) :: angles            !< of ball joints, for this system
-    logical, intent(out) :: in_vain                            !< the change is not worthwhile, and the system was not made
+    logical, intent(out) :: rejected                           !< the change is not worthwhile, and the system was not made
     type(error_type), allocatable, intent(out) :: failure      !< allocated if these coordinates cannot serve
     type(error_type), allocatable, intent(out) :: err          !< allocated if the motion ends
     type(partition_type) :: partition
     type(wanted_type) :: wanted
     logical :: same_frames
 
-    in_vain = .false.
+    rejected = .false.
     partition = self%system%partition%in_same_order(independent)
     wanted = worth_taking(self%system%conditioning(), self%system%work%blocks)
     call self%show_angles(err)
     if (allocated(err)) return
     call carry_over(self%system%model%mechanism, partition, self%system%plan, self%system%state, requested, other%plan, &
-                    other%state, failure, wanted, in_vain, same_frames, self%angles%in_use())
-    if (gives_up(failure, err) .or. in_vain) return
+                    other%state, failure, wanted, rejected, same_frames, self%angles%in_use())
+    if (gives_up(failure, err) .or. rejected) return
     angles = self%angles
     if (angles%in_use()) then
       angles%held%partition = partition
@@ -408,22 +408,22 @@ contains
   end function statistics
 
   !> Add the counts of an integrator.
-  pure subroutine add_statistics(own, goes_on, all)
-    type(integration_statistics_type), intent(in) :: own      !< of the integrator
+  pure subroutine add_statistics(counts, goes_on, all)
+    type(integration_statistics_type), intent(in) :: counts   !< of the integrator
     logical, intent(in) :: goes_on                            !< its steps are those of the motion
     type(integration_statistics_type), intent(inout) :: all   !< the sums
 
-    all%rate_evaluations = all%rate_evaluations + own%rate_evaluations
-    all%jacobian_evaluations = all%jacobian_evaluations + own%jacobian_evaluations
-    all%error_test_failures = all%error_test_failures + own%error_test_failures
-    all%convergence_failures = all%convergence_failures + own%convergence_failures
-    all%refusals = all%refusals + own%refusals
+    all%rate_evaluations = all%rate_evaluations + counts%rate_evaluations
+    all%jacobian_evaluations = all%jacobian_evaluations + counts%jacobian_evaluations
+    all%error_test_failures = all%error_test_failures + counts%error_test_failures
+    all%convergence_failures = all%convergence_failures + counts%convergence_failures
+    all%refusals = all%refusals + counts%refusals
     if (.not. goes_on) return
-    all%steps = all%steps + own%steps
-    all%implicit_steps = all%implicit_steps + own%implicit_steps
-    all%method_changes = all%method_changes + own%method_changes
-    all%last_order = own%last_order
-    all%last_step = own%last_step
+    all%steps = all%steps + counts%steps
+    all%implicit_steps = all%implicit_steps + counts%implicit_steps
+    all%method_changes = all%method_changes + counts%method_changes
+    all%last_order = counts%last_order
+    all%last_step = counts%last_step
   end subroutine add_statistics
 
   !> Work for the blocks of all systems of the motion, the present one included.

@@ -1,7 +1,7 @@
 !> Motors that reach or leave the limits of their forces.
 !>
 !> Between two such times each motor works at one limit or at none, so that the equations of motion are smooth. After each step
-!> the forces that the motors would have without limits tell whether one was passed within the step; they are interpolated between
+!> the forces that the motors would have without limits show whether one was passed within the step; they are interpolated between
 !> the ends of the step, so that a short visit is seen, too.
 module mech9_limit_watch
   use mech9_kinds, only: wp
@@ -65,7 +65,7 @@ contains
     end do
   end subroutine find_demands
 
-  !> The motor that passes its limit first within a step, as far as interpolated demands tell; 0: none does.
+  !> The motor that passes its limit first within a step, as far as interpolated demands show; 0: none does.
   subroutine find_passing(self, system, h, motor, part, err)
     class(limit_watch_type), intent(in) :: self         !< with the demands at the start of the step
     type(motion_system_type), intent(in) :: system      !< the motion system at the end of the step, with all accelerations

@@ -86,7 +86,7 @@ contains
   end subroutine make_room
 
   !> Make the system from its plan and an assembled start with the independent rates, which stand in it. The motion there is found,
-  !> and work%coefficients are those of the start. What an earlier system knows of frames and blocks that stay is taken over. The
+  !> and work%coefficients are those of the start. What an earlier system knows of frames and blocks that stay is copied. The
   !> drives are those of the model unless they stand in the system.
   subroutine set_motion_system(model, partition, system, err, known)
     type(model_type), intent(in), target :: model        !< the model; it must outlive the system

@@ -52,7 +52,7 @@ module mech9_simulation
     integer, allocatable :: replaced(:)      !< of these, angles for which others are integrated from then on, near gimbal lock
   end type coordinate_change_type
 
-  !> Errors at the outputs of a motion, as other runs of it tell (mech9_accuracy).
+  !> Errors at the outputs of a motion, estimated from other runs of it (mech9_accuracy).
   type :: estimated_errors_type
     real(wp) :: allowed = 0.0_wp              !< largest error that is allowed [rad, m]
     real(wp) :: tolerance = 0.0_wp            !< of the motion, relative and absolute [rad, m, per s]
@@ -258,7 +258,7 @@ contains
   end subroutine arrive
 
   !> Keep the estimated error of the position that was reached, and judge it. Fails also where the error is not known, since one
-  !> of the runs that tell the errors could not go on.
+  !> of the runs that estimate the errors could not go on.
   subroutine take_error(self, err)
     class(simulation_type), intent(inout) :: self       !< the simulation, at its next output
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -335,7 +335,7 @@ contains
     call self%count_work(statistics)
   end function statistics
 
-  !> The place of the motion: its present position, unless a simulation tells more.
+  !> The place of the motion: its present position, unless a simulation knows more.
   type(standing_type) function standing_at_output(self) result(standing)
     class(simulation_type), intent(inout) :: self   !< the simulation
 

@@ -49,7 +49,7 @@ module mech9_stopped_motion
 
 contains
 
-  !> Note a step. `stalls` tells that many steps in a row were short; they are counted anew then.
+  !> Note a step. `stalls` means that many steps in a row were short; they are counted anew then.
   pure subroutine note(self, step, duration, conditioning, stalls)
     class(stall_watch_type), intent(inout) :: self   !< the steps so far
     real(wp), intent(in) :: step                     !< length of the last one [s]

@@ -53,7 +53,7 @@ module mech9_closed_chains
     procedure, private :: end_of_label
     procedure, private :: trace
     procedure, private :: trace_out
-    procedure, private :: trace_home
+    procedure, private :: trace_back
   end type chain_search_type
 
 contains
@@ -244,7 +244,7 @@ contains
       self%trail_pairs(1) = int(mod(item%minor, per_link))
     end associate
     call self%trace_out(graph, item%major, n)
-    call self%trace_home(graph, n)
+    call self%trace_back(graph, n)
     chain%links = self%trail_links(:n + 1)
     chain%pairs = self%trail_pairs(:n)
     if (n > 1) then
@@ -317,7 +317,7 @@ contains
   end subroutine trace_out
 
   !> Continue the trail from a link with another label to the known links, each pair on a cheapest walk there.
-  pure subroutine trace_home(self, graph, n)
+  pure subroutine trace_back(self, graph, n)
     class(chain_search_type), intent(inout) :: self   !< the search
     type(link_graph_type), intent(in) :: graph        !< links and pairs of the mechanism
     integer, intent(inout) :: n                       !< pairs in the trail
@@ -340,7 +340,7 @@ contains
       self%trail_links(n + 1) = graph%other_at(i)
       link = self%trail_links(n + 1)
     end do
-  end subroutine trace_home
+  end subroutine trace_back
 
   !> The link at the other end of a pair.
   pure integer function other_end(graph, pair, link)

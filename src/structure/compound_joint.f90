@@ -1,4 +1,4 @@
-!> Joints with several freedoms: chains of pairs with one freedom each, over links of their own that nobody sees.
+!> Joints with several freedoms: chains of pairs with one freedom each, over inner links without numbers in the data file.
 !>
 !> Such a joint stands between two links of the user. Its pairs have coordinates with the user's numbers; the massless links
 !> between the pairs have numbers above those of the user's links.
@@ -17,7 +17,7 @@ module mech9_compound_joint
     integer :: freedoms = 0                           !< number of its coordinates
     integer :: numbers(most_freedoms) = 0             !< of its coordinates, from the reference link to the moving link
     integer :: ends(2) = 0                            !< the reference link and the moving link
-    integer :: before_own = 0                         !< its own links have the numbers above this one, in the order of the chain
+    integer :: before_inner = 0                       !< its inner links have the numbers above this one, in the order of the chain
   contains
     procedure :: coordinates
     procedure :: links_of_pair
@@ -46,7 +46,7 @@ contains
     integer, intent(in) :: i                         !< place of the pair in the chain, from 1
     integer :: links(2)
 
-    links = self%before_own + [i - 1, i]
+    links = self%before_inner + [i - 1, i]
     if (i == 1) links(1) = self%ends(1)
     if (i == self%freedoms) links(2) = self%ends(2)
   end function links_of_pair

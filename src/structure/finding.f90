@@ -1,4 +1,4 @@
-!> A finding describes an error in structural data, and tells the number that is wrong.
+!> A finding describes an error in structural data, and gives the number that is wrong.
 !>
 !> Checks of data collect findings, so that a user sees all errors at once, and the reader of
 !> the data file can point at the very number.

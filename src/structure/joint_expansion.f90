@@ -29,16 +29,16 @@ contains
     end do
   end function inner_coordinates
 
-  !> Replace each joint by its chain: give numbers to its own links, and links to its coordinates.
+  !> Replace each joint by its chain: give numbers to its inner links, and links to its coordinates.
   pure subroutine expand_structure(joints, structure)
-    type(compound_joint_type), intent(in) :: joints(:)    !< the joints, without numbers of their own links
+    type(compound_joint_type), intent(in) :: joints(:)    !< the joints, without numbers of their inner links
     type(structure_type), intent(inout) :: structure      !< of the user; then with the chains of the joints
     integer :: i, j
 
     structure%joints = joints
     do j = 1, size(joints)
       associate (joint => structure%joints(j))
-        joint%before_own = structure%n_links
+        joint%before_inner = structure%n_links
         structure%n_links = structure%n_links + joint%freedoms - 1
         do i = 1, joint%freedoms
           structure%links(:, joint%numbers(i)) = joint%links_of_pair(i)

@@ -5,7 +5,7 @@ module mech9_priority_queue
   private
   public :: queue_item_type, priority_queue_type
 
-  !> An item; keys are compared number by number, so `minor` settles ties of `major`.
+  !> An item; keys are compared number by number, so `minor` decides where `major` is equal.
   type :: queue_item_type
     integer(long) :: major = 0   !< first key
     integer(long) :: minor = 0   !< second key

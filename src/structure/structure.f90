@@ -1,4 +1,4 @@
-!> The structure of a mechanism tells the two links of each pair. With the independent coordinates it is the paper's first set
+!> The structure of a mechanism is the two links of each pair. With the independent coordinates it is the paper's first set
 !> of data; (7), (8).
 !>
 !> It is held sparsely, as two links a pair: the coincidence matrix C itself is only read.
@@ -17,7 +17,7 @@ module mech9_structure
     integer :: n_links = 0                   !< N, with link 1 the frame
     integer :: n_coordinates = 0             !< M, as many as pairs
     integer, allocatable :: links(:, :)      !< (2,M) the two links of each pair
-    !> Joints with several freedoms, whose pairs and own links are among those above; not allocated where there is none.
+    !> Joints with several freedoms, whose pairs and inner links are among those above; not allocated where there is none.
     type(compound_joint_type), allocatable :: joints(:)
   contains
     procedure :: shown_links
@@ -60,7 +60,7 @@ contains
     if (.not. allocated(self%joints)) return
     do joint = size(self%joints), 1, -1
       associate (j => self%joints(joint))
-        if (link > j%before_own .and. link < j%before_own + j%freedoms) return
+        if (link > j%before_inner .and. link < j%before_inner + j%freedoms) return
       end associate
     end do
   end function joint_of_link

@@ -17,7 +17,7 @@ module mech9_branch
 
 contains
 
-  !> Follow the branch of a position from one time to another; `came` tells whether the motion comes there.
+  !> Follow the branch of a position from one time to another; `came` is whether the motion comes there.
   subroutine follow(design, from, to, q, came)
     type(design_type), intent(in) :: design   !< placed
     real(wp), intent(in) :: from              !< time of the position [s]
@@ -41,7 +41,7 @@ contains
     if (came) q = driven%state%q
   end subroutine follow
 
-  !> Follow the branch of a position while one driven angle turns fully and all other drives stand still; `came` tells whether the
+  !> Follow the branch of a position while one driven angle turns fully and all other drives stand still; `came` is whether the
   !> motion comes to the end of the turn.
   subroutine follow_turn(design, q, coordinate, came, work)
     type(design_type), intent(in) :: design       !< placed

@@ -91,7 +91,7 @@ contains
 
     i = minloc(sign_of*places%value, dim=1)
     least = places(i)
-    ! the extreme lies towards the side to which the number still falls
+    ! the extreme lies towards the side to which the number still decreases
     downhill = -sign_of*places(i)%by_t*(places(size(places))%t - places(1)%t)
     if (downhill > 0.0_wp .and. i < size(places)) then
       call refine(number, sign_of, design, position, places(i), places(i + 1), least)

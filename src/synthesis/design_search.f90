@@ -177,7 +177,7 @@ contains
     type(least_squares_settings_type) :: settings
     type(least_squares_outcome_type) :: outcome
     type(error_type), allocatable :: err
-    real(wp) :: x(size(x_start)), y(seen%relaxed%own, seen%relaxed%groups), free(size(y, 1), size(y, 2)), q(size(q_start))
+    real(wp) :: x(size(x_start)), y(seen%relaxed%n_y, seen%relaxed%groups), free(size(y, 1), size(y, 2)), q(size(q_start))
     real(wp) :: low(size(x_start)), high(size(x_start))
     integer :: i, first
     logical :: came

@@ -22,7 +22,7 @@ module mech9_design_space
   public :: design_space_type, design_type, new_design_space, new_design, place_design, place_drives, find_tangents, &
     drive_changes, copy_design, fix_design_space, all_values, probe, probes
 
-  !> The data that all designs share. A copy needs a model as a function of its own.
+  !> The data that all designs share. A copy needs a copy of the model as a function.
   type :: design_space_type
     class(variable_model_type), pointer :: variable => null()   !< the model as a function of all parameters
     class(model_type), allocatable :: model         !< with the values of the data file

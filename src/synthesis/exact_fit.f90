@@ -27,7 +27,8 @@ module mech9_exact_fit
   private
   public :: exact_fit_type, new_exact_fit, begin_at, has_ended
 
-  !> Steps of the motions of one search. A search that creeps along the edge of the designs that can move takes many more, and ends.
+  !> Steps of the motions of one search. A search along the edge of the designs that can move would take many more, and
+  !> ends.
   integer(long), parameter :: most_work = 60000
   !> Positions that are recorded between two targets.
   real(wp), parameter :: most_parts = 1.0e4_wp
@@ -58,7 +59,7 @@ module mech9_exact_fit
     logical :: must_follow = .false.                        !< runs are followed from their starts
     integer(long) :: work = 0                               !< steps of all motions that were followed, and positions of others
     integer(long) :: followed = 0                           !< number of runs that were followed
-    logical :: heeds_interruption = .true.                  !< designs have no value after the user has interrupted
+    logical :: stops_on_interruption = .true.               !< designs have no value after the user has interrupted
     logical :: was_cut = .false.                            !< a design had no value for this reason
   contains
     procedure :: evaluate
@@ -183,7 +184,7 @@ contains
   subroutine note_interruption(self)
     class(exact_fit_type), intent(inout) :: self            !< the fit
 
-    if (self%heeds_interruption .and. .not. self%was_cut) self%was_cut = interrupted()
+    if (self%stops_on_interruption .and. .not. self%was_cut) self%was_cut = interrupted()
   end subroutine note_interruption
 
   !> The times of all targets.

@@ -173,10 +173,10 @@ contains
           r(1, g) = target%factor*(near%trial%q(i, target%coordinate) - target%place(1))
         else
           f = plan%frame_of(target%link)
-          associate (own => near%design%points(:, target%point))
-            place(1) = pose(i, 3, f) + pose(i, 1, f)*own(1) - pose(i, 2, f)*own(2)
-            place(2) = pose(i, 4, f) + pose(i, 2, f)*own(1) + pose(i, 1, f)*own(2)
-            place(3) = own(3)
+          associate (point => near%design%points(:, target%point))
+            place(1) = pose(i, 3, f) + pose(i, 1, f)*point(1) - pose(i, 2, f)*point(2)
+            place(2) = pose(i, 4, f) + pose(i, 2, f)*point(1) + pose(i, 1, f)*point(2)
+            place(3) = point(3)
           end associate
           if (.not. plan%planar%in_xy_plane) place = matmul(plan%planar%axes, place)
           r(:target%components, g) = target%factor*(place(:target%components) + plan%origin(:target%components) &

@@ -112,7 +112,7 @@ contains
     type(design_type), intent(in) :: design                 !< placed, with its tangents
     type(open_position_type), intent(inout) :: position     !< with its frames in place; gets the twists
     type(frame_twists_type) :: at_rest
-    real(wp) :: own(6), along(6), series(6, 0:2)
+    real(wp) :: about(6), along(6), series(6, 0:2)
     integer :: s, p, k
 
     position%frames(:, :, 0) = 0.0_wp
@@ -124,8 +124,8 @@ contains
           associate (tangent => design%tangents(p), twist => position%frames(:, p, s))
             if (tangent%moves(k)) twist = twist + carried(state, step%parent, tangent%before(:, k))
             if (abs(tangent%offset(k)) > 0.0_wp) then
-              own = [state%axis_w(:, s), state%axis_v(:, s) - cross(state%axis_w(:, s), state%p(:, s))]
-              twist = twist + tangent%offset(k)*own
+              about = [state%axis_w(:, s), state%axis_v(:, s) - cross(state%axis_w(:, s), state%p(:, s))]
+              twist = twist + tangent%offset(k)*about
             end if
             if (abs(tangent%slide(k)) > 0.0_wp) then
               along(1:3) = 0.0_wp
@@ -164,8 +164,8 @@ contains
 
     associate (plan => design%in_space, closure => design%in_space%closures(c))
       twist = position%frames(:, p, closure%closing) - position%frames(:, p, closure%target)
-      associate (own => design%tangents(p)%in_target(:, plan%steps(closure%closing)%coordinate))
-        if (any(abs(own) > 0.0_wp)) twist = twist - carried(position%state, closure%target, own)
+      associate (of_target => design%tangents(p)%in_target(:, plan%steps(closure%closing)%coordinate))
+        if (any(abs(of_target) > 0.0_wp)) twist = twist - carried(position%state, closure%target, of_target)
       end associate
       if (.not. any(abs(twist) > 0.0_wp)) return      ! the values are zero already
       call plan%constraints(c)%item%opening(plan, position%state, twist(1:3), &

@@ -35,7 +35,7 @@ contains
       end if
       call place_design(space, x, design, err)
       if (.not. allocated(err)) cycle
-      ! a place without a model does not tell
+      ! a place without a model decides nothing
       if (design%plan%planar%used) cycle
       space%in_plane = .false.
       return

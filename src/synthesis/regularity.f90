@@ -2,8 +2,8 @@
 !>
 !> The number is one over the sum of the reciprocal squares of the singular values of the block's Jacobian, with rotations in rad and
 !> translations in lengths of the mechanism. It is at most the square of the least singular value, and at least this square over the
-!> number of unknowns. Where two branches of a motion are about to meet, as parameters change, both fall as the square root of the
-!> distance from the edge; so the square falls linearly, which a search can follow to the edge.
+!> number of unknowns. Where two branches of a motion are about to meet, as parameters change, both decrease as the square root of the
+!> distance from the edge; so the square decreases linearly, which a search can follow to the edge.
 module mech9_regularity
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

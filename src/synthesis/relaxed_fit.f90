@@ -58,7 +58,7 @@ contains
     fit%end = space%model%request%time%end
     fit%n = size(space%varied)
     fit%groups = size(targets)
-    fit%own = size(fit%dependent) + 1
+    fit%n_y = size(fit%dependent) + 1
     call new_free_times(targets, fit%free)
     fit%rows = position%equations + components_of(targets)
   end subroutine new_relaxed_fit
@@ -67,7 +67,7 @@ contains
   subroutine evaluate(self, x, y, with_derivatives, values, has_value)
     class(relaxed_fit_type), intent(inout) :: self          !< the fit
     real(wp), intent(in) :: x(:)                            !< (n) parameters as parts of their ranges
-    real(wp), intent(in) :: y(:, :)                         !< (own,targets) dependent coordinates and times
+    real(wp), intent(in) :: y(:, :)                         !< (n_y,targets) dependent coordinates and times
     logical, intent(in) :: with_derivatives                 !< derivatives are asked for, at the place asked for last
     type(residual_values_type), intent(inout) :: values     !< gets the residuals
     logical, intent(out) :: has_value                       !< the residuals have a value here
@@ -82,14 +82,14 @@ contains
     has_value = .false.
     call place_design(self%space, self%space%low + x*(self%space%high - self%space%low), self%design, err)
     if (allocated(err)) return
-    times = self%start + y(self%own, :)*(self%end - self%start)
+    times = self%start + y(self%n_y, :)*(self%end - self%start)
     call outer_times(self%targets, self%design, min(self%start, self%end), max(self%start, self%end), times, has_value)
-    has_value = has_value .and. are_in_order(y(self%own, self%free%target), self%free)
+    has_value = has_value .and. are_in_order(y(self%n_y, self%free%target), self%free)
     if (.not. has_value) return
     do g = 1, self%groups
       associate (position => self%positions(g), plan => self%design%in_space)
         position%state%t = times(g)
-        position%state%q(self%dependent) = y(:self%own - 1, g)*plan%unit_of(self%dependent)
+        position%state%q(self%dependent) = y(:self%n_y - 1, g)*plan%unit_of(self%dependent)
         call set_inputs(self%design%drives, times(g), position%state%q, position%state%dq, position%state%ddq, err)
         call turn_on(self%targets(g), position%state%q)
         if (.not. allocated(err)) call find_openings(self%design, position, err)
@@ -132,7 +132,7 @@ contains
         call difference_derivatives(target, self%design, position, by_q(e + 1:, :), by_x(e + 1:, :))
         by_q(e + 1:, :) = by_q(e + 1:, :)/self%scale
         by_x(e + 1:, :) = by_x(e + 1:, :)/self%scale
-        by_y(:, :self%own - 1) = by_q(:, self%dependent)
+        by_y(:, :self%n_y - 1) = by_q(:, self%dependent)
         by_t = 0.0_wp
         t_by_x = 0.0_wp
         do i = 1, size(self%design%drives)
@@ -144,7 +144,7 @@ contains
           by_x = by_x + spread(by_q(:, k)/plan%unit_of(k), 2, self%n)*spread(change, 1, self%rows)
         end do
         by_x = by_x + spread(by_t, 2, self%n)*spread(t_by_x, 1, self%rows)
-        by_y(:, self%own) = merge(by_t*(self%end - self%start), 0.0_wp*by_t, target%timing == timing_free)
+        by_y(:, self%n_y) = merge(by_t*(self%end - self%start), 0.0_wp*by_t, target%timing == timing_free)
         do i = 1, self%n
           rate = self%space%high(i) - self%space%low(i)
           by_x(:, i) = by_x(:, i)*rate

@@ -32,7 +32,7 @@ module mech9_run_evaluator
 
 contains
 
-  !> Prepare an evaluator. It has a model of its own, so that each thread can have a copy.
+  !> Prepare an evaluator. It has a copy of the model, so that each thread can have a copy.
   subroutine new_run_evaluator(variable, model, interruption, evaluator)
     class(variable_model_type), intent(in) :: variable      !< the model as a function of its parameters; copied
     type(model_type), intent(in) :: model                   !< the model with its objectives and limits
@@ -95,7 +95,7 @@ contains
     gradient(:, self%used) = slopes
   end subroutine find_gradient
 
-  !> Tell whether derivatives of the quantities are known. Fails with the reason where a design has quantities, and its run with
+  !> Find whether derivatives of the quantities are known. Fails with the reason where a design has quantities, and its run with
   !> derivatives fails.
   subroutine judge_gradient(self, values, q, known, err)
     class(run_evaluator_type), intent(inout) :: self    !< makes the runs

@@ -59,7 +59,7 @@ contains
     integer, intent(in) :: dependent(:)                  !< numbers of the dependent coordinates
     real(wp), intent(in) :: given(:)                     !< (targets) times that are not free [s]
     real(wp), intent(in) :: q_start(:)                   !< (M) coordinates at the start [rad, m]
-    real(wp), intent(out) :: y(:, :)                     !< (own,targets) dependent coordinates in their units, and times
+    real(wp), intent(out) :: y(:, :)                     !< (n_y,targets) dependent coordinates in their units, and times
     type(state_type) :: state
     type(target_type) :: nowhere
     type(error_type), allocatable :: err

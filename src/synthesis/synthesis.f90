@@ -147,7 +147,7 @@ contains
     end do
   end function pack_optima
 
-  !> Follow the motion of an optimum with a plan of its own, and compare its value. The search knows the start and the times of the
+  !> Follow the motion of an optimum with a separate plan, and compare its value. The search knows the start and the times of the
   !> last design that it tried; those of the optimum itself are found here.
   subroutine verify(self, optimum, holds)
     class(synthesis_type), intent(inout) :: self             !< the synthesis
@@ -187,7 +187,7 @@ contains
     call new_open_position(design, position)
     call new_exact_fit(alone, design, position, self%targets, fit)
     fit%q_start = start%q
-    fit%heeds_interruption = .false.
+    fit%stops_on_interruption = .false.
     parts = (optimum%times(fit%free%target) - fit%start)/(fit%end - fit%start)
     call choose_pivots(parts, fit%free)
     at = [(optimum%x - alone%low)/(alone%high - alone%low), gaps_of(parts, fit%free)]

@@ -24,7 +24,7 @@ module mech9_procedure_load
     procedure :: apply
     procedure :: potential
     procedure :: numbers
-    procedure :: vary_own
+    procedure :: vary_by_numbers
   end type procedure_load_type
 
 contains
@@ -100,7 +100,7 @@ contains
   !> Add the derivatives of the forces by a parameter on which these numbers depend. The procedure knows nothing of derivatives:
   !> they come from differences over wide stencils, to near round-off. Fails where the procedure has no forces beside the present
   !> numbers.
-  subroutine vary_own(self, change, factor, state, changes, err)
+  subroutine vary_by_numbers(self, change, factor, state, changes, err)
     class(procedure_load_type), intent(in) :: self      !< the procedure load
     real(wp), intent(in) :: change(:)                   !< derivatives of its numbers
     real(wp), intent(in) :: factor                      !< without meaning: these loads have no law
@@ -127,7 +127,7 @@ contains
     changes%torque = changes%torque + reshape(best%slopes(3*n + 1:6*n), [3, n])
     changes%generalized = changes%generalized + best%slopes(6*n + 1:)
     changes%any_generalized = .true.
-  end subroutine vary_own
+  end subroutine vary_by_numbers
 
   !> The forces of the procedure for numbers on both sides of the present ones. Fails where it has none.
   subroutine sample(load, change, h, state, changes, values, err)

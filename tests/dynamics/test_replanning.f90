@@ -154,8 +154,9 @@ contains
     accelerations = state%ddq
   end subroutine find_accelerations
 
-  !> In a row of windows, the first upright exchanges its place with a coordinate of the first window: that window is planned anew,
-  !> the others stay as they are, whatever their number. A block that is worse conditioned than is wanted makes the change one in vain.
+  !> In a row of windows, the first upright exchanges its place with a coordinate of the first window: that window is
+  !> planned anew, the others stay as they are, whatever their number. The change is rejected where a block is worse
+  !> conditioned than is wanted.
   subroutine rows_of_windows(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     integer, parameter :: numbers(3) = [3, 10, 40]
@@ -185,16 +186,16 @@ contains
       requested = requested_by_results(model%mechanism, model%request%output, pictures=.true.)
       wanted = wanted_type()
       call replan(plan, state, independent, driven, requested, wanted, other, other_state, replanning, err)
-      call test%is_true(replanning%serves .and. .not. replanning%in_vain, 'a coordinate of the first window serves')
+      call test%is_true(replanning%serves .and. .not. replanning%rejected, 'a coordinate of the first window serves')
       call test%is_true(count(replanning%same_as == 0) == 1, 'one window is planned anew')
       wanted%least = 1.1_wp
       call replan(plan, state, independent, driven, requested, wanted, other, other_state, replanning, err)
-      call test%is_true(replanning%in_vain, 'no window is conditioned better than the best')
+      call test%is_true(replanning%rejected, 'no window is conditioned better than the best')
       wanted%least = 1.0e-6_wp
       allocate (wanted%conditioning(numbers(i)), source=1.0_wp)
       wanted%conditioning(numbers(i)) = 1.0e-9_wp
       call replan(plan, state, independent, driven, requested, wanted, other, other_state, replanning, err)
-      call test%is_true(replanning%in_vain, 'a window that stays as it is, worse than wanted, makes the change one in vain')
+      call test%is_true(replanning%rejected, 'a window that stays as it is, worse than wanted, makes the change rejected')
     end do
   end subroutine rows_of_windows
 end module test_replanning

@@ -31,7 +31,7 @@ contains
   subroutine evaluate(self, x, y, with_derivatives, values, has_value)
     class(problem_type), intent(inout) :: self                      !< the problem
     real(wp), intent(in) :: x(:)                                   !< (n) shared unknowns
-    real(wp), intent(in) :: y(:, :)                                !< (own,groups) unknowns of each group
+    real(wp), intent(in) :: y(:, :)                                !< (n_y,groups) unknowns of each group
     logical, intent(in) :: with_derivatives                        !< derivatives are asked for
     type(residual_values_type), intent(inout) :: values            !< gets the residuals
     logical, intent(out) :: has_value                              !< the residuals have a value here
@@ -99,7 +99,7 @@ contains
   subroutine evaluate_circle(self, x, y, with_derivatives, values, has_value)
     class(circle_type), intent(inout) :: self                       !< the points
     real(wp), intent(in) :: x(:)                                   !< (n) shared unknowns
-    real(wp), intent(in) :: y(:, :)                                !< (own,groups) unknowns of each group
+    real(wp), intent(in) :: y(:, :)                                !< (n_y,groups) unknowns of each group
     logical, intent(in) :: with_derivatives                        !< derivatives are asked for
     type(residual_values_type), intent(inout) :: values            !< gets the residuals
     logical, intent(out) :: has_value                              !< the residuals have a value here
@@ -286,7 +286,7 @@ contains
     end do
     apart%n = 3
     apart%groups = n
-    apart%own = 1
+    apart%n_y = 1
     apart%rows = 2
     x = [0.0_wp, 0.0_wp, 1.0_wp]
     all_x = [x, y]

@@ -16,7 +16,7 @@ module mech9_equilibria
   use mech9_same_position, only: is_same_position, same_position
   use mech9_resting_motors, only: hold_setpoints
   use mech9_linearised_equilibrium, only: equilibrium_type, linearise, copy_equilibrium
-  use mech9_equilibrium_search, only: settle, find_any
+  use mech9_equilibrium_search, only: find_from_start, find_any
   implicit none
   private
   public :: find_equilibrium, find_equilibria
@@ -49,7 +49,7 @@ contains
     call hold_setpoints(mechanism, partition, plan, assembled, held, held_plan, position, err)
     if (.not. allocated(err)) call put_to_rest(mechanism, held, held_plan, position, found%resting, err)
     if (allocated(err)) return
-    if (size(found%resting%free) > 0) call settle(mechanism, found%resting, err)
+    if (size(found%resting%free) > 0) call find_from_start(mechanism, found%resting, err)
     if (.not. allocated(err)) call linearise(mechanism, partition, found, err)
     if (allocated(err)) call name_chains(plan, err)
   end subroutine find_equilibrium

@@ -15,14 +15,14 @@ module mech9_equilibrium_search
     is_zero_force, copy_resting
   implicit none
   private
-  public :: settle, find_any, raise_no_equilibrium
+  public :: find_from_start, find_any, raise_no_equilibrium
 
   !> Steps of Newton's method up to this lead to an equilibrium near by [rad, lengths of the mechanism].
   real(wp), parameter :: near_by = 0.3_wp
   !> Longest and shortest step [rad, lengths of the mechanism].
   real(wp), parameter :: longest_step = 0.5_wp, shortest_step = 1.0e-12_wp
   !> Longest part of a step along one shape of the stiffness, before the step is shortened [rad, lengths of the mechanism].
-  real(wp), parameter :: longest_fall = 1.0e3_wp
+  real(wp), parameter :: longest_descent = 1.0e3_wp
   !> Stiffnesses below this part of the sum of their terms are zero.
   real(wp), parameter :: zero_stiffness = 1.0e-11_wp
   !> Largest number of steps of each kind.
@@ -36,9 +36,9 @@ module mech9_equilibrium_search
 
 contains
 
-  !> Go to the equilibrium near a position, or let the mechanism go until it comes to rest. Fails with exit_assembly where there is
+  !> Find the equilibrium near a position, or that to which the mechanism descends from it. Fails with exit_assembly where there is
   !> none.
-  subroutine settle(mechanism, resting, err)
+  subroutine find_from_start(mechanism, resting, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(resting_type), intent(inout) :: resting        !< stands in the equilibrium afterwards
     type(error_type), allocatable, intent(out) :: err   !< allocated if there is none, or if a load failed
@@ -46,13 +46,13 @@ contains
     logical :: found
 
     call copy_resting(resting, start)
-    call let_go(mechanism, resting, found, err)
+    call descend(mechanism, resting, found, err)
     if (allocated(err) .or. found) return
     ! unstable equilibria, and those of forces that are not conservative
     call copy_resting(start, resting)
     call find_any(mechanism, resting, found, err)
     if (.not. allocated(err) .and. .not. found) call raise_no_equilibrium(resting, err)
-  end subroutine settle
+  end subroutine find_from_start
 
   !> Fail because no equilibrium was found, with the forces in the last position.
   subroutine raise_no_equilibrium(resting, err)
@@ -65,8 +65,8 @@ contains
                                   resting%state%q(resting%free)/resting%plan%result_unit(resting%free)], [size(resting%free), 2])
   end subroutine raise_no_equilibrium
 
-  !> Let the mechanism go from its position until it rests. It does not move from an equilibrium near by.
-  subroutine let_go(mechanism, resting, found, err)
+  !> Descend from the position to a stable equilibrium. An equilibrium near by is taken as it is.
+  subroutine descend(mechanism, resting, found, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(resting_type), intent(inout) :: resting        !< the mechanism at rest
     logical, intent(out) :: found                       !< an equilibrium was found
@@ -83,7 +83,7 @@ contains
       if (allocated(err)) return
       call find_stiffness(mechanism, resting, err)
       if (allocated(err)) return
-      call falling_step(resting, step, is_stable)
+      call descent_step(resting, step, is_stable)
       if (i == 1 .or. is_stable) then
         call copy_resting(resting, other)
         call approach(mechanism, other, found, err)
@@ -104,11 +104,11 @@ contains
       call copy_resting(other, resting)
       radius = min(longest_step, 2.0_wp*radius)
     end do
-  end subroutine let_go
+  end subroutine descend
 
-  !> The step by which the mechanism yields to its forces: Newton's step with the magnitudes of the stiffness. The stiffness is
+  !> The descent along the forces: Newton's step with the magnitudes of the stiffness. The stiffness is
   !> stable where none of its values is negative.
-  subroutine falling_step(resting, step, is_stable)
+  subroutine descent_step(resting, step, is_stable)
     type(resting_type), intent(in) :: resting   !< with its stiffness
     real(wp), intent(out) :: step(:)            !< (n) of the free coordinates, in their units
     logical, intent(out) :: is_stable           !< no direction is unstable
@@ -125,10 +125,10 @@ contains
       force = dot_product(vectors(:, i), resting%forces)
       if (abs(values(i)) <= least .and. is_zero_force(resting, force)) cycle
       ! a force against no stiffness would give a step without bound
-      resistance = max(abs(values(i)), least, abs(force)/longest_fall, tiny(1.0_wp))
+      resistance = max(abs(values(i)), least, abs(force)/longest_descent, tiny(1.0_wp))
       step = step - vectors(:, i)*(force/resistance)
     end do
-  end subroutine falling_step
+  end subroutine descent_step
 
   !> Newton's method from a position near an equilibrium, down to round-off. `found` is false where none is near.
   subroutine approach(mechanism, resting, found, err)

@@ -12,8 +12,8 @@ module mech9_motor_modes
   real(wp), parameter :: round_off = 1.0e-11_wp
   !> Part of the largest singular value that counts as small for a shape.
   real(wp), parameter :: shape_round_off = 1.0e-9_wp
-  !> A root that differs by less from the own root of a motor belongs to that motor alone.
-  real(wp), parameter :: own_root = 1.0e-12_wp
+  !> A root that differs by less from the root of a motor belongs to this motor alone.
+  real(wp), parameter :: same_root = 1.0e-12_wp
   !> Roots within this part of each other are the same.
   real(wp), parameter :: equal_roots = 1.0e-7_wp
 
@@ -58,7 +58,7 @@ contains
       integer :: j, equal
 
       shape = (0.0_wp, 0.0_wp)
-      if (any(abs(root - by_state) <= own_root*abs(root))) return
+      if (any(abs(root - by_state) <= same_root*abs(root))) return
       matrix = root*damping + stiffness
       do j = 1, n
         matrix(j, j) = matrix(j, j) + root**2

@@ -1,6 +1,6 @@
 !> Whether a mechanism rests in the same position twice.
 !>
-!> Coordinates tell this, but for those of joints that are made of several pairs: the posture tells whether they are the same position
+!> Coordinates decide this, but for those of joints that are made of several pairs: the posture decides whether they are the same position
 !> in another setting (mech9_posture). Coordinates that differ by whole turns alone are another position, because forces may depend on
 !> turns.
 module mech9_same_position

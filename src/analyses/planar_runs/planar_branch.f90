@@ -2,7 +2,7 @@
 !>
 !> Positions that follow each other in time are judged as the branch stepper judges the ends of a step (mech9_branch_stepping): no matrix
 !> between the two Jacobians is singular, no coordinate moves far, rates do not turn back, and the second position is where the rates of
-!> both predict it by the trapezoidal rule. The correction of this prediction is measured by the least pivot, which tells how far away
+!> both predict it by the trapezoidal rule. The correction of this prediction is measured by the least pivot, which shows how far away
 !> other branches are (Kantorovich's theorem, see docs/reference/bibliography.md). Where two positions are too far apart for
 !> this, another one is put between them. Where a position is near a singular one, or too many would be needed, the run is in doubt.
 module mech9_planar_branch
@@ -44,7 +44,7 @@ contains
     proved = .false.
   end subroutine prove_branch
 
-  !> Judge all pairs of neighbouring positions: `splits` tells where another one is needed.
+  !> Judge all pairs of neighbouring positions: `splits` marks where another one is needed.
   subroutine judge_pairs(design, drives, run, positions, regular)
     type(planar_design_type), intent(in) :: design           !< placed
     type(drive_slot_type), intent(in) :: drives(:)           !< its drives

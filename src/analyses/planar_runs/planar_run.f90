@@ -272,7 +272,7 @@ contains
         end do
         call place_frames(n, run%room, run%m, design%steps, minval(loop%unknowns), loop%last_step, positions%q, positions%turn, &
                           run%pose, run%slide)
-        ! corrections fall by the same factor, or faster: the next one would be round-off
+        ! corrections decrease by the same factor, or faster: the next one would be round-off
         closed = largest <= last_correction .and. largest**2 <= round_off*before
         if (closed) exit
         before = largest

@@ -240,7 +240,7 @@ contains
     type(clusters_type), intent(in) :: clusters          !< its clusters
     integer, intent(in) :: steps(:)                      !< those of the cluster
     type(reaction_plan_type), intent(in) :: reactions    !< with its pairs
-    type(joined_cluster_type), intent(inout) :: cluster  !< with pairs and links; gets what closures tell
+    type(joined_cluster_type), intent(inout) :: cluster  !< with pairs and links; gets the results of closures
     integer :: b, closures, loops
     logical :: regular
 

@@ -186,7 +186,7 @@ contains
     end do
   end subroutine carry_inwards
 
-  !> The wrenches of a cluster whose links require nothing are zero; `done` tells whether this is so.
+  !> The wrenches of a cluster whose links require nothing are zero; `done` is whether this is so.
   pure subroutine leave_unloaded(cluster, self, done)
     type(joined_cluster_type), intent(in) :: cluster   !< the cluster
     type(reactions_type), intent(inout) :: self        !< with what its links require; gets the wrenches

@@ -339,7 +339,7 @@ contains
 
   !> Keep the components that do not depend on the change of the length by which moments are divided. The others have no derivative:
   !> NaN. What the length alone changes balances nothing, so that the part that equilibrium determines is round-off. It is taken
-  !> off: beside a singular position it is large, and derivatives are so much larger that their differences would tell nothing.
+  !> off: beside a singular position it is large, and derivatives are so much larger that their differences would mean nothing.
   subroutine keep_common(reactions, cluster, geometry, varied, links, longer, present, equations, changes, regular)
     type(reaction_plan_type), intent(in) :: reactions        !< the plan of inverse dynamics
     type(joined_cluster_type), intent(in) :: cluster         !< the cluster

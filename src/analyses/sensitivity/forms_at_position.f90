@@ -112,15 +112,15 @@ contains
       do p = 1, size(tangents)
         if (form%slots(p) == 0) cycle
         do order = 0, highest
-          form%shares(position, 1, order, form%slots(p)) = own_share(model, plan, c, state, &
-                                                                     tangents(p)%couplings(number)%change, order)
+          form%shares(position, 1, order, form%slots(p)) = share_of_numbers(model, plan, c, state, &
+                                                                            tangents(p)%couplings(number)%change, order)
         end do
       end do
     end associate
   end subroutine fill_coupling
 
   !> The share of the numbers of a coupling in the variation of its equation.
-  real(wp) function own_share(model, plan, c, state, change, order) result(own)
+  real(wp) function share_of_numbers(model, plan, c, state, change, order) result(share)
     type(model_type), intent(in) :: model           !< the present model
     type(plan_type), intent(in) :: plan             !< the plan
     integer, intent(in) :: c                        !< number of the closure that is the coupling
@@ -129,21 +129,21 @@ contains
     integer, intent(in) :: order                    !< of the derivative in time
     integer :: i, k
 
-    own = 0.0_wp
+    share = 0.0_wp
     associate (coupling => model%mechanism%couplings(plan%closures(c)%coupling)%coupling)
       do i = 1, size(coupling%coordinates)
         k = coupling%coordinates(i)
         select case (order)
         case (0)
-          own = own + coupling%varied_term(change, i, state%q(k), 0)
+          share = share + coupling%varied_term(change, i, state%q(k), 0)
         case (1)
-          own = own + coupling%varied_term(change, i, state%q(k), 1)*state%dq(k)
+          share = share + coupling%varied_term(change, i, state%q(k), 1)*state%dq(k)
         case default
-          own = own + coupling%varied_term(change, i, state%q(k), 1)*state%ddq(k) &
-                + coupling%varied_term(change, i, state%q(k), 2)*state%dq(k)**2
+          share = share + coupling%varied_term(change, i, state%q(k), 1)*state%ddq(k) &
+                  + coupling%varied_term(change, i, state%q(k), 2)*state%dq(k)**2
         end select
       end do
     end associate
-    own = plan%closures(c)%weight*own
-  end function own_share
+    share = plan%closures(c)%weight*share
+  end function share_of_numbers
 end module mech9_forms_at_position

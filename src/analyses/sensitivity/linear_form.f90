@@ -116,28 +116,28 @@ contains
     logical, intent(in) :: touched(m)                             !< coordinates that change with the parameter
     real(wp), intent(in) :: q(batch_size, 0:2, m)                 !< derivatives of the coordinates, each with two derivatives in time
     real(wp), intent(inout) :: values(batch_size, form%rows)      !< the values
-    integer :: own
+    integer :: n_counted
 
     if (form%slots(p) > 0) then
       call copy(n, form%rows, form%shares(1, 1, order, form%slots(p)), values)
     else
       call set_zero(n, form%rows, values)
     end if
-    own = form%n_given
-    if (whole) own = size(form%steps)
-    if (size(form%steps) > 0) call add_steps(n, m, form%rows, form%first_moving, order, size(form%steps), own, &
+    n_counted = form%n_given
+    if (whole) n_counted = size(form%steps)
+    if (size(form%steps) > 0) call add_steps(n, m, form%rows, form%first_moving, order, size(form%steps), n_counted, &
                                              form%coordinates, touched, form%columns, q, values)
   end subroutine find_values
 
   !> Add the products of all steps, three at a time.
-  pure subroutine add_steps(n, m, rows, first_moving, order, count, own, coordinates, touched, columns, q, values)
+  pure subroutine add_steps(n, m, rows, first_moving, order, count, n_counted, coordinates, touched, columns, q, values)
     integer, intent(in) :: n                                            !< number of positions
     integer, intent(in) :: m                                            !< number of coordinates
     integer, intent(in) :: rows                                         !< number of all rows
     integer, intent(in) :: first_moving                                 !< rows before this one have constant columns
     integer, intent(in) :: order                                        !< of the derivative in time
     integer, intent(in) :: count                                        !< number of steps
-    integer, intent(in) :: own                                          !< number of steps whose coordinates count in this order itself
+    integer, intent(in) :: n_counted                                    !< number of steps whose coordinates count in this order itself
     integer, intent(in) :: coordinates(count)                           !< of the steps
     logical, intent(in) :: touched(m)                                   !< coordinates that change with the parameter
     real(wp), intent(in) :: columns(batch_size, rows, 0:3, count)       !< of the steps
@@ -155,7 +155,7 @@ contains
         terms = 0
         first = 1
       end if
-      do i = 1, merge(own, count, j == order)
+      do i = 1, merge(n_counted, count, j == order)
         if (.not. touched(coordinates(i))) cycle
         terms = terms + 1
         steps(terms) = i

@@ -26,31 +26,31 @@ contains
     integer, intent(in) :: highest                   !< order of the highest derivative in time
     real(wp), intent(inout) :: series(6, 0:2)        !< gets the twist in frame 0, up to this derivative
     real(wp), intent(out), optional :: slope(6)      !< its derivative in the coordinate, with the frame before at rest
-    real(wp) :: own(6, 0:2)
+    real(wp) :: twist(6, 0:2)
     integer :: k
 
     k = plan%steps(s)%coordinate
-    call find_own(plan%pairs(k)%pair, tangent%pairs(k)%change, state%q(k), plan%steps(s)%reversed, own)
-    call find_series(plan, state, motion, s, own, highest, series)
-    if (present(slope)) slope = in_frame_0(plan, state, s, own(:, 1))
+    call find_twist(plan%pairs(k)%pair, tangent%pairs(k)%change, state%q(k), plan%steps(s)%reversed, twist)
+    call find_series(plan, state, motion, s, twist, highest, series)
+    if (present(slope)) slope = in_frame_0(plan, state, s, twist(:, 1))
   end subroutine find_pair_change
 
   !> The twist of a pair by a parameter in its frame in the link that the step departs from, and its derivatives in the coordinate.
-  subroutine find_own(pair, change, q, reversed, own)
+  subroutine find_twist(pair, change, q, reversed, twist)
     class(pair_type), intent(in) :: pair            !< the pair
     real(wp), intent(in) :: change(:)               !< derivatives of its numbers
     real(wp), intent(in) :: q                       !< its coordinate
     logical, intent(in) :: reversed                 !< the step leads from the moving link to the reference link
-    real(wp), intent(out) :: own(6, 0:2)            !< the twist [rad, m] and two derivatives in q
+    real(wp), intent(out) :: twist(6, 0:2)          !< the twist [rad, m] and two derivatives in q
     type(pair_motion_type) :: motion
     type(error_type), allocatable :: err
 
-    call pair%vary(change, q, own)
+    call pair%vary(change, q, twist)
     if (.not. reversed) return
     ! the pair had this pose when the position was found
     call pair%evaluate(q, motion, err)
-    own = reversed_twist(motion, own)
-  end subroutine find_own
+    twist = reversed_twist(motion, twist)
+  end subroutine find_twist
 
   !> The twist of the reference link by a change of the pair, seen from the moving link.
   pure function reversed_twist(motion, twist) result(back)
@@ -74,12 +74,12 @@ contains
   end function reversed_twist
 
   !> A twist in the frame of a pair, seen in frame 0, with its first two derivatives in time.
-  pure subroutine find_series(plan, state, motion, s, own, highest, series)
+  pure subroutine find_series(plan, state, motion, s, twist, highest, series)
     type(plan_type), intent(in) :: plan              !< the plan of the mechanism, in space
     type(state_type), intent(in) :: state            !< the motion
     type(frame_twists_type), intent(in) :: motion    !< its twists
     integer, intent(in) :: s                         !< step of the pair
-    real(wp), intent(in) :: own(6, 0:2)              !< the twist and two derivatives in the coordinate, in the frame of the pair
+    real(wp), intent(in) :: twist(6, 0:2)            !< the twist and two derivatives in the coordinate, in the frame of the pair
     integer, intent(in) :: highest                   !< order of the highest derivative in time
     real(wp), intent(inout) :: series(6, 0:2)        !< the twist and its derivatives in time
     real(wp) :: seen(6, 0:2)
@@ -88,7 +88,7 @@ contains
     associate (step => plan%steps(s), dq => state%dq(plan%steps(s)%coordinate), ddq => state%ddq(plan%steps(s)%coordinate))
       i = step%parent
       do j = 0, 2
-        seen(:, j) = in_frame_0(plan, state, s, own(:, j))
+        seen(:, j) = in_frame_0(plan, state, s, twist(:, j))
       end do
       series(:, 0) = seen(:, 0)
       if (highest < 1) return
@@ -100,18 +100,18 @@ contains
   end subroutine find_series
 
   !> A twist in the frame from which a step departs as a twist in frame 0.
-  pure function in_frame_0(plan, state, s, own) result(seen)
+  pure function in_frame_0(plan, state, s, twist) result(seen)
     type(plan_type), intent(in) :: plan              !< the plan of the mechanism, in space
     type(state_type), intent(in) :: state            !< with the poses of the frames
     integer, intent(in) :: s                         !< the step
-    real(wp), intent(in) :: own(6)                   !< the twist in the frame of the pair
+    real(wp), intent(in) :: twist(6)                 !< the twist in the frame of the pair
     real(wp) :: seen(6), departing(3, 3), place(3)
 
     associate (i => plan%steps(s)%parent, before => plan%steps(s)%before)
       departing = combine(state%r(:, :, i), before%r)
       place = state%p(:, i) + turn(state%r(:, :, i), before%p)
-      seen(1:3) = turn(departing, own(1:3))
-      seen(4:6) = turn(departing, own(4:6)) + cross(place, seen(1:3))
+      seen(1:3) = turn(departing, twist(1:3))
+      seen(4:6) = turn(departing, twist(4:6)) + cross(place, seen(1:3))
     end associate
   end function in_frame_0
 end module mech9_pair_changes

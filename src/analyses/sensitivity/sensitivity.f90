@@ -48,7 +48,7 @@ module mech9_sensitivity
     type(motion_changes_type) :: changes            !< the derivatives at these positions, after `find_waiting`
     logical, private :: is_given = .false.          !< the derivatives are found elsewhere
     logical, private :: in_plane = .false.          !< twists have three numbers
-    logical, private :: own_frames = .false.        !< the frames are placed here, because others do not place them all in space
+    logical, private :: places_frames = .false.     !< the frames are placed here, because others do not place them all in space
     type(tangent_type), allocatable, private :: tangents(:)    !< (P) of the constants
     type(support_type), private :: support                     !< all that the parameters change
     type(varied_drive_type), allocatable, private :: drives(:) !< drives that they change
@@ -128,7 +128,7 @@ contains
     type(sensitivity_type), intent(inout) :: self         !< with room for one more position; gets the motion
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
 
-    if (self%own_frames) then
+    if (self%places_frames) then
       call place_motion(present, self, err)
       if (.not. allocated(err)) call take_frames(model, self%state, self, err)
     else

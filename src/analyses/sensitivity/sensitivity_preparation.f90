@@ -30,12 +30,12 @@ contains
     if (plan%planar%used .and. .not. any(self%support%constants%by_pair)) &
       call put_in_plane(plan, model%problem%initial%position, self%support, self%in_plane)
     if (self%in_plane) then
-      self%own_frames = self%highest > 0 .and. any(plan%blocks%last_moved < plan%blocks%last_step)
+      self%places_frames = self%highest > 0 .and. any(plan%blocks%last_moved < plan%blocks%last_step)
       self%plane = new_planar_batch(plan%n_coordinates)
     else
-      self%own_frames = plan%planar%used .or. self%highest > 0 .and. any(plan%blocks%last_moved < plan%blocks%last_step)
-      if (allocated(plan%planar%planes)) self%own_frames = self%own_frames .or. any(plan%planar%plane_of > 0 .and. &
-                                                                                    .not. plan%planar%shown)
+      self%places_frames = plan%planar%used .or. self%highest > 0 .and. any(plan%blocks%last_moved < plan%blocks%last_step)
+      if (allocated(plan%planar%planes)) self%places_frames = self%places_frames .or. any(plan%planar%plane_of > 0 .and. &
+                                                                                          .not. plan%planar%shown)
       self%plan%blocks%arithmetic = 1
       self%plan%blocks%is_shown = .false.
       call set_in_space(self%plan)
@@ -43,7 +43,7 @@ contains
       self%third = new_third_derivatives(plan)
       self%space = new_spatial_batch(plan%n_coordinates)
     end if
-    if (self%own_frames) allocate (self%state, source=new_state(self%plan))
+    if (self%places_frames) allocate (self%state, source=new_state(self%plan))
     allocate (self%series(batch_size, merge(3, 6, self%in_plane), 0:2, self%support%count), source=0.0_wp)
   end subroutine choose_arithmetic
 

@@ -1,7 +1,7 @@
 !> The derivatives of all constants of a mechanism by one of its parameters.
 !>
 !> The constants are smooth functions of one number that the readers of the data file evaluate. Most are linear functions of it,
-!> which two differences over models with shifted values tell. The derivatives of others come from central differences of eighth
+!> which two differences over models with shifted values decide. The derivatives of others come from central differences of eighth
 !> order, with a step at which truncation is below round-off. All that follows from the constants (positions, rates, accelerations)
 !> is differentiated exactly elsewhere.
 module mech9_tangent

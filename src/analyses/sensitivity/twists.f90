@@ -97,7 +97,7 @@ contains
     integer, intent(in) :: steps(:)                     !< the steps
     integer, intent(in) :: highest                      !< order of the highest derivative
     type(frame_twists_type), intent(inout) :: twists    !< gets the twists of these steps
-    real(wp) :: own(6, 2)
+    real(wp) :: derivatives(6, 2)
     integer :: j, s, i, k
 
     do j = 1, size(steps)
@@ -111,26 +111,26 @@ contains
         if (i > 0 .and. highest > 1) axis(:, 3) = bracket(twists%acceleration(:, i), axis(:, 1)) + bracket(frame, axis(:, 2))
         if (plan%steps(s)%is_screw) cycle
         k = plan%steps(s)%coordinate
-        call own_derivatives(state, third, s, own)
+        call axis_derivatives(state, third, s, derivatives)
         if (i == 0) axis(:, 2:3) = 0.0_wp
-        axis(:, 3) = axis(:, 3) + 2.0_wp*state%dq(k)*bracket(frame, own(:, 1)) + state%ddq(k)*own(:, 1) &
-                     + state%dq(k)**2*own(:, 2)
-        axis(:, 2) = axis(:, 2) + state%dq(k)*own(:, 1)
+        axis(:, 3) = axis(:, 3) + 2.0_wp*state%dq(k)*bracket(frame, derivatives(:, 1)) + state%ddq(k)*derivatives(:, 1) &
+                     + state%dq(k)**2*derivatives(:, 2)
+        axis(:, 2) = axis(:, 2) + state%dq(k)*derivatives(:, 1)
       end associate
     end do
   end subroutine find_step_twists
 
   !> First and second derivative in its coordinate of the twist of a step without a fixed axis, with the parent frame fixed.
-  pure subroutine own_derivatives(state, third, s, own)
+  pure subroutine axis_derivatives(state, third, s, derivatives)
     type(state_type), intent(in) :: state               !< with the derivatives of the pair
     type(third_derivatives_type), intent(in) :: third   !< of the pair
     integer, intent(in) :: s                            !< the step
-    real(wp), intent(out) :: own(6, 2)                  !< the derivatives
+    real(wp), intent(out) :: derivatives(6, 2)          !< the derivatives
 
     associate (p => state%p(:, s), w => state%axis_w(:, s), v => state%axis_v(:, s), w_rate => state%axis_w_rate(:, s), &
                v_rate => state%axis_v_rate(:, s))
-      own(:, 1) = [w_rate, v_rate - cross(w_rate, p) - cross(w, v)]
-      own(:, 2) = [third%w(:, s), third%v(:, s) - cross(third%w(:, s), p) - 2.0_wp*cross(w_rate, v) - cross(w, v_rate)]
+      derivatives(:, 1) = [w_rate, v_rate - cross(w_rate, p) - cross(w, v)]
+      derivatives(:, 2) = [third%w(:, s), third%v(:, s) - cross(third%w(:, s), p) - 2.0_wp*cross(w_rate, v) - cross(w, v_rate)]
     end associate
-  end subroutine own_derivatives
+  end subroutine axis_derivatives
 end module mech9_twists

@@ -28,7 +28,7 @@ contains
         call add_closed_block(plan, clusters, plan%blocks(b), dynamics)
       else
         do s = plan%blocks(b)%first_step, plan%blocks(b)%last_step
-          call add_frame(plan, s, own_column(plan, dynamics, s), dynamics)
+          call add_frame(plan, s, column_of_step(plan, dynamics, s), dynamics)
         end do
       end if
     end do
@@ -61,7 +61,7 @@ contains
     cluster = clusters%of_step(block%unknowns(1))
     do s = block%first_step, block%last_step
       if (clusters%of_step(s) /= cluster) cycle
-      columns = united(columns, own_column(plan, dynamics, s))
+      columns = united(columns, column_of_step(plan, dynamics, s))
       call add_earlier(plan%steps(s)%parent)
     end do
     do c = block%first_closure, block%last_closure
@@ -75,7 +75,7 @@ contains
       if (clusters%of_step(s) == cluster) then
         call add_frame(plan, s, columns, dynamics)
       else
-        call add_frame(plan, s, own_column(plan, dynamics, s), dynamics)
+        call add_frame(plan, s, column_of_step(plan, dynamics, s), dynamics)
       end if
     end do
     do c = block%first_closure, block%last_closure
@@ -145,14 +145,14 @@ contains
   end function columns_of
 
   !> The column of a step's own coordinate, or none where this coordinate is dependent.
-  pure function own_column(plan, dynamics, s) result(columns)
+  pure function column_of_step(plan, dynamics, s) result(columns)
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics   !< with `place_of`
     integer, intent(in) :: s                           !< number of the step
     integer, allocatable :: columns(:)   !< place of the coordinate among the independent ones; empty for none
 
     columns = pack([dynamics%place_of(plan%steps(s)%coordinate)], [.not. plan%steps(s)%dependent])
-  end function own_column
+  end function column_of_step
 
   !> The union of two sets of numbers.
   pure function united(a, b) result(c)

@@ -43,7 +43,7 @@ module mech9_force_gradient
     class(gradient_arithmetic_type), allocatable, private :: arithmetic   !< of a plane or of space
     integer, private :: d = 0                                             !< numbers of a twist
     class(plan_type), allocatable, private :: plan                        !< in this arithmetic
-    logical, private :: own_frames = .false.           !< the frames are placed here, because others do not place them all in space
+    logical, private :: places_frames = .false.        !< the frames are placed here, because others do not place them all in space
     class(state_type), allocatable, private :: state                      !< the motion, where the frames are placed here
     type(block_work_type), allocatable, private :: blocks(:)              !< factors of closed chains, where the frames are
     type(frame_twists_type), private :: twists                            !< of the motion
@@ -77,8 +77,8 @@ contains
     if (self%changes%in_plane) then
       self%arithmetic = planar_arithmetic(model, plan, bodies)
     else
-      self%own_frames = plan%planar%used .or. any(plan%blocks%arithmetic /= 1)
-      if (self%own_frames) call place_in_space(self)
+      self%places_frames = plan%planar%used .or. any(plan%blocks%arithmetic /= 1)
+      if (self%places_frames) call place_in_space(self)
       self%arithmetic = spatial_arithmetic(model, self%plan, bodies)
     end if
     self%d = self%arithmetic%d
@@ -193,7 +193,7 @@ contains
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     integer :: b
 
-    if (self%own_frames) then
+    if (self%places_frames) then
       call place_motion(present, self%plan, self%state, err)
       if (allocated(err)) return
       do b = 1, size(self%plan%blocks)
@@ -343,7 +343,7 @@ contains
   subroutine bend_steps(state, self)
     type(state_type), intent(in) :: state                 !< the motion
     type(force_gradient_type), intent(inout) :: self      !< with the virtual motion; its rows change
-    real(wp) :: own(6)
+    real(wp) :: axis_rate(6)
     integer :: s, b, c
 
     do b = 1, size(self%plan%blocks)
@@ -355,10 +355,12 @@ contains
     if (self%d == 3) return
     do s = 1, self%plan%n_coordinates
       if (self%plan%steps(s)%is_screw) cycle
-      own(1:3) = state%axis_w_rate(:, s)
-      own(4:6) = state%axis_v_rate(:, s) - cross(own(1:3), state%p(:, s)) - cross(state%axis_w(:, s), state%axis_v(:, s))
+      axis_rate(1:3) = state%axis_w_rate(:, s)
+      axis_rate(4:6) = state%axis_v_rate(:, s) - cross(axis_rate(1:3), state%p(:, s)) &
+                       - cross(state%axis_w(:, s), state%axis_v(:, s))
       associate (k => self%plan%steps(s)%coordinate)
-        self%rows%coordinates(0, k) = self%rows%coordinates(0, k) + self%rates(k)*dot_product(own, self%held%frames(:, 2, s))
+        self%rows%coordinates(0, k) = self%rows%coordinates(0, k) &
+                                      + self%rates(k)*dot_product(axis_rate, self%held%frames(:, 2, s))
       end associate
     end do
   end subroutine bend_steps
@@ -385,10 +387,10 @@ contains
     do j = 1, size(self%plan%free)
       associate (k => self%plan%free(j))
         s = self%plan%step_of(k)
-        associate (twist => self%twists%step(:, :, s), rows => self%rows%frames(:, :, s), own => self%rows%coordinates(:, k))
-          self%by_position(i, j) = row_of_coordinate(self%d, 0, twist, rows, own)
-          self%by_rate(i, j) = row_of_coordinate(self%d, 1, twist, rows, own)
-          self%by_acceleration(i, j) = row_of_coordinate(self%d, 2, twist, rows, own)
+        associate (twist => self%twists%step(:, :, s), rows => self%rows%frames(:, :, s), direct => self%rows%coordinates(:, k))
+          self%by_position(i, j) = row_of_coordinate(self%d, 0, twist, rows, direct)
+          self%by_rate(i, j) = row_of_coordinate(self%d, 1, twist, rows, direct)
+          self%by_acceleration(i, j) = row_of_coordinate(self%d, 2, twist, rows, direct)
         end associate
       end associate
     end do

@@ -72,15 +72,15 @@ contains
   end subroutine sum_inward
 
   !> The derivative of a force by the coordinate of a step, by its rate or by its acceleration: order 0, 1 or 2.
-  pure real(wp) function row_of_coordinate(d, order, twist, rows, own) result(row)
+  pure real(wp) function row_of_coordinate(d, order, twist, rows, direct) result(row)
     integer, intent(in) :: d                 !< numbers of a twist
     integer, intent(in) :: order             !< of the derivative of the coordinate in time
     real(wp), intent(in) :: twist(d, 0:2)    !< of the step per unit rate, with its derivatives in time
     real(wp), intent(in) :: rows(d, 0:2)     !< by twists from the step on
-    real(wp), intent(in) :: own(0:2)         !< rows of the coordinate beside its twist
+    real(wp), intent(in) :: direct(0:2)      !< rows of the coordinate beside its twist
     integer :: c
 
-    row = own(order)
+    row = direct(order)
     select case (order)
     case (0)
       do c = 1, d
@@ -127,7 +127,7 @@ contains
   end subroutine eliminate_rows
 
   !> The rows of the unknowns of a block, from plain arrays.
-  pure subroutine find_right_side(m, d, order, n, unknowns, coordinates, steps, frames, own, right)
+  pure subroutine find_right_side(m, d, order, n, unknowns, coordinates, steps, frames, direct, right)
     integer, intent(in) :: m                        !< number of all steps
     integer, intent(in) :: d                        !< numbers of a twist
     integer, intent(in) :: order                    !< of the rows
@@ -136,12 +136,12 @@ contains
     integer, intent(in) :: coordinates(n)           !< their coordinates
     real(wp), intent(in) :: steps(d, 0:2, m)        !< twists of all steps per unit rate, with derivatives in time
     real(wp), intent(in) :: frames(d, 0:2, 0:m)     !< rows of the frames
-    real(wp), intent(in) :: own(0:2, m)             !< rows of coordinates beside their twists
+    real(wp), intent(in) :: direct(0:2, m)          !< rows of coordinates beside their twists
     real(wp), intent(inout) :: right(n)             !< the rows
     integer :: u
 
     do u = 1, n
-      right(u) = row_of_coordinate(d, order, steps(1, 0, unknowns(u)), frames(1, 0, unknowns(u)), own(0, coordinates(u)))
+      right(u) = row_of_coordinate(d, order, steps(1, 0, unknowns(u)), frames(1, 0, unknowns(u)), direct(0, coordinates(u)))
     end do
   end subroutine find_right_side
 

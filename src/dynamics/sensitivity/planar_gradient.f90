@@ -26,7 +26,7 @@ module mech9_planar_gradient
     real(wp), private :: axes(3, 3) = 0.0_wp                    !< of the plane, in those of frame 0
     real(wp), allocatable, private :: centres(:, :)             !< (2,bodies) mass centres [m]
     real(wp), allocatable, private :: velocities(:, :)          !< (2,bodies) their velocities [m/s]
-    real(wp), allocatable, private :: falls(:, :)               !< (2,bodies) their accelerations less gravity [m/s^2]
+    real(wp), allocatable, private :: proper(:, :)              !< (2,bodies) their accelerations less gravity [m/s^2]
   contains
     procedure :: find_twists
     procedure :: find_wrenches
@@ -60,7 +60,7 @@ contains
       self%bodies(i) = planar_body(plan, mechanism%bodies(numbers(i)))
       self%links(i) = mechanism%bodies(numbers(i))%link
     end do
-    allocate (self%centres(2, size(numbers)), self%velocities(2, size(numbers)), self%falls(2, size(numbers)), source=0.0_wp)
+    allocate (self%centres(2, size(numbers)), self%velocities(2, size(numbers)), self%proper(2, size(numbers)), source=0.0_wp)
     self%body_frames = self%bodies%frame
   end subroutine new_planar_gradient
 
@@ -105,10 +105,10 @@ contains
         centre(2) = f(4) + y
         self%velocities(1, i) = v(2) - v(1)*y
         self%velocities(2, i) = v(3) + v(1)*x
-        self%falls(1, i) = a(2) - a(1)*y - square*x - self%gravity(1)
-        self%falls(2, i) = a(3) + a(1)*x - square*y - self%gravity(2)
-        fx = body%mass*self%falls(1, i)
-        fy = body%mass*self%falls(2, i)
+        self%proper(1, i) = a(2) - a(1)*y - square*x - self%gravity(1)
+        self%proper(2, i) = a(3) + a(1)*x - square*y - self%gravity(2)
+        fx = body%mass*self%proper(1, i)
+        fy = body%mass*self%proper(2, i)
         wrenches(1, s) = wrenches(1, s) + body%inertia*a(1) + centre(1)*fy - centre(2)*fx
         wrenches(2, s) = wrenches(2, s) + fx
         wrenches(3, s) = wrenches(3, s) + fy
@@ -165,14 +165,14 @@ contains
     real(wp), intent(out) :: wrench(:)                    !< (3) on the frame of the body
     real(wp) :: x, y
 
-    associate (body => self%bodies(number), fall => self%falls(:, number), centre => self%centres(:, number), &
+    associate (body => self%bodies(number), proper_here => self%proper(:, number), centre => self%centres(:, number), &
                s => self%bodies(number)%frame)
       associate (f => state%planar%pose(:, s), w => state%planar%velocity(1, s), alpha => state%planar%acceleration(1, s))
         x = f(1)*change(2) - f(2)*change(3)
         y = f(2)*change(2) + f(1)*change(3)
-        wrench(2) = change(1)*fall(1) - body%mass*(alpha*y + w**2*x)
-        wrench(3) = change(1)*fall(2) + body%mass*(alpha*x - w**2*y)
-        wrench(1) = change(4)*alpha + body%mass*(x*fall(2) - y*fall(1)) + centre(1)*wrench(3) - centre(2)*wrench(2)
+        wrench(2) = change(1)*proper_here(1) - body%mass*(alpha*y + w**2*x)
+        wrench(3) = change(1)*proper_here(2) + body%mass*(alpha*x - w**2*y)
+        wrench(1) = change(4)*alpha + body%mass*(x*proper_here(2) - y*proper_here(1)) + centre(1)*wrench(3) - centre(2)*wrench(2)
       end associate
     end associate
   end subroutine body_wrench

@@ -29,7 +29,7 @@ module mech9_spatial_gradient
     real(wp) :: omega(3) = 0.0_wp         !< angular velocity [rad/s]
     real(wp) :: alpha(3) = 0.0_wp         !< angular acceleration [rad/s^2]
     real(wp) :: velocity(3) = 0.0_wp      !< of the centre [m/s]
-    real(wp) :: fall(3) = 0.0_wp          !< acceleration of the centre less gravity [m/s^2]
+    real(wp) :: proper(3) = 0.0_wp        !< acceleration of the centre less gravity [m/s^2]
   end type moving_body_type
 
   !> The bodies in space.
@@ -105,8 +105,8 @@ contains
         body%omega = state%omega(:, s)
         body%alpha = state%alpha(:, s)
         body%velocity = state%v(:, s) + cross(body%omega, arm)
-        body%fall = state%a(:, s) + cross(body%alpha, arm) + cross(body%omega, cross(body%omega, arm)) - self%gravity
-        force = body%mass*body%fall
+        body%proper = state%a(:, s) + cross(body%alpha, arm) + cross(body%omega, cross(body%omega, arm)) - self%gravity
+        force = body%mass*body%proper
         wrenches(1:3, s) = wrenches(1:3, s) + turn(body%tensor, body%alpha) + cross(body%omega, turn(body%tensor, body%omega)) &
                            + cross(body%place, force)
         wrenches(4:6, s) = wrenches(4:6, s) + force
@@ -162,12 +162,12 @@ contains
     real(wp) :: force(3), arm(3), tensor(3, 3)
 
     associate (body => self%bodies(number), r => state%r(:, :, self%bodies(number)%frame))
-      force = change(1)*body%fall
+      force = change(1)*body%proper
       wrench(1:3) = 0.0_wp
       if (any(abs(change(2:4)) > 0.0_wp)) then
         arm = turn(r, change(2:4))
         force = force + body%mass*(cross(body%alpha, arm) + cross(body%omega, cross(body%omega, arm)))
-        wrench(1:3) = body%mass*cross(arm, body%fall)
+        wrench(1:3) = body%mass*cross(arm, body%proper)
       end if
       if (any(abs(change(5:13)) > 0.0_wp)) then
         tensor = inertia_in_axes(r, reshape(change(5:13), [3, 3]))

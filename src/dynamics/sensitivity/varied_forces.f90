@@ -140,32 +140,32 @@ contains
     type(varied_motion_type), intent(in) :: motion      !< derivatives of the motion
     type(varied_forces_type), intent(inout) :: self     !< gets the forces
     type(inertia_type) :: body, changed
-    real(wp) :: r(3, 3), velocity(6), fall(6), h(6), wrench(6)
-    real(wp), dimension(motion%n_parameters, 6) :: change, h_change, fall_change
+    real(wp) :: r(3, 3), velocity(6), proper(6), h(6), wrench(6)
+    real(wp), dimension(motion%n_parameters, 6) :: change, h_change, proper_change
     integer :: f, p
 
     f = motion%plan%frame_of(model%mechanism%bodies(number)%link)
     call place_body(model, number, motion, r, body)
     velocity = motion%motion%velocity(:, f)
-    fall = motion%motion%acceleration(:, f)
-    fall(4:6) = fall(4:6) - model%mechanism%gravity
+    proper = motion%motion%acceleration(:, f)
+    proper(4:6) = proper(4:6) - model%mechanism%gravity
     h = momentum(body, velocity)
-    wrench = momentum(body, fall) + crossed(velocity, h)
+    wrench = momentum(body, proper) + crossed(velocity, h)
     ! seen by an observer who moves with the link
-    fall_change = twists(:, :, 2)
-    call add_bracket(twists(:, :, 1), velocity, fall_change)
-    call add_bracket(twists(:, :, 0), [0.0_wp, 0.0_wp, 0.0_wp, model%mechanism%gravity], fall_change)
+    proper_change = twists(:, :, 2)
+    call add_bracket(twists(:, :, 1), velocity, proper_change)
+    call add_bracket(twists(:, :, 0), [0.0_wp, 0.0_wp, 0.0_wp, model%mechanism%gravity], proper_change)
     do p = 1, motion%n_parameters
-      fall_change(p, 4:6) = fall_change(p, 4:6) - motion%tangents(p)%gravity
+      proper_change(p, 4:6) = proper_change(p, 4:6) - motion%tangents(p)%gravity
     end do
-    call momenta(body, fall_change, change)
+    call momenta(body, proper_change, change)
     call add_turned_wrench(twists(:, :, 1), h, change)
     call momenta(body, twists(:, :, 1), h_change)
     do p = 1, motion%n_parameters
       associate (part => motion%tangents(p)%bodies(number))
         if (part%varies) then
           changed = change_of_body(part%change, r)
-          change(p, :) = change(p, :) + change_of_momentum(body, changed, fall)
+          change(p, :) = change(p, :) + change_of_momentum(body, changed, proper)
           h_change(p, :) = h_change(p, :) + change_of_momentum(body, changed, velocity)
         end if
       end associate
@@ -345,7 +345,7 @@ contains
     integer, intent(in) :: s                             !< the step
     real(wp), intent(in) :: parent_twists(:, :)          !< (P,6) of its parent frame
     real(wp), intent(out) :: changes(:, :)               !< (P,6)
-    real(wp) :: departing(motion%n_parameters, 6), own(6)
+    real(wp) :: departing(motion%n_parameters, 6), axis_rate(6)
     integer :: p, k
 
     k = plan%steps(s)%coordinate
@@ -357,10 +357,11 @@ contains
         changes(p, 4:6) = changes(p, 4:6) + motion%tangents(p)%slide(k)*state%r(:, 3, s)
       end do
       if (plan%steps(s)%is_screw) return
-      own(1:3) = state%axis_w_rate(:, s)
-      own(4:6) = state%axis_v_rate(:, s) - cross(own(1:3), state%p(:, s)) - cross(state%axis_w(:, s), state%axis_v(:, s))
+      axis_rate(1:3) = state%axis_w_rate(:, s)
+      axis_rate(4:6) = state%axis_v_rate(:, s) - cross(axis_rate(1:3), state%p(:, s)) - cross(state%axis_w(:, s), state%axis_v(:, &
+                                                                                                                               s))
       do p = 1, motion%n_parameters
-        changes(p, :) = changes(p, :) + motion%q(p, 0, k)*own
+        changes(p, :) = changes(p, :) + motion%q(p, 0, k)*axis_rate
       end do
     end associate
     do p = 1, size(motion%pairs)

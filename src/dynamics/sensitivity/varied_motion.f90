@@ -354,7 +354,7 @@ contains
     integer, intent(in) :: c                          !< number of the closure that is the coupling
     integer, intent(in) :: p                          !< number of the parameter
     type(varied_motion_type), intent(in) :: self      !< with the coordinates
-    real(wp) :: own
+    real(wp) :: by_numbers
     integer :: i, k
 
     opening = varied_coupling(self%plan, c, self%state, self%third%couplings(self%plan%closures(c)%coupling), order, &
@@ -362,20 +362,20 @@ contains
     associate (part => self%tangents(p)%couplings(self%plan%closures(c)%coupling), state => self%state, &
                coupling => model%mechanism%couplings(self%plan%closures(c)%coupling)%coupling)
       if (.not. part%varies) return
-      own = 0.0_wp
+      by_numbers = 0.0_wp
       do i = 1, size(coupling%coordinates)
         k = coupling%coordinates(i)
         select case (order)
         case (0)
-          own = own + coupling%varied_term(part%change, i, state%q(k), 0)
+          by_numbers = by_numbers + coupling%varied_term(part%change, i, state%q(k), 0)
         case (1)
-          own = own + coupling%varied_term(part%change, i, state%q(k), 1)*state%dq(k)
+          by_numbers = by_numbers + coupling%varied_term(part%change, i, state%q(k), 1)*state%dq(k)
         case default
-          own = own + coupling%varied_term(part%change, i, state%q(k), 1)*state%ddq(k) &
-                + coupling%varied_term(part%change, i, state%q(k), 2)*state%dq(k)**2
+          by_numbers = by_numbers + coupling%varied_term(part%change, i, state%q(k), 1)*state%ddq(k) &
+                       + coupling%varied_term(part%change, i, state%q(k), 2)*state%dq(k)**2
         end select
       end do
-      opening = opening + self%plan%closures(c)%weight*own
+      opening = opening + self%plan%closures(c)%weight*by_numbers
     end associate
   end function coupling_opening
 

@@ -171,7 +171,7 @@ contains
     type(state_type), intent(in) :: base             !< the assembly at which the curve begins
     integer, intent(in) :: from                      !< its number
     integer, intent(in) :: i                         !< place of the free coordinate among the independent ones
-    integer, intent(in) :: direction                 !< 1: this coordinate grows at first, -1: it falls
+    integer, intent(in) :: direction                 !< 1: this coordinate grows at first, -1: it decreases
     integer, intent(in) :: most_steps                !< number of steps on all curves together
     integer, intent(inout) :: steps                  !< number of steps so far
     logical, intent(out) :: returned                 !< the curve came back to its start

@@ -27,7 +27,7 @@ module mech9_assembly
   !> Largest number of damped steps from one guess.
   integer, parameter :: most_steps = 200
   !> Number of steps in which the residual must become clearly smaller.
-  integer, parameter :: patience = 25
+  integer, parameter :: steps_between_checks = 25
 
 
   !> The result of an assembly.
@@ -159,7 +159,7 @@ contains
         damping = max(damping, 1.0e-16_wp)*5.0_wp
         if (damping > 1.0e6_wp) exit
       end if
-      if (mod(step, patience) == 0) then
+      if (mod(step, steps_between_checks) == 0) then
         if (residual_norm > 0.7_wp*norm_then) exit     ! a least distance that is not zero
         norm_then = residual_norm
       end if

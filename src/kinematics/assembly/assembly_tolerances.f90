@@ -7,12 +7,12 @@ module mech9_assembly_tolerances
   private
   public :: newton_radius, regular_correction, closed_singular, allowed_gap, least_part_of_carrying, same_assembly, &
     least_movement, returned_to_start, apparent_motion, closed_after_motion, small_gap, small_part, &
-    deciding_conditioning, settled_unknowns, first_displacement, finite_movement, ineffective_dimensions, &
+    deciding_conditioning, converged_unknowns, first_displacement, finite_movement, ineffective_dimensions, &
     first_order_gap, unexplained_gap, nearly_closed, overconstrained_nearby, part_open
 
   ! Closing chains.
 
-  !> Newton's method takes over from residuals below this.
+  !> Newton's method is used where residuals are below this.
   real(wp), parameter :: newton_radius = 1.0e-8_wp
   !> A larger correction of Newton's method from there shows a singular position.
   real(wp), parameter :: regular_correction = 1.0e-5_wp
@@ -46,7 +46,7 @@ module mech9_assembly_tolerances
   !> Least conditioning of a position whose residual decides alone: round-off of earlier blocks grows by its inverse square.
   real(wp), parameter :: deciding_conditioning = 1.0e-3_wp
   !> Largest distance of the unknowns from those with the least residual.
-  real(wp), parameter :: settled_unknowns = 1.0e-8_wp
+  real(wp), parameter :: converged_unknowns = 1.0e-8_wp
   !> Largest displacement, in units of the coordinates.
   real(wp), parameter :: first_displacement = 0.3_wp
   !> Least change of a coordinate, in its unit, that counts as a motion where all coordinates are displaced.

@@ -70,7 +70,7 @@ contains
   end subroutine judge_choice
 
   !> Generic closed positions near one that may be singular, and the coordinates that return to their values there each time.
-  !> If the rates tell that such a coordinate moves, they mislead: it is locked, and the position is singular.
+  !> If the rates show that such a coordinate moves, they are wrong: it is locked, and the position is singular.
   subroutine find_positions(plan, state, positions, returns)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
@@ -85,12 +85,12 @@ contains
     integer :: i, k, n
 
     n = 0
-    returns = plan%steps(plan%step_of)%roams
+    returns = plan%steps(plan%step_of)%searchable
     trial = state
     do i = 1, size(amounts)
       trial%q = state%q
       do k = 1, plan%n_coordinates
-        if (plan%steps(plan%step_of(k))%roams) &
+        if (plan%steps(plan%step_of(k))%searchable) &
           trial%q(k) = within_range(plan%steps(plan%step_of(k)), state%q(k) + amounts(i)*plan%unit_of(k)*random%symmetric())
       end do
       call close_free(plan, trial, .false., outcome, err)

@@ -3,14 +3,14 @@
 !> The rank of a chain at its start can be lower than at every other position. Its equations then seem redundant, and rates
 !> that satisfy them exist, but the chain is locked: no finite motion keeps it closed. Bennett's linkage, whose equations are
 !> redundant at every closed position, moves; with one dimension changed it has rates only at special positions.
-!> The least residual after a finite displacement tells the two cases apart: it is round-off, or a gap.
+!> The least residual after a finite displacement distinguishes the two cases: it is round-off, or a gap.
 !>
 !> For a chain that opens, the smallest changes of its dimensions are estimated that would keep it closed, to first order:
 !> changes of the constant poses of the loop's steps enter the closures like motions of six more pairs in each step.
 module mech9_finite_motion
   use mech9_kinds, only: wp
   use mech9_assembly_tolerances, only: closed_after_motion, deciding_conditioning, finite_movement, &
-    first_displacement, first_order_gap, ineffective_dimensions, settled_unknowns, small_gap, small_part, &
+    first_displacement, first_order_gap, ineffective_dimensions, converged_unknowns, small_gap, small_part, &
     unexplained_gap
   use mech9_error, only: error_type
   use mech9_lapack, only: dgesvd
@@ -157,7 +157,7 @@ contains
 
     call block_residual(plan, block, state, work%right)
     call work%equations%solve(work%right, work%change)
-    is_least = maxval(abs(work%change)) <= settled_unknowns
+    is_least = maxval(abs(work%change)) <= converged_unknowns
   end function is_least
 
   !> Displace all coordinates up to block b and close them together, for independent coordinates that cannot be displaced alone.
@@ -220,7 +220,7 @@ contains
     real(wp), parameter :: step = 0.2_wp
     integer, parameter :: steps = 8
     type(state_type) :: state
-    real(wp), allocatable :: effects(:, :), gaps(:), own_effects(:, :), own_gaps(:)
+    real(wp), allocatable :: effects(:, :), gaps(:), block_effects(:, :), block_gaps(:)
     real(wp) :: dimensions(6*plan%n_coordinates)
     logical :: explained
     integer :: i, direction
@@ -230,10 +230,10 @@ contains
       state = home
       do i = 1, steps
         state%q(plan%independent) = state%q(plan%independent) + direction*step*plan%unit_of(plan%independent)
-        call find_effects(plan, locked%block, state, own_effects, own_gaps)
-        if (size(own_gaps) == 0) exit
-        gaps = [gaps, own_gaps]
-        effects = stacked(effects, own_effects)
+        call find_effects(plan, locked%block, state, block_effects, block_gaps)
+        if (size(block_gaps) == 0) exit
+        gaps = [gaps, block_gaps]
+        effects = stacked(effects, block_effects)
       end do
     end do
     if (size(gaps) < 2) return

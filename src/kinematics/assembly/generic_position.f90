@@ -30,7 +30,7 @@ module mech9_generic_position
 
 contains
 
-  !> Find a generic position that is closed for all the given blocks; `closed` tells the success.
+  !> Find a generic position that is closed for all the given blocks; `closed` is the success.
   !>
   !> First the independent coordinates are changed at random, by less and less, and the blocks are closed from coordinates
   !> that are changed too: where branches meet at the start, any of them serves. Where the independent coordinates cannot

@@ -3,7 +3,7 @@
 !>
 !> The same position of the two links that a ball joint connects has several settings of its three angles: (a, b, c) and, where
 !> neighbouring axes are at right angles, (a + pi, pi - b, c + pi). A rod between two such joints, one of them a ball joint, may be
-!> turned about the line between their centres. Only links between the joints tell such settings apart.
+!> turned about the line between their centres. Only links between the joints distinguish such settings.
 module mech9_joint_links
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross
@@ -55,18 +55,18 @@ contains
     end do
   end subroutine find_joint_links
 
-  !> Mark the own links of joints that the data file gives as one pair.
+  !> Mark the inner links of joints that the data file gives as one pair.
   pure subroutine mark_given(joints, view, roles)
     type(compound_joint_type), intent(in) :: joints(:)   !< joints with several freedoms
     type(view_type), intent(inout) :: view               !< the mechanism; pairs of the joints are marked
-    integer, intent(inout) :: roles(:)                   !< (N) the own links are marked
+    integer, intent(inout) :: roles(:)                   !< (N) the inner links are marked
     integer :: j
 
     do j = 1, size(joints)
-      associate (own => [joints(j)%before_own + 1, joints(j)%before_own + joints(j)%freedoms - 1], &
+      associate (inner => [joints(j)%before_inner + 1, joints(j)%before_inner + joints(j)%freedoms - 1], &
                  numbers => joints(j)%coordinates())
-        roles(own(1):own(2)) = joint_link
-        view%meets(own(1):own(2)) = .false.
+        roles(inner(1):inner(2)) = joint_link
+        view%meets(inner(1):inner(2)) = .false.
         if (any(joints(j)%kind == turning_joints)) view%joint_at(numbers([1, size(numbers)])) = joints(j)%freedoms - 1
       end associate
     end do
@@ -202,24 +202,25 @@ contains
     height = dot_product(centre - point, axis)
   end function height
 
-  !> Whether another axis of an outer link passes the centre of a joint, in another direction than the joint's own axis there. An
+  !> Whether another axis of an outer link passes the centre of a joint, in another direction than the axis of the joint there. An
   !> axis of another joint, which may lie along a rod, does not count.
   logical function goes_on(view, members, outer, pair)
     type(view_type), intent(in) :: view   !< the mechanism
     integer, intent(in) :: members(:)     !< links of the joint
     integer, intent(in) :: outer          !< number of the outer link
     integer, intent(in) :: pair           !< its pair in the joint
-    real(wp), dimension(3) :: centre, own, point, axis
+    real(wp), dimension(3) :: centre, joint_axis, point, axis
     integer :: i, other
 
-    call axis_in(view%axes(pair), outer, point, own)
-    centre = point + height(view, members(findloc(members, sum(view%axes(pair)%links) - outer, dim=1)), pair)*own
+    call axis_in(view%axes(pair), outer, point, joint_axis)
+    centre = point + height(view, members(findloc(members, sum(view%axes(pair)%links) - outer, dim=1)), pair)*joint_axis
     goes_on = .false.
     do i = view%graph%first(outer), view%graph%first(outer + 1) - 1
       other = view%graph%pair_at(i)
       if (other == pair .or. view%axes(other)%kind /= turning .or. view%joint_at(other) > 0) cycle
       call axis_in(view%axes(other), outer, point, axis)
-      goes_on = goes_on .or. (norm2(cross(centre - point, axis)) <= view%tolerance .and. norm2(cross(own, axis)) > 1.0e-3_wp)
+      goes_on = goes_on .or. (norm2(cross(centre - point, axis)) <= view%tolerance .and. &
+                              norm2(cross(joint_axis, axis)) > 1.0e-3_wp)
     end do
   end function goes_on
 

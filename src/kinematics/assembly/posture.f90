@@ -1,6 +1,6 @@
 !> The posture of a mechanism: the positions of its links, but for settings of joints that are made of several pairs.
 !>
-!> Links that only form a ball joint or a universal joint do not count, because their positions tell only which of several values of
+!> Links that only form a ball joint or a universal joint do not count, because their positions show only which of several values of
 !> the angles describes the joint (mech9_joint_links). Of rods between such joints the points, the centres of mass and the slides
 !> count, not the turn about their own line. A link that shall count gets a point.
 module mech9_posture

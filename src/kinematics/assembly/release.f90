@@ -35,7 +35,7 @@ contains
     call assemble_block(plan, block, state, work, may_restart, outcome, err)
   end subroutine close_free
 
-  !> Move the independent coordinates from a closed position to given values and keep the chains closed; `arrived` tells
+  !> Move the independent coordinates from a closed position to given values and keep the chains closed; `arrived` shows
   !> whether that was possible. Angles change by at most half a turn.
   subroutine move_inputs(plan, target, state, arrived)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism

@@ -46,12 +46,12 @@ module mech9_released_curve
 
 contains
 
-  !> Begin at an assembly, with a released coordinate that grows or falls.
+  !> Begin at an assembly, with a released coordinate that grows or decreases.
   subroutine begin_curve(plan, q, released, direction, curve)
     type(plan_type), intent(in) :: plan       !< the plan of the mechanism
     type(state_type), intent(in) :: q         !< the assembly
     integer, intent(in) :: released           !< number of the independent coordinate
-    real(wp), intent(in) :: direction         !< 1: it grows at first, -1: it falls
+    real(wp), intent(in) :: direction         !< 1: it grows at first, -1: it decreases
     type(curve_type), intent(out) :: curve    !< at this assembly
     type(error_type), allocatable :: err
     integer :: k
@@ -118,7 +118,7 @@ contains
     self%tangent = rates/maxval(abs(rates))
   end subroutine find_tangent
 
-  !> One step along the curve. `passed` tells whether an assembly lies within it, which is then in `assembly`.
+  !> One step along the curve. `passed` is whether an assembly lies within it, which is then in `assembly`.
   subroutine advance(self, plan, passed, assembly)
     class(curve_type), intent(inout) :: self      !< the place on the curve, which goes on
     type(plan_type), intent(in) :: plan           !< the plan of the mechanism

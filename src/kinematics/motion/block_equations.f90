@@ -109,7 +109,7 @@ contains
     fronts = new_front_plan(groups)
   end function block_fronts
 
-  !> The fronts of the Jacobian with one more row for each unknown, in which only this unknown occurs: `row_of` tells it.
+  !> The fronts of the Jacobian with one more row for each unknown, in which only this unknown occurs: `row_of` gives it.
   pure subroutine damped_fronts(plan, block, column_of, fronts, row_of)
     type(plan_type), intent(in) :: plan             !< the plan of the mechanism
     type(block_type), intent(in) :: block           !< the block

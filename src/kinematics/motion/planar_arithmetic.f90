@@ -12,7 +12,7 @@ module mech9_planar_arithmetic
   private
   public :: planar_arithmetic_type
 
-  !> The arithmetic in the plane. It has no data of its own.
+  !> The arithmetic in the plane. It has no data.
   type, extends(arithmetic_type) :: planar_arithmetic_type
   contains
     procedure, nopass :: make_frames

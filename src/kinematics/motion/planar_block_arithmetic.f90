@@ -13,7 +13,7 @@ module mech9_planar_block_arithmetic
   private
   public :: planar_block_arithmetic_type
 
-  !> The arithmetic in the planes of planar blocks. It has no data of its own.
+  !> The arithmetic in the planes of planar blocks. It has no data.
   type, extends(planar_arithmetic_type) :: planar_block_arithmetic_type
   contains
     procedure, nopass :: link_motion

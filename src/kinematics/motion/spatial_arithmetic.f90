@@ -12,7 +12,7 @@ module mech9_spatial_arithmetic
   private
   public :: spatial_arithmetic_type
 
-  !> The arithmetic in space. It has no data of its own.
+  !> The arithmetic in space. It has no data.
   type, extends(arithmetic_type) :: spatial_arithmetic_type
   contains
     procedure, nopass :: make_frames

@@ -35,7 +35,7 @@ module mech9_plan
     real(wp) :: slide = 0.0_wp      !< advance along z per unit of q, sign by direction
     real(wp) :: offset = 0.0_wp     !< added to q [rad, m]
     real(wp) :: period = 0.0_wp     !< change of q that leads to the same position: a full turn [rad], a closed curve [m]; 0: none
-    logical :: roams = .true.       !< q can be changed in a search; a user's pair may have no pose elsewhere
+    logical :: searchable = .true.  !< q can be changed in a search; a user's pair may have no pose elsewhere
     real(wp) :: range(2) = [-huge(1.0_wp), huge(1.0_wp)]   !< least and greatest q [rad, m]
   end type step_type
 
@@ -86,7 +86,7 @@ module mech9_plan
     integer, allocatable :: coordinates(:)           !< its dependent coordinates, in the order of `unknowns`
   end type block_type
 
-  !> An arithmetic for the poses, velocities and accelerations of the frames of a block. It has no data of its own.
+  !> An arithmetic for the poses, velocities and accelerations of the frames of a block. It has no data.
   type, abstract :: arithmetic_type
   contains
     procedure(make_frames_interface), deferred, nopass :: make_frames

@@ -55,14 +55,14 @@ contains
   pure subroutine split_loops(block, plan)
     type(block_type), intent(in) :: block    !< the block
     type(plan_type), intent(inout) :: plan   !< its closures get their parts
-    logical, allocatable :: own(:)
+    logical, allocatable :: in_block(:)
     integer :: c
 
     do c = block%first_closure, block%last_closure
       associate (closure => plan%closures(c))
-        own = closure%loop%steps >= block%first_step
-        closure%part%steps = pack(closure%loop%steps, own)
-        closure%part%signs = pack(closure%loop%signs, own)
+        in_block = closure%loop%steps >= block%first_step
+        closure%part%steps = pack(closure%loop%steps, in_block)
+        closure%part%signs = pack(closure%loop%signs, in_block)
         if (closure%coupling > 0) cycle
         closure%part%stems = [frame_before(plan%steps, closure%closing, block%first_step, closure%base), &
                               frame_before(plan%steps, closure%target, block%first_step, closure%base)]

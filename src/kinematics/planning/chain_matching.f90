@@ -121,7 +121,7 @@ contains
     type(loop_lists_type), intent(in) :: passing   !< the chains whose loops pass through each unknown
     integer, intent(inout) :: owner(:)   !< (n_unknowns) chain that determines each unknown; 0 if none
     integer, intent(inout) :: free(:)   !< (n_chains) number of equations that are left to each chain
-    integer :: queue(loops%n_chains), wish(loops%n_chains), head, tail, u, i, c
+    integer :: queue(loops%n_chains), predecessor(loops%n_chains), head, tail, u, i, c
     logical :: seen(loops%n_chains), found
 
     seen = .false.
@@ -139,7 +139,7 @@ contains
         end do
       end do
       if (.not. found) cycle
-      call exchange(queue(tail), wish, owner, free)
+      call exchange(queue(tail), predecessor, owner, free)
       seen(queue(:tail)) = .false.
     end do
 
@@ -157,7 +157,7 @@ contains
         seen(chain) = .true.
         tail = tail + 1
         queue(tail) = chain
-        wish(chain) = unknown
+        predecessor(chain) = unknown
         found = free(chain) > 0
         if (found) return
       end do
@@ -165,9 +165,9 @@ contains
   end subroutine augment
 
   !> Along a path that ends at a chain with an equation left, each unknown moves to the next chain.
-  pure subroutine exchange(last, wish, owner, free)
+  pure subroutine exchange(last, predecessor, owner, free)
     integer, intent(in) :: last   !< chain at the end of the augmenting path
-    integer, intent(in) :: wish(:)   !< (n_chains) the unknown from which the search came to each chain
+    integer, intent(in) :: predecessor(:)  !< (n_chains) the unknown from which the search came to each chain
     integer, intent(inout) :: owner(:)   !< (n_unknowns) chain that determines each unknown; 0 if none
     integer, intent(inout) :: free(:)   !< (n_chains) number of equations that are left to each chain
     integer :: c, before
@@ -175,8 +175,8 @@ contains
     free(last) = free(last) - 1
     c = last
     do while (c /= 0)
-      before = owner(wish(c))
-      owner(wish(c)) = c
+      before = owner(predecessor(c))
+      owner(predecessor(c)) = c
       c = before
     end do
   end subroutine exchange

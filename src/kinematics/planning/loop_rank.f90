@@ -62,7 +62,7 @@ contains
     do trial = 1, size(amounts)
       state%q = guess
       do k = 1, size(guess)
-        if (loop%steps(k)%roams) &
+        if (loop%steps(k)%searchable) &
           state%q(k) = within_range(loop%steps(k), guess(k) + amounts(trial)*loop%unit_of(k)*random%symmetric())
       end do
       call assemble_block(loop, loop%blocks(1), state, work, trial == 1, outcome, err)

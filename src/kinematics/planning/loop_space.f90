@@ -43,7 +43,7 @@ contains
     do k = 1, plan%n_coordinates
       state%q(k) = guess(k)
       ! a user's pair may have no pose at other coordinates
-      if (plan%steps(plan%step_of(k))%roams) &
+      if (plan%steps(plan%step_of(k))%searchable) &
         state%q(k) = within_range(plan%steps(plan%step_of(k)), guess(k) + plan%unit_of(k)*random%symmetric())
     end do
     call plan%arithmetics(1)%kind%place(plan, 1, plan%n_coordinates, state, err)
@@ -75,7 +75,7 @@ contains
       screws(:, n) = loop_screw(plan, closure, state, state%axis_w(:, s), state%axis_v(:, s), state%p(:, s))
       screws(:, n) = screws(:, n)/norm2(screws(:, n))
       if (plan%steps(s)%is_screw) cycle
-      if (plan%steps(s)%roams) then
+      if (plan%steps(s)%searchable) then
         call add_curve(plan, closure, state, s, screws, n, err)
         if (allocated(err)) return
         cycle
@@ -96,7 +96,7 @@ contains
   end subroutine find_space
 
   !> Add the screws of a pair along a curve at several places of it, as the departing frame sees them. They all belong to the space:
-  !> one place and a derivative there would not tell of a curve that bends elsewhere.
+  !> one place and a derivative there would not show a curve that bends elsewhere.
   subroutine add_curve(plan, closure, state, s, screws, n, err)
     type(plan_type), intent(in) :: plan         !< the plan of the mechanism
     type(closure_type), intent(in) :: closure   !< the closure

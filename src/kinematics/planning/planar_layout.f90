@@ -23,7 +23,7 @@ contains
 
   !> Lay out the plan in its plane, if it has one: the axes of all revolute pairs are parallel to one normal, those of all
   !> prismatic pairs are perpendicular to it, and the space of motions of every closed chain has three dimensions. The ranks
-  !> of the closures must be known. `planar%used` tells the result, and `planar%why_not` the reason if it is false.
+  !> of the closures must be known. `planar%used` is the result, and `planar%why_not` the reason if it is false.
   pure subroutine lay_out_in_plane(plan)
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(planar_plan_type) :: planar

@@ -1,6 +1,6 @@
 !> The making of the plan: frames, spaces of motion, blocks, and the assembled start.
 !>
-!> Structure and ranks of the loops propose the blocks. The rank of a block's Jacobian at a closed position then tells whether
+!> Structure and ranks of the loops propose the blocks. The rank of a block's Jacobian at a closed position then shows whether
 !> the block determines its coordinates: at the start and, if that is singular, at a generic position. A block that does not
 !> determine them is joined with the next ones until it does.
 module mech9_planning
@@ -255,7 +255,7 @@ contains
       call factorize_block(plan, block, state, work)
       complete = work%equations%rank(rank_tolerance_for(plan%data_tolerance)) == size(block%unknowns)
       if (complete .and. .not. generic%exists) return
-      ! a generic position tells whether the start is singular or the rank is small everywhere
+      ! a generic position shows whether the start is singular or the rank is small everywhere
       call find_generic_position(plan, blocks, state, generic, closed)
       if (complete .or. .not. closed) return
       call factorize_block(plan, block, generic%state, work)

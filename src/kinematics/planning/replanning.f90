@@ -24,7 +24,7 @@ module mech9_replanning
   !> The parts that a plan in other independent coordinates has in common with the earlier one, and whether it serves.
   type :: replanning_type
     logical :: serves = .false.            !< the plan was made; otherwise it must be made from the beginning
-    logical :: in_vain = .false.           !< a block is not conditioned as well as is wanted, so that the plan was not made
+    logical :: rejected = .false.          !< a block is not conditioned as well as is wanted, so that the plan was not made
     integer, allocatable :: same_as(:)     !< (blocks) block of the earlier plan with the same unknowns; 0: planned anew
   end type replanning_type
 
@@ -60,7 +60,7 @@ contains
     call leave_out_unrequested(plan, requested)
     call compare_blocks(known, plan, replanning)
     if (replanning%serves) call judge_same_blocks(wanted, replanning)
-    if (.not. replanning%serves .or. replanning%in_vain) return
+    if (.not. replanning%serves .or. replanning%rejected) return
     if (known%planar%used) then
       call lay_out_in_plane(plan)
       call set_in_plane(plan)
@@ -78,7 +78,7 @@ contains
     if (.not. allocated(err)) call check_blocks(plan, state, wanted%least, replanning)
   end subroutine replan
 
-  !> Take other independent coordinates into a plan; its steps tell which are dependent.
+  !> Take other independent coordinates into a plan; its steps show which are dependent.
   pure subroutine set_coordinates(independent, driven, plan)
     logical, intent(in) :: independent(:)    !< (M) the coordinate is independent
     logical, intent(in) :: driven(:)         !< (M) a drive gives the motion of the coordinate
@@ -135,13 +135,13 @@ contains
   !> Judge the blocks that are the same as before.
   pure subroutine judge_same_blocks(wanted, replanning)
     type(wanted_type), intent(in) :: wanted              !< with the conditioning of the earlier blocks
-    type(replanning_type), intent(inout) :: replanning   !< with `same_as`; gets `in_vain`
+    type(replanning_type), intent(inout) :: replanning   !< with `same_as`; gets `rejected`
     integer :: b
 
     if (.not. allocated(wanted%conditioning)) return
     do b = 1, size(replanning%same_as)
       if (replanning%same_as(b) == 0) cycle
-      if (wanted%conditioning(replanning%same_as(b)) < wanted%least) replanning%in_vain = .true.
+      if (wanted%conditioning(replanning%same_as(b)) < wanted%least) replanning%rejected = .true.
     end do
   end subroutine judge_same_blocks
 
@@ -151,7 +151,7 @@ contains
     type(plan_type), intent(in) :: plan                  !< the plan in other independent coordinates
     type(state_type), intent(in) :: state                !< the present position, with frames in place
     real(wp), intent(in) :: least                        !< least pivot ratio that is wanted
-    type(replanning_type), intent(inout) :: replanning   !< with `same_as`; gets `serves` and `in_vain`
+    type(replanning_type), intent(inout) :: replanning   !< with `same_as`; gets `serves` and `rejected`
     type(block_work_type) :: work
     integer :: b
 
@@ -160,8 +160,8 @@ contains
         if (size(block%unknowns) == 0 .or. replanning%same_as(b) > 0) cycle
         work = new_block_work(block)
         call factorize_block(plan, block, state, work)
-        replanning%in_vain = work%equations%conditioning() < least
-        if (replanning%in_vain) return
+        replanning%rejected = work%equations%conditioning() < least
+        if (replanning%rejected) return
         replanning%serves = work%equations%rank(rank_tolerance_for(plan%data_tolerance)) == size(block%unknowns)
         if (.not. replanning%serves) return
       end associate

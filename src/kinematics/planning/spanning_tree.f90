@@ -292,9 +292,9 @@ contains
         if (allocated(slot%pair)) deallocate (slot%pair)
         allocate (slot%pair, source=pair)
         call pair%guide(guide)
-        step%roams = guide%length > 0.0_wp
+        step%searchable = guide%length > 0.0_wp
         if (guide%closed) step%period = guide%length
-        if (step%roams .and. .not. guide%closed) step%range = [0.0_wp, guide%length]
+        if (step%searchable .and. .not. guide%closed) step%range = [0.0_wp, guide%length]
       end if
     end associate
   end subroutine set_numbers

@@ -1,6 +1,6 @@
 !> Motion through a position where branches cross, on the branch whose velocities are continuous.
 !>
-!> At the crossing the equations of the block do not tell one branch from the other, but each branch is smooth: the
+!> At the crossing the equations of the block do not distinguish one branch from the other, but each branch is smooth: the
 !> polynomial through regular positions before it leads to regular positions after it, where Newton's method has only one
 !> solution near by. Positions between are those of the polynomial through all of them, closed in the directions that the
 !> equations determine.

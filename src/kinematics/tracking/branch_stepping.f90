@@ -3,11 +3,11 @@
 !> Each block is predicted (mech9_predictor), corrected by Newton's method, and judged. A step is accepted if the block's
 !> Jacobian cannot have been singular within it (mech9_singularity_monitor) and the correction is small: then the closed
 !> position near the prediction is the only one there, and it belongs to the branch (Kantorovich's theorem, see
-!> docs/reference/bibliography.md). The correction is measured by the least pivot, which tells how far away other branches are.
+!> docs/reference/bibliography.md). The correction is measured by the least pivot, which shows how far away other branches are.
 module mech9_branch_stepping
   use mech9_kinds, only: wp, long
   use mech9_tolerances, only: longest_drive, longest_move, trusted_correction, trusted_rate_change, unchanged_factors
-  use mech9_tracking_tolerances, only: creeping_move, creeping_step, least_step, small_correction, &
+  use mech9_tracking_tolerances, only: stagnant_move, stagnant_step, least_step, small_correction, &
     trusted_contraction, unchanged_prediction
   use mech9_error, only: error_type
   use mech9_masks, only: numbers_of
@@ -26,8 +26,8 @@ module mech9_branch_stepping
   public :: branch_stepper_type, new_branch_stepper, accept_start, step_towards, set_inputs, restore_last_position, &
     add_accelerations
 
-  !> After this many creeping steps towards one time the branch stepper gives up.
-  integer, parameter :: most_creeping = 10000
+  !> After this many stagnant steps towards one time the branch stepper gives up.
+  integer, parameter :: most_stagnant = 10000
 
   !> The branch stepper: state, last accepted position, scratch, and counts for the report.
   type :: branch_stepper_type
@@ -43,7 +43,7 @@ module mech9_branch_stepping
     real(wp) :: reach = huge(1.0_wp)              !< length of a step that will probably be accepted [s]
     real(wp) :: goal = 0.0_wp                     !< time towards which the last step went [s]
     real(wp) :: correction = 0.0_wp               !< largest correction in the last trial step, in units of the coordinates
-    integer :: creeping = 0                       !< number of creeping steps towards the goal
+    integer :: stagnant_steps = 0                 !< number of stagnant steps towards the goal
     integer(long) :: steps = 0                    !< number of accepted steps
     integer(long) :: halvings = 0                 !< number of refused steps
     integer(long) :: iterations = 0               !< number of iterations of Newton's method in all blocks
@@ -129,7 +129,7 @@ contains
     call accept_jacobians(stepper%work, stepper%monitors)
   end subroutine accept_start
 
-  !> Take one accepted step towards time t, as long as can be trusted. `stuck` tells that even the shortest step is
+  !> Take one accepted step towards time t, as long as can be trusted. `stuck` means that even the shortest step is
   !> refused, or that too many steps led nearly nowhere; `refused_by` then names the block. Fails where a drive or a pair has
   !> no value.
   subroutine step_towards(drives, plan, stepper, t, stuck, refused_by, err)
@@ -144,7 +144,7 @@ contains
     logical :: no_drive, driven, complete
 
     stuck = .false.
-    if (abs(t - stepper%goal) > 0.0_wp) stepper%creeping = 0
+    if (abs(t - stepper%goal) > 0.0_wp) stepper%stagnant_steps = 0
     stepper%goal = t
     do
       remaining = t - stepper%predictor%t
@@ -161,8 +161,8 @@ contains
       if (no_drive) return
       if (worst <= 1.0_wp) then
         stepper%reach = min(2.0_wp*min(max(stepper%reach, h), 1.0e100_wp), 0.8_wp*h/max(worst, 1.0e-6_wp))
-        if (h < creeping_step*abs(remaining) .and. .not. driven) &
-          call count_creeping(plan, stepper, stuck, refused_by)
+        if (h < stagnant_step*abs(remaining) .and. .not. driven) &
+          call count_stagnant(plan, stepper, stuck, refused_by)
         call accept_step(plan, stepper, complete)
         return
       end if
@@ -175,24 +175,24 @@ contains
 
   !> Count a short step that is about to be accepted, if it moves no coordinate far. Without a limit to such steps the
   !> motion might never reach its goal.
-  pure subroutine count_creeping(plan, stepper, too_many, slowest)
+  pure subroutine count_stagnant(plan, stepper, too_many, slowest)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
     logical, intent(out) :: too_many   !< more steps led nearly nowhere than are allowed
     integer, intent(inout) :: slowest         !< changed if too many: number of the block nearest to a singular position
     integer :: b
 
-    if (any(abs(stepper%state%q - stepper%predictor%q) > creeping_move*plan%unit_of)) then
+    if (any(abs(stepper%state%q - stepper%predictor%q) > stagnant_move*plan%unit_of)) then
       too_many = .false.
       return
     end if
-    stepper%creeping = stepper%creeping + 1
-    too_many = stepper%creeping > most_creeping
+    stepper%stagnant_steps = stepper%stagnant_steps + 1
+    too_many = stepper%stagnant_steps > most_stagnant
     if (.not. too_many) return
     do b = 1, size(plan%blocks)
       if (nearness(stepper%monitors(b)) < nearness(stepper%monitors(slowest))) slowest = b
     end do
-  end subroutine count_creeping
+  end subroutine count_stagnant
 
   !> Shorten a step until no driven coordinate of a closed chain can move far within it.
   subroutine limit_by_drives(drives, plan, stepper, direction, h, driven)

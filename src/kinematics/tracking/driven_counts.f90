@@ -8,7 +8,7 @@ module mech9_driven_counts
   private
   public :: driven_counts_type, keep_counts, return_to_counts
 
-  !> All that reports tell of a driven motion up to a position.
+  !> The counts of a driven motion up to a position, for reports.
   type :: driven_counts_type
     private
     integer(long) :: steps = 0                        !< accepted steps

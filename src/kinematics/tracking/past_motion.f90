@@ -119,7 +119,7 @@ contains
 
     per_h = 1.0_wp/h
     past%h = h
-    ! outputs are mostly equidistant except for round-off: then the latest step tells whether the weights serve
+    ! outputs are mostly equidistant except for round-off: then the latest step shows whether the weights are valid
     if (past%weighed .and. past%even .and. past%count > most) then
       if (abs((past%t(slot(past, 1)) - past%t(past%latest))*per_h + 1.0_wp) <= same_spacing) return
     end if

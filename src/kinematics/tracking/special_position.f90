@@ -2,7 +2,7 @@
 !>
 !> A copy of the branch stepper, the probe, goes on until the singular position is very near. At a dead point the rates of the
 !> block grow without bound, as 1/sqrt(T - t), and the rates and accelerations of the probe give T far better than Newton's
-!> method could find it. Where branches cross, the rates stay finite while the least pivot falls linearly to zero. Where two
+!> method could find it. Where branches cross, the rates stay finite while the least pivot decreases linearly to zero. Where two
 !> branches only come close and part again, the probe passes in regular steps. A sliding coordinate may also escape: where
 !> axes become parallel it grows as a power of 1/(T - t), and there is no position at T.
 module mech9_special_position
@@ -60,7 +60,7 @@ contains
     usual = 0.0_wp
     call find_speeds(plan, stepper, b, speed, usual)
     usual = max(usual, speed)
-    if (.not. speed > 0.0_wp) return            ! at rest nothing tells the direction of the motion
+    if (.not. speed > 0.0_wp) return            ! at rest the motion has no direction
     call copy_stepper(stepper, probe)
     probe%derivatives = 2
     probe%last_block = b

@@ -5,7 +5,7 @@ module mech9_tracking_tolerances
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: trusted_contraction, small_correction, unchanged_prediction, least_step, creeping_step, creeping_move, &
+  public :: trusted_contraction, small_correction, unchanged_prediction, least_step, stagnant_step, stagnant_move, &
     harmless_change, unbounded_excess, longest_prediction, round_off_term, same_spacing, least_spacing, &
     worth_positions, zero_rate, clear_pivot, dead_growth, crossing_pivot, crossing_growth, stuck_pivot, last_pivot, &
     probe_move, longest_growth, far_slide, escaped_slide, escaping_speed, escape_law, just_short_of_end, &
@@ -22,10 +22,10 @@ module mech9_tracking_tolerances
   real(wp), parameter :: unchanged_prediction = 1.0e-12_wp
   !> A step shorter than this part of the time is not tried.
   real(wp), parameter :: least_step = 1.0e-14_wp
-  !> A step creeps if it goes less than this part of the remaining time and moves no coordinate farther than creeping_move.
-  real(wp), parameter :: creeping_step = 1.0e-5_wp
-  !> Largest movement of a creeping step [rad, lengths of the mechanism].
-  real(wp), parameter :: creeping_move = 1.0e-3_wp
+  !> A step is stagnant if it goes less than this part of the remaining time and moves no coordinate farther than stagnant_move.
+  real(wp), parameter :: stagnant_step = 1.0e-5_wp
+  !> Largest movement of a stagnant step [rad, lengths of the mechanism].
+  real(wp), parameter :: stagnant_move = 1.0e-3_wp
   !> A change of the Jacobian (root of the sum of squares) up to this part of the least pivot is accepted.
   real(wp), parameter :: harmless_change = 0.25_wp
   !> Measure of a step whose excess of length has no measure.

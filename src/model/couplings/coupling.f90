@@ -92,7 +92,7 @@ contains
     ends = [-huge(ends), huge(ends)]
   end function without_ends
 
-  !> The numbers on which the equation depends smoothly, in an order of its own. This procedure, for couplings whose numbers are
+  !> The numbers on which the equation depends smoothly, in a fixed order. This procedure, for couplings whose numbers are
   !> not known, gives none.
   pure subroutine unknown_constants(self, values)
     class(coupling_type), intent(in) :: self         !< the coupling

@@ -71,7 +71,7 @@ contains
   end function greatest_rate
 
   !> The next time at which pieces of the law join, where its derivatives may jump; beyond all times where there is none. This
-  !> procedure, for smooth laws and those whose formula is not known, tells of none.
+  !> procedure, for smooth laws and those whose formula is not known, gives none.
   pure real(wp) function next_joint(self, t, direction)
     class(law_type), intent(in) :: self     !< the law
     real(wp), intent(in) :: t               !< time; a joint there does not count [s]
@@ -131,7 +131,7 @@ contains
     if (self%coordinate > 0 .and. self%motor == 0) owner = 'drive of coordinate '//to_text(self%coordinate)
   end function owner
 
-  !> The numbers on which the law depends smoothly, in an order of its own. This procedure, for laws whose numbers are not known,
+  !> The numbers on which the law depends smoothly, in a fixed order. This procedure, for laws whose numbers are not known,
   !> gives none.
   pure subroutine unknown_constants(self, values)
     class(law_type), intent(in) :: self              !< the law

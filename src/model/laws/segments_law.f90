@@ -196,7 +196,7 @@ contains
 
     n = size(self%curves)
     period = self%times(n + 1) - self%times(1)
-    ! a time in the first half of the segment behind it tells its period without round-off
+    ! a time in the first half of the segment behind it gives its period without round-off
     rounds = self%rounds_before(joint + 0.5_wp*minval(self%times(2:) - self%times(:n)))
     i = minloc(abs(self%times(:n + 1) + rounds*period - joint), dim=1)
     joint_rate = change(i) + rounds*(change(n + 1) - change(1))

@@ -27,7 +27,7 @@ module mech9_coordinate_load
     procedure :: knows_slopes
     procedure :: add_slopes
     procedure :: numbers
-    procedure :: vary_own
+    procedure :: vary_by_numbers
     procedure :: varied_potential
   end type coordinate_load_type
 
@@ -123,7 +123,7 @@ contains
   end subroutine numbers
 
   !> Add the derivative of the generalized force by a parameter on which its numbers depend.
-  subroutine vary_own(self, change, factor, state, changes, err)
+  subroutine vary_by_numbers(self, change, factor, state, changes, err)
     class(coordinate_load_type), intent(in) :: self     !< the coordinate load
     real(wp), intent(in) :: change(:)                   !< (4) derivatives of the numbers
     real(wp), intent(in) :: factor                      !< of its law
@@ -135,23 +135,23 @@ contains
       call changes%add_generalized(k, factor*(change(4) - change(1)*(state%q(k) - self%rest) + self%stiffness*change(2) &
                                               - change(3)*state%dq(k)))
     end associate
-  end subroutine vary_own
+  end subroutine vary_by_numbers
 
   !> The derivative of the energy of the spring by a parameter.
-  pure real(wp) function varied_potential(self, state, change, own) result(energy)
+  pure real(wp) function varied_potential(self, state, change, derivatives) result(energy)
     class(coordinate_load_type), intent(in) :: self  !< the coordinate load
     type(motion_view_type), intent(in) :: state      !< present motion of links and coordinates
     type(motion_change_type), intent(in) :: change   !< derivative of the motion by the parameter
-    real(wp), intent(in) :: own(:)                   !< derivatives of its numbers and those of its law; of size 0: all are zero
+    real(wp), intent(in) :: derivatives(:)           !< derivatives of its numbers and those of its law; of size 0: all are zero
     real(wp) :: stretch, stretch_change
 
     energy = 0.0_wp
     if (allocated(self%law)) return
     stretch = state%q(self%coordinate) - self%rest
     stretch_change = change%q(self%coordinate)
-    if (size(own) > 0) then
-      stretch_change = stretch_change - own(2)
-      energy = 0.5_wp*own(1)*stretch**2
+    if (size(derivatives) > 0) then
+      stretch_change = stretch_change - derivatives(2)
+      energy = 0.5_wp*derivatives(1)*stretch**2
     end if
     energy = energy + self%stiffness*stretch*stretch_change
   end function varied_potential

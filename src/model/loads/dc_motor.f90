@@ -72,24 +72,24 @@ contains
     type(motor_change_type), intent(out) :: change       !< the derivative
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(motor_action_type) :: action
-    real(wp) :: own(5), factor, factor_change, rate, acceleration, coupling, coupling_change, drop_change
+    real(wp) :: changes(5), factor, factor_change, rate, acceleration, coupling, coupling_change, drop_change
 
     call self%act(motion, action, err)
     if (.not. allocated(err)) call self%find_factor(motion%t, factor, err)
     if (allocated(err)) return
-    own = 0.0_wp
+    changes = 0.0_wp
     factor_change = 0.0_wp
-    if (size(numbers) > 0) own = numbers(:5)
+    if (size(numbers) > 0) changes = numbers(:5)
     if (size(numbers) > 5) call self%law%vary(numbers(6:), motion%t, factor_change, rate, acceleration)
     coupling = self%gear_ratio*self%constant
-    coupling_change = own(5)*self%constant + self%gear_ratio*own(4)
+    coupling_change = changes(5)*self%constant + self%gear_ratio*changes(4)
     ! of the voltage that is left for resistance and inductance
-    drop_change = own(1)*factor + self%voltage*factor_change - coupling_change*motion%dq - coupling*moved%dq
+    drop_change = changes(1)*factor + self%voltage*factor_change - coupling_change*motion%dq - coupling*moved%dq
     if (motion%steady .or. .not. self%has_state()) then
-      change%value = (drop_change - own(2)*action%value)/self%resistance
+      change%value = (drop_change - changes(2)*action%value)/self%resistance
     else
       change%value = moved%value
-      change%rate = (drop_change - own(2)*motion%value - self%resistance*moved%value - own(3)*action%rate)/self%inductance
+      change%rate = (drop_change - changes(2)*motion%value - self%resistance*moved%value - changes(3)*action%rate)/self%inductance
     end if
     change%force = coupling_change*action%value + coupling*change%value
   end subroutine vary_act

@@ -27,7 +27,7 @@ module mech9_force_load
     procedure :: knows_slopes
     procedure :: add_slopes
     procedure :: numbers
-    procedure :: vary_own
+    procedure :: vary_by_numbers
   end type force_load_type
 
 contains
@@ -131,7 +131,7 @@ contains
   end subroutine numbers
 
   !> Add the derivatives of the forces by a parameter on which the point, the force and the torque depend.
-  subroutine vary_own(self, change, factor, state, changes, err)
+  subroutine vary_by_numbers(self, change, factor, state, changes, err)
     class(force_load_type), intent(in) :: self          !< the force load
     real(wp), intent(in) :: change(:)                   !< (9) derivatives of the numbers
     real(wp), intent(in) :: factor                      !< of its law
@@ -152,7 +152,7 @@ contains
       call changes%add_force(state, self%link, self%position, force_change)
       call changes%add_torque(self%link, torque_change + cross(link%fixed_components(change(1:3)), force))
     end associate
-  end subroutine vary_own
+  end subroutine vary_by_numbers
 
   !> Zero: the work of a given force counts as put in.
   pure real(wp) function potential(self, state)

@@ -27,7 +27,7 @@ module mech9_load
     procedure :: knows_slopes
     procedure :: add_slopes
     procedure :: numbers => unknown_numbers
-    procedure :: vary_own
+    procedure :: vary_by_numbers
     procedure :: varied_potential => unvaried_potential
     procedure, non_overridable :: constants
     procedure :: vary_numbers
@@ -84,7 +84,7 @@ contains
   end subroutine find_factor
 
   !> Whether the load never moves anything, because it is zero or acts on link 1 alone. This procedure, for kinds that do
-  !> not tell, answers that it may.
+  !> not give it, answers that it may.
   pure logical function is_idle(self)
     class(load_type), intent(in) :: self   !< the load
 
@@ -151,7 +151,7 @@ contains
 
   end subroutine add_slopes
 
-  !> The numbers of the load on which its forces depend smoothly, in an order of its own, without those of its law. This procedure,
+  !> The numbers of the load on which its forces depend smoothly, in a fixed order, without those of its law. This procedure,
   !> for kinds whose numbers are not known, gives none.
   pure subroutine unknown_numbers(self, values)
     class(load_type), intent(in) :: self              !< the load
@@ -161,7 +161,7 @@ contains
 
   !> Add the derivatives of the load's forces by a parameter on which its own numbers depend, for the present motion. This
   !> procedure is for loads without such numbers.
-  subroutine vary_own(self, change, factor, state, changes, err)
+  subroutine vary_by_numbers(self, change, factor, state, changes, err)
     class(load_type), intent(in) :: self                !< the load
     real(wp), intent(in) :: change(:)                   !< derivatives of its numbers
     real(wp), intent(in) :: factor                      !< of its law
@@ -169,15 +169,15 @@ contains
     type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-  end subroutine vary_own
+  end subroutine vary_by_numbers
 
   !> The derivative of the potential energy by a parameter on which the motion depends, and perhaps the load's own numbers. This
   !> procedure is for loads without potential energy.
-  pure real(wp) function unvaried_potential(self, state, change, own) result(energy)
+  pure real(wp) function unvaried_potential(self, state, change, derivatives) result(energy)
     class(load_type), intent(in) :: self             !< the load
     type(motion_view_type), intent(in) :: state      !< present motion of links and coordinates
     type(motion_change_type), intent(in) :: change   !< derivative of the motion by the parameter
-    real(wp), intent(in) :: own(:)                   !< derivatives of its numbers and those of its law; of size 0: all are zero
+    real(wp), intent(in) :: derivatives(:)           !< derivatives of its numbers and those of its law; of size 0: all are zero
 
     energy = 0.0_wp
   end function unvaried_potential
@@ -208,14 +208,14 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     class(load_type), allocatable :: constant
     type(force_sum_type) :: sum
-    real(wp), allocatable :: own(:)
+    real(wp), allocatable :: of_load(:)
     real(wp) :: factor, factor_change, rate, acceleration
 
-    call self%numbers(own)
+    call self%numbers(of_load)
     call self%find_factor(state%t, factor, err)
-    if (.not. allocated(err)) call self%vary_own(change(:size(own)), factor, state, changes, err)
-    if (allocated(err) .or. .not. any(abs(change(size(own) + 1:)) > 0.0_wp)) return
-    call self%law%vary(change(size(own) + 1:), state%t, factor_change, rate, acceleration)
+    if (.not. allocated(err)) call self%vary_by_numbers(change(:size(of_load)), factor, state, changes, err)
+    if (allocated(err) .or. .not. any(abs(change(size(of_load) + 1:)) > 0.0_wp)) return
+    call self%law%vary(change(size(of_load) + 1:), state%t, factor_change, rate, acceleration)
     allocate (constant, source=self)
     deallocate (constant%law)
     sum = new_force_sum(size(changes%force, 2), size(changes%generalized))

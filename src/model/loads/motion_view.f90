@@ -103,7 +103,7 @@ contains
     if (self%has_link(link, 'state%turned')) turned = self%links(link)%fixed_components(vector)
   end function turned
 
-  !> From now on, until `note_no_faults`, wrong numbers of links are noted in `fault`, which must live as long.
+  !> From now on, until `note_no_faults`, wrong numbers of links are noted in `fault`, which must exist as long.
   subroutine note_faults_in(self, fault)
     class(motion_view_type), intent(inout) :: self          !< the motion
     type(call_fault_type), intent(inout), target :: fault   !< keeps the first wrong number

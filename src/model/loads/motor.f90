@@ -185,7 +185,7 @@ contains
   end subroutine apply
 
   !> Add the derivative of the generalized force by a parameter on which the motion depends. The motor's state is held unless it is
-  !> steady, or its change is told.
+  !> steady, or its change is given.
   subroutine vary(self, state, change, changes, err)
     class(motor_type), intent(in) :: self               !< the motor
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates, with the motors' states
@@ -193,13 +193,13 @@ contains
     type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the motor are added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(motor_motion_type) :: moved
-    type(motor_change_type) :: own
+    type(motor_change_type) :: motor_change
 
     moved%q = change%q(self%coordinate)
     moved%dq = change%dq(self%coordinate)
     if (allocated(change%motor)) moved%value = change%motor(self%number)
-    call self%vary_act(motion_of_motor(self, state), moved, [real(wp) ::], own, err)
-    if (.not. allocated(err)) call changes%add_generalized(self%coordinate, own%force)
+    call self%vary_act(motion_of_motor(self, state), moved, [real(wp) ::], motor_change, err)
+    if (.not. allocated(err)) call changes%add_generalized(self%coordinate, motor_change%force)
   end subroutine vary
 
   !> Add the derivative of the generalized force by a parameter on which the numbers of the motor or those of its law depend, for
@@ -210,10 +210,10 @@ contains
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates, with the motors' states
     type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the motor are added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(motor_change_type) :: own
+    type(motor_change_type) :: motor_change
 
-    call self%vary_act(motion_of_motor(self, state), motor_motion_type(), change, own, err)
-    if (.not. allocated(err)) call changes%add_generalized(self%coordinate, own%force)
+    call self%vary_act(motion_of_motor(self, state), motor_motion_type(), change, motor_change, err)
+    if (.not. allocated(err)) call changes%add_generalized(self%coordinate, motor_change%force)
   end subroutine vary_numbers
 
   !> Motors store no energy of the mechanism.

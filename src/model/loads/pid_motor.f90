@@ -104,16 +104,16 @@ contains
     type(motor_change_type), intent(out) :: change       !< the derivative
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(motor_action_type) :: action
-    real(wp) :: own(4), e, de, e_change, de_change, unused, demand, demand_change, excess, per_excess
+    real(wp) :: changes(4), e, de, e_change, de_change, unused, demand, demand_change, excess, per_excess
     integer :: limited
 
     call self%act(motion, action, err)
     if (.not. allocated(err)) call self%law%evaluate(motion%t, e, de, unused, err)
     if (allocated(err)) return
-    own = 0.0_wp
+    changes = 0.0_wp
     e_change = 0.0_wp
     de_change = 0.0_wp
-    if (size(numbers) > 0) own = numbers(:4)
+    if (size(numbers) > 0) changes = numbers(:4)
     if (size(numbers) > 4) call self%law%vary(numbers(5:), motion%t, e_change, de_change, unused)
     e = e - motion%q
     de = de - motion%dq
@@ -121,30 +121,30 @@ contains
     de_change = de_change - moved%dq
     if (self%has_state() .and. .not. motion%steady) change%value = moved%value
     demand = self%proportional*e + self%integral*action%value + self%derivative*de
-    demand_change = own(1)*e + own(2)*action%value + own(3)*de &
+    demand_change = changes(1)*e + changes(2)*action%value + changes(3)*de &
                     + self%proportional*e_change + self%integral*change%value + self%derivative*de_change
     limited = motion%limited
     if (limited == unlocked) limited = limit_of(demand, self%limit)
     change%force = demand_change
-    if (limited /= 0) change%force = limited*own(4)
+    if (limited /= 0) change%force = limited*changes(4)
     if (.not. self%has_state()) return
     change%rate = e_change
     if (limited == 0) return
     excess = demand - limited*self%limit
     per_excess = 1.0_wp/(self%integral*self%tracking_time())
-    change%rate = e_change - (demand_change - limited*own(4))*per_excess + excess*per_excess*relative_change(self, own)
+    change%rate = e_change - (demand_change - limited*changes(4))*per_excess + excess*per_excess*relative_change(self, changes)
   end subroutine vary_act
 
   !> The derivative of the logarithm of the integral part times the tracking time: of the proportional part, or of the square root of
   !> the integral part times the derivative part.
-  pure real(wp) function relative_change(self, own)
+  pure real(wp) function relative_change(self, changes)
     class(pid_motor_type), intent(in) :: self   !< the controller, with an integral part
-    real(wp), intent(in) :: own(4)              !< derivatives of its numbers
+    real(wp), intent(in) :: changes(4)          !< derivatives of its numbers
 
     if (self%derivative > 0.0_wp) then
-      relative_change = 0.5_wp*(own(2)/self%integral + own(3)/self%derivative)
+      relative_change = 0.5_wp*(changes(2)/self%integral + changes(3)/self%derivative)
     else
-      relative_change = own(1)/self%proportional
+      relative_change = changes(1)/self%proportional
     end if
   end function relative_change
 

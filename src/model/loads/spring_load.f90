@@ -28,7 +28,7 @@ module mech9_spring_load
     procedure :: knows_slopes
     procedure :: add_slopes
     procedure :: numbers
-    procedure :: vary_own
+    procedure :: vary_by_numbers
     procedure :: varied_potential
     procedure, private, non_overridable :: span
     procedure, private, non_overridable :: span_rate
@@ -238,7 +238,7 @@ contains
 
   !> Add the derivatives of the pull by a parameter on which the ends and the numbers of the spring depend. Fails for a spring with
   !> a free length whose ends meet.
-  subroutine vary_own(self, change, factor, state, changes, err)
+  subroutine vary_by_numbers(self, change, factor, state, changes, err)
     class(spring_load_type), intent(in) :: self         !< the spring load
     real(wp), intent(in) :: change(:)                   !< (9) derivatives of the numbers
     real(wp), intent(in) :: factor                      !< of its law
@@ -274,7 +274,7 @@ contains
       force_change = -force_change
       force = -force
     end do
-  end subroutine vary_own
+  end subroutine vary_by_numbers
 
   !> The pull of a spring whose ends do not meet.
   pure function pull_of(spring, d, rate) result(force)
@@ -288,11 +288,11 @@ contains
   end function pull_of
 
   !> The derivative of the energy by a parameter.
-  pure real(wp) function varied_potential(self, state, change, own) result(energy)
+  pure real(wp) function varied_potential(self, state, change, derivatives) result(energy)
     class(spring_load_type), intent(in) :: self      !< the spring load
     type(motion_view_type), intent(in) :: state      !< present motion of links and coordinates
     type(motion_change_type), intent(in) :: change   !< derivative of the motion by the parameter
-    real(wp), intent(in) :: own(:)                   !< derivatives of its numbers and those of its law; of size 0: all are zero
+    real(wp), intent(in) :: derivatives(:)           !< derivatives of its numbers and those of its law; of size 0: all are zero
     real(wp) :: d(3), d_change(3), length, stretch, stretch_change
 
     energy = 0.0_wp
@@ -300,15 +300,16 @@ contains
     d = self%span(state)
     associate (i => self%links(1), k => self%links(2), at => self%positions)
       d_change = change%links(k)%of_position(state%links(k), at(:, 2)) - change%links(i)%of_position(state%links(i), at(:, 1))
-      if (size(own) > 0) d_change = d_change + state%links(k)%fixed_components(own(4:6)) - state%links(i)%fixed_components(own(1:3))
+      if (size(derivatives) > 0) d_change = d_change + state%links(k)%fixed_components(derivatives(4:6)) &
+                                            - state%links(i)%fixed_components(derivatives(1:3))
     end associate
     length = norm2(d)
     stretch = length - self%free_length
     stretch_change = 0.0_wp
     if (length > 0.0_wp) stretch_change = dot_product(d, d_change)/length
-    if (size(own) > 0) then
-      stretch_change = stretch_change - own(8)
-      energy = 0.5_wp*own(7)*stretch**2
+    if (size(derivatives) > 0) then
+      stretch_change = stretch_change - derivatives(8)
+      energy = 0.5_wp*derivatives(7)*stretch**2
     end if
     energy = energy + self%stiffness*stretch*stretch_change
   end function varied_potential

@@ -15,7 +15,7 @@ module mech9_parameter
     integer :: position = 0           !< of the number under this name, from 1
     real(wp) :: factor = 1.0_wp
     real(wp) :: term = 0.0_wp
-    character(len=16) :: unit = ''    !< as the table of names tells it; may depend on the coordinate and the position
+    character(len=16) :: unit = ''    !< as the table of names gives it; may depend on the coordinate and the position
     integer :: coordinate = 0         !< to which the group belongs; 0: to none
     integer :: group_place = 0        !< position of the group in the checked document
     integer :: item_place = 0         !< position of the name in the group of the checked document

@@ -27,14 +27,14 @@ module mech9_bounded_least_squares
   type :: residual_values_type
     real(wp), allocatable :: r(:, :)          !< (rows,groups) residuals
     real(wp), allocatable :: by_x(:, :, :)    !< (rows,n,groups) derivatives by the shared unknowns
-    real(wp), allocatable :: by_y(:, :, :)    !< (rows,own,groups) derivatives by the unknowns of the group
+    real(wp), allocatable :: by_y(:, :, :)    !< (rows,n_y,groups) derivatives by the unknowns of the group
   end type residual_values_type
 
   !> Residuals in groups, as functions of unknowns.
   type, abstract :: residuals_type
     integer :: n = 0         !< number of shared unknowns
     integer :: groups = 0    !< number of groups
-    integer :: own = 0       !< number of unknowns that each group has beside
+    integer :: n_y = 0       !< number of further unknowns in each group
     integer :: rows = 0      !< number of residuals of each group
   contains
     procedure(evaluate_interface), deferred :: evaluate
@@ -63,7 +63,7 @@ module mech9_bounded_least_squares
       import :: residuals_type, residual_values_type, wp
       class(residuals_type), intent(inout) :: self          !< the residuals
       real(wp), intent(in) :: x(:)                          !< (n) shared unknowns
-      real(wp), intent(in) :: y(:, :)                       !< (own,groups) unknowns of each group
+      real(wp), intent(in) :: y(:, :)                       !< (n_y,groups) unknowns of each group
       logical, intent(in) :: with_derivatives               !< derivatives are asked for, at the place asked for last
       type(residual_values_type), intent(inout) :: values   !< gets the residuals, and the derivatives that are asked for
       logical, intent(out) :: has_value                     !< the residuals have a value here
@@ -91,11 +91,11 @@ contains
   subroutine minimise_squares(residuals, x, y, low, high, y_low, y_high, settings, outcome)
     class(residuals_type), intent(inout) :: residuals               !< the residuals
     real(wp), intent(inout) :: x(:)                                 !< (n) shared unknowns: start, then the place of the minimum
-    real(wp), intent(inout) :: y(:, :)                              !< (own,groups) unknowns of each group
+    real(wp), intent(inout) :: y(:, :)                              !< (n_y,groups) unknowns of each group
     real(wp), intent(in) :: low(:)                                  !< (n) least x
     real(wp), intent(in) :: high(:)                                 !< (n) largest x
-    real(wp), intent(in) :: y_low(:, :)                             !< (own,groups) least y
-    real(wp), intent(in) :: y_high(:, :)                            !< (own,groups) largest y
+    real(wp), intent(in) :: y_low(:, :)                             !< (n_y,groups) least y
+    real(wp), intent(in) :: y_high(:, :)                            !< (n_y,groups) largest y
     type(least_squares_settings_type), intent(in) :: settings       !< when to end
     type(least_squares_outcome_type), intent(out) :: outcome        !< how the search ended
     type(search_type) :: search
@@ -143,11 +143,11 @@ contains
   subroutine begin_search(residuals, x, y, low, high, y_low, y_high, settings, search, has_value)
     class(residuals_type), intent(inout) :: residuals            !< the residuals
     real(wp), intent(in) :: x(:)                                 !< (n) shared unknowns
-    real(wp), intent(in) :: y(:, :)                              !< (own,groups) unknowns of each group
+    real(wp), intent(in) :: y(:, :)                              !< (n_y,groups) unknowns of each group
     real(wp), intent(in) :: low(:)                               !< (n) least x
     real(wp), intent(in) :: high(:)                              !< (n) largest x
-    real(wp), intent(in) :: y_low(:, :)                          !< (own,groups) least y
-    real(wp), intent(in) :: y_high(:, :)                         !< (own,groups) largest y
+    real(wp), intent(in) :: y_low(:, :)                          !< (n_y,groups) least y
+    real(wp), intent(in) :: y_high(:, :)                         !< (n_y,groups) largest y
     type(least_squares_settings_type), intent(in) :: settings    !< with the first damping
     type(search_type), intent(out) :: search                     !< at the start
     logical, intent(out) :: has_value                            !< the residuals have a value there
@@ -167,7 +167,7 @@ contains
     search%damping = settings%damping
     allocate (search%values%r(residuals%rows, residuals%groups), &
               search%values%by_x(residuals%rows, residuals%n, residuals%groups), &
-              search%values%by_y(residuals%rows, residuals%own, residuals%groups), source=0.0_wp)
+              search%values%by_y(residuals%rows, residuals%n_y, residuals%groups), source=0.0_wp)
     search%trial = search%values
     call residuals%evaluate(search%x, search%y, .false., search%values, has_value)
     if (has_value) search%value = sum(search%values%r**2)
@@ -191,7 +191,7 @@ contains
       search%held_x(j) = is_held(search%x(j), search%low(j), search%high(j), sum(search%values%by_x(:, j, :)*search%values%r))
     end do
     do g = 1, residuals%groups
-      do j = 1, residuals%own
+      do j = 1, residuals%n_y
         search%scale_y(j, g) = max(search%scale_y(j, g), norm2(search%values%by_y(:, j, g)))
         search%held_y(j, g) = is_held(search%y(j, g), search%y_low(j, g), search%y_high(j, g), &
                                       dot_product(search%values%by_y(:, j, g), search%values%r(:, g)))
@@ -199,7 +199,7 @@ contains
     end do
   end subroutine find_derivatives
 
-  !> Whether an unknown is held: its bounds are one number, or it is at a bound beyond which the sum of squares would fall.
+  !> Whether an unknown is held: its bounds are one number, or it is at a bound beyond which the sum of squares would decrease.
   pure logical function is_held(x, low, high, slope)
     real(wp), intent(in) :: x       !< the unknown
     real(wp), intent(in) :: low     !< its least value
@@ -277,21 +277,21 @@ contains
   subroutine solve_linear(residuals, held_x, held_y, search)
     class(residuals_type), intent(in) :: residuals   !< the residuals
     logical, intent(in) :: held_x(:)                 !< (n) shared unknowns whose steps are given
-    logical, intent(in) :: held_y(:, :)              !< (own,groups) others
+    logical, intent(in) :: held_y(:, :)              !< (n_y,groups) others
     type(search_type), intent(inout) :: search       !< gets the step
-    real(wp) :: part(residuals%rows + residuals%own, residuals%own + residuals%n + 1, residuals%groups)
-    real(wp) :: whole((residuals%rows + residuals%own)*residuals%groups + residuals%n, residuals%n + 1)
-    integer :: g, j, n, own, rows, at
+    real(wp) :: part(residuals%rows + residuals%n_y, residuals%n_y + residuals%n + 1, residuals%groups)
+    real(wp) :: whole((residuals%rows + residuals%n_y)*residuals%groups + residuals%n, residuals%n + 1)
+    integer :: g, j, n, n_y, rows, at
 
     n = residuals%n
-    own = residuals%own
+    n_y = residuals%n_y
     rows = residuals%rows
     whole = 0.0_wp
     at = 0
     do g = 1, residuals%groups
       call fill_part(held_x, held_y(:, g), g, search, part(:, :, g))
-      call triangulate(part(:, :, g), own)
-      whole(at + 1:at + rows, :) = part(own + 1:, own + 1:, g)
+      call triangulate(part(:, :, g), n_y)
+      whole(at + 1:at + rows, :) = part(n_y + 1:, n_y + 1:, g)
       at = at + rows
     end do
     do j = 1, n
@@ -301,9 +301,9 @@ contains
     call triangulate(whole(:at + n, :), n)
     call solve_upper(whole(:n, :n), whole(:n, n + 1), search%dx)
     do g = 1, residuals%groups
-      part(:own, own + n + 1, g) = part(:own, own + n + 1, g) &
-                                   - matmul(part(:own, own + 1:own + n, g), merge(0.0_wp, search%dx, held_x))
-      call solve_upper(part(:own, :own, g), part(:own, own + n + 1, g), search%dy(:, g))
+      part(:n_y, n_y + n + 1, g) = part(:n_y, n_y + n + 1, g) &
+                                   - matmul(part(:n_y, n_y + 1:n_y + n, g), merge(0.0_wp, search%dx, held_x))
+      call solve_upper(part(:n_y, :n_y, g), part(:n_y, n_y + n + 1, g), search%dy(:, g))
     end do
   end subroutine solve_linear
 
@@ -311,31 +311,31 @@ contains
   !> are zero, and their steps stand on the right-hand side.
   subroutine fill_part(held_x, held_y, g, search, part)
     logical, intent(in) :: held_x(:)         !< (n) shared unknowns whose steps are given
-    logical, intent(in) :: held_y(:)         !< (own) others
+    logical, intent(in) :: held_y(:)         !< (n_y) others
     integer, intent(in) :: g                 !< number of the group
     type(search_type), intent(in) :: search  !< with derivatives and given steps
-    real(wp), intent(out) :: part(:, :)      !< (rows+own,own+n+1) the equations
-    integer :: j, rows, own, n
+    real(wp), intent(out) :: part(:, :)      !< (rows+n_y,n_y+n+1) the equations
+    integer :: j, rows, n_y, n
 
-    own = size(held_y)
+    n_y = size(held_y)
     n = size(held_x)
-    rows = size(part, 1) - own
+    rows = size(part, 1) - n_y
     part = 0.0_wp
-    part(:rows, own + n + 1) = -search%values%r(:, g)
-    do j = 1, own
+    part(:rows, n_y + n + 1) = -search%values%r(:, g)
+    do j = 1, n_y
       if (held_y(j)) then
-        part(:rows, own + n + 1) = part(:rows, own + n + 1) - search%values%by_y(:, j, g)*search%dy(j, g)
+        part(:rows, n_y + n + 1) = part(:rows, n_y + n + 1) - search%values%by_y(:, j, g)*search%dy(j, g)
       else
         part(:rows, j) = search%values%by_y(:, j, g)
       end if
       part(rows + j, j) = damping_of(held_y(j), search%damping, search%scale_y(j, g))
-      if (held_y(j)) part(rows + j, own + n + 1) = part(rows + j, j)*search%dy(j, g)
+      if (held_y(j)) part(rows + j, n_y + n + 1) = part(rows + j, j)*search%dy(j, g)
     end do
     do j = 1, n
       if (held_x(j)) then
-        part(:rows, own + n + 1) = part(:rows, own + n + 1) - search%values%by_x(:, j, g)*search%dx(j)
+        part(:rows, n_y + n + 1) = part(:rows, n_y + n + 1) - search%values%by_x(:, j, g)*search%dx(j)
       else
-        part(:rows, own + j) = search%values%by_x(:, j, g)
+        part(:rows, n_y + j) = search%values%by_x(:, j, g)
       end if
     end do
   end subroutine fill_part
@@ -373,7 +373,7 @@ contains
     if (all(abs(search%trial%r) < sqrt(huge(value)/(2.0_wp*max(1, size(search%trial%r)))))) value = sum(search%trial%r**2)
   end subroutine try_step
 
-  !> Go to the end of the step. Its damping falls the more, the better the linear model was.
+  !> Go to the end of the step. Its damping decreases the more, the better the linear model was.
   subroutine accept_step(residuals, gain, value, search, has_value)
     class(residuals_type), intent(inout) :: residuals   !< the residuals
     real(wp), intent(in) :: gain                        !< actual reduction over the predicted one

@@ -179,7 +179,7 @@ contains
     if (j == 0) return
     associate (joint => structure%joints(j))
       ! the link stands between two pairs of the joint; the freedom goes through one of them
-      if (any(idle%coordinates == joint%numbers(link - joint%before_own + 1))) then
+      if (any(idle%coordinates == joint%numbers(link - joint%before_inner + 1))) then
         link = joint%ends(1)
       else
         link = joint%ends(2)
