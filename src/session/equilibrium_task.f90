@@ -22,6 +22,7 @@ module mech9_equilibrium_task
   use mech9_film, only: film_type, new_film
   use mech9_columns, only: columns_type
   use mech9_table, only: table_type
+  use mech9_heading, only: heading_of
   use mech9_kept_rows, only: kept_rows_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_record, only: write_provenance, write_structure, write_coordinates
@@ -234,8 +235,7 @@ contains
 
     path = options%table_of_answer()
     if (path == '') return
-    call table%open(path, model%mechanism%title, 'mech9d '//version, columns%names(:columns%count), &
-                    columns%units(:columns%count), err)
+    call table%open(path, heading_of(model%mechanism%title, columns), 'mech9d '//version, err)
     if (allocated(err)) return
     call table%write_rows(rows, err)
     call table%close(at_close)
