@@ -18,7 +18,7 @@ module mech9_equilibrium_task
   use mech9_explained_assembly, only: assemble_model
   use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_equilibria, only: find_equilibrium, find_equilibria
-  use mech9_mode_shapes, only: position_in_vibration
+  use mech9_mode_shapes, only: displacement, position_in_vibration
   use mech9_film, only: film_type, new_film
   use mech9_columns, only: columns_type
   use mech9_table, only: table_type
@@ -152,8 +152,7 @@ contains
     type(equilibrium_type), allocatable :: one(:)
 
     if (options%has('starts') .and. options%has('equilibrium')) then
-      call find_equilibria(model%mechanism, model%problem%partition, plan, start, options%number('starts', 1), one, err, &
-                           signal_interruption_type())
+      call find_equilibria(model, plan, start, options%number('starts', 1), one, err, signal_interruption_type())
     else
       allocate (one(1))
       call find_equilibrium(model%mechanism, model%problem%partition, plan, start, one(1), err)
@@ -327,7 +326,8 @@ contains
     film = new_film(model%mechanism, model%problem%partition%independent(), pictures_of_period)
     do i = 1, pictures_of_period
       phase = 2.0_wp*pi*(i - 1)/(pictures_of_period - 1)
-      call position_in_vibration(model%mechanism, equilibrium, mode, shown_amplitude, phase, position, found, err)
+      call position_in_vibration(model%mechanism, equilibrium, displacement(equilibrium, mode, shown_amplitude, phase), position, &
+                                 found, err)
       if (allocated(err)) return
       if (.not. found) cycle
       position%t = period*(i - 1)/(pictures_of_period - 1)
