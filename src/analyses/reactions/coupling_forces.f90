@@ -57,7 +57,7 @@ contains
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism, with all blocks
     type(reaction_plan_type), intent(in) :: reactions     !< the plan of inverse dynamics
     type(state_type), intent(in) :: state                 !< the position
-    type(required_wrenches_type), intent(inout) :: links  !< what each link requires with all beyond it; loads on coordinates grow
+    type(required_wrenches_type), intent(inout) :: links  !< requirements of each link with all beyond it; loads on coordinates grow
     type(coupling_forces_type), intent(inout) :: self     !< gets the forces
 
     if (size(plan%couplings) == 0) return
@@ -181,7 +181,7 @@ contains
   pure subroutine require(plan, reactions, links, required)
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(reaction_plan_type), intent(in) :: reactions     !< the plan of inverse dynamics
-    type(required_wrenches_type), intent(in) :: links     !< what each link requires with all beyond it
+    type(required_wrenches_type), intent(in) :: links     !< requirements of each link with all beyond it
     real(wp), intent(out) :: required(:)                  !< (M) [N m, N]
     real(wp) :: arm(3), about_point(3)
     integer :: i, k, link

@@ -56,7 +56,7 @@ contains
     type(reaction_plan_type), intent(in) :: reactions          !< the plan of inverse dynamics
     type(joined_cluster_type), intent(in) :: cluster           !< the cluster
     type(state_type), intent(in) :: state                      !< the position
-    type(required_wrenches_type), intent(in) :: links          !< what each link requires, and loads on coordinates
+    type(required_wrenches_type), intent(in) :: links          !< requirements of the links, and loads on coordinates
     type(loop_balance_type), intent(inout) :: self             !< equations and scratch; gets the wrenches
     logical, intent(out) :: done                               !< the wrenches are found
     integer, parameter :: most_corrections = 6
@@ -86,7 +86,7 @@ contains
     type(plan_type), intent(in) :: plan                        !< the plan of the mechanism
     type(reaction_plan_type), intent(in) :: reactions          !< the plan of inverse dynamics
     type(joined_cluster_type), intent(in) :: cluster           !< the cluster
-    type(required_wrenches_type), intent(in) :: links          !< what each link requires; about the origin of its first frame
+    type(required_wrenches_type), intent(in) :: links          !< requirements of each link, about the origin of its first frame
     type(loop_balance_type), intent(inout) :: self             !< gets the wrenches of the cut chains
     integer :: i, s
 

@@ -38,7 +38,7 @@ module mech9_reactions
     !> (M) generalized force that an independent coordinate needs beside the loads on it: of its drive, or zero where it moves
     !> freely and the accelerations satisfy the equations of motion; zero for dependent coordinates [N m, N]
     real(wp), allocatable :: needed(:)
-    type(required_wrenches_type) :: links         !< what links require, with clusters that stand on them; geometry and loads
+    type(required_wrenches_type) :: links         !< requirements of the links, with clusters that stand on them
     type(coupling_forces_type) :: couplings       !< forces of the couplings
     type(planar_wrenches_type) :: flat            !< of a flat mechanism
     type(loop_balance_type) :: loops              !< of the clusters that equilibrium determines

@@ -14,8 +14,8 @@ module mech9_required_wrenches
   private
   public :: required_wrenches_type, new_required_wrenches, find_required
 
-  !> What the links require in one position, and from what it follows. Components are along the axes of link 1, moments about the
-  !> places of the links.
+  !> The requirements of the links in one position, with its geometry and loads. Components are along the axes of link 1, moments about
+  !> the places of the links.
   type :: required_wrenches_type
     type(joint_geometry_type) :: geometry           !< of the position
     type(motion_view_type) :: view                  !< the motion as loads read it
