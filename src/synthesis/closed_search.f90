@@ -132,10 +132,12 @@ contains
     real(wp), intent(in) :: scale                            !< size of the targets [m, rad]
     real(wp), intent(inout) :: at(:)                         !< (n) the place
     logical, intent(out) :: found                            !< the place has a value within all limits
+    character(len=:), allocatable :: method
     logical :: has_squares, by_squares
 
     found = .true.
-    associate (model => limited%fit%space%model, method => limited%fit%space%model%request%optimum%method)
+    associate (model => limited%fit%space%model)
+      method = model%request%optimum%method
       has_squares = limited%fit%groups > 0
       by_squares = is_least_squares(model) .and. (method == 'auto' .or. method == 'levenberg-marquardt')
       ! a sum of squares alone is a good place to begin at
