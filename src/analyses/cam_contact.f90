@@ -74,8 +74,8 @@ contains
     end if
     contact%normal = turn_back(motion%r, normal)
     if (.not. contact%known .or. size(guides) == 0) return
-    call find_pressure(cam, guides(1), plan, state, motion%origin + turn(motion%r, contact%profile), motion%place, &
-                       normal, contact)
+    if (cam%flat) motion%place = motion%origin + turn(motion%r, contact%profile)
+    call find_pressure(cam, guides(1), plan, state, motion%place, normal, contact)
   end subroutine find_contact
 
   !> The motion of the follower's point against the cam.
@@ -195,13 +195,12 @@ contains
 
   !> The pressure angle: between the common normal and the direction in which the guide lets the follower move there. This is, for a
   !> roller, the motion of its centre, and for a flat face that of the point of contact.
-  pure subroutine find_pressure(cam, guide, plan, state, touched, centre, normal, contact)
+  pure subroutine find_pressure(cam, guide, plan, state, place, normal, contact)
     type(cam_request_type), intent(in) :: cam             !< the cam and its follower
     type(pair_axes_type), intent(in) :: guide             !< the pair that guides the follower
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(state_type), intent(in) :: state                 !< with the poses of all frames
-    real(wp), intent(in) :: touched(3)                    !< point of contact, in the system of link 1 [m]
-    real(wp), intent(in) :: centre(3)                     !< centre of the roller, in the system of link 1 [m]
+    real(wp), intent(in) :: place(3)                      !< centre of the roller, or point of contact, in the system of link 1 [m]
     real(wp), intent(in) :: normal(3)                     !< unit normal at the contact, in the axes of link 1
     type(cam_contact_type), intent(inout) :: contact      !< gets the angle
     real(wp) :: r(3, 3), p(3), omega(3), v(3), direction(3)
@@ -211,7 +210,7 @@ contains
     call link_motion(plan, state, cam%follower, r, p, omega, v)
     direction = turn(r, guide%axes(:, side))
     if (guide%kind == turning) &
-      direction = cross(direction, merge(touched, centre, cam%flat) - p - turn(r, guide%points(:, side)))
+      direction = cross(direction, place - p - turn(r, guide%points(:, side)))
     contact%pressure = atan2(norm2(cross(normal, direction)), abs(dot_product(normal, direction)))
   end subroutine find_pressure
 end module mech9_cam_contact

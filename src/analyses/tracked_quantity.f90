@@ -7,6 +7,7 @@
 module mech9_tracked_quantity
   use mech9_kinds, only: wp
   use mech9_chebyshev, only: chebyshev_type
+  use mech9_smooth_pieces, only: smooth_piece_type
   use mech9_hermite, only: hermite_type, build_hermite
   use mech9_interval_polynomials, only: polynomial, values_between, changes_between, changes_at, moved_with
   use mech9_quantity_sums, only: quantity_sums_type
@@ -127,26 +128,24 @@ contains
   end subroutine begin_piece
 
   !> End an interval between outputs, or end a piece at a joint.
-  pure subroutine end_piece(self, rule, from, row, values, changes, from_rate, rate)
+  pure subroutine end_piece(self, rule, piece, row, values, changes)
     class(tracked_quantity_type), intent(inout) :: self   !< the quantity
     type(chebyshev_type), intent(in) :: rule              !< points in an interval
-    real(wp), intent(in) :: from                          !< beginning of the interval [s]
+    type(smooth_piece_type), intent(in) :: piece          !< the interval
     real(wp), intent(in) :: row(:)                        !< numbers at its end, time first
     real(wp), intent(in) :: values(:)                     !< (rule%n) of its column, those at both ends included, if it needs them
     real(wp), intent(in) :: changes(:, :)                 !< (P,rule%n) its derivatives by parameters, where they are followed
-    real(wp), allocatable, intent(in) :: from_rate(:)     !< (P) derivatives of the time of a joint at its beginning
-    real(wp), allocatable, intent(in) :: rate(:)          !< (P) those of the time of a joint at its end
 
     if (.not. self%follows()) return
     if (self%family(0) == 0) then
-      call take_values(self, rule, from, row(1), values, changes, from_rate, rate)
+      call take_values(self, rule, piece, row(1), values, changes)
     else
       if (self%count == most_outputs) call forget_first(self)
-      call keep_output(self, row, rate)
+      call keep_output(self, row, piece%to_rate)
       ! an interval between others is known best
       if (self%count > 2) call add_intervals(self, rule, self%count - 2)
     end if
-    if (.not. allocated(rate)) return
+    if (.not. allocated(piece%to_rate)) return
     if (self%family(0) > 0) call add_intervals(self, rule, self%count - 1)
     self%is_cut = .true.
     self%value_before = row(self%column)
@@ -200,21 +199,19 @@ contains
   end subroutine take_at
 
   !> Take the values at the points of an interval into account.
-  pure subroutine take_values(self, rule, from, to, values, changes, from_rate, to_rate)
+  pure subroutine take_values(self, rule, piece, to, values, changes)
     type(tracked_quantity_type), intent(inout) :: self    !< the quantity
     type(chebyshev_type), intent(in) :: rule              !< points in an interval
-    real(wp), intent(in) :: from                          !< its beginning [s]
+    type(smooth_piece_type), intent(in) :: piece          !< the interval
     real(wp), intent(in) :: to                            !< its end [s]
     real(wp), intent(in) :: values(:)                     !< (rule%n) of its column, those at both ends included
     real(wp), intent(in) :: changes(:, :)                 !< (P,rule%n) its derivatives by parameters, where they are followed
-    real(wp), allocatable, intent(in) :: from_rate(:)     !< (P) derivatives of the time of a joint at its beginning
-    real(wp), allocatable, intent(in) :: to_rate(:)       !< (P) those of the time of a joint at its end
     type(quantity_sums_type) :: before
 
     before = self%sums
-    call self%sums%add_piece(rule, from, to, values)
+    call self%sums%add_piece(rule, piece%from, to, values)
     if (.not. allocated(self%changes)) return
-    call self%gradient%add_piece(rule, from, to, values, changes)
+    call self%gradient%add_piece(rule, piece%from, to, values, changes)
     if (self%sums%low < before%low) self%gradient%low = between(self%sums%time_low)
     if (self%sums%high > before%high) self%gradient%high = between(self%sums%time_high)
 
@@ -227,11 +224,11 @@ contains
       integer :: p
 
       do p = 1, size(between)
-        between(p) = rule%value_at(changes(p, :), 2.0_wp*(t - from)/(to - from) - 1.0_wp)
+        between(p) = rule%value_at(changes(p, :), 2.0_wp*(t - piece%from)/(to - piece%from) - 1.0_wp)
       end do
-      slopes = 2.0_wp/(to - from)*matmul(rule%derivative, values)
-      if (allocated(from_rate)) between = between + moved_with(from_rate, slopes(1), t, from, to)
-      if (allocated(to_rate)) between = between + moved_with(to_rate, slopes(rule%n), t, to, from)
+      slopes = 2.0_wp/(to - piece%from)*matmul(rule%derivative, values)
+      if (allocated(piece%from_rate)) between = between + moved_with(piece%from_rate, slopes(1), t, piece%from, to)
+      if (allocated(piece%to_rate)) between = between + moved_with(piece%to_rate, slopes(rule%n), t, to, piece%from)
     end function between
   end subroutine take_values
 

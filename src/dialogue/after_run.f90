@@ -9,6 +9,7 @@ module mech9_after_run
   use mech9_rows_text, only: rows_text, columns_that_fit
   use mech9_run_comparison, only: comparison_type, compare_runs, comparison_text
   use mech9_plot, only: plot_columns
+  use mech9_heading, only: new_heading
   use mech9_plot_request, only: is_picture
   use mech9_grammar, only: words_of
   use mech9_draft, only: integer_of
@@ -219,7 +220,7 @@ contains
     end do
     target = request(:index(request//':', ':') - 1)
     if (.not. is_picture(target) .and. target /= 'term') request = 'term:'//request
-    call plot_columns(request, kept%title, kept%names, kept%units, kept%rows(:, :kept%count), &
+    call plot_columns(request, new_heading(kept%title, kept%names, kept%units), kept%rows(:, :kept%count), &
                       conversation%stem//'.svg', said, err)
     if (allocated(err)) said = err%message
     if (said /= '') call conversation%say(said)

@@ -6,6 +6,8 @@
 module mech9_changed_groups
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, get_text, has_name
+  use mech9_load, only: load_slot_type
+  use mech9_coupling, only: coupling_slot_type
   use mech9_model, only: model_type
   use mech9_pair_reader, only: read_pair_group
   use mech9_motion_reader, only: read_initial, read_point
@@ -73,6 +75,7 @@ contains
     type(group_map_type), intent(in) :: map               !< of the groups
     type(model_type), intent(inout) :: model              !< with the numbers before, and without held rods; gets the new ones
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(load_slot_type) :: load
     logical :: pairs, initials, drives, bodies, cams
     integer :: i
 
@@ -87,15 +90,15 @@ contains
         select case (document%groups(i)%name)
         case ('pair')
           pairs = .true.
-          call read_pair_group(document, i, m%structure, m%angle_unit, m%parameters, m%pairs, diagnostics)
+          call read_pair_group(document, i, m, diagnostics)
         case ('point')
           call read_point(document%groups(i), m%structure%shown_links(), m%points(at), diagnostics)
         case ('drive')
           drives = .true.
-          call read_drive_group(document, i, m%pairs, m%angle_unit, model%request%time%start, m%parameters, &
-                                model%problem%drives(at), diagnostics)
+          call read_drive_group(document, i, m, model%request%time%start, model%problem%drives(at), diagnostics)
         case ('load')
-          call read_load(document, i, m%structure%shown_links(), m%pairs, m%angle_unit, m%parameters, m%loads(at), diagnostics)
+          call read_load(document, i, m, load, diagnostics)
+          call move_alloc(load%load, m%loads(at)%load)
         case ('gravity')
           m%gravity = read_gravity(document)
         case ('initial')
@@ -125,6 +128,7 @@ contains
     logical, intent(in) :: initials                       !< initial positions have changed
     type(model_type), intent(inout) :: model              !< gets the couplings
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(coupling_slot_type) :: slot
     integer, allocatable :: numbers(:)
     integer :: i
 
@@ -135,8 +139,8 @@ contains
         if (.not. initials .or. get_text(document%groups(numbers(i)), 'kind') == 'table') cycle
       end if
       associate (m => model%mechanism)
-        call read_coupling(document, numbers(i), i, m%pairs, model%problem%initial%position, m%angle_unit, m%parameters, &
-                           m%couplings(i), diagnostics)
+        call read_coupling(document, numbers(i), i, model%problem%initial%position, m, slot, diagnostics)
+        call move_alloc(slot%coupling, m%couplings(i)%coupling)
       end associate
     end do
   end subroutine read_couplings_again

@@ -5,6 +5,7 @@ module mech9_coupling_reader
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_pair, only: pair_slot_type
+  use mech9_mechanism, only: mechanism_type
   use mech9_coupling, only: coupling_slot_type
   use mech9_linear_coupling, only: linear_coupling_type
   use mech9_table_coupling, only: table_coupling_type, new_table_coupling, new_turning_table
@@ -25,34 +26,32 @@ module mech9_coupling_reader
 contains
 
   !> All couplings, in the order of the file; of use only where nothing is reported.
-  subroutine read_couplings(document, pairs, positions, angle_unit, parameters, couplings, diagnostics)
+  subroutine read_couplings(document, positions, mechanism, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
-    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; a slot is empty where its group has an error
     real(wp), intent(in) :: positions(:)                  !< (M) coordinates at the start, which give constants [rad, m]
-    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
-    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
-    type(coupling_slot_type), allocatable, intent(out) :: couplings(:)   !< one for each sound group
+    type(mechanism_type), intent(inout) :: mechanism      !< with its pairs; gets a coupling for each sound group
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(coupling_slot_type), allocatable :: couplings(:)
     integer, allocatable :: numbers(:)
     integer :: i
 
     numbers = groups_named(document, 'coupling')
     allocate (couplings(size(numbers)))
-    if (size(positions) == 0) return
-    do i = 1, size(numbers)
-      call read_coupling(document, numbers(i), i, pairs, positions, angle_unit, parameters, couplings(i), diagnostics)
-    end do
+    if (size(positions) > 0) then
+      do i = 1, size(numbers)
+        call read_coupling(document, numbers(i), i, positions, mechanism, couplings(i), diagnostics)
+      end do
+    end if
+    call move_alloc(couplings, mechanism%couplings)
   end subroutine read_couplings
 
   !> The coupling of one group; of use only where nothing is reported.
-  subroutine read_coupling(document, number, i, pairs, positions, angle_unit, parameters, slot, diagnostics)
+  subroutine read_coupling(document, number, i, positions, mechanism, slot, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     integer, intent(in) :: number                         !< of the group in the document
     integer, intent(in) :: i                              !< number of the coupling
-    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; a slot is empty where its group has an error
     real(wp), intent(in) :: positions(:)                  !< (M) coordinates at the start, which give constants [rad, m]
-    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
-    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
+    type(mechanism_type), intent(in) :: mechanism         !< with its pairs; a slot is empty where its group has an error
     type(coupling_slot_type), intent(out) :: slot         !< gets the coupling
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     logical :: ok
@@ -62,11 +61,11 @@ contains
       if (.not. ok) return
       select case (get_text(group, 'kind'))
       case ('table')
-        call read_table(beside(document%source%name, get_text(group, 'file')), group, pairs, angle_unit, slot, diagnostics)
+        call read_table(beside(document%source%name, get_text(group, 'file')), group, mechanism, slot, diagnostics)
       case ('user')
-        call read_procedure(group, i, positions, parameters, slot, diagnostics)
+        call read_procedure(group, i, positions, mechanism%parameters, slot, diagnostics)
       case default
-        call read_linear(group, pairs, positions, angle_unit, slot, diagnostics)
+        call read_linear(group, positions, mechanism, slot, diagnostics)
       end select
       if (.not. allocated(slot%coupling)) return
       slot%coupling%coordinates = get_integers(group, 'coordinates')
@@ -102,11 +101,10 @@ contains
   end subroutine check_coordinates
 
   !> A coupling with a linear equation. The slot stays empty where an error was reported.
-  subroutine read_linear(group, pairs, positions, angle_unit, slot, diagnostics)
+  subroutine read_linear(group, positions, mechanism, slot, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
-    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate
     real(wp), intent(in) :: positions(:)                  !< (M) coordinates at the start [rad, m]
-    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    type(mechanism_type), intent(in) :: mechanism         !< with its pairs and its unit of angles
     type(coupling_slot_type), intent(inout) :: slot       !< gets the coupling
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(linear_coupling_type) :: linear
@@ -116,7 +114,7 @@ contains
 
     known = diagnostics%known()
     k = get_integers(group, 'coordinates')
-    units = units_of(k, pairs, angle_unit)
+    units = units_of(k, mechanism%pairs, mechanism%angle_unit)
     linear%name = get_text(group, 'kind')
     if (linear%name == 'linear') then
       linear%coefficients = get_reals(group, 'coefficients')
@@ -125,7 +123,7 @@ contains
       linear%coefficients = linear%coefficients/units
       linear%constant = get_real(group, 'constant')
     else
-      call check_kinds(group, k, pairs, diagnostics)
+      call check_kinds(group, k, mechanism%pairs, diagnostics)
       linear%coefficients = [-slope_of(group, diagnostics), 1.0_wp]
       if (linear%name == 'belt') linear%radii = get_reals(group, 'radii')
       linear%constant = positions(k(2)) + linear%coefficients(1)*positions(k(1))
@@ -135,37 +133,37 @@ contains
   end subroutine read_linear
 
   !> A coupling by a table. The slot stays empty where an error was reported.
-  subroutine read_table(path, group, pairs, angle_unit, slot, diagnostics)
+  subroutine read_table(path, group, mechanism, slot, diagnostics)
     character(len=*), intent(in) :: path                  !< of the table
     type(group_type), intent(in) :: group                 !< the group of the data file
-    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate
-    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    type(mechanism_type), intent(in) :: mechanism         !< with its pairs and its unit of angles
     type(coupling_slot_type), intent(inout) :: slot       !< gets the coupling
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(table_coupling_type) :: table
     type(error_type), allocatable :: err
-    real(wp), allocatable :: x(:), y(:), units(:)
+    real(wp), allocatable :: points(:, :), units(:)
     real(wp) :: gain
-    integer :: k(2)
+    integer :: k(2), i
     logical :: ok
 
     k = get_integers(group, 'coordinates')
-    if (.not. are_given(k, pairs)) return
-    units = units_of(k, pairs, angle_unit)
-    call read_table_file(path, span_of(group, 'file', 1), 'q'//to_text(k(1)), 'q'//to_text(k(2)), x, y, ok, diagnostics)
+    if (.not. are_given(k, mechanism%pairs)) return
+    units = units_of(k, mechanism%pairs, mechanism%angle_unit)
+    call read_table_file(path, span_of(group, 'file', 1), 'q'//to_text(k(1)), 'q'//to_text(k(2)), points, ok, diagnostics)
     if (.not. ok) return
-    x = units(1)*x
-    y = units(2)*y
-    if (turns(k(1), pairs) .and. abs(x(size(x)) - x(1) - turn) <= same_end*turn) then
-      call close_turn(group, k, pairs, angle_unit, x, y, gain, ok, diagnostics)
+    do i = 1, 2
+      points(i, :) = units(i)*points(i, :)
+    end do
+    if (turns(k(1), mechanism%pairs) .and. abs(points(1, size(points, 2)) - points(1, 1) - turn) <= same_end*turn) then
+      call close_turn(group, k, mechanism, points, gain, ok, diagnostics)
       if (.not. ok) return
-      call new_turning_table(x, y, gain, table, err)
+      call new_turning_table(points(1, :), points(2, :), gain, table, err)
     else
-      call new_table_coupling(x, y, table, err)
+      call new_table_coupling(points(1, :), points(2, :), table, err)
     end if
     table%unit = units(1)
     table%unit_name = 'm'
-    if (turns(k(1), pairs)) table%unit_name = merge('deg', 'rad', angle_unit < 1.0_wp)
+    if (turns(k(1), mechanism%pairs)) table%unit_name = merge('deg', 'rad', mechanism%angle_unit < 1.0_wp)
     if (allocated(err)) then
       call explain(err)
       call diagnostics%add(span_of(group, 'file', 1), err%message, err%code)
@@ -196,35 +194,31 @@ contains
   end subroutine read_procedure
 
   !> Make a table exactly one turn long, with a second coordinate that ends as it begins or whole turns on; report one that is not.
-  subroutine close_turn(group, k, pairs, angle_unit, x, y, gain, ok, diagnostics)
+  subroutine close_turn(group, k, mechanism, points, gain, ok, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     integer, intent(in) :: k(2)                           !< numbers of the coordinates
-    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate
-    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
-    real(wp), intent(inout) :: x(:)                       !< (n) values of the first coordinate [rad]; the last one is moved
-    real(wp), intent(inout) :: y(:)                       !< (n) values of the second coordinate [rad, m]; the last one is moved
+    type(mechanism_type), intent(in) :: mechanism         !< with its pairs and its unit of angles
+    real(wp), intent(inout) :: points(:, :)               !< (2,n) values of both coordinates [rad, m]; the last ones are moved
     real(wp), intent(out) :: gain                         !< change of the second coordinate per rad of the first one, over the turn
     logical, intent(out) :: ok                            !< whether nothing was reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
-    real(wp) :: rise
+    real(wp) :: rise, unit
     integer :: n
 
-    n = size(x)
+    n = size(points, 2)
     gain = 0.0_wp
-    rise = y(n) - y(1)
-    if (turns(k(2), pairs)) rise = turn*anint(rise/turn)
-    if (.not. turns(k(2), pairs)) rise = 0.0_wp
-    ok = abs(y(n) - y(1) - rise) <= same_end*max(abs(rise), maxval(y) - minval(y))
+    rise = 0.0_wp
+    if (turns(k(2), mechanism%pairs)) rise = turn*anint((points(2, n) - points(2, 1))/turn)
+    ok = abs(points(2, n) - points(2, 1) - rise) <= same_end*max(abs(rise), maxval(points(2, :)) - minval(points(2, :)))
     if (.not. ok) then
+      unit = unit_of(k(2), mechanism%pairs, mechanism%angle_unit)
       call diagnostics%add(span_of(group, 'file', 1), 'the table repeats after a turn of coordinate '//to_text(k(1))// &
                            ' and would jump there: coordinate '//to_text(k(2))//' begins at '// &
-                           to_text(y(1)/unit_of(k(2), pairs, angle_unit))//' and ends at '// &
-                           to_text(y(n)/unit_of(k(2), pairs, angle_unit))//'; let it end as it begins'// &
-                           trim(merge(', or whole turns on', '                   ', turns(k(2), pairs))))
+                           to_text(points(2, 1)/unit)//' and ends at '//to_text(points(2, n)/unit)//'; let it end as it begins'// &
+                           trim(merge(', or whole turns on', '                   ', turns(k(2), mechanism%pairs))))
       return
     end if
-    x(n) = x(1) + turn
-    y(n) = y(1) + rise
+    points(:, n) = points(:, 1) + [turn, rise]
     gain = rise/turn
   end subroutine close_turn
 

@@ -8,6 +8,7 @@ module mech9_drive_reader
   use mech9_explanation, only: explain
   use mech9_partition, only: partition_type, driven_coordinate
   use mech9_pair, only: pair_slot_type
+  use mech9_mechanism, only: mechanism_type
   use mech9_law, only: law_type, drive_slot_type
   use mech9_polynomial_law, only: polynomial_law_type
   use mech9_harmonic_law, only: harmonic_law_type
@@ -30,14 +31,12 @@ module mech9_drive_reader
 contains
 
   !> Make the drives of all sound groups.
-  subroutine read_drives(document, partition, pairs, angle_unit, start, parameters, drives, diagnostics)
+  subroutine read_drives(document, mechanism, start, partition, drives, diagnostics)
     type(document_type), intent(in) :: document                   !< the data file as groups and items
+    type(mechanism_type), intent(in) :: mechanism                 !< with its pairs
+    real(wp), intent(in) :: start                                 !< time of the first result [s]
     type(partition_type), intent(inout) :: partition              !< kinds of the coordinates, none where the structure is unknown;
                                                                   !< those with drives become driven ones
-    type(pair_slot_type), intent(in) :: pairs(:)  !< (M) pairs by coordinate; a slot is empty where its group has an error
-    real(wp), intent(in) :: angle_unit                            !< unit of angles in the file [rad]
-    real(wp), intent(in) :: start                                 !< time of the first result [s]
-    real(wp), intent(in) :: parameters(:)                         !< numbers of the group &user, for the user's procedures
     type(drive_slot_type), allocatable, intent(out) :: drives(:)  !< the drives of sound groups, in their order
     type(diagnostics_type), intent(inout) :: diagnostics          !< gets the errors
     integer, allocatable :: numbers(:)
@@ -47,7 +46,7 @@ contains
     allocate (drives(size(numbers)))
     n = 0
     do i = 1, size(numbers)
-      call read_drive_group(document, numbers(i), pairs, angle_unit, start, parameters, drives(n + 1), diagnostics)
+      call read_drive_group(document, numbers(i), mechanism, start, drives(n + 1), diagnostics)
       call check_coordinate(document%groups(numbers(i)), partition, diagnostics)
       if (allocated(drives(n + 1)%drive)) n = n + 1
     end do
@@ -58,20 +57,26 @@ contains
     end do
   end subroutine read_drives
 
-  !> The drive of one group; the slot stays empty where something was reported.
-  subroutine read_drive_group(document, number, pairs, angle_unit, start, parameters, slot, diagnostics)
+  !> The drive of one group, in rad, m and s; the slot stays empty where something was reported.
+  subroutine read_drive_group(document, number, mechanism, start, slot, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     integer, intent(in) :: number                         !< of the group in the document
-    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; a slot is empty where its group has an error
-    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    type(mechanism_type), intent(in) :: mechanism         !< with its pairs
     real(wp), intent(in) :: start                         !< time of the first result [s]
-    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
     type(drive_slot_type), intent(out) :: slot            !< gets the drive
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(procedure_drive_type) :: user_drive
+    type(error_type), allocatable :: err
 
-    associate (group => document%groups(number))
-      call read_drive(document, group, angle_unit, unit_of_coordinate(group, pairs, angle_unit), start, parameters, slot, &
-                      diagnostics)
+    associate (group => document%groups(number), angle_unit => mechanism%angle_unit)
+      if (get_text(group, 'kind') == 'user') then
+        call make_procedure_drive(get_integer(group, 'coordinate'), start, mechanism%parameters, user_drive, err)
+        if (.not. allocated(err)) allocate (slot%drive, source=user_drive)
+        if (allocated(err)) call diagnostics%add(span_of(group, 'kind', 1), err%message, err%code)
+      else
+        call read_law(document, group, get_text(group, 'kind'), angle_unit, &
+                      unit_of_coordinate(group, mechanism%pairs, angle_unit), slot%drive, diagnostics)
+      end if
       if (.not. allocated(slot%drive)) return
       slot%drive%coordinate = get_integer(group, 'coordinate')
       slot%drive%place = diagnostics%place(group%span)
@@ -105,28 +110,6 @@ contains
       call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '//to_text(k)//'; they are 1 to '// &
                            to_text(size(partition%kind)))
   end subroutine check_coordinate
-
-  !> One drive, in rad, m and s; the slot stays empty where something was reported.
-  subroutine read_drive(document, group, angle_unit, unit, start, parameters, slot, diagnostics)
-    type(document_type), intent(in) :: document           !< the data file as groups and items
-    type(group_type), intent(in) :: group                 !< the group of the data file
-    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
-    real(wp), intent(in) :: unit                          !< unit of the coordinate in the file [rad or m]
-    real(wp), intent(in) :: start                         !< time at the start [s]
-    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
-    type(drive_slot_type), intent(out) :: slot            !< gets the drive; stays empty where an error was reported
-    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
-    type(procedure_drive_type) :: user_drive
-    type(error_type), allocatable :: err
-
-    if (get_text(group, 'kind') == 'user') then
-      call make_procedure_drive(get_integer(group, 'coordinate'), start, parameters, user_drive, err)
-      if (.not. allocated(err)) allocate (slot%drive, source=user_drive)
-      if (allocated(err)) call diagnostics%add(span_of(group, 'kind', 1), err%message, err%code)
-    else
-      call read_law(document, group, get_text(group, 'kind'), angle_unit, unit, slot%drive, diagnostics)
-    end if
-  end subroutine read_drive
 
   !> A law of time by the names of a group; it stays unallocated where an error was reported, and for a constant.
   subroutine read_law(document, group, name, angle_unit, unit, law, diagnostics)
@@ -166,14 +149,14 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(table_law_type) :: table
     type(error_type), allocatable :: err
-    real(wp), allocatable :: t(:), q(:)
+    real(wp), allocatable :: points(:, :)
     type(span_type) :: span
     logical :: ok
 
     span = span_of(group, 'file', 1)
-    call read_table_file(beside(document%source%name, get_text(group, 'file')), span, 't', 'q', t, q, ok, diagnostics)
+    call read_table_file(beside(document%source%name, get_text(group, 'file')), span, 't', 'q', points, ok, diagnostics)
     if (.not. ok) return
-    call build_spline(t, unit*q, table%spline, err)
+    call build_spline(points(1, :), unit*points(2, :), table%spline, err)
     if (allocated(err)) then
       call explain(err)
       call diagnostics%add(span, err%message, err%code)

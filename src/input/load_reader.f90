@@ -3,6 +3,7 @@ module mech9_load_reader
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_pair, only: pair_slot_type
+  use mech9_mechanism, only: mechanism_type
   use mech9_load, only: load_slot_type
   use mech9_force_load, only: force_load_type
   use mech9_spring_load, only: spring_load_type
@@ -20,36 +21,31 @@ module mech9_load_reader
 contains
 
   !> All loads, in the order of the file. A link or coordinate that does not exist is reported.
-  subroutine read_loads(document, n_links, pairs, angle_unit, parameters, loads, diagnostics)
-    type(document_type), intent(in) :: document                 !< the data file as groups and items
-    integer, intent(in) :: n_links                              !< how many links there are; 0 where it is not known
-    type(pair_slot_type), intent(in) :: pairs(:)                !< (M) pairs by coordinate; size 0 where they are not known
-    real(wp), intent(in) :: angle_unit                          !< unit of angles in the file [rad]
-    real(wp), intent(in) :: parameters(:)                       !< numbers of the group &user, for the user's procedure
-    type(load_slot_type), allocatable, intent(out) :: loads(:)  !< one for each sound group, in their order
-    type(diagnostics_type), intent(inout) :: diagnostics        !< gets the errors
+  subroutine read_loads(document, mechanism, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(mechanism_type), intent(inout) :: mechanism      !< with its structure and its pairs; gets a load for each sound group
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(load_slot_type), allocatable :: loads(:)
     integer, allocatable :: numbers(:)
     integer :: i
 
     numbers = groups_named(document, 'load')
     allocate (loads(size(numbers)))
     do i = 1, size(numbers)
-      call read_load(document, numbers(i), n_links, pairs, angle_unit, parameters, loads(i), diagnostics)
+      call read_load(document, numbers(i), mechanism, loads(i), diagnostics)
     end do
+    call move_alloc(loads, mechanism%loads)
   end subroutine read_loads
 
   !> The load of one group.
-  subroutine read_load(document, number, n_links, pairs, angle_unit, parameters, slot, diagnostics)
+  subroutine read_load(document, number, mechanism, slot, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     integer, intent(in) :: number                         !< of the group in the document
-    integer, intent(in) :: n_links                        !< how many links there are; 0 where it is not known
-    type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; size 0 where they are not known
-    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
-    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedure
+    type(mechanism_type), intent(in) :: mechanism         !< its structure and pairs; none where they are not known
     type(load_slot_type), intent(out) :: slot             !< gets the load
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
-    associate (group => document%groups(number))
+    associate (group => document%groups(number), pairs => mechanism%pairs, n_links => mechanism%structure%shown_links())
       select case (get_text(group, 'kind'))
       case ('force', 'torque')
         call check_link(group, 'link', 1, n_links, diagnostics)
@@ -59,13 +55,13 @@ contains
         allocate (slot%load, source=spring_load(group))
       case ('coordinate')
         call check_coordinate(group, size(pairs), diagnostics)
-        allocate (slot%load, source=coordinate_load(group, pairs, angle_unit))
+        allocate (slot%load, source=coordinate_load(group, pairs, mechanism%angle_unit))
       case ('user')
-        allocate (slot%load, source=procedure_load_type(parameters=parameters, n_links=n_links))
+        allocate (slot%load, source=procedure_load_type(parameters=mechanism%parameters, n_links=n_links))
       end select
       slot%load%place = diagnostics%place(group%span)
       if (get_text(group, 'kind') == 'user' .or. .not. has_name(group, 'law')) return
-      call read_law(document, group, get_text(group, 'law'), angle_unit, 1.0_wp, slot%load%law, diagnostics)
+      call read_law(document, group, get_text(group, 'law'), mechanism%angle_unit, 1.0_wp, slot%load%law, diagnostics)
       if (allocated(slot%load%law)) slot%load%law%place = diagnostics%place(group%span)
     end associate
   end subroutine read_load

@@ -20,6 +20,7 @@ module mech9_pair_reader
   use mech9_joint_reader, only: read_joint_pairs, joint_of_group
   use mech9_compound_joint, only: compound_joint_type, is_compound
   use mech9_structure, only: structure_type
+  use mech9_mechanism, only: mechanism_type
   use mech9_table_file, only: read_curve_file, beside
   use mech9_explanation, only: explain
   use mech9_diagnostics, only: diagnostics_type
@@ -35,43 +36,38 @@ contains
 
   !> Make the pairs of all sound groups. Coordinates without one keep an empty slot: mechanisms with
   !> such holes are refused when the structure is read.
-  subroutine read_pairs(document, structure, angle_unit, parameters, pairs, diagnostics)
-    type(document_type), intent(in) :: document                 !< the data file as groups and items
-    type(structure_type), intent(in) :: structure               !< links and joints; without coordinates where it is not known
-    real(wp), intent(in) :: angle_unit                          !< unit of angles in the file [rad]
-    real(wp), intent(in) :: parameters(:)                       !< numbers of the group &user, for the user's procedures
-    type(pair_slot_type), allocatable, intent(out) :: pairs(:)  !< (M) pairs by coordinate; empty where the group is wrong
-    type(diagnostics_type), intent(inout) :: diagnostics        !< gets the errors
+  subroutine read_pairs(document, mechanism, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(mechanism_type), intent(inout) :: mechanism      !< without coordinates where its structure is not known; gets pairs
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:)
     integer :: i
 
-    allocate (pairs(structure%n_coordinates))
+    if (allocated(mechanism%pairs)) deallocate (mechanism%pairs)
+    allocate (mechanism%pairs(mechanism%structure%n_coordinates))
     numbers = groups_named(document, 'pair')
     do i = 1, size(numbers)
-      call read_pair_group(document, numbers(i), structure, angle_unit, parameters, pairs, diagnostics)
+      call read_pair_group(document, numbers(i), mechanism, diagnostics)
     end do
   end subroutine read_pairs
 
   !> Make the pair, or the chain of pairs, of one group.
-  subroutine read_pair_group(document, number, structure, angle_unit, parameters, pairs, diagnostics)
+  subroutine read_pair_group(document, number, mechanism, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     integer, intent(in) :: number                         !< of the group in the document
-    type(structure_type), intent(in) :: structure         !< links and joints; without coordinates where it is not known
-    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
-    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
-    type(pair_slot_type), intent(inout) :: pairs(:)       !< (M) pairs by coordinate; gets those of the group where it is right
+    type(mechanism_type), intent(inout) :: mechanism      !< its pairs get those of the group where it is right
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(pair_slot_type) :: slot
     integer :: k
 
     associate (group => document%groups(number))
       if (is_compound(get_text(group, 'kind'))) then
-        call read_chain(group, structure, pairs, diagnostics)
+        call read_chain(group, mechanism%structure, mechanism%pairs, diagnostics)
         return
       end if
       k = get_integer(group, 'coordinate')
-      call read_pair(document%source%name, group, get_text(group, 'kind'), k, angle_unit, parameters, slot, diagnostics)
-      if (k <= size(pairs) .and. allocated(slot%pair)) call move_alloc(slot%pair, pairs(k)%pair)
+      call read_pair(document%source%name, group, mechanism, slot, diagnostics)
+      if (k <= size(mechanism%pairs) .and. allocated(slot%pair)) call move_alloc(slot%pair, mechanism%pairs(k)%pair)
     end associate
   end subroutine read_pair_group
 
@@ -96,24 +92,24 @@ contains
   end subroutine read_chain
 
   !> One pair; the slot stays empty where something was reported.
-  subroutine read_pair(data_file, group, kind, coordinate, angle_unit, parameters, slot, diagnostics)
+  subroutine read_pair(data_file, group, mechanism, slot, diagnostics)
     character(len=*), intent(in) :: data_file             !< path of the data file
     type(group_type), intent(in) :: group                 !< the group of the data file
-    character(len=*), intent(in) :: kind                  !< of the pair
-    integer, intent(in) :: coordinate                     !< number of its coordinate
-    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
-    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user, for the user's procedures
+    type(mechanism_type), intent(in) :: mechanism         !< with its unit of angles and the numbers for the user's procedures
     type(pair_slot_type), intent(out) :: slot             !< gets the pair; stays empty where an error was reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(screw_pair_type) :: screw
     type(path_pair_type) :: path
     type(procedure_pair_type) :: procedure_pair
     type(error_type), allocatable :: err
-    integer :: links(2), found
+    character(len=:), allocatable :: kind
+    integer :: links(2), coordinate, found
 
     found = diagnostics%count
+    kind = get_text(group, 'kind')
+    coordinate = get_integer(group, 'coordinate')
     if (kind == 'user') then
-      call make_procedure_pair(coordinate, parameters, procedure_pair, err)
+      call make_procedure_pair(coordinate, mechanism%parameters, procedure_pair, err)
       if (allocated(err)) then
         call diagnostics%add(span_of(group, 'kind', 1), err%message, err%code)
         return
@@ -125,7 +121,7 @@ contains
       allocate (slot%pair, source=path)
     else
       if (has_name(group, 'dh')) then
-        call read_dh(group, kind, angle_unit, screw, diagnostics)
+        call read_dh(group, kind, mechanism%angle_unit, screw, diagnostics)
       else
         call read_frames(group, kind, screw, diagnostics)
       end if

@@ -114,16 +114,15 @@ contains
     type(request_type), intent(inout) :: request          !< the request for results, with its times
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
-    associate (m => mechanism, n_links => mechanism%structure%shown_links())
-      call read_pairs(document, m%structure, m%angle_unit, m%parameters, m%pairs, diagnostics)
+    associate (m => mechanism)
+      call read_pairs(document, m, diagnostics)
       call read_initial(document, problem%partition, m%pairs, m%angle_unit, problem%initial, diagnostics)
-      call read_couplings(document, m%pairs, problem%initial%position, m%angle_unit, m%parameters, m%couplings, diagnostics)
-      call read_points(document, n_links, m%points, diagnostics)
-      call read_drives(document, problem%partition, m%pairs, m%angle_unit, request%time%start, m%parameters, problem%drives, &
-                       diagnostics)
+      call read_couplings(document, problem%initial%position, m, diagnostics)
+      call read_points(document, m%structure%shown_links(), m%points, diagnostics)
+      call read_drives(document, m, request%time%start, problem%partition, problem%drives, diagnostics)
       call read_bodies(document, m%structure, m%pairs, m%bodies, diagnostics)
       m%gravity = read_gravity(document)
-      call read_loads(document, n_links, m%pairs, m%angle_unit, m%parameters, m%loads, diagnostics)
+      call read_loads(document, m, diagnostics)
       call read_output(document, m%structure, request%output, diagnostics)
       call read_quantities(document, request%time, request%quantities, diagnostics)
       call read_cams(document, m%structure, m%pairs, request%cams, diagnostics)

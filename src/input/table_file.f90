@@ -18,57 +18,57 @@ module mech9_table_file
   character(len=*), parameter :: gaps = ' ,'//achar(9)//achar(13)
   integer, parameter :: fewest_points = 4  !< fewest points of a cubic spline
 
+  !> A file of points while its lines are read.
+  type :: point_file_type
+    type(source_type) :: source       !< its text
+    integer :: number = 0             !< of the file among the sources, for spans
+    logical :: may_be_names = .true.  !< no line so far held a name or a number
+  end type point_file_type
+
 contains
 
   !> Read the points of a table. Errors are reported with their places in that file; `ok` is false where there are any.
-  subroutine read_table_file(path, asked_at, of_first, of_second, t, q, ok, diagnostics)
+  subroutine read_table_file(path, asked_at, of_first, of_second, points, ok, diagnostics)
     character(len=*), intent(in) :: path                  !< path of the table
     type(span_type), intent(in) :: asked_at               !< place of its name in the data file
     character(len=*), intent(in) :: of_first              !< name of the first number of each line, for messages
     character(len=*), intent(in) :: of_second             !< name of the second one
-    real(wp), allocatable, intent(out) :: t(:)            !< times [s], or values of a coordinate, in the unit of the file
-    real(wp), allocatable, intent(out) :: q(:)            !< values of the coordinate, in the unit of the file
+    real(wp), allocatable, intent(out) :: points(:, :)    !< (2,n) both numbers of each line, in the units of the file
     logical, intent(out) :: ok                            !< whether no error was reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
-    type(source_type) :: source
+    type(point_file_type) :: file
     type(error_type), allocatable :: err
-    integer :: number, line, n, found
-    logical :: may_be_names
+    integer :: line, n, found
 
     ok = .false.
-    allocate (t(0), q(0))
-    call read_source(path, source, err)
+    allocate (points(2, 0))
+    call read_source(path, file%source, err)
     if (allocated(err)) then
       call diagnostics%add(asked_at, 'the table '''//printable(path)//''': '//err%message, err%code)
       return
     end if
-    call diagnostics%add_source(source, number)
+    call diagnostics%add_source(file%source, file%number)
     found = diagnostics%count
-    deallocate (t, q)
-    allocate (t(size(source%line_start)), q(size(source%line_start)))
+    deallocate (points)
+    allocate (points(2, size(file%source%line_start)))
     n = 0
-    may_be_names = .true.
-    do line = 1, size(source%line_start)
-      call read_point(source, number, line, of_first, of_second, may_be_names, t, q, n, diagnostics)
+    do line = 1, size(file%source%line_start)
+      call read_point(file, line, of_first, of_second, points, n, diagnostics)
     end do
-    t = t(:n)
-    q = q(:n)
+    points = points(:, :n)
     if (diagnostics%count == found .and. n < fewest_points) &
-      call diagnostics%add(span_type(number, 0, 0), 'a smooth curve needs at least '//to_text(fewest_points)// &
+      call diagnostics%add(span_type(file%number, 0, 0), 'a smooth curve needs at least '//to_text(fewest_points)// &
                            ' points, and the table has '//to_text(n))
     ok = diagnostics%count == found
   end subroutine read_table_file
 
   !> Take the point of a line, if there is one.
-  pure subroutine read_point(source, number, line, of_first, of_second, may_be_names, t, q, n, diagnostics)
-    type(source_type), intent(in) :: source               !< the text of the table
-    integer, intent(in) :: number                         !< number of the table as a source, for spans
+  pure subroutine read_point(file, line, of_first, of_second, points, n, diagnostics)
+    type(point_file_type), intent(inout) :: file          !< the table
     integer, intent(in) :: line                           !< number of the line, from 1
     character(len=*), intent(in) :: of_first              !< name of its first number
     character(len=*), intent(in) :: of_second             !< name of its second number
-    logical, intent(inout) :: may_be_names                !< whether no earlier line held a name or a number
-    real(wp), intent(inout) :: t(:)                       !< times or values, in the unit of the file; the first n are in use
-    real(wp), intent(inout) :: q(:)                       !< values, in the unit of the file; the first n are in use
+    real(wp), intent(inout) :: points(:, :)               !< (2,) the points, in the units of the file; the first n are in use
     integer, intent(inout) :: n                           !< how many points are in use
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(span_type) :: fields(2), whole
@@ -76,25 +76,24 @@ contains
     integer :: count
     logical :: ok
 
-    call find_words(source, number, line, may_be_names, fields, count, whole)
+    call find_words(file, line, fields, count, whole)
     if (count == 0) return
     if (count /= 2) then
       call diagnostics%add(whole, 'each line holds two numbers, '//of_first//' and '//of_second//'; this one has '// &
                            to_text(count))
       return
     end if
-    call read_words(source, fields, numbers, ok, diagnostics)
+    call read_words(file%source, fields, numbers, ok, diagnostics)
     if (.not. ok) return
     if (n > 0) then
       ! between nearer points a slope would be round-off only
-      if (numbers(1) - t(n) <= 1.0e-13_wp*max(abs(numbers(1)), abs(t(n)))) then
+      if (numbers(1) - points(1, n) <= 1.0e-13_wp*max(abs(numbers(1)), abs(points(1, n)))) then
         call diagnostics%add(fields(1), of_first//' must increase from line to line')
         return
       end if
     end if
     n = n + 1
-    t(n) = numbers(1)
-    q(n) = numbers(2)
+    points(:, n) = numbers
   end subroutine read_point
 
   !> Read the points of a curve: x and y in each line, or x, y and z. Errors are reported with their places in that file; `ok` is
@@ -107,32 +106,31 @@ contains
     type(span_type), allocatable, intent(out) :: spans(:) !< (n) places of the points in the file
     logical, intent(out) :: ok                            !< whether no error was reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
-    type(source_type) :: source
+    type(point_file_type) :: file
     type(span_type), allocatable :: fields(:)
     type(span_type) :: whole
     type(error_type), allocatable :: err
-    integer :: number, line, n, found, count, columns
-    logical :: may_be_names, readable
+    integer :: line, n, found, count, columns
+    logical :: readable
 
     ok = .false.
     allocate (points(3, 0), spans(0))
-    call read_source(path, source, err)
+    call read_source(path, file%source, err)
     if (allocated(err)) then
       call diagnostics%add(asked_at, 'the curve '''//printable(path)//''': '//err%message, err%code)
       return
     end if
-    call diagnostics%add_source(source, number)
+    call diagnostics%add_source(file%source, file%number)
     found = diagnostics%count
     deallocate (points, spans)
-    allocate (points(3, size(source%line_start)), source=0.0_wp)
-    allocate (spans(size(source%line_start)))
+    allocate (points(3, size(file%source%line_start)), source=0.0_wp)
+    allocate (spans(size(file%source%line_start)))
     n = 0
     columns = size(chosen)
     ! no line has more words than the file has letters
-    allocate (fields(max(3, min(maxval([0, chosen]), len(source%text)))))
-    may_be_names = .true.
-    do line = 1, size(source%line_start)
-      call find_words(source, number, line, may_be_names, fields, count, whole)
+    allocate (fields(max(3, min(maxval([0, chosen]), len(file%source%text)))))
+    do line = 1, size(file%source%line_start)
+      call find_words(file, line, fields, count, whole)
       if (count == 0) cycle
       if (size(chosen) > 0) then
         call choose_fields(chosen, whole, count, fields, readable, diagnostics)
@@ -144,14 +142,14 @@ contains
                              'this one has '//counted(count, 'number')//the_others(columns))
         cycle
       end if
-      call read_words(source, fields(:count), points(:count, n + 1), readable, diagnostics)
+      call read_words(file%source, fields(:count), points(:count, n + 1), readable, diagnostics)
       if (.not. readable) cycle
       n = n + 1
       spans(n) = whole
     end do
     points = points(:, :n)
     spans = spans(:n)
-    if (diagnostics%count == found .and. n < fewest_points) call report_few_points(number, n, asked_at, diagnostics)
+    if (diagnostics%count == found .and. n < fewest_points) call report_few_points(file%number, n, asked_at, diagnostics)
     ok = diagnostics%count == found
   end subroutine read_curve_file
 
@@ -200,22 +198,20 @@ contains
   end function the_others
 
   !> The words of a line, but those of a line of names before the first point.
-  pure subroutine find_words(source, number, line, may_be_names, fields, count, whole)
-    type(source_type), intent(in) :: source         !< the text of the file
-    integer, intent(in) :: number                   !< number of the file as a source, for spans
-    integer, intent(in) :: line                     !< number of the line, from 1
-    logical, intent(inout) :: may_be_names          !< whether no earlier line held a name or a number
+  pure subroutine find_words(file, line, fields, count, whole)
+    type(point_file_type), intent(inout) :: file    !< the file
+    integer, intent(in) :: line                     !< number of the line, from 1, behind those that were read before
     type(span_type), intent(out) :: fields(:)       !< places of the first words
     integer, intent(out) :: count                   !< how many words the line has
     type(span_type), intent(out) :: whole           !< place of the line
     integer :: first, last
 
-    call source%line_bounds(line, first, last)
-    whole = span_type(number, first, max(first, last))
-    call split(source%text, first, last, number, fields, count)
-    if (count == 0 .or. .not. may_be_names) return
-    may_be_names = .false.
-    if (are_names(source%text(first:last))) count = 0
+    call file%source%line_bounds(line, first, last)
+    whole = span_type(file%number, first, max(first, last))
+    call split(file%source%text, first, last, file%number, fields, count)
+    if (count == 0 .or. .not. file%may_be_names) return
+    file%may_be_names = .false.
+    if (are_names(file%source%text(first:last))) count = 0
   end subroutine find_words
 
   !> The numbers that words mean; the first word that means none is reported.
@@ -292,6 +288,7 @@ contains
       if (count <= size(fields)) fields(count) = span_type(source, start, at - 1)
     end do
   end subroutine split
+
   !> Length of the part of the data file's path that a relative name is appended to; 0 for an absolute name.
   pure integer function start_length(data_file, name)
     character(len=*), intent(in) :: data_file  !< path of the data file

@@ -13,7 +13,22 @@ module mech9_mjcf_masses
   use mech9_shapes, only: solid_of, shape_names
   implicit none
   private
-  public :: read_inertial, add_geom
+  public :: mjcf_around_type, read_inertial, add_geom
+
+  !> The surroundings of an element of a body.
+  type :: mjcf_around_type
+    integer :: class = 0             !< number of the element of the class of defaults that holds in them; 0: the main class
+    type(pose_type) :: frame         !< of the element around it, in the frame of the link
+    integer :: link = 1              !< number of the link; 1: the world
+    logical :: from_geoms = .false.  !< shapes give the inertia of the link
+  end type mjcf_around_type
+
+  !> A solid shape.
+  type :: shape_type
+    integer :: kind = 0                         !< place among the names of shapes
+    real(wp) :: size(3) = 0.0_wp                !< measures of the shape [m]
+    type(pose_type) :: pose                     !< in the frame of the element around it
+  end type shape_type
 
 contains
 
@@ -39,79 +54,74 @@ contains
                                                     full(5), full(6), full(3)], [3, 3]))
   end subroutine read_inertial
 
-  !> Add the mass of an element <geom> to a link.
-  subroutine add_geom(tree, element, settings, class, frame, robot, link, err)
+  !> Add the mass of an element <geom> to its link.
+  subroutine add_geom(tree, element, settings, around, robot, err)
     type(xml_tree_type), intent(in) :: tree              !< the document
     integer, intent(in) :: element                       !< number of the element
     type(mjcf_settings_type), intent(in) :: settings     !< units and defaults
-    integer, intent(in) :: class                         !< number of the element of its class of defaults
-    type(pose_type), intent(in) :: frame                 !< of the element around it, in the frame of the link
-    type(robot_type), intent(inout) :: robot             !< gets notes
-    type(robot_link_type), intent(inout) :: link         !< gets the mass
+    type(mjcf_around_type), intent(in) :: around         !< its link and frame, with its own class of defaults
+    type(robot_type), intent(inout) :: robot             !< its link gets the mass; gets notes
     type(error_type), allocatable, intent(inout) :: err  !< the failure
     character(len=:), allocatable :: word
+    type(shape_type) :: shape
     type(pose_type) :: pose
-    real(wp) :: size(3), volume, moments(3), mass, density
-    integer :: shape
+    real(wp) :: volume, moments(3), mass, density
 
     if (allocated(err)) return
-    word = tree%attribute(settings%holder(tree, element, class, 'type'), 'type')
+    word = tree%attribute(settings%holder(tree, element, around%class, 'type'), 'type')
     if (word == '') word = 'sphere'
-    if (tree%has(settings%holder(tree, element, class, 'mesh'), 'mesh') .and. word == 'sphere') word = 'mesh'
-    shape = place_in(shape_names, word)
+    if (tree%has(settings%holder(tree, element, around%class, 'mesh'), 'mesh') .and. word == 'sphere') word = 'mesh'
+    shape%kind = place_in(shape_names, word)
     density = 1000.0_wp
-    call get_number(tree, settings%holder(tree, element, class, 'density'), 'density', density, err)
+    call get_number(tree, settings%holder(tree, element, around%class, 'density'), 'density', density, err)
     mass = -1.0_wp
-    call get_number(tree, settings%holder(tree, element, class, 'mass'), 'mass', mass, err)
+    call get_number(tree, settings%holder(tree, element, around%class, 'mass'), 'mass', mass, err)
     if (abs(mass) <= 0.0_wp .or. (mass < 0.0_wp .and. .not. density > 0.0_wp)) return
     if (any(word == [character(len=6) :: 'plane', 'hfield'])) return
-    if (shape == 0) then
+    if (shape%kind == 0) then
       call robot%note(tree, element, 'the mass of shapes of the type '//word)
       return
     end if
     if (tree%attribute(element, 'shellinertia') == 'true') call robot%note(tree, element, 'shellinertia; the shape counts as solid')
-    call read_placement(tree, element, settings, class, shape, pose, size, err)
+    call read_placement(tree, element, settings, around%class, shape, err)
     if (allocated(err)) return
-    call solid_of(shape, size, volume, moments)
+    call solid_of(shape%kind, shape%size, volume, moments)
     if (mass < 0.0_wp) mass = density*volume
-    pose = compose(frame, pose)
-    call add_mass(link, mass, pose%p, inertia_in_axes(pose%r, diagonal_of(mass*moments)))
+    pose = compose(around%frame, shape%pose)
+    call add_mass(robot%links(around%link), mass, pose%p, inertia_in_axes(pose%r, diagonal_of(mass*moments)))
   end subroutine add_geom
 
   !> Pose and size of a shape.
-  subroutine read_placement(tree, element, settings, class, shape, pose, size, err)
+  subroutine read_placement(tree, element, settings, class, shape, err)
     type(xml_tree_type), intent(in) :: tree              !< the document
     integer, intent(in) :: element                       !< number of the element
     type(mjcf_settings_type), intent(in) :: settings     !< units and defaults
     integer, intent(in) :: class                         !< number of the element of its class of defaults
-    integer, intent(in) :: shape                         !< place among the names of shapes
-    type(pose_type), intent(out) :: pose                 !< in the frame of the element around it
-    real(wp), intent(out) :: size(3)                     !< measures of the shape [m]
+    type(shape_type), intent(inout) :: shape             !< with its kind; gets pose and size
     type(error_type), allocatable, intent(inout) :: err  !< the failure
     real(wp), allocatable :: list(:)
     real(wp) :: ends(6)
     integer :: from_to, n
 
-    call settings%get_pose(tree, element, class, pose, err)
+    call settings%get_pose(tree, element, class, shape%pose, err)
     call get_list(tree, settings%holder(tree, element, class, 'size'), 'size', list, err)
-    size = 0.0_wp
-    n = min(3, ubound(list, 1))
-    size(:n) = list(:n)
+    n = min(3, size(list))
+    shape%size(:n) = list(:n)
     from_to = settings%holder(tree, element, class, 'fromto')
-    if (from_to > 0 .and. shape_names(shape) /= 'sphere') then
+    if (from_to > 0 .and. shape_names(shape%kind) /= 'sphere') then
       ends = 0.0_wp
       call get_numbers(tree, from_to, 'fromto', ends, err)
-      pose%p = 0.5_wp*(ends(:3) + ends(4:))
-      if (any(abs(ends(:3) - ends(4:)) > 0.0_wp)) pose%r = orientation_from_z(ends(:3) - ends(4:))
-      if (any(shape_names(shape) == [character(len=9) :: 'capsule', 'cylinder'])) then
-        size(2) = 0.5_wp*norm2(ends(:3) - ends(4:))
+      shape%pose%p = 0.5_wp*(ends(:3) + ends(4:))
+      if (any(abs(ends(:3) - ends(4:)) > 0.0_wp)) shape%pose%r = orientation_from_z(ends(:3) - ends(4:))
+      if (any(shape_names(shape%kind) == [character(len=9) :: 'capsule', 'cylinder'])) then
+        shape%size(2) = 0.5_wp*norm2(ends(:3) - ends(4:))
       else
         ! MuJoCo takes the first number for both directions across
-        size(2) = size(1)
-        size(3) = 0.5_wp*norm2(ends(:3) - ends(4:))
+        shape%size(2) = shape%size(1)
+        shape%size(3) = 0.5_wp*norm2(ends(:3) - ends(4:))
       end if
     end if
-    if (any(size < 0.0_wp) .or. .not. size(1) > 0.0_wp) call tree%fail(element, "'size' must hold numbers above 0", err)
+    if (any(shape%size < 0.0_wp) .or. .not. shape%size(1) > 0.0_wp) call tree%fail(element, "'size' must hold numbers above 0", err)
   end subroutine read_placement
 
   !> A tensor with these moments.

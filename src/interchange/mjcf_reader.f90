@@ -11,11 +11,19 @@ module mech9_mjcf_reader
   use mech9_robot, only: robot_type, robot_link_type, robot_joint_type, fixed_joint, revolute_joint, prismatic_joint, &
                          spherical_joint, free_joint
   use mech9_mjcf_settings, only: mjcf_settings_type, read_settings
-  use mech9_mjcf_masses, only: read_inertial, add_geom
+  use mech9_mjcf_masses, only: mjcf_around_type, read_inertial, add_geom
   use mech9_mjcf_equality, only: read_equalities
   implicit none
   private
   public :: read_mjcf
+
+  !> The joints of a body while they are read one after the other.
+  type :: joint_chain_type
+    character(len=:), allocatable :: body  !< name of the body
+    type(pose_type) :: start               !< of the body's frame in the link to which the next joint leads
+    integer :: last = 1                    !< number of that link
+    integer :: n = 0                       !< how many joints there are so far
+  end type joint_chain_type
 
 contains
 
@@ -36,7 +44,7 @@ contains
     do while (e > 0 .and. .not. allocated(err))
       select case (tree%name(e))
       case ('worldbody')
-        call read_contents(tree, e, settings, 0, pose_type(), 1, .false., robot, err)
+        call read_contents(tree, e, settings, mjcf_around_type(), robot, err)
       case ('option')
         call get_numbers(tree, e, 'gravity', robot%gravity, err)
         if (tree%attribute(tree%child(e, 'flag'), 'gravity') == 'disable') robot%gravity = 0.0_wp
@@ -67,40 +75,40 @@ contains
   end subroutine refuse_unknown
 
   !> Read the elements in a body, in the world, or in a frame of one of these.
-  recursive subroutine read_contents(tree, element, settings, class, frame, link, from_geoms, robot, err)
+  recursive subroutine read_contents(tree, element, settings, around, robot, err)
     type(xml_tree_type), intent(in) :: tree              !< the document
     integer, intent(in) :: element                       !< number of the element
     type(mjcf_settings_type), intent(in) :: settings     !< units and defaults
-    integer, intent(in) :: class                         !< number of the element of the class of defaults that holds in it
-    type(pose_type), intent(in) :: frame                 !< of the element, in the frame of the link
-    integer, intent(in) :: link                          !< number of the link
-    logical, intent(in) :: from_geoms                    !< shapes give the inertia of the link
+    type(mjcf_around_type), intent(in) :: around         !< link, frame and class of defaults in the element
     type(robot_type), intent(inout) :: robot             !< gets links, joints and masses
     type(error_type), allocatable, intent(inout) :: err  !< the failure
+    type(mjcf_around_type) :: own
     type(pose_type) :: pose
-    integer :: e, own
+    integer :: e
 
     e = tree%first_child(element)
     do while (e > 0 .and. .not. allocated(err))
-      own = class
-      if (tree%has(e, 'class')) own = settings%class_of(tree, tree%attribute(e, 'class'), e, err)
-      if (tree%has(e, 'childclass')) own = settings%class_of(tree, tree%attribute(e, 'childclass'), e, err)
+      own = around
+      if (tree%has(e, 'class')) own%class = settings%class_of(tree, tree%attribute(e, 'class'), e, err)
+      if (tree%has(e, 'childclass')) own%class = settings%class_of(tree, tree%attribute(e, 'childclass'), e, err)
       if (allocated(err)) return
       select case (tree%name(e))
       case ('body')
         call settings%get_pose(tree, e, 0, pose, err)
-        call read_body(tree, e, settings, own, compose(frame, pose), link, robot, err)
+        own%frame = compose(around%frame, pose)
+        call read_body(tree, e, settings, own, robot, err)
       case ('frame')
         call settings%get_pose(tree, e, 0, pose, err)
-        call read_contents(tree, e, settings, own, compose(frame, pose), link, from_geoms, robot, err)
+        own%frame = compose(around%frame, pose)
+        call read_contents(tree, e, settings, own, robot, err)
       case ('site')
-        call settings%get_pose(tree, e, own, pose, err)
-        pose = compose(frame, pose)
-        if (tree%has(e, 'name') .and. .not. allocated(err)) call robot%add_point(tree%attribute(e, 'name'), link, pose%p)
+        call settings%get_pose(tree, e, own%class, pose, err)
+        pose = compose(around%frame, pose)
+        if (tree%has(e, 'name') .and. .not. allocated(err)) call robot%add_point(tree%attribute(e, 'name'), around%link, pose%p)
       case ('geom')
-        if (from_geoms) call add_geom(tree, e, settings, own, frame, robot, robot%links(link), err)
+        if (around%from_geoms) call add_geom(tree, e, settings, own, robot, err)
       case ('inertial')
-        if (link > 1 .and. .not. settings%from_geoms) call read_inertial_in(frame, robot%links(link))
+        if (around%link > 1 .and. .not. settings%from_geoms) call read_inertial_in(around%frame, robot%links(around%link))
       case ('joint', 'freejoint')
       case default
         call robot%note(tree, e, '<'//tree%name(e)//'> of bodies')
@@ -109,91 +117,87 @@ contains
     end do
   contains
     !> Read <inertial>, which stands in a frame of the link.
-    subroutine read_inertial_in(around, told)
-      type(pose_type), intent(in) :: around            !< the frame, in that of the link
+    subroutine read_inertial_in(frame, told)
+      type(pose_type), intent(in) :: frame             !< the frame, in that of the link
       type(robot_link_type), intent(inout) :: told     !< the link
 
       call read_inertial(tree, e, settings, told, err)
-      told%centre = transformed(around, told%centre)
-      told%inertia = inertia_in_axes(around%r, told%inertia)
+      told%centre = transformed(frame, told%centre)
+      told%inertia = inertia_in_axes(frame%r, told%inertia)
     end subroutine read_inertial_in
   end subroutine read_contents
 
   !> Read a body: its joints, with massless links between several of them, and its contents.
-  recursive subroutine read_body(tree, element, settings, class, pose, parent, robot, err)
+  recursive subroutine read_body(tree, element, settings, around, robot, err)
     type(xml_tree_type), intent(in) :: tree              !< the document
     integer, intent(in) :: element                       !< number of the element
     type(mjcf_settings_type), intent(in) :: settings     !< units and defaults
-    integer, intent(in) :: class                         !< number of the element of the class of defaults that holds in it
-    type(pose_type), intent(in) :: pose                  !< of the body in the link around it
-    integer, intent(in) :: parent                        !< number of that link
+    type(mjcf_around_type), intent(in) :: around         !< link around the body, pose of the body in it, class of defaults
     type(robot_type), intent(inout) :: robot             !< gets links, joints and masses
     type(error_type), allocatable, intent(inout) :: err  !< the failure
     character(len=:), allocatable :: name
+    type(mjcf_around_type) :: own
+    type(joint_chain_type) :: chain
     type(robot_joint_type) :: joint
-    type(pose_type) :: start
-    logical :: from_geoms
-    integer :: n, last, own
 
     if (allocated(err)) return
     name = tree%attribute(element, 'name')
     if (name == '') name = 'body '//to_text(element)
     if (is_true(tree%attribute(element, 'mocap'))) call robot%note(tree, element, "mocap of body '"//name//"', which is fixed now")
-    n = 0
-    start = pose
-    last = parent
-    call read_joints(tree, element, settings, class, pose_type(), name, start, last, n, robot, err)
-    if (n == 0) then
+    own%class = around%class
+    chain%body = name
+    chain%start = around%frame
+    chain%last = around%link
+    call read_joints(tree, element, settings, own, chain, robot, err)
+    if (chain%n == 0) then
       joint%name = 'fixed '//name
       joint%kind = fixed_joint
-      joint%links(1) = parent
-      joint%frames(1) = pose
+      joint%links(1) = around%link
+      joint%frames(1) = around%frame
       call robot%add_joint(tree, element, joint, err)
     end if
     call robot%add_link(tree, element, name, err)
     if (allocated(err)) return
     ! bodies in this one change the number of links
-    own = robot%n_links
-    robot%joints(robot%n_joints)%links(2) = own
-    from_geoms = settings%from_geoms
-    if (.not. (from_geoms .or. settings%never_from_geoms)) from_geoms = .not. tells_inertia(tree, element)
-    call read_contents(tree, element, settings, class, pose_type(), own, from_geoms, robot, err)
+    own%link = robot%n_links
+    robot%joints(robot%n_joints)%links(2) = own%link
+    own%from_geoms = settings%from_geoms
+    if (.not. (own%from_geoms .or. settings%never_from_geoms)) own%from_geoms = .not. tells_inertia(tree, element)
+    call read_contents(tree, element, settings, own, robot, err)
   end subroutine read_body
 
   !> Read the joints of a body, also those in its frames, with a massless link between each and the next.
-  recursive subroutine read_joints(tree, element, settings, class, frame, body, start, last, n, robot, err)
+  recursive subroutine read_joints(tree, element, settings, around, chain, robot, err)
     type(xml_tree_type), intent(in) :: tree              !< the document
     integer, intent(in) :: element                       !< number of the element of the body, or of a frame in it
     type(mjcf_settings_type), intent(in) :: settings     !< units and defaults
-    integer, intent(in) :: class                         !< number of the element of the class of defaults that holds in it
-    type(pose_type), intent(in) :: frame                 !< of the element, in the frame of the body
-    character(len=*), intent(in) :: body                 !< name of the body
-    type(pose_type), intent(inout) :: start              !< of the body's frame in the link to which the next joint leads
-    integer, intent(inout) :: last                       !< number of that link
-    integer, intent(inout) :: n                          !< how many joints there are so far
+    type(mjcf_around_type), intent(in) :: around         !< frame of the element in that of the body, class of defaults in it
+    type(joint_chain_type), intent(inout) :: chain       !< the joints so far
     type(robot_type), intent(inout) :: robot             !< gets joints, and links between them
     type(error_type), allocatable, intent(inout) :: err  !< the failure
+    type(mjcf_around_type) :: own
     type(pose_type) :: pose
-    integer :: e, own
+    integer :: e
 
     e = tree%first_child(element)
     do while (e > 0 .and. .not. allocated(err))
       select case (tree%name(e))
       case ('frame')
-        own = class
-        if (tree%has(e, 'childclass')) own = settings%class_of(tree, tree%attribute(e, 'childclass'), e, err)
+        own = around
+        if (tree%has(e, 'childclass')) own%class = settings%class_of(tree, tree%attribute(e, 'childclass'), e, err)
         call settings%get_pose(tree, e, 0, pose, err)
-        call read_joints(tree, e, settings, own, compose(frame, pose), body, start, last, n, robot, err)
+        own%frame = compose(around%frame, pose)
+        call read_joints(tree, e, settings, own, chain, robot, err)
       case ('joint', 'freejoint')
-        if (n > 0) then
-          call robot%add_link(tree, e, body//' ('//to_text(n)//')', err)
+        if (chain%n > 0) then
+          call robot%add_link(tree, e, chain%body//' ('//to_text(chain%n)//')', err)
           if (allocated(err)) return
           robot%joints(robot%n_joints)%links(2) = robot%n_links
-          last = robot%n_links
-          start = pose_type()
+          chain%last = robot%n_links
+          chain%start = pose_type()
         end if
-        n = n + 1
-        call read_joint(tree, e, settings, class, start, frame, last, body, n, robot, err)
+        chain%n = chain%n + 1
+        call read_joint(tree, e, settings, around, chain, robot, err)
       end select
       e = tree%next_sibling(e)
     end do
@@ -213,17 +217,13 @@ contains
     end do
   end function tells_inertia
 
-  !> Read a joint, whose moving link follows.
-  subroutine read_joint(tree, element, settings, around, start, frame, link, body, number, robot, err)
+  !> Read the last joint of a chain, whose moving link follows.
+  subroutine read_joint(tree, element, settings, around, chain, robot, err)
     type(xml_tree_type), intent(in) :: tree              !< the document
     integer, intent(in) :: element                       !< number of the element <joint> or <freejoint>
     type(mjcf_settings_type), intent(in) :: settings     !< units and defaults
-    integer, intent(in) :: around                        !< number of the element of the class of defaults of the body
-    type(pose_type), intent(in) :: start                 !< of the body's frame in the reference link
-    type(pose_type), intent(in) :: frame                 !< of the element around the joint, in the frame of the body
-    integer, intent(in) :: link                          !< number of the reference link
-    character(len=*), intent(in) :: body                 !< name of the body
-    integer, intent(in) :: number                        !< of the joint in the body
+    type(mjcf_around_type), intent(in) :: around         !< frame around the joint in that of the body, class of defaults in it
+    type(joint_chain_type), intent(in) :: chain          !< the joints of the body up to this one, which leaves its last link
     type(robot_type), intent(inout) :: robot             !< gets the joint
     type(error_type), allocatable, intent(inout) :: err  !< the failure
     character(len=9), parameter :: words(5) = [character(len=9) :: '', 'hinge', 'slide', 'ball', 'free']
@@ -233,7 +233,7 @@ contains
     type(pose_type) :: at
     integer :: class, place
 
-    class = around
+    class = around%class
     if (tree%has(element, 'class')) class = settings%class_of(tree, tree%attribute(element, 'class'), element, err)
     word = tree%attribute(settings%holder(tree, element, class, 'type'), 'type')
     if (tree%name(element) == 'freejoint') word = 'free'
@@ -242,15 +242,15 @@ contains
     if (allocated(err)) return
     joint%kind = kinds(place)
     joint%name = tree%attribute(element, 'name')
-    if (joint%name == '') joint%name = 'joint '//to_text(number)//' of '//body
-    joint%links(1) = link
+    if (joint%name == '') joint%name = 'joint '//to_text(chain%n)//' of '//chain%body
+    joint%links(1) = chain%last
     if (joint%kind /= free_joint) call get_numbers(tree, settings%holder(tree, element, class, 'pos'), 'pos', at%p, err)
     joint%axis = [0.0_wp, 0.0_wp, 1.0_wp]
     call get_numbers(tree, settings%holder(tree, element, class, 'axis'), 'axis', joint%axis, err)
     if (.not. any(abs(joint%axis) > 0.0_wp)) call tree%fail(element, 'the axis has no direction: its components are all zero', err)
-    at%p = transformed(frame, at%p)
-    joint%axis = matmul(frame%r, unit(joint%axis))
-    joint%frames(1) = compose(start, at)
+    at%p = transformed(around%frame, at%p)
+    joint%axis = matmul(around%frame%r, unit(joint%axis))
+    joint%frames(1) = compose(chain%start, at)
     joint%frames(2) = at
     call read_springs(tree, element, settings, class, joint, robot, err)
     call robot%add_joint(tree, element, joint, err)

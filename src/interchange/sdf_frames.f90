@@ -5,7 +5,6 @@
 module mech9_sdf_frames
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_text, only: string_type
   use mech9_name_table, only: name_table_type
   use mech9_pose, only: pose_type, compose, inverse
   use mech9_xml_tree, only: xml_tree_type
@@ -20,15 +19,20 @@ module mech9_sdf_frames
   real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp
   character(len=*), parameter :: model_frame = '__model__'
 
+  !> A frame.
+  type :: frame_type
+    character(len=:), allocatable :: name    !< with those of the models around it
+    character(len=:), allocatable :: parent  !< name of the frame in which its pose stands
+    character(len=:), allocatable :: holder  !< name of the frame or link to which it is attached; empty: none
+    type(pose_type) :: pose                  !< in the frame `parent`
+  end type frame_type
+
   !> The frames of a model: its own, those of links, joints, elements <frame> and models in it.
   type :: sdf_frames_type
-    integer :: count = 0                          !< number of frames
-    type(string_type), allocatable :: names(:)    !< their names, with those of the models around them
-    type(string_type), allocatable :: parents(:)  !< names of the frames in which their poses stand
-    type(string_type), allocatable :: holders(:)  !< names of the frames or links to which they are attached; empty: none
-    type(pose_type), allocatable :: poses(:)      !< in the frames of `parents`
-    type(pose_type) :: model                      !< of the outermost model in the world
-    type(name_table_type), private :: numbers     !< of the frames by their names
+    integer :: count = 0                                !< number of frames
+    type(frame_type), allocatable, private :: list(:)   !< the frames
+    type(pose_type) :: model                            !< of the outermost model in the world
+    type(name_table_type), private :: numbers           !< of the frames by their names
   contains
     procedure :: in_model
     procedure :: find_link
@@ -49,12 +53,12 @@ contains
     type(pose_type) :: placed
     character(len=:), allocatable :: frame
 
-    allocate (frames%names(64), frames%parents(64), frames%holders(64), frames%poses(64))
+    allocate (frames%list(64))
     frame = tree%attribute(tree%child(model, 'pose'), 'relative_to')
     if (frame /= '' .and. frame /= 'world') &
       call tree%fail(model, "the model stands in the frame '"//frame//"' of the world; give its <pose> in the world itself", err)
     call own_pose(tree, model, frames%model, err)
-    call frames%add(tree, 0, model_frame, '', canonical_of(tree, model), '', err)
+    call frames%add(tree, 0, new_frame(model_frame, '', canonical_of(tree, model)), '', err)
     call list_scope(tree, model, '', frames, err)
     call place_of_model(tree, model, '', frames, placed, err)
     frames%model = compose(frames%model, inverse(placed))
@@ -76,19 +80,19 @@ contains
       own = prefix//tree%attribute(e, 'name')
       select case (tree%name(e))
       case ('link')
-        call frames%add(tree, e, own, prefix//model_frame, own, prefix, err)
+        call frames%add(tree, e, new_frame(own, prefix//model_frame, own), prefix, err)
       case ('joint')
         ! the frame of a joint stands in that of its child
         name = ''
         if (tree%child(e, 'child') > 0) name = tree%content(tree%child(e, 'child'))
-        call frames%add(tree, e, own, scoped(prefix, name), scoped(prefix, name), prefix, err)
+        call frames%add(tree, e, new_frame(own, scoped(prefix, name), scoped(prefix, name)), prefix, err)
       case ('model')
-        call frames%add(tree, e, own, prefix//model_frame, scoped(own//'::', canonical_of(tree, e)), prefix, err)
+        call frames%add(tree, e, new_frame(own, prefix//model_frame, scoped(own//'::', canonical_of(tree, e))), prefix, err)
         n = frames%count
-        call frames%add(tree, 0, own//'::'//model_frame, own, own, prefix, err)
+        call frames%add(tree, 0, new_frame(own//'::'//model_frame, own, own), prefix, err)
         call list_scope(tree, e, own//'::', frames, err)
         call place_of_model(tree, e, own//'::', frames, placed, err)
-        if (.not. allocated(err)) frames%poses(n) = compose(frames%poses(n), inverse(placed))
+        if (.not. allocated(err)) frames%list(n)%pose = compose(frames%list(n)%pose, inverse(placed))
       end select
       e = tree%next_sibling(e)
     end do
@@ -112,7 +116,7 @@ contains
         call tree%fail(e, "the frame '"//own//"' has the name of a link, joint, model or frame beside it; "// &
                        'give it another name', err)
       holder = scoped(prefix, tree%attribute(e, 'attached_to'))
-      call frames%add(tree, e, own, holder, holder, prefix, err)
+      call frames%add(tree, e, new_frame(own, holder, holder), prefix, err)
       e = tree%next_named(e, 'frame')
     end do
   end subroutine list_elements
@@ -151,46 +155,47 @@ contains
     if (name == '' .or. name == 'world') full = prefix//model_frame
   end function scoped
 
-  !> Add the frame of an element, which may name another one for its pose.
-  subroutine add(self, tree, element, name, parent, holder, prefix, err)
+  !> A frame without its pose.
+  pure function new_frame(name, parent, holder) result(frame)
+    character(len=*), intent(in) :: name    !< its name with those of the models around it
+    character(len=*), intent(in) :: parent  !< frame of its pose, unless its element names one
+    character(len=*), intent(in) :: holder  !< link or frame to which it is attached
+    type(frame_type) :: frame
+
+    frame%name = name
+    frame%parent = parent
+    frame%holder = holder
+  end function new_frame
+
+  !> Add the frame of an element, which tells its pose and may name another frame for it.
+  subroutine add(self, tree, element, frame, prefix, err)
     class(sdf_frames_type), intent(inout) :: self        !< the frames
     type(xml_tree_type), intent(in) :: tree              !< the document
     integer, intent(in) :: element                       !< number of the element; 0: none, the pose is the identity
-    character(len=*), intent(in) :: name                 !< its name with those of the models around it
-    character(len=*), intent(in) :: parent               !< frame of its pose, unless it names one
-    character(len=*), intent(in) :: holder               !< link or frame to which it is attached
+    type(frame_type), intent(in) :: frame                !< the frame without its pose
     character(len=*), intent(in) :: prefix               !< names of the models around it
     type(error_type), allocatable, intent(inout) :: err  !< the failure
-    type(string_type), allocatable :: names(:), parents(:), holders(:)
-    type(pose_type), allocatable :: poses(:)
-    character(len=:), allocatable :: frame
+    type(frame_type), allocatable :: longer(:)
+    character(len=:), allocatable :: parent
     integer :: n
 
     n = self%count
     if (n == most_frames) call tree%fail(max(element, 1), 'the model has too many frames', err)
     if (allocated(err)) return
-    if (n == size(self%names)) then
-      allocate (names(2*n), parents(2*n), holders(2*n), poses(2*n))
-      names(:n) = self%names
-      parents(:n) = self%parents
-      holders(:n) = self%holders
-      poses(:n) = self%poses
-      call move_alloc(names, self%names)
-      call move_alloc(parents, self%parents)
-      call move_alloc(holders, self%holders)
-      call move_alloc(poses, self%poses)
+    if (n == size(self%list)) then
+      allocate (longer(2*n))
+      longer(:n) = self%list
+      call move_alloc(longer, self%list)
     end if
     n = n + 1
     self%count = n
-    self%names(n)%text = name
+    self%list(n) = frame
     ! of a link and a joint of one name the later one counts
-    call self%numbers%set(name, n)
-    self%parents(n)%text = parent
-    self%holders(n)%text = holder
+    call self%numbers%set(frame%name, n)
     if (element == 0) return
-    frame = tree%attribute(tree%child(element, 'pose'), 'relative_to')
-    if (frame /= '') self%parents(n)%text = scoped(prefix, frame)
-    call own_pose(tree, element, self%poses(n), err)
+    parent = tree%attribute(tree%child(element, 'pose'), 'relative_to')
+    if (parent /= '') self%list(n)%parent = scoped(prefix, parent)
+    call own_pose(tree, element, self%list(n)%pose, err)
   end subroutine add
 
   !> Number of the frame of a name; 0: there is none.
@@ -234,8 +239,8 @@ contains
       steps = steps + 1
       if (steps > self%count) call tree%fail(element, self%circle(name), err)
       if (allocated(err)) return
-      pose = compose(self%poses(i), pose)
-      frame = self%parents(i)%text
+      pose = compose(self%list(i)%pose, pose)
+      frame = self%list(i)%parent
     end do
   end subroutine up_to
 
@@ -249,14 +254,14 @@ contains
     n = 1
     way(1) = self%find(name)
     do
-      first = findloc(way(:n), self%find(self%parents(way(n))%text), dim=1)
+      first = findloc(way(:n), self%find(self%list(way(n))%parent), dim=1)
       if (first > 0) exit
-      way(n + 1) = self%find(self%parents(way(n))%text)
+      way(n + 1) = self%find(self%list(way(n))%parent)
       n = n + 1
     end do
-    words = "the frame '"//self%names(way(first))%text//"' stands in itself"
+    words = "the frame '"//self%list(way(first))%name//"' stands in itself"
     do first = first + 1, n
-      words = words//", by way of '"//self%names(way(first))%text//"'"
+      words = words//", by way of '"//self%list(way(first))%name//"'"
     end do
   end function circle
 
@@ -275,7 +280,7 @@ contains
       if (link > 0) return
       i = self%find(frame)
       if (i == 0) return
-      frame = self%holders(i)%text
+      frame = self%list(i)%holder
       link = robot%find_link(frame)
     end do
   end function find_link

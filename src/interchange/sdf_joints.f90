@@ -69,8 +69,8 @@ contains
     joint%kind = kinds(place)
     joint%name = prefix//tree%attribute(element, 'name')
     call frames%in_model(tree, element, prefix, tree%attribute(element, 'name'), in_model, err)
-    call take_side(tree, element, prefix, 'parent', 1, frames, in_model, robot, joint, err)
-    call take_side(tree, element, prefix, 'child', 2, frames, in_model, robot, joint, err)
+    call take_side('parent', joint%links(1), joint%frames(1))
+    call take_side('child', joint%links(2), joint%frames(2))
     if (joint%links(1) == joint%links(2)) call tree%fail(element, "joint '"//joint%name//"' joins a link with itself", err)
     joint%axis = [0.0_wp, 0.0_wp, 1.0_wp]
     call read_axis(tree, tree%child(element, 'axis'), prefix, frames, in_model, joint%axis, err)
@@ -86,40 +86,32 @@ contains
       if (robot%joints(k)%links(2) == joint%links(2)) joint%closes = .true.
     end do
     call robot%add_joint(tree, element, joint, err)
+  contains
+    !> One of both links of the joint, with the frame of the joint in it.
+    subroutine take_side(name, link, frame)
+      character(len=*), intent(in) :: name      !< parent or child
+      integer, intent(inout) :: link            !< gets the number of the link
+      type(pose_type), intent(inout) :: frame   !< gets the frame
+      type(pose_type) :: pose
+      character(len=:), allocatable :: link_name
+      integer :: e
+
+      e = tree%child(element, name)
+      if (e == 0) call tree%fail(element, "joint '"//joint%name//"' has no <"//name//'>', err)
+      if (allocated(err)) return
+      link_name = tree%content(e)
+      link = 1
+      if (link_name /= 'world') link = frames%find_link(robot, prefix, link_name)
+      if (link == 0) call tree%fail(e, "there is no link '"//prefix//link_name//"', which joint '"//joint%name//"' names", err)
+      if (allocated(err)) return
+      pose = inverse(frames%model)
+      if (link > 1) then
+        pose = pose_type()
+        call frames%in_model(tree, e, '', robot%links(link)%name, pose, err)
+      end if
+      frame = compose(inverse(pose), in_model)
+    end subroutine take_side
   end subroutine read_joint
-
-  !> One of both links of a joint, with the frame of the joint in it.
-  subroutine take_side(tree, element, prefix, name, side, frames, in_model, robot, joint, err)
-    type(xml_tree_type), intent(in) :: tree              !< the document
-    integer, intent(in) :: element                       !< number of the element <joint>
-    character(len=*), intent(in) :: prefix               !< names of the models around it
-    character(len=*), intent(in) :: name                 !< parent or child
-    integer, intent(in) :: side                          !< 1 or 2
-    type(sdf_frames_type), intent(in) :: frames          !< all frames
-    type(pose_type), intent(in) :: in_model              !< of the joint in the outermost model
-    type(robot_type), intent(in) :: robot                !< the robot with its links
-    type(robot_joint_type), intent(inout) :: joint       !< gets link and frame
-    type(error_type), allocatable, intent(inout) :: err  !< the failure
-    type(pose_type) :: pose
-    character(len=:), allocatable :: link
-    integer :: e
-
-    e = tree%child(element, name)
-    if (e == 0) call tree%fail(element, "joint '"//joint%name//"' has no <"//name//'>', err)
-    if (allocated(err)) return
-    link = tree%content(e)
-    joint%links(side) = 1
-    if (link /= 'world') joint%links(side) = frames%find_link(robot, prefix, link)
-    if (joint%links(side) == 0) &
-      call tree%fail(e, "there is no link '"//prefix//link//"', which joint '"//joint%name//"' names", err)
-    if (allocated(err)) return
-    pose = inverse(frames%model)
-    if (joint%links(side) > 1) then
-      pose = pose_type()
-      call frames%in_model(tree, e, '', robot%links(joint%links(side))%name, pose, err)
-    end if
-    joint%frames(side) = compose(inverse(pose), in_model)
-  end subroutine take_side
 
   !> The direction of an axis in the frame of its joint. It stays as it is where there is none.
   subroutine read_axis(tree, element, prefix, frames, in_model, axis, err)

@@ -2,6 +2,7 @@
 module mech9_hdf5_columns
   use mech9_mechanism, only: mechanism_type
   use mech9_columns, only: columns_type
+  use mech9_hdf5_quantity, only: quantity_type, new_quantity, scale_length
   use mech9_hdf5_series, only: hdf5_series_type
   use mech9_hdf5_scales, only: common_unit
   implicit none
@@ -59,34 +60,32 @@ contains
     if (columns%forces() > 0) call self%add_forces(series, columns)
     do i = 1, scalars_of(columns)
       at = columns%motion + columns%forces() + i
-      call self%add_one(series, columns, identifier(columns%names(at)%text), [at], [integer ::], columns%long_names(at)%text, &
-                        columns%units(at)%text, [character(len=1) ::])
+      call self%add_one(series, columns, new_quantity(identifier(columns%names(at)%text), [at], [integer ::], &
+                                                      columns%long_names(at)%text, columns%units(at)%text, [character(len=1) ::]))
     end do
     if (columns%poses%n_links > 0) call self%add_poses(series, columns)
   end subroutine add_all
 
   !> Add one data set.
-  subroutine add_one(self, series, columns, name, numbers, extents, long_name, unit, scales)
+  subroutine add_one(self, series, columns, of_a_time)
     class(column_sets_type), intent(in) :: self       !< how columns become data sets
     type(hdf5_series_type), intent(inout) :: series   !< gets the data set
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
-    character(len=*), intent(in) :: name              !< path of the data set
-    integer, intent(in) :: numbers(:)                 !< of its columns
-    integer, intent(in) :: extents(:)                 !< of its part of one time, Fortran order; empty: one number
-    character(len=*), intent(in) :: long_name         !< a few words that describe it
-    character(len=*), intent(in) :: unit              !< of its numbers
-    character(len=*), intent(in) :: scales(:)         !< paths of the scales of its dimensions behind time
-    character(len=16) :: before(2), behind(size(scales))
+    type(quantity_type), intent(in) :: of_a_time      !< its part of one time, with the scales of its dimensions behind time
+    type(quantity_type) :: quantity
+    character(len=scale_length) :: before(2)
     integer :: i, k
 
-    before = [character(len=16) :: '/run', '/time']
-    behind = scales
+    quantity = of_a_time
+    before = [character(len=scale_length) :: '/run', '/time']
     if (self%times == 0) then
-      call series%add(name, numbers, extents, long_name, unit, [before(2:), behind])
+      quantity%scales = [before(2:), of_a_time%scales]
     else
-      call series%add(name, [((numbers(i) + (k - 1)*columns%width(), i=1, size(numbers)), k=1, self%times)], &
-                      [extents, self%times], long_name, unit, [before, behind])
+      quantity%columns = [((of_a_time%columns(i) + (k - 1)*columns%width(), i=1, size(of_a_time%columns)), k=1, self%times)]
+      quantity%extents = [of_a_time%extents, int(self%times, kind(of_a_time%extents))]
+      quantity%scales = [before, of_a_time%scales]
     end if
+    call series%add(quantity)
   end subroutine add_one
 
   !> Add a quantity of all coordinates.
@@ -101,8 +100,8 @@ contains
 
     n = size(columns%coordinates)
     before = 1 + order*n
-    call self%add_one(series, columns, name, [(before + i, i=1, n)], [n], trim(long_name), &
-                      common_unit(columns%units(before + 1:before + n)), ['/coordinate'])
+    call self%add_one(series, columns, new_quantity(name, [(before + i, i=1, n)], [n], trim(long_name), &
+                                                    common_unit(columns%units(before + 1:before + n)), ['/coordinate']))
   end subroutine add_of_coordinates
 
   !> Add a quantity of all points, with three components.
@@ -121,9 +120,9 @@ contains
     if (name == 'velocity') plural = 'velocities'
     each = 3*(columns%derivatives + 1)
     before = 1 + (columns%derivatives + 1)*size(columns%coordinates) + 3*order
-    call self%add_one(series, columns, name, [((before + each*(i - 1) + k, k=1, 3), i=1, size(mechanism%points))], &
-                      [3, size(mechanism%points)], plural//' of the points in the fixed frame', unit, &
-                      ['/point', '/axis '])
+    call self%add_one(series, columns, new_quantity(name, [((before + each*(i - 1) + k, k=1, 3), i=1, size(mechanism%points))], &
+                                                    [3, size(mechanism%points)], plural//' of the points in the fixed frame', &
+                                                    unit, ['/point', '/axis ']))
   end subroutine add_of_points
 
   !> Add the forces of drives and the wrenches of pairs.
@@ -135,22 +134,23 @@ contains
 
     n = size(columns%drives)
     at = columns%motion
-    if (n > 0) call self%add_one(series, columns, 'drive_force', [(at + i, i=1, n)], [n], 'forces that the drives need', &
-                                 common_unit(columns%units(at + 1:at + n)), ['/driven'])
+    if (n > 0) call self%add_one(series, columns, new_quantity('drive_force', [(at + i, i=1, n)], [n], &
+                                                               'forces that the drives need', &
+                                                               common_unit(columns%units(at + 1:at + n)), ['/driven']))
     at = at + n
     n = size(columns%reacting)
     if (n == 0) return
-    call self%add_one(series, columns, 'reaction_force', [((at + 6*(i - 1) + k, k=1, 3), i=1, n)], [3, n], &
-                      'forces that the reference links pass to the moving links through the pairs, in the fixed frame', 'N', &
-                      ['/pair', '/axis'])
-    call self%add_one(series, columns, 'reaction_moment', [((at + 6*(i - 1) + 3 + k, k=1, 3), i=1, n)], [3, n], &
-                      'moments that they pass, about the origins of the pairs'' frames in the moving links', 'N m', &
-                      ['/pair', '/axis'])
+    call self%add_one(series, columns, new_quantity('reaction_force', [((at + 6*(i - 1) + k, k=1, 3), i=1, n)], [3, n], &
+                                                    'forces that the reference links pass to the moving links through the '// &
+                                                    'pairs, in the fixed frame', 'N', ['/pair', '/axis']))
+    call self%add_one(series, columns, new_quantity('reaction_moment', [((at + 6*(i - 1) + 3 + k, k=1, 3), i=1, n)], [3, n], &
+                                                    'moments that they pass, about the origins of the pairs'' frames in the '// &
+                                                    'moving links', 'N m', ['/pair', '/axis']))
     at = at + 6*n
     n = columns%couplings
-    if (n > 0) call self%add_one(series, columns, 'coupling_force', [(at + i, i=1, n)], [n], &
-                                 'forces of the couplings on their second coordinates', &
-                                 common_unit(columns%units(at + 1:at + n)), ['/coupling'])
+    if (n > 0) call self%add_one(series, columns, new_quantity('coupling_force', [(at + i, i=1, n)], [n], &
+                                                               'forces of the couplings on their second coordinates', &
+                                                               common_unit(columns%units(at + 1:at + n)), ['/coupling']))
   end subroutine add_forces
 
   !> Add poses of links, and the vertices of their drawing.
@@ -162,12 +162,14 @@ contains
 
     n = columns%poses%n_links
     vertices = size(columns%poses%vertex_link)
-    call self%add_one(series, columns, 'origin', [(columns%count + i, i=1, 3*n)], [3, n], &
-                      'origins U of the links in the fixed frame', 'm', ['/link', '/axis'])
-    call self%add_one(series, columns, 'rotation', [(columns%count + 3*n + i, i=1, 9*n)], [3, 3, n], &
-                      'rotations A of the links: X = A X'' + U', '1', ['/link     ', '/axis     ', '/link_axis'])
-    call self%add_one(series, columns, 'vertex', [(columns%count + 12*n + i, i=1, 3*vertices)], [3, vertices], &
-                      'vertices of the drawn links in the fixed frame', 'm', ['/vertex_number', '/axis         '])
+    call self%add_one(series, columns, new_quantity('origin', [(columns%count + i, i=1, 3*n)], [3, n], &
+                                                    'origins U of the links in the fixed frame', 'm', ['/link', '/axis']))
+    call self%add_one(series, columns, new_quantity('rotation', [(columns%count + 3*n + i, i=1, 9*n)], [3, 3, n], &
+                                                    'rotations A of the links: X = A X'' + U', '1', &
+                                                    ['/link     ', '/axis     ', '/link_axis']))
+    call self%add_one(series, columns, new_quantity('vertex', [(columns%count + 12*n + i, i=1, 3*vertices)], [3, vertices], &
+                                                    'vertices of the drawn links in the fixed frame', 'm', &
+                                                    ['/vertex_number', '/axis         ']))
   end subroutine add_poses
 
   !> The name of a column as an identifier that programs accept: E_kinetic for E.kinetic.

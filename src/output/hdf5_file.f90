@@ -195,7 +195,7 @@ contains
     type(c_ptr), allocatable, target :: starts(:)
 
     call lay_out(texts, letters, starts)
-    call self%put_values(name, (self%text_type), (self%text_type), extents, c_loc(starts), long_name)
+    call self%put_values(name, [self%text_type, self%text_type], extents, c_loc(starts), long_name)
   end subroutine put_text_values
 
   subroutine put_real(self, name, value, long_name, unit)
@@ -205,7 +205,7 @@ contains
     real(wp), intent(in), target :: value           !< the number
     character(len=*), intent(in), optional :: unit  !< unit of the numbers; absent for none
 
-    call self%put_values(name, h5t_ieee_f64le, h5t_native_double, no_extents, c_loc(value), long_name, unit)
+    call self%put_values(name, [h5t_ieee_f64le, h5t_native_double], no_extents, c_loc(value), long_name, unit)
   end subroutine put_real
 
   subroutine put_reals(self, name, values, long_name, unit)
@@ -215,7 +215,7 @@ contains
     real(wp), intent(in), contiguous, target :: values(:)  !< the numbers
     character(len=*), intent(in), optional :: unit         !< unit of the numbers; absent for none
 
-    call self%put_values(name, h5t_ieee_f64le, h5t_native_double, [size(values, kind=hsize_t)], c_loc(values), &
+    call self%put_values(name, [h5t_ieee_f64le, h5t_native_double], [size(values, kind=hsize_t)], c_loc(values), &
                          long_name, unit)
   end subroutine put_reals
 
@@ -226,7 +226,7 @@ contains
     real(wp), intent(in), contiguous, target :: values(:, :)  !< the numbers; their dimensions are those of the data set in reverse
     character(len=*), intent(in), optional :: unit            !< unit of the numbers; absent for none
 
-    call self%put_values(name, h5t_ieee_f64le, h5t_native_double, shape(values, kind=hsize_t), c_loc(values), &
+    call self%put_values(name, [h5t_ieee_f64le, h5t_native_double], shape(values, kind=hsize_t), c_loc(values), &
                          long_name, unit)
   end subroutine put_matrix
 
@@ -237,7 +237,7 @@ contains
     real(wp), intent(in), contiguous, target :: values(:, :, :)  !< the numbers; dimensions are those of the data set in reverse
     character(len=*), intent(in), optional :: unit               !< unit of the numbers; absent for none
 
-    call self%put_values(name, h5t_ieee_f64le, h5t_native_double, shape(values, kind=hsize_t), c_loc(values), &
+    call self%put_values(name, [h5t_ieee_f64le, h5t_native_double], shape(values, kind=hsize_t), c_loc(values), &
                          long_name, unit)
   end subroutine put_block
 
@@ -247,7 +247,7 @@ contains
     character(len=*), intent(in) :: long_name     !< a few words that describe it
     integer, intent(in), target :: value          !< the number
 
-    call self%put_values(name, h5t_std_i32le, h5kind_to_type(kind(value), h5_integer_kind), no_extents, &
+    call self%put_values(name, [h5t_std_i32le, h5kind_to_type(kind(value), h5_integer_kind)], no_extents, &
                          c_loc(value), long_name)
   end subroutine put_integer
 
@@ -257,7 +257,7 @@ contains
     character(len=*), intent(in) :: long_name             !< a few words that describe it
     integer, intent(in), contiguous, target :: values(:)  !< the numbers
 
-    call self%put_values(name, h5t_std_i32le, h5kind_to_type(kind(values), h5_integer_kind), &
+    call self%put_values(name, [h5t_std_i32le, h5kind_to_type(kind(values), h5_integer_kind)], &
                          [size(values, kind=hsize_t)], c_loc(values), long_name)
   end subroutine put_integers
 
@@ -267,7 +267,7 @@ contains
     character(len=*), intent(in) :: long_name                !< a few words that describe it
     integer, intent(in), contiguous, target :: values(:, :)  !< the numbers; their dimensions are those of the data set in reverse
 
-    call self%put_values(name, h5t_std_i32le, h5kind_to_type(kind(values), h5_integer_kind), &
+    call self%put_values(name, [h5t_std_i32le, h5kind_to_type(kind(values), h5_integer_kind)], &
                          shape(values, kind=hsize_t), c_loc(values), long_name)
   end subroutine put_integer_matrix
 
@@ -277,17 +277,16 @@ contains
     character(len=*), intent(in) :: long_name     !< a few words that describe it
     integer(long), intent(in), target :: value    !< the number
 
-    call self%put_values(name, h5t_std_i64le, h5kind_to_type(kind(value), h5_integer_kind), no_extents, &
+    call self%put_values(name, [h5t_std_i64le, h5kind_to_type(kind(value), h5_integer_kind)], no_extents, &
                          c_loc(value), long_name)
   end subroutine put_long
 
   !> Write a data set of any type with its attributes.
-  subroutine put_values(self, name, file_type, memory_type, extents, values, long_name, unit)
+  subroutine put_values(self, name, types, extents, values, long_name, unit)
     class(hdf5_file_type), intent(inout) :: self    !< the HDF5 file
     character(len=*), intent(in) :: name            !< path of the data set
     character(len=*), intent(in) :: long_name       !< a few words that describe it
-    integer(hid_t), intent(in) :: file_type         !< type of the numbers in the file
-    integer(hid_t), intent(in) :: memory_type       !< type of the numbers in memory
+    integer(hid_t), intent(in) :: types(2)          !< types of the numbers in the file and in memory
     integer(hsize_t), intent(in) :: extents(:)      !< extents of the data set, in Fortran order; empty for a single value
     type(c_ptr), intent(in) :: values               !< address of the first value
     character(len=*), intent(in), optional :: unit  !< unit of the numbers; absent for none
@@ -300,7 +299,7 @@ contains
     call h5lexists_f(self%id, name, exists, status)
     if (exists .and. status >= 0) then
       call h5dopen_f(self%id, name, data_set, status)
-      call h5dwrite_f(data_set, memory_type, values, status)
+      call h5dwrite_f(data_set, types(2), values, status)
       call self%check(status)
       call h5dclose_f(data_set, status)
       return
@@ -310,11 +309,11 @@ contains
     else
       call h5screate_simple_f(size(extents), extents, space, status)
     end if
-    call h5dcreate_f(self%id, name, file_type, space, data_set, status, lcpl_id=self%make_groups)
+    call h5dcreate_f(self%id, name, types(1), space, data_set, status, lcpl_id=self%make_groups)
     call self%check(status)
     call h5sclose_f(space, status)
     if (allocated(self%failure)) return
-    if (all(extents > 0)) call h5dwrite_f(data_set, memory_type, values, status)
+    if (all(extents > 0)) call h5dwrite_f(data_set, types(2), values, status)
     call self%check(status)
     call h5dclose_f(data_set, status)
     call self%describe(name, long_name, unit)

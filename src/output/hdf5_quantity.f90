@@ -13,8 +13,10 @@ module mech9_hdf5_quantity
   use mech9_hdf5_file, only: hdf5_file_type
   implicit none
   private
-  public :: quantity_type, new_quantity
+  public :: quantity_type, new_quantity, scale_length
 
+  !> Longest path of a dimension scale.
+  integer, parameter :: scale_length = 20
   !> Columns that are copied as one piece, on the average.
   integer, parameter :: shortest_piece = 8
 
@@ -23,13 +25,15 @@ module mech9_hdf5_quantity
     integer(hid_t) :: data_set = -1
     character(len=:), allocatable :: name, long_name, unit
     logical :: whole = .false.                   !< whether its numbers are whole
-    character(len=:), allocatable :: scales(:)   !< paths of the dimension scales, time first; none: the quantity is a scale itself
+    !> Paths of the dimension scales, time first; none: the quantity is a scale itself.
+    character(len=scale_length), allocatable :: scales(:)
     integer, allocatable :: columns(:)           !< numbers of its columns in a row
     integer(hsize_t), allocatable :: extents(:)  !< extents of its part of a row, Fortran order; empty: one number
     integer, allocatable, private :: pieces(:, :)     !< (2,pieces) first column and number of columns that stand side by side; none:
                                                       !< the pieces would be short
     real(wp), allocatable, private :: buffer(:, :)    !< (columns, rows) numbers of rows that wait
   contains
+    procedure :: reserve
     procedure :: create_growing
     procedure :: create_fixed
     procedure :: open_fixed
@@ -42,21 +46,33 @@ module mech9_hdf5_quantity
 contains
 
   !> A quantity without a data set.
-  pure function new_quantity(name, columns, extents, capacity, whole) result(quantity)
-    character(len=*), intent(in) :: name            !< path of the data set
-    integer, intent(in) :: columns(:)               !< numbers of its columns in a row
-    integer, intent(in) :: extents(:)               !< extents of its part of a row, Fortran order; empty: one number
-    integer, intent(in) :: capacity                 !< how many rows wait at most
-    logical, intent(in) :: whole                    !< whether its numbers are whole
+  pure function new_quantity(name, columns, extents, long_name, unit, scales, whole) result(quantity)
+    character(len=*), intent(in) :: name        !< path of the data set
+    integer, intent(in) :: columns(:)           !< numbers of its columns in a row
+    integer, intent(in) :: extents(:)           !< extents of its part of a row, Fortran order; empty: one number
+    character(len=*), intent(in) :: long_name   !< a few words that describe it
+    character(len=*), intent(in) :: unit        !< unit of its numbers
+    character(len=*), intent(in) :: scales(:)   !< paths of the dimension scales, time first; none: the quantity is a scale itself
+    logical, intent(in), optional :: whole      !< whether its numbers are whole; false if absent
     type(quantity_type) :: quantity
 
     quantity%name = name
-    quantity%whole = whole
     quantity%columns = columns
-    quantity%pieces = pieces_of(columns)
     quantity%extents = extents
-    allocate (quantity%buffer(size(columns), capacity), source=0.0_wp)
+    quantity%long_name = long_name
+    quantity%unit = unit
+    quantity%scales = scales
+    if (present(whole)) quantity%whole = whole
   end function new_quantity
+
+  !> Make room for rows that wait to be written.
+  pure subroutine reserve(self, capacity)
+    class(quantity_type), intent(inout) :: self   !< the quantity, with its columns
+    integer, intent(in) :: capacity               !< how many rows wait at most
+
+    self%pieces = pieces_of(self%columns)
+    allocate (self%buffer(size(self%columns), capacity), source=0.0_wp)
+  end subroutine reserve
 
   !> The pieces of a list of columns that stand side by side in a row: the first column of each, and their number; none where they are
   !> short on the average.

@@ -2,6 +2,7 @@
 module mech9_hdf5_sensitivities
   use mech9_columns, only: columns_type
   use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_hdf5_quantity, only: new_quantity
   use mech9_hdf5_series, only: hdf5_series_type
   implicit none
   private
@@ -18,7 +19,7 @@ contains
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     character(len=3), parameter :: names(0:2) = ['q  ', 'dq ', 'ddq']
     character(len=12), parameter :: of_points(0:2) = ['position    ', 'velocity    ', 'acceleration']
-    integer :: order, n, points, before, i, k, parameters
+    integer :: order, n, points, each, before, i, k, parameters
 
     n = size(columns%coordinates)
     parameters = size(columns%parameters)
@@ -28,19 +29,19 @@ contains
     if (columns%varied_poses > 0) call add_poses(series, columns)
     do order = 0, columns%derivatives
       before = columns%count - columns%sensitivities + order*n*parameters
-      call series%add('sensitivity/'//trim(names(order)), [(before + i, i=1, parameters*n)], [parameters, n], &
-                      'derivatives of '//trim(names(order))//' by the parameters', unit_of_all(columns, order*n + 2, n), &
-                      ['/time      ', '/coordinate', '/parameter '])
+      call series%add(new_quantity('sensitivity/'//trim(names(order)), [(before + i, i=1, parameters*n)], [parameters, n], &
+                                   'derivatives of '//trim(names(order))//' by the parameters', &
+                                   unit_of_all(columns, order*n + 2, n), ['/time      ', '/coordinate', '/parameter ']))
     end do
     if (points == 0) return
+    each = 3*(columns%derivatives + 1)
     do order = 0, columns%derivatives
       before = columns%count - columns%sensitivities + ((columns%derivatives + 1)*n + 3*order)*parameters
-      call series%add('sensitivity/'//trim(of_points(order)), &
-                      [((before + 3*(columns%derivatives + 1)*(i - 1)*parameters + k, k=1, 3*parameters), i=1, points/3)], &
-                      [parameters, 3, points/3], &
-                      'derivatives of '//trim(of_points(order))//' by the parameters', &
-                      unit_of_all(columns, (columns%derivatives + 1)*n + 3*order + 2, 1), &
-                      ['/time     ', '/point    ', '/axis     ', '/parameter'])
+      call series%add(new_quantity('sensitivity/'//trim(of_points(order)), &
+                                   [((before + each*(i - 1)*parameters + k, k=1, 3*parameters), i=1, points/3)], &
+                                   [parameters, 3, points/3], 'derivatives of '//trim(of_points(order))//' by the parameters', &
+                                   unit_of_all(columns, (columns%derivatives + 1)*n + 3*order + 2, 1), &
+                                   ['/time     ', '/point    ', '/axis     ', '/parameter']))
     end do
   end subroutine add_sensitivities
 
@@ -54,23 +55,23 @@ contains
     parameters = size(columns%parameters)
     n = size(columns%drives)
     at = columns%motion
-    if (n > 0) call series%add('sensitivity/drive_force', [(places(columns, at + i), i=1, n)], [parameters, n], &
-                               'derivatives of drive_force by the parameters', unit_of_all(columns, at + 1, n), &
-                               ['/time     ', '/driven   ', '/parameter'])
+    if (n > 0) call series%add(new_quantity('sensitivity/drive_force', [(places(columns, at + i), i=1, n)], [parameters, n], &
+                                            'derivatives of drive_force by the parameters', unit_of_all(columns, at + 1, n), &
+                                            ['/time     ', '/driven   ', '/parameter']))
     at = at + n
     n = size(columns%reacting)
     if (n == 0) return
-    call series%add('sensitivity/reaction_force', [((places(columns, at + 6*(i - 1) + k), k=1, 3), i=1, n)], [parameters, 3, n], &
-                    'derivatives of reaction_force by the parameters', unit_of_all(columns, at + 1, 1), &
-                    ['/time     ', '/pair     ', '/axis     ', '/parameter'])
-    call series%add('sensitivity/reaction_moment', [((places(columns, at + 6*(i - 1) + 3 + k), k=1, 3), i=1, n)], &
-                    [parameters, 3, n], 'derivatives of reaction_moment by the parameters', unit_of_all(columns, at + 4, 1), &
-                    ['/time     ', '/pair     ', '/axis     ', '/parameter'])
+    call series%add(new_quantity('sensitivity/reaction_force', [((places(columns, at + 6*(i - 1) + k), k=1, 3), i=1, n)], &
+                                 [parameters, 3, n], 'derivatives of reaction_force by the parameters', &
+                                 unit_of_all(columns, at + 1, 1), ['/time     ', '/pair     ', '/axis     ', '/parameter']))
+    call series%add(new_quantity('sensitivity/reaction_moment', [((places(columns, at + 6*(i - 1) + 3 + k), k=1, 3), i=1, n)], &
+                                 [parameters, 3, n], 'derivatives of reaction_moment by the parameters', &
+                                 unit_of_all(columns, at + 4, 1), ['/time     ', '/pair     ', '/axis     ', '/parameter']))
     at = at + 6*n
     n = columns%couplings
-    if (n > 0) call series%add('sensitivity/coupling_force', [(places(columns, at + i), i=1, n)], [parameters, n], &
-                               'derivatives of coupling_force by the parameters', unit_of_all(columns, at + 1, n), &
-                               ['/time     ', '/coupling ', '/parameter'])
+    if (n > 0) call series%add(new_quantity('sensitivity/coupling_force', [(places(columns, at + i), i=1, n)], [parameters, n], &
+                                            'derivatives of coupling_force by the parameters', unit_of_all(columns, at + 1, n), &
+                                            ['/time     ', '/coupling ', '/parameter']))
   end subroutine add_forces
 
   !> The columns of the derivatives of a column by each parameter.
@@ -91,9 +92,10 @@ contains
     do i = columns%varied + 2 - columns%energies - columns%motors, columns%varied + 1
       associate (name => columns%names(i)%text)
         point = index(name, '.')
-        call series%add('sensitivity/'//name(:point - 1)//'_'//name(point + 1:), places(columns, i), [size(columns%parameters)], &
-                        'derivatives of the '//columns%long_names(i)%text//' by the parameters', unit_of_all(columns, i, 1), &
-                        ['/time     ', '/parameter'])
+        call series%add(new_quantity('sensitivity/'//name(:point - 1)//'_'//name(point + 1:), places(columns, i), &
+                                     [size(columns%parameters)], &
+                                     'derivatives of the '//columns%long_names(i)%text//' by the parameters', &
+                                     unit_of_all(columns, i, 1), ['/time     ', '/parameter']))
       end associate
     end do
   end subroutine add_scalars
@@ -108,13 +110,13 @@ contains
     before = columns%count + columns%poses%width()
     parameters = size(columns%parameters)
     n = columns%poses%n_links
-    call series%add('sensitivity/origin', [(before + i, i=1, 3*n*parameters)], [parameters, 3, n], &
-                    'derivatives of origin by the parameters', 'm'//per_unit, &
-                    ['/time     ', '/link     ', '/axis     ', '/parameter'])
+    call series%add(new_quantity('sensitivity/origin', [(before + i, i=1, 3*n*parameters)], [parameters, 3, n], &
+                                 'derivatives of origin by the parameters', 'm'//per_unit, &
+                                 ['/time     ', '/link     ', '/axis     ', '/parameter']))
     before = before + 3*n*parameters
-    call series%add('sensitivity/rotation', [(before + i, i=1, 9*n*parameters)], [parameters, 3, 3, n], &
-                    'derivatives of rotation by the parameters', '1'//per_unit, &
-                    ['/time     ', '/link     ', '/axis     ', '/link_axis', '/parameter'])
+    call series%add(new_quantity('sensitivity/rotation', [(before + i, i=1, 9*n*parameters)], [parameters, 3, 3, n], &
+                                 'derivatives of rotation by the parameters', '1'//per_unit, &
+                                 ['/time     ', '/link     ', '/axis     ', '/link_axis', '/parameter']))
   end subroutine add_poses
 
   !> The unit of some columns, per unit of a parameter in the data file.

@@ -13,7 +13,7 @@ module mech9_hdf5_series
   use mech9_kinds, only: wp, long
   use mech9_text, only: string_type
   use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_hdf5_quantity, only: quantity_type, new_quantity
+  use mech9_hdf5_quantity, only: quantity_type
   implicit none
   private
   public :: hdf5_series_type
@@ -101,26 +101,13 @@ contains
   end function rows_within
 
   !> Add a quantity.
-  subroutine add(self, name, columns, extents, long_name, unit, scales, whole)
+  pure subroutine add(self, quantity)
     class(hdf5_series_type), intent(inout) :: self  !< the quantities over time
-    character(len=*), intent(in) :: name            !< path of the data set
-    character(len=*), intent(in) :: long_name       !< a few words that describe it
-    character(len=*), intent(in) :: unit            !< unit of its numbers
-    integer, intent(in) :: columns(:)               !< numbers of its columns in a row
-    integer, intent(in) :: extents(:)               !< extents of its part of a row, Fortran order; empty: one number
-    character(len=*), intent(in) :: scales(:)  !< paths of the dimension scales, time first; none: the quantity is a scale itself
-    logical, intent(in), optional :: whole          !< whether its numbers are whole; false if absent
-    logical :: are_whole
+    type(quantity_type), intent(in) :: quantity     !< a new one, without a data set
 
-    are_whole = .false.
-    if (present(whole)) are_whole = whole
     self%count = self%count + 1
-    associate (quantity => self%quantities(self%count))
-      quantity = new_quantity(name, columns, extents, self%capacity, are_whole)
-      quantity%long_name = long_name
-      quantity%unit = unit
-      quantity%scales = scales
-    end associate
+    self%quantities(self%count) = quantity
+    call self%quantities(self%count)%reserve(self%capacity)
   end subroutine add
 
   !> The paths of all data sets.

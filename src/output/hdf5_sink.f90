@@ -8,6 +8,7 @@ module mech9_hdf5_sink
   use mech9_columns, only: columns_type
   use mech9_result_sink, only: result_sink_type
   use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_hdf5_quantity, only: new_quantity
   use mech9_hdf5_series, only: hdf5_series_type
   use mech9_hdf5_columns, only: column_sets_type, most_column_sets
   use mech9_hdf5_scales, only: put_scales
@@ -56,7 +57,7 @@ contains
     self%takes_poses = .true.
     call self%series%start(1 + most_column_sets(columns) + quantities_of_sensitivity + columns%motors, columns%width(), &
                            request%time%intervals + 1, request%output%compression)
-    call self%series%add('time', [1], [integer ::], 'time', columns%units(1)%text, [character(len=5) ::])
+    call self%series%add(new_quantity('time', [1], [integer ::], 'time', columns%units(1)%text, [character(len=5) ::]))
     call sets%add(self%series, mechanism, columns)
     if (columns%sensitivities > 0) call add_sensitivities(self%series, columns)
     call self%series%create(self%file)
@@ -74,13 +75,14 @@ contains
     integer :: i
 
     call self%events%start(3, 1 + 2*n_independent, most_events, 0)
-    call self%events%add('events/time', [1], [integer ::], 'when other coordinates were taken', 's', &
-                         [character(len=5) ::])
-    call self%events%add('events/independent', [(1 + i, i=1, n_independent)], [n_independent], &
-                         'the independent coordinates from then on', '1', ['/events/time   ', '/events/freedom'], whole=.true.)
-    call self%events%add('events/replaced', [(1 + n_independent + i, i=1, n_independent)], [n_independent], &
-                         '1 where another angle is integrated in place of this coordinate, near gimbal lock', '1', &
-                         ['/events/time   ', '/events/freedom'], whole=.true.)
+    call self%events%add(new_quantity('events/time', [1], [integer ::], 'when other coordinates were taken', 's', &
+                                      [character(len=5) ::]))
+    call self%events%add(new_quantity('events/independent', [(1 + i, i=1, n_independent)], [n_independent], &
+                                      'the independent coordinates from then on', '1', ['/events/time   ', '/events/freedom'], &
+                                      whole=.true.))
+    call self%events%add(new_quantity('events/replaced', [(1 + n_independent + i, i=1, n_independent)], [n_independent], &
+                                      '1 where another angle is integrated in place of this coordinate, near gimbal lock', '1', &
+                                      ['/events/time   ', '/events/freedom'], whole=.true.))
     call self%events%create(self%file)
     call self%file%put('events/freedom', [(i, i=1, n_independent)], 'number of the degree of freedom')
     call self%file%make_scale('events/freedom')

@@ -17,6 +17,7 @@ module mech9_table
   use mech9_text, only: string_type, lower, join
   use mech9_clock, only: pacer_type
   use mech9_result_sink, only: result_sink_type
+  use mech9_heading, only: heading_type
   use mech9_number_format, only: number_format_type, number_width
   use mech9_printable, only: printable, column_name
   use mech9_text_file, only: text_file_type
@@ -53,24 +54,22 @@ module mech9_table
 contains
 
   !> Create the file and write the lines above the rows.
-  subroutine open_table(self, path, title, program, names, units, err, order)
+  subroutine open_table(self, path, heading, program, err, order)
     class(table_type), intent(inout) :: self           !< the table
     character(len=*), intent(in) :: path               !< path of the file; '-' is standard output
-    character(len=*), intent(in) :: title              !< title of the mechanism; each of its lines becomes a comment line
+    type(heading_type), intent(in) :: heading          !< names and units; each line of its title becomes a comment line
     character(len=*), intent(in) :: program            !< name and version of the program
-    type(string_type), intent(in) :: names(:)          !< headings of the columns
-    type(string_type), intent(in) :: units(:)          !< units of the columns; empty for a plain number
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     integer, intent(in), optional :: order(:)          !< numbers of the columns in the order of the table; absent: as they are
 
-    if (size(names) == 0 .or. size(names) /= size(units)) then
+    if (size(heading%names) == 0 .or. size(heading%names) /= size(heading%units)) then
       call raise(err, exit_internal, 'a table needs columns, and as many units as names')
       return
     end if
     call self%file%open(path, err)
     if (allocated(err)) return
     self%format = number_format_type()
-    self%columns = size(names)
+    self%columns = size(heading%names)
     if (allocated(self%order)) deallocate (self%order, self%arranged)
     if (present(order)) then
       self%order = order
@@ -84,10 +83,10 @@ contains
     self%commas = .false.
     if (len(path) > 4) self%commas = lower(path(len(path) - 3:)) == '.csv'
     if (self%commas) then
-      call self%file%write(comma_line(in_order(names, self%order)), err)
+      call self%file%write(comma_line(in_order(heading%names, self%order)), err)
     else
-      call self%file%write(comment_lines(title)//comment_lines(program)//unit_line(in_order(units, self%order)) &
-                           //name_line(in_order(names, self%order)), err)
+      call self%file%write(comment_lines(heading%title)//comment_lines(program)// &
+                           unit_line(in_order(heading%units, self%order))//name_line(in_order(heading%names, self%order)), err)
     end if
   end subroutine open_table
 

@@ -186,8 +186,7 @@ contains
     call keep_values(self, tracked, points_between, row)
     associate (piece => self%list(self%current))
       do i = 1, size(tracked)
-        call tracked(i)%end_piece(self%rule, piece%from, row, self%values(:, i), self%changes(:, :, i), piece%from_rate, &
-                                  piece%to_rate)
+        call tracked(i)%end_piece(self%rule, piece, row, self%values(:, i), self%changes(:, :, i))
       end do
     end associate
   end subroutine end_piece

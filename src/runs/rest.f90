@@ -74,7 +74,7 @@ contains
     type(equilibrium_type), allocatable :: found(:)
 
     if (starts > 0) then
-      call find_equilibria(model%mechanism, model%problem%partition, self%plan, self%start, starts, found, err, interruption)
+      call find_equilibria(model, self%plan, self%start, starts, found, err, interruption)
     else
       allocate (found(1))
       call find_equilibrium(model%mechanism, model%problem%partition, self%plan, self%start, found(1), err)

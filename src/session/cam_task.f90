@@ -17,6 +17,7 @@ module mech9_cam_task
   use mech9_state, only: state_type
   use mech9_cam_profile, only: cam_profile_type, find_profile
   use mech9_table, only: table_type
+  use mech9_heading, only: new_heading
   use mech9_version, only: name_and_version
   use mech9_cam_picture, only: save_cam_picture
   use mech9_cam_text, only: print_cam, judge_cam, name_of_cam
@@ -125,8 +126,8 @@ contains
     integer :: i
 
     call list_columns(model, model%request%cams(number), profile%has_pressure, names, units)
-    call table%open(path, model%mechanism%title//new_line('a')//name_of_cam(model, number), &
-                    name_and_version(model%program), names, units, err)
+    call table%open(path, new_heading(model%mechanism%title//new_line('a')//name_of_cam(model, number), names, units), &
+                    name_and_version(model%program), err)
     do i = 1, size(profile%contacts)
       if (allocated(err)) exit
       if (.not. (profile%at_output(i) .and. profile%contacts(i)%known)) cycle

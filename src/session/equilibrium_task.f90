@@ -12,10 +12,11 @@ module mech9_equilibrium_task
   use mech9_state, only: state_type
   use mech9_start_way_text, only: print_start_way
   use mech9_linearised_equilibrium, only: equilibrium_type
-  use mech9_mode_shapes, only: position_in_vibration
+  use mech9_mode_shapes, only: displacement, position_in_vibration
   use mech9_film, only: film_type, new_film
   use mech9_columns, only: columns_type
   use mech9_table, only: table_type
+  use mech9_heading, only: heading_of
   use mech9_kept_rows, only: kept_rows_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_record, only: write_provenance, write_structure, write_coordinates
@@ -169,8 +170,7 @@ contains
 
     path = options%table_of_answer()
     if (path == '') return
-    call table%open(path, model%mechanism%title, 'mech9d '//version, columns%names(:columns%count), &
-                    columns%units(:columns%count), err)
+    call table%open(path, heading_of(model%mechanism%title, columns), 'mech9d '//version, err)
     if (allocated(err)) return
     call table%write_rows(rows, err)
     call table%close(at_close)
@@ -262,7 +262,8 @@ contains
     film = new_film(model%mechanism, model%problem%partition%independent(), pictures_of_period)
     do i = 1, pictures_of_period
       phase = 2.0_wp*pi*(i - 1)/(pictures_of_period - 1)
-      call position_in_vibration(model%mechanism, equilibrium, mode, shown_amplitude, phase, position, found, err)
+      call position_in_vibration(model%mechanism, equilibrium, displacement(equilibrium, mode, shown_amplitude, phase), position, &
+                                 found, err)
       if (allocated(err)) return
       if (.not. found) cycle
       position%t = period*(i - 1)/(pictures_of_period - 1)

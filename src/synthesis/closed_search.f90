@@ -2,15 +2,14 @@
 !> functions within limits where there are limits or quantities that should be least or largest.
 module mech9_closed_search
   use mech9_kinds, only: wp
-  use mech9_bounded_least_squares, only: least_squares_settings_type, least_squares_outcome_type, minimise_squares, &
+  use mech9_bounded_least_squares, only: bounds_type, least_squares_settings_type, least_squares_outcome_type, minimise_squares, &
     ended_without_value
   use mech9_smooth_problem, only: smooth_settings_type, smooth_outcome_type, ended_infeasible, ended_nowhere
   use mech9_limited_minimum, only: minimise_within_limits
   use mech9_objective, only: quantity_objective, assembles_limit
   use mech9_model, only: model_type
-  use mech9_design_space, only: design_space_type
   use mech9_free_times, only: choose_pivots, has_good_pivots, gaps_of, parts_of
-  use mech9_exact_fit, only: exact_fit_type, begin_at, has_ended
+  use mech9_exact_fit, only: exact_fit_type, search_place_type, begin_at, has_ended
   use mech9_design_limits, only: design_limits_type
   use mech9_limited_fit, only: limited_fit_type, new_limited_fit, find_value
   implicit none
@@ -48,28 +47,25 @@ contains
   end function is_least_squares
 
   !> Improve a design whose chains are closed at the start of the run.
-  subroutine search_closed(space, fit, limits, scale, x, parts, q, found)
-    type(design_space_type), intent(in) :: space             !< the designs
+  subroutine search_closed(fit, limits, scale, place, found)
     type(exact_fit_type), intent(inout), target :: fit       !< the fit
     type(design_limits_type), intent(in) :: limits           !< the limits
     real(wp), intent(in) :: scale                            !< size of the targets [m, rad]
-    real(wp), intent(in) :: x(:)                             !< parameters as parts of their ranges
-    real(wp), intent(in) :: parts(:)                         !< free times as parts of the run
-    real(wp), intent(in) :: q(:)                             !< (M) coordinates at the start of the run [rad, m]
+    type(search_place_type), intent(in) :: place             !< the design
     type(found_design_type), intent(out) :: found            !< the design to which the search led
     real(wp) :: at(fit%n), value
 
-    call search_branch(space, fit, limits, scale, x, parts, q, at, value, found%found)
+    call search_branch(fit, limits, scale, place, at, value, found%found)
     if (.not. found%found) return
     call follow_design(fit, limits, at, found%value, found%found)
     if (fit%near%used .and. .not. has_ended(fit) .and. .not. agree(found%found, found%value, value, scale)) then
       ! runs beside others are not trusted here
       fit%must_follow = .true.
-      call search_branch(space, fit, limits, scale, x, parts, q, at, value, found%found)
+      call search_branch(fit, limits, scale, place, at, value, found%found)
       fit%must_follow = .false.
       if (found%found) call follow_design(fit, limits, at, found%value, found%found)
     end if
-    found%x = space%low + at(:fit%varied)*(space%high - space%low)
+    found%x = fit%space%low + at(:fit%varied)*(fit%space%high - fit%space%low)
     found%q = fit%q_trial
     found%times = fit%times
   end subroutine search_closed
@@ -102,30 +98,27 @@ contains
   end subroutine follow_design
 
   !> Improve a design along its branch.
-  subroutine search_branch(space, fit, limits, scale, x, parts, q, at, value, found)
-    type(design_space_type), intent(in) :: space             !< the designs
+  subroutine search_branch(fit, limits, scale, place, at, value, found)
     type(exact_fit_type), intent(inout), target :: fit       !< the fit
     type(design_limits_type), intent(in) :: limits           !< the limits
     real(wp), intent(in) :: scale                            !< size of the targets [m, rad]
-    real(wp), intent(in) :: x(:)                             !< parameters as parts of their ranges
-    real(wp), intent(in) :: parts(:)                         !< free times as parts of the run
-    real(wp), intent(in) :: q(:)                             !< (M) coordinates at the start of the run [rad, m]
+    type(search_place_type), intent(in) :: place             !< the design
     real(wp), intent(out) :: at(:)                           !< (n) the place to which the search led
     real(wp), intent(out) :: value                           !< its value
     logical, intent(out) :: found                            !< the place has a value within all limits
     type(limited_fit_type) :: limited
-    real(wp) :: present(size(parts))
+    real(wp) :: present(size(place%parts))
     integer :: pass
 
-    call begin_at(q, fit)
-    present = parts
+    call begin_at(place%q, fit)
+    present = place%parts
     value = huge(value)
-    at(:fit%varied) = x
+    at(:fit%varied) = place%x
     call new_limited_fit(fit, limits, limited)
     do pass = 1, most_pivots
       call choose_pivots(present, fit%free)
       at(fit%varied + 1:) = gaps_of(present, fit%free)
-      call search_from_place(space, limited, scale, at, found)
+      call search_from_place(limited, scale, at, found)
       present = parts_of(at(fit%varied + 1:), fit%free)
       if (.not. found) return
       if (has_good_pivots(present, fit%free)) exit
@@ -134,18 +127,19 @@ contains
   end subroutine search_branch
 
   !> Search from one place, by the method that the user chose.
-  subroutine search_from_place(space, limited, scale, at, found)
-    type(design_space_type), intent(in) :: space             !< the designs
+  subroutine search_from_place(limited, scale, at, found)
     type(limited_fit_type), intent(inout) :: limited         !< the fit with its limits
     real(wp), intent(in) :: scale                            !< size of the targets [m, rad]
     real(wp), intent(inout) :: at(:)                         !< (n) the place
     logical, intent(out) :: found                            !< the place has a value within all limits
+    character(len=:), allocatable :: method
     logical :: has_squares, by_squares
 
     found = .true.
-    associate (method => space%model%request%optimum%method)
+    associate (model => limited%fit%space%model)
+      method = model%request%optimum%method
       has_squares = limited%fit%groups > 0
-      by_squares = is_least_squares(space%model) .and. (method == 'auto' .or. method == 'levenberg-marquardt')
+      by_squares = is_least_squares(model) .and. (method == 'auto' .or. method == 'levenberg-marquardt')
       ! a sum of squares alone is a good place to begin at
       if (has_squares) call make_squares_least(limited%fit, scale, at, found)
       if (found .and. .not. by_squares) call keep_limits(limited, method, at, found)
@@ -164,7 +158,7 @@ contains
 
     settings%small = (1.0e-14_wp*scale)**2*size(fit%targets)
     settings%short = 1.0e-9_wp
-    call minimise_squares(fit, at, y, 0.0_wp*at, 0.0_wp*at + 1.0_wp, (y), (y), settings, outcome)
+    call minimise_squares(fit, at, y, bounds_type(0.0_wp*at, 0.0_wp*at + 1.0_wp, y, y), settings, outcome)
     found = outcome%kind /= ended_without_value
   end subroutine make_squares_least
 

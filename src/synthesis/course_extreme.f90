@@ -48,13 +48,12 @@ module mech9_course_extreme
 contains
 
   !> The number at equal intervals of a motion.
-  subroutine sample_course(number, design, position, q_start, from, to, places, found)
+  subroutine sample_course(number, design, position, q_start, times, places, found)
     class(course_number_type), intent(in) :: number          !< the number
     type(design_type), intent(in) :: design                  !< placed, with its tangents
     type(open_position_type), intent(inout) :: position      !< scratch
     real(wp), intent(in) :: q_start(:)                       !< (M) coordinates near the start [rad, m]
-    real(wp), intent(in) :: from                             !< time of the start [s]
-    real(wp), intent(in) :: to                               !< time of the end [s]
+    real(wp), intent(in) :: times(2)                         !< of start and end [s]
     type(course_place_type), intent(inout) :: places(0:)     !< gets times, coordinates and numbers
     logical, intent(out) :: found                            !< the motion comes to its end
     type(driven_motion_type) :: driven
@@ -64,11 +63,11 @@ contains
 
     state = new_state(design%plan)
     state%q = q_start
-    call close_near(design, from, state, found)
+    call close_near(design, times(1), state, found)
     if (.not. found) return
-    call start_driven_motion(design%drives, design%plan, state, from, driven, err, derivatives=0)
+    call start_driven_motion(design%drives, design%plan, state, times(1), driven, err, derivatives=0)
     do i = 0, ubound(places, 1)
-      places(i)%t = from + (to - from)*i/ubound(places, 1)
+      places(i)%t = times(1) + (times(2) - times(1))*i/ubound(places, 1)
       if (i > 0 .and. .not. allocated(err)) call advance(design%drives, design%plan, driven, places(i)%t, err)
       found = .not. allocated(err)
       if (.not. found) return

@@ -59,7 +59,7 @@ contains
     found = .true.
     do b = 1, size(crank%blocks)
       regularity%block = crank%blocks(b)
-      call sample_course(regularity, turning, fit%position, fit%q_start, 0.0_wp, 2.0_wp*pi, places, found)
+      call sample_course(regularity, turning, fit%position, fit%q_start, [0.0_wp, 2.0_wp*pi], places, found)
       if (.not. found) return
       do i = 1, parts
         n = n + 1

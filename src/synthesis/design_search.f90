@@ -3,7 +3,7 @@
 module mech9_design_search
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
-  use mech9_bounded_least_squares, only: least_squares_settings_type, least_squares_outcome_type, minimise_squares, &
+  use mech9_bounded_least_squares, only: bounds_type, least_squares_settings_type, least_squares_outcome_type, minimise_squares, &
     ended_without_value
   use mech9_plan, only: new_state, within_range
   use mech9_state, only: state_type
@@ -14,7 +14,7 @@ module mech9_design_search
   use mech9_targets, only: target_type, outer_times
   use mech9_waypoints, only: gather_waypoints
   use mech9_relaxed_fit, only: relaxed_fit_type, new_relaxed_fit
-  use mech9_exact_fit, only: exact_fit_type, new_exact_fit
+  use mech9_exact_fit, only: exact_fit_type, search_place_type, new_exact_fit
   use mech9_design_limits, only: design_limits_type, new_design_limits
   use mech9_closed_search, only: found_design_type, search_closed
   use mech9_sampled_run, only: sample_run, reach
@@ -177,28 +177,28 @@ contains
     type(least_squares_settings_type) :: settings
     type(least_squares_outcome_type) :: outcome
     type(error_type), allocatable :: err
-    real(wp) :: x(size(x_start)), y(seen%relaxed%n_y, seen%relaxed%groups), free(size(y, 1), size(y, 2)), q(size(q_start))
-    real(wp) :: low(size(x_start)), high(size(x_start))
+    real(wp) :: x(size(x_start)), y(seen%relaxed%n_y, seen%relaxed%groups)
+    type(bounds_type) :: bounds
+    type(search_place_type) :: place
     integer :: i, first
     logical :: came
 
-    low = 0.0_wp
-    high = 1.0_wp
     x = x_start
     call place_design(space, space%low + x*(space%high - space%low), seen%design, err)
     if (allocated(err)) return
-    call sample_run(seen%design, seen%position, seen%targets, seen%exact%start, seen%exact%end, seen%relaxed%dependent, &
-                    seen%times, q_start, y)
-    free = 1.0e10_wp
-    free(size(y, 1), :) = 1.0_wp
+    call sample_run(seen%relaxed, seen%design, seen%position, seen%times, q_start, y)
+    bounds%low = [(0.0_wp, i=1, size(x))]
+    bounds%high = [(1.0_wp, i=1, size(x))]
+    allocate (bounds%y_high(size(y, 1), size(y, 2)), source=1.0e10_wp)
+    bounds%y_low = -bounds%y_high
+    bounds%y_low(size(y, 1), :) = 0.0_wp
+    bounds%y_high(size(y, 1), :) = 1.0_wp
     settings%short = 1.0e-4_wp
     settings%flat = 1.0e-4_wp
     do i = 1, size(weights)
       seen%relaxed%closing = weights(i)
       settings%most_steps = steps_with(i)
-      call minimise_squares(seen%relaxed, x, y, low, high, &
-                            merge(0.0_wp, -free, spread([(first == size(y, 1), first=1, size(y, 1))], 2, size(y, 2))), free, &
-                            settings, outcome)
+      call minimise_squares(seen%relaxed, x, y, bounds, settings, outcome)
       if (outcome%kind == ended_without_value) return
     end do
     call place_design(space, space%low + x*(space%high - space%low), seen%design, err)
@@ -208,16 +208,16 @@ contains
                      seen%times, came)
     first = minloc((seen%times - seen%exact%start)*sign(1.0_wp, seen%exact%end - seen%exact%start), dim=1, &
                    mask=seen%targets%turned == 0)
-    q = space%model%problem%initial%position
+    place = search_place_type(x, y(size(y, 1), seen%exact%free%target), space%model%problem%initial%position)
     associate (dependent => seen%relaxed%dependent)
       do i = 1, size(dependent)
-        q(dependent(i)) = y(i, first)*space%plan%unit_of(dependent(i))
+        place%q(dependent(i)) = y(i, first)*space%plan%unit_of(dependent(i))
       end do
     end associate
     associate (file => (space%values(space%varied) - space%low)/(space%high - space%low))
-      call find_moving(space, seen%exact, seen%design, seen%times(first), y(size(y, 1), seen%exact%free%target), &
-                       reshape([x_start, min(max(file, 0.0_wp), 1.0_wp)], [size(x), 2]), x, q, came)
+      call find_moving(seen%exact, seen%design, seen%times(first), &
+                       reshape([x_start, min(max(file, 0.0_wp), 1.0_wp)], [size(x), 2]), place, came)
     end associate
-    if (came) call search_closed(space, seen%exact, seen%limits, seen%scale, x, y(size(y, 1), seen%exact%free%target), q, found)
+    if (came) call search_closed(seen%exact, seen%limits, seen%scale, place, found)
   end subroutine search_assembly
 end module mech9_design_search

@@ -25,7 +25,7 @@ module mech9_exact_fit
   use mech9_targets, only: target_type, components_of, difference, difference_derivatives, outer_times
   implicit none
   private
-  public :: exact_fit_type, new_exact_fit, begin_at, has_ended
+  public :: exact_fit_type, search_place_type, new_exact_fit, begin_at, has_ended
 
   !> Steps of the motions of one search. A search along the edge of the designs that can move would take many more, and
   !> ends.
@@ -67,6 +67,13 @@ module mech9_exact_fit
     procedure :: quantity_slopes
     procedure :: note_interruption
   end type exact_fit_type
+
+  !> A design from which a search goes on.
+  type :: search_place_type
+    real(wp), allocatable :: x(:)       !< (P) parameters as parts of their ranges
+    real(wp), allocatable :: parts(:)   !< free times as parts of the run
+    real(wp), allocatable :: q(:)       !< (M) coordinates at the start of the run [rad, m]
+  end type search_place_type
 
 contains
 
@@ -174,8 +181,8 @@ contains
     associate (space => self%space, v => self%varied)
       call place_planar_design(space, space%low + x(:v)*(space%high - space%low), self%near%design, self%design)
       call find_times(self, x(v + 1:), has_value)
-      if (has_value) call find_neighbour(space%plan, self%targets, self%times, self%design, self%near, values%r, self%q_trial, &
-                                         has_value)
+      if (has_value) call find_neighbour(space%plan, self%targets, self%times, self%design, self%near, values%r, has_value)
+      if (has_value) self%q_trial = self%near%trial%q(1, :)
       self%work = self%work + self%near%trial%n
     end associate
   end subroutine evaluate_near

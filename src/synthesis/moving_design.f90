@@ -4,12 +4,12 @@ module mech9_moving_design
   use mech9_error, only: error_type
   use mech9_plan, only: new_state
   use mech9_state, only: state_type
-  use mech9_design_space, only: design_space_type, design_type, place_design
+  use mech9_design_space, only: design_type, place_design
   use mech9_targets, only: target_type
   use mech9_sampled_run, only: reach
   use mech9_branch, only: follow
   use mech9_free_times, only: choose_pivots, gaps_of
-  use mech9_exact_fit, only: exact_fit_type, begin_at
+  use mech9_exact_fit, only: exact_fit_type, search_place_type, begin_at
   use mech9_design_limits, only: design_limits_type
   use mech9_limited_fit, only: limited_fit_type, new_limited_fit, find_value
   implicit none
@@ -21,36 +21,33 @@ module mech9_moving_design
 
 contains
 
-  !> Find a design that moves. The one at `x` is tried first, then others towards each of some designs.
-  subroutine find_moving(space, fit, design, t, parts, others, x, q, found)
-    type(design_space_type), intent(inout) :: space          !< the designs
+  !> Find a design that moves. The one at the place is tried first, then others towards each of some designs.
+  subroutine find_moving(fit, design, t, others, place, found)
     type(exact_fit_type), intent(inout), target :: fit       !< the fit
     type(design_type), intent(inout) :: design               !< scratch
     real(wp), intent(in) :: t                                !< a time in the run [s]
-    real(wp), intent(in) :: parts(:)                         !< free times as parts of the run
     real(wp), intent(in) :: others(:, :)                     !< (P,designs) other designs, parameters as parts of their ranges
-    real(wp), intent(inout) :: x(:)                          !< (P) parameters as parts of their ranges
-    real(wp), intent(inout) :: q(:)                          !< (M) coordinates at this time, nearly closed; then at the start [rad, m]
+    type(search_place_type), intent(inout) :: place          !< with coordinates at this time, nearly closed; then at the start
     logical, intent(out) :: found                            !< a design was found
     type(limited_fit_type) :: limited
     type(design_limits_type) :: none
-    real(wp) :: trial(size(x)), q_trial(size(q))
+    real(wp) :: trial(size(place%x)), q_trial(size(place%q))
     integer :: i, k
 
     call new_limited_fit(fit, none, limited)
-    call choose_pivots(parts, fit%free)
+    call choose_pivots(place%parts, fit%free)
     do k = 1, size(others, 2)
       do i = merge(1, 2, k == 1), size(parts_of_way)
-        trial = x + parts_of_way(i)*(others(:, k) - x)
-        q_trial = q
+        trial = place%x + parts_of_way(i)*(others(:, k) - place%x)
+        q_trial = place%q
         call try_design(trial, q_trial)
         if (found) exit
       end do
       if (found) exit
     end do
     if (.not. found) return
-    x = trial
-    q = q_trial
+    place%x = trial
+    place%q = q_trial
   contains
     !> Try whether a design moves.
     subroutine try_design(x, q)
@@ -62,7 +59,7 @@ contains
       real(wp) :: value
 
       found = .false.
-      call place_design(space, space%low + x*(space%high - space%low), design, err)
+      call place_design(fit%space, fit%space%low + x*(fit%space%high - fit%space%low), design, err)
       if (allocated(err)) return
       if (i > 1) then
         state = new_state(design%plan)
@@ -74,7 +71,7 @@ contains
       call follow(design, t, fit%start, q, found)
       if (.not. found) return
       call begin_at(q, fit)
-      call find_value(limited, [x, gaps_of(parts, fit%free)], value, found)
+      call find_value(limited, [x, gaps_of(place%parts, fit%free)], value, found)
       q = fit%q_trial
     end subroutine try_design
   end subroutine find_moving

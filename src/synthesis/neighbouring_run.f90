@@ -85,15 +85,15 @@ contains
     near%recorded = n
   end subroutine record_position
 
-  !> Find the run of the design that was placed last in planar numbers, beside the known one.
-  subroutine find_neighbour(plan, targets, times, design, near, r, q_start, found)
+  !> Find the run of the design that was placed last in planar numbers, beside the known one; its start is the first position of
+  !> `near%trial`.
+  subroutine find_neighbour(plan, targets, times, design, near, r, found)
     type(plan_type), intent(in) :: plan                    !< the plan of all designs
     type(target_type), intent(in) :: targets(:)            !< the targets
     real(wp), intent(in) :: times(:)                       !< (targets) their times [s]
     type(design_type), intent(in) :: design                !< with its drives
     type(neighbouring_run_type), intent(inout) :: near     !< gets the run
     real(wp), intent(inout) :: r(:, :)                     !< (rows,groups) gets the differences from the targets
-    real(wp), intent(inout) :: q_start(:)                  !< (M) gets the coordinates at the start [rad, m]
     logical, intent(out) :: found                          !< the run was found, on one branch from its start to its end
 
     near%is_neighbour = .false.
@@ -104,7 +104,6 @@ contains
     found = found .and. near%trial%n <= most_growth*near%recorded
     if (.not. found) return
     call find_differences(plan, targets, near, r)
-    q_start = near%trial%q(1, :)
     near%is_neighbour = .true.
   end subroutine find_neighbour
 

@@ -12,7 +12,7 @@ module mech9_sampled_run
   use mech9_design_space, only: design_type
   use mech9_open_position, only: open_position_type, find_openings
   use mech9_targets, only: target_type, difference
-  use mech9_relaxed_fit, only: turn_on
+  use mech9_relaxed_fit, only: relaxed_fit_type, turn_on
   implicit none
   private
   public :: sample_run, reach
@@ -50,13 +50,10 @@ contains
 
   !> Sample the run from a position at its start, with chains closed or nearly so, and choose the coordinates and times of the
   !> targets: those with free times are assigned in their order to the samples that are nearest to them.
-  subroutine sample_run(design, position, targets, from, to, dependent, given, q_start, y)
+  subroutine sample_run(fit, design, position, given, q_start, y)
+    class(relaxed_fit_type), intent(in) :: fit           !< with the targets, the dependent coordinates and the times of the run
     type(design_type), intent(in) :: design              !< placed
     type(open_position_type), intent(inout) :: position  !< scratch
-    type(target_type), intent(in) :: targets(:)          !< all targets
-    real(wp), intent(in) :: from                         !< start of the run [s]
-    real(wp), intent(in) :: to                           !< end of the run [s]
-    integer, intent(in) :: dependent(:)                  !< numbers of the dependent coordinates
     real(wp), intent(in) :: given(:)                     !< (targets) times that are not free [s]
     real(wp), intent(in) :: q_start(:)                   !< (M) coordinates at the start [rad, m]
     real(wp), intent(out) :: y(:, :)                     !< (n_y,targets) dependent coordinates in their units, and times
@@ -69,37 +66,37 @@ contains
     integer :: i, g, n
     logical :: closed
 
-    n = max(fewest_samples, 3*size(targets))
-    allocate (q(size(q_start), 0:n), times(0:n), squares(size(targets), 0:n))
+    n = max(fewest_samples, 3*size(fit%targets))
+    allocate (q(size(q_start), 0:n), times(0:n), squares(size(fit%targets), 0:n))
     state = new_state(design%plan)
     state%q = q_start
     do i = 0, n
-      times(i) = from + (to - from)*i/n
+      times(i) = fit%start + (fit%end - fit%start)*i/n
       call reach(design, times(i), nowhere, state, closed)
       q(:, i) = state%q
       position%state%t = times(i)
       position%state%q = state%q
       call set_inputs(design%drives, times(i), position%state%q, position%state%dq, position%state%ddq, err)
       if (.not. allocated(err)) call find_openings(design, position, err)
-      do g = 1, size(targets)
-        call difference(targets(g), design%in_space, design, position%state, r)
+      do g = 1, size(fit%targets)
+        call difference(fit%targets(g), design%in_space, design, position%state, r)
         squares(g, i) = sum(r**2)
       end do
     end do
-    allocate (at(size(targets)))
-    call assign_in_order(targets, squares, at)
-    do g = 1, size(targets)
+    allocate (at(size(fit%targets)))
+    call assign_in_order(fit%targets, squares, at)
+    do g = 1, size(fit%targets)
       time = times(at(g))
-      if (targets(g)%timing /= timing_free) then
+      if (fit%targets(g)%timing /= timing_free) then
         time = given(g)
         at(g) = minloc(abs(times - time), dim=1) - 1
         state%q = q(:, at(g))
-        call reach(design, time, targets(g), state, closed)
-        y(:size(y, 1) - 1, g) = state%q(dependent)/design%in_space%unit_of(dependent)
+        call reach(design, time, fit%targets(g), state, closed)
+        y(:size(y, 1) - 1, g) = state%q(fit%dependent)/design%in_space%unit_of(fit%dependent)
       else
-        y(:size(y, 1) - 1, g) = q(dependent, at(g))/design%in_space%unit_of(dependent)
+        y(:size(y, 1) - 1, g) = q(fit%dependent, at(g))/design%in_space%unit_of(fit%dependent)
       end if
-      y(size(y, 1), g) = (time - from)/(to - from)
+      y(size(y, 1), g) = (time - fit%start)/(fit%end - fit%start)
     end do
   end subroutine sample_run
 

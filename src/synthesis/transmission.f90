@@ -119,7 +119,7 @@ contains
     type(course_place_type) :: cosines(0:samples), extreme
     integer :: k
 
-    call sample_course(transmission, fit%design, fit%position, fit%q_start, fit%start, fit%end, cosines, found)
+    call sample_course(transmission, fit%design, fit%position, fit%q_start, [fit%start, fit%end], cosines, found)
     if (.not. found) return
     do k = 1, 2
       call find_least(transmission, merge(1.0_wp, -1.0_wp, k == 1), fit%design, fit%position, cosines, extreme)

@@ -84,8 +84,8 @@ contains
       call find_reactions(model%mechanism, plan, reaction_plan, state, fresh, err)
       call tester%no_error(err, 'singular values give the forces')
       if (i > 0) then
-        call reactions%balances(1)%set_position(reaction_plan%clusters(1), fresh%geometry, reaction_plan, reaction_plan%length, &
-                                                regular)
+        call reactions%balances(1)%set_position(reaction_plan%clusters(1), fresh%links%geometry, reaction_plan, &
+                                                reaction_plan%length, regular)
         call tester%is_true(regular, 'the equations are regular after the first position')
       end if
       call find_reactions(model%mechanism, plan, reaction_plan, state, reactions, err)

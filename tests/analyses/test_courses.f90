@@ -210,7 +210,8 @@ contains
 
     call prepare(tester, varied, space, design, position)
     call find_transmission(design%plan, 3, transmission, found)
-    call sample_course(transmission, design, position, four_bar_guess(bar, start_angle, 1), 0.0_wp, 2.0_wp*pi/omega, places, found)
+    call sample_course(transmission, design, position, four_bar_guess(bar, start_angle, 1), [0.0_wp, 2.0_wp*pi/omega], places, &
+                       found)
     call tester%is_true(found, 'the crank turns fully')
     do side = -1, 1, 2
       call find_least(transmission, real(side, wp), design, position, places, least)
@@ -221,7 +222,7 @@ contains
       call tester%near(maxval(abs(least%by_x - by_x)), 0.0_wp, 1.0e-9_wp, 'its derivatives by the lengths')
     end do
     ! over a part without an extreme, the ends are extreme
-    call sample_course(transmission, design, position, four_bar_guess(bar, start_angle, 1), 0.0_wp, 1.0_wp/omega, places, found)
+    call sample_course(transmission, design, position, four_bar_guess(bar, start_angle, 1), [0.0_wp, 1.0_wp/omega], places, found)
     do side = -1, 1, 2
       call find_least(transmission, real(side, wp), design, position, places, least)
       call closed_form(start_angle + merge(1.0_wp, 0.0_wp, side > 0), cosine, by_x, by_t)

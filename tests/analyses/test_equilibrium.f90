@@ -12,7 +12,7 @@ module test_equilibrium
   use mech9_resting_mechanism, only: resting_type, put_to_rest, find_stiffness, try_step, is_balanced
   use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_equilibria, only: find_equilibrium, find_equilibria
-  use mech9_mode_shapes, only: shape_of_mode, energy_shares, position_in_vibration
+  use mech9_mode_shapes, only: shape_of_mode, energy_shares, displacement, position_in_vibration
   use mech9_state_space, only: state_space_type, find_state_space
   use mech9_loaded_mechanisms, only: check_each_mechanism
   use mech9_text_models, only: model_from_text
@@ -75,7 +75,7 @@ contains
     integer :: i, j
 
     call assemble(tester, double_pendulum//'&initial coordinate=1, position=0.3 /', model, plan, state)
-    call find_equilibria(model%mechanism, model%problem%partition, plan, state, 40, list, err)
+    call find_equilibria(model, plan, state, 40, list, err)
     call tester%no_error(err, 'equilibria are found')
     call tester%is_true(size(list) == 4, 'two rods hang or stand in four ways')
     do i = 1, size(list)
@@ -135,7 +135,7 @@ contains
       call energy_shares(found, mode, shares)
       q = q*[5.0_wp*q(1) + 2.0_wp*q(2), 2.0_wp*q(1) + q(2)]
       call tester%near(maxval(abs(shares - q/sum(q))), 0.0_wp, 1.0e-9_wp, 'shares of the kinetic energy')
-      call position_in_vibration(model%mechanism, found, mode, 0.1_wp, 0.0_wp, displaced, exists, err)
+      call position_in_vibration(model%mechanism, found, displacement(found, mode, 0.1_wp, 0.0_wp), displaced, exists, err)
       call tester%is_true(exists, 'the rods can swing by a tenth of a rad')
       call tester%near(maxval(abs(displaced%q)), 0.1_wp, 1.0e-12_wp, 'the largest coordinate swings by a tenth of a rad')
       call tester%near(maxval(abs(displaced%q*shape(1) - displaced%q(1)*shape)), 0.0_wp, 1.0e-9_wp, 'and the others in proportion')

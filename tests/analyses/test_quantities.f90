@@ -4,6 +4,7 @@ module test_quantities
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use mech9_kinds, only: wp
   use mech9_chebyshev, only: chebyshev_type, new_chebyshev
+  use mech9_smooth_pieces, only: smooth_piece_type
   use mech9_tracked_quantity, only: tracked_quantity_type
   use mech9_quantity_sums, only: quantity_sums_type
   use mech9_quantity_gradient, only: quantity_gradient_type
@@ -105,6 +106,7 @@ contains
     logical, intent(in) :: with_derivatives                !< outputs have two derivatives
     type(tracked_quantity_type), intent(out) :: quantity   !< the number
     type(chebyshev_type) :: rule
+    type(smooth_piece_type) :: piece
     real(wp), allocatable :: values(:), changes(:, :), no_joint(:)
     real(wp) :: row(13), from, to
     integer :: i, j
@@ -127,7 +129,9 @@ contains
           values(j) = row(2)
           changes(:, j) = row([5, 8, 11])
         end do
-        call quantity%end_piece(rule, from, row_at(to), values, changes, no_joint, no_joint)
+        piece%from = from
+        piece%to = to
+        call quantity%end_piece(rule, piece, row_at(to), values, changes)
       end if
       from = to
     end do

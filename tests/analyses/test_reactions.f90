@@ -16,8 +16,8 @@ module test_reactions
   use mech9_lagrange, only: find_equations, complete_accelerations
   use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
   use mech9_reactions, only: reactions_type, new_reactions, find_reactions
-  use mech9_required_wrenches, only: find_required
-  use mech9_joint_geometry, only: joint_geometry_type, new_joint_geometry, find_geometry
+  use mech9_required_wrenches, only: required_wrenches_type, find_required
+  use mech9_joint_geometry, only: find_geometry
   use mech9_uniqueness, only: uniqueness_type, find_unique
   use mech9_mixed_structures, only: structure_type, random_structure, finished, below
   use mech9_loaded_mechanisms, only: loaded_loop, five_bar, loaded_fig1, open_chain
@@ -193,17 +193,19 @@ contains
     type(reactions_type), intent(in) :: reactions           !< the forces
     real(wp), intent(in) :: scale                           !< the largest force [N, N m]
     character(len=*), intent(in) :: why                     !< name of the mechanism
-    type(joint_geometry_type) :: geometry
+    type(required_wrenches_type) :: links
     real(wp) :: force(3, plan%n_links), moment(3, plan%n_links), arm(3)
     integer :: k, side, link
 
-    geometry = new_joint_geometry(plan)
-    call find_geometry(plan, reaction_plan, state, geometry)
-    call find_required(model%mechanism, plan, reaction_plan, state, geometry%place, reactions%view, reactions%sum, force, moment)
+    links = reactions%links
+    call find_geometry(plan, reaction_plan, state, links%geometry)
+    call find_required(model%mechanism, plan, reaction_plan, state, links)
+    force = links%force
+    moment = links%moment
     do k = 1, plan%n_coordinates
       do side = 1, 2
         link = reaction_plan%pairs(k)%links(side)
-        arm = geometry%point(:, k) - geometry%place(:, link)
+        arm = links%geometry%point(:, k) - links%geometry%place(:, link)
         force(:, link) = force(:, link) - (3 - 2*side)*reactions%force(:, k)
         moment(:, link) = moment(:, link) - (3 - 2*side)*(reactions%moment(:, k) + cross(arm, reactions%force(:, k)))
       end do

@@ -149,21 +149,21 @@ contains
       do trial = 1, 10
         call fill(random, required)
         wrenches = 0.0_wp
-        call balance%complete(cluster, required, wrenches, lacking, converged)
+        call balance%complete(required, wrenches, lacking, converged)
         call tester%is_true(converged, 'the links are in balance')
-        call balance%find_lacking(cluster, required, wrenches, lacking)
+        call balance%find_lacking(required, wrenches, lacking)
         ! round-off of sums of a dozen wrenches of order ten
         call tester%near(maxval(abs(lacking)), 0.0_wp, 1.0e-13_wp, 'no link lacks anything')
         call tester%near(work_on_held(balance, wrenches), 0.0_wp, 1.0e-13_wp, 'dependent coordinates need no drive')
         others = 0.0_wp
-        call singular%complete(balance, cluster, required, others, converged)
+        call singular%complete(balance, required, others, converged)
         call tester%is_true(converged, 'singular values balance the links')
         ! the factors have the square of the condition, some hundred; corrections remove its error
         call tester%near(maxval(abs(others - wrenches)), 0.0_wp, 1.0e-11_wp, 'both ways give the same wrenches')
         call fill(random, idle)
         call take_off_held(balance, idle)
         call singular%remove_determined(idle)
-        call balance%find_lacking(cluster, nothing, idle, lacking)
+        call balance%find_lacking(nothing, idle, lacking)
         call tester%near(maxval(abs(lacking)), 0.0_wp, 1.0e-13_wp, 'idle wrenches balance each other')
         call tester%is_true(maxval(abs(idle)) > 1.0e-3_wp, 'there are such wrenches')
         call tester%near(sum(idle*wrenches), 0.0_wp, 1.0e-12_wp, 'wrenches of least norm have no part of them')
@@ -197,10 +197,10 @@ contains
       call tester%is_true(singular%rank == 36, 'all equations are independent')
       call fill(random, required)
       wrenches = 0.0_wp
-      call balance%complete(cluster, required, wrenches, lacking, converged)
+      call balance%complete(required, wrenches, lacking, converged)
       call tester%is_true(converged, 'the links are in balance')
       others = 0.0_wp
-      call singular%complete(balance, cluster, required, others, converged)
+      call singular%complete(balance, required, others, converged)
       call tester%is_true(converged, 'singular values balance the links')
       call tester%near(maxval(abs(others - wrenches))/maxval(abs(wrenches)), 0.0_wp, 1.0e-10_wp, 'both ways give the same wrenches')
       call fill(random, others)

@@ -2,11 +2,10 @@
 module test_mjcf_masses
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_data
-  use mech9_pose, only: pose_type
   use mech9_xml_tree, only: xml_tree_type
   use mech9_robot, only: robot_type, robot_link_type
   use mech9_mjcf_settings, only: mjcf_settings_type, read_settings
-  use mech9_mjcf_masses, only: read_inertial, add_geom
+  use mech9_mjcf_masses, only: mjcf_around_type, read_inertial, add_geom
   use mech9_testing, only: tester_type
   use mech9_checks, only: near_vector, near_matrix, has_message
   use xml_texts, only: read_lines, symmetric
@@ -45,13 +44,13 @@ contains
 
     call read_lines(tester, path, [character(len=110) :: '<mujoco>', lines, '</mujoco>'], tree)
     call robot%begin('MJCF')
-    link%name = 'a'
     call read_settings(tree, settings, err)
     e = tree%child(1, 'geom')
     do while (e > 0)
-      call add_geom(tree, e, settings, 0, pose_type(), robot, link, err)
+      call add_geom(tree, e, settings, mjcf_around_type(), robot, err)
       e = tree%next_named(e, 'geom')
     end do
+    link = robot%links(1)
   end subroutine add_all
 
   subroutine inertial(tester)

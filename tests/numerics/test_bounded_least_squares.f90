@@ -133,7 +133,8 @@ end module published_problems
 !> their own.
 module test_bounded_least_squares
   use mech9_kinds, only: wp
-  use mech9_bounded_least_squares, only: least_squares_settings_type, least_squares_outcome_type, minimise_squares, ended_short, &
+  use mech9_bounded_least_squares, only: bounds_type, least_squares_settings_type, least_squares_outcome_type, minimise_squares, &
+    ended_short, &
     ended_flat, ended_by_count, ended_without_value
   use published_problems, only: problem_type, circle_type, rosenbrock, powell_singular, wood, freudenstein_roth, bard, &
     jennrich_sampson, one_direction, with_gap
@@ -176,7 +177,7 @@ contains
     problem%groups = 1
     problem%rows = rows
     settings%most_steps = most_steps
-    call minimise_squares(problem, x, y, low, high, bounds, bounds, settings, outcome)
+    call minimise_squares(problem, x, y, bounds_type(low, high, bounds, bounds), settings, outcome)
     call tester%is_true(all(x >= low) .and. all(x <= high), 'the bounds hold')
     ! one evaluation of the residuals for each step, one of the derivatives for each accepted step, and both at the start
     call tester%is_true(problem%evaluations <= 2*outcome%steps + 2, 'no evaluation is made twice')
@@ -291,7 +292,8 @@ contains
     x = [0.0_wp, 0.0_wp, 1.0_wp]
     all_x = [x, y]
     low = -far
-    call minimise_squares(apart, x, y, low(:3), -low(:3), reshape(low(4:), [1, n]), reshape(-low(4:), [1, n]), settings, outcome)
+    call minimise_squares(apart, x, y, bounds_type(low(:3), -low(:3), reshape(low(4:), [1, n]), reshape(-low(4:), [1, n])), &
+                          settings, outcome)
     call tester%near(outcome%value, sum((norm2(apart%points - spread(x(1:2), 2, n), 1) - x(3))**2), 1e-12_wp, &
                      'the value is the sum of the squared distances from the circle')
     call tester%is_true(outcome%value > 1e-3_wp .and. outcome%value < 0.09_wp, 'which is of the size of the disturbance')
@@ -300,7 +302,7 @@ contains
     together%n = 3 + n
     together%groups = 1
     together%rows = 2*n
-    call minimise_squares(together, all_x, none, low, -low, none, none, settings, other)
+    call minimise_squares(together, all_x, none, bounds_type(low, -low, none, none), settings, other)
     call tester%near(other%value, outcome%value, 1e-12_wp, 'the same minimum where all unknowns are shared')
     call tester%near(norm2(all_x - [x, y]), 0.0_wp, 1e-6_wp, 'at the same place')
     call tester%is_true(abs(other%steps - outcome%steps) <= 2, 'in as many steps: elimination changes round-off only')

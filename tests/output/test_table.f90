@@ -5,6 +5,7 @@ module test_table
   use mech9_error, only: error_type, exit_file, exit_internal
   use mech9_text, only: string_type, to_text
   use mech9_table, only: table_type
+  use mech9_heading, only: new_heading
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -31,7 +32,7 @@ contains
     character(len=*), intent(in) :: path                !< of its file
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call table%open(path, 'Two columns', 'mech9k 0.0', words('t|q1'), words('s|rad'), err)
+    call table%open(path, new_heading('Two columns', words('t|q1'), words('s|rad')), 'mech9k 0.0', err)
   end subroutine open_two_columns
 
   subroutine test_contents(tester)
@@ -74,9 +75,9 @@ contains
     character(len=*), parameter :: e_acute = char(195)//char(169)
     integer :: count
 
-    call table%open('odd.dat', 'one'//achar(10)//'two'//achar(13)//achar(10)//achar(0)//'a'//achar(27) &
-                    //char(255)//e_acute//char(195), 'p', &
-                    words('t|a b#"c|'//repeat('n', 30)), words('|m/s|N m'), err)
+    call table%open('odd.dat', new_heading('one'//achar(10)//'two'//achar(13)//achar(10)//achar(0)//'a'//achar(27) &
+                                           //char(255)//e_acute//char(195), &
+                                           words('t|a b#"c|'//repeat('n', 30)), words('|m/s|N m')), 'p', err)
     call tester%no_error(err, 'a table with a title of several lines is opened')
     call table%write_row([1.0_wp, 2.0_wp, 3.0_wp], err)
     call table%close(err)
@@ -99,7 +100,7 @@ contains
     real(wp) :: row(3)
     integer :: count
 
-    call table%open('commas.CSV', 'title', 'p', words('t|a, b|say "x"'), words('s|m|m'), err)
+    call table%open('commas.CSV', new_heading('title', words('t|a, b|say "x"'), words('s|m|m')), 'p', err)
     call tester%no_error(err, 'a table with commas is opened')
     call table%write_row([0.1_wp, -1.0_wp/3.0_wp, 1.0e-300_wp], err)
     call table%write_row([0.0_wp, 1.0_wp, -huge(1.0_wp)], err)
@@ -147,7 +148,7 @@ contains
       units(i)%text = 'rad'
     end do
     call cpu_time(begin)
-    call table%open('wide.dat', '', 'p', names, units, err)
+    call table%open('wide.dat', new_heading('', names, units), 'p', err)
     call tester%no_error(err, 'a table with many columns is opened')
     call table%close(err)
     call cpu_time(time)
@@ -235,7 +236,7 @@ contains
     call tester%has_error(err, exit_file, 'an empty name of a file is refused')
     call table%write_row([1.0_wp, 1.0_wp], err)
     call tester%has_error(err, exit_internal, 'a row for a table that is not open is refused')
-    call table%open('short.dat', '', '', words('t'), words('s|m'), err)
+    call table%open('short.dat', new_heading('', words('t'), words('s|m')), '', err)
     call tester%has_error(err, exit_internal, 'more units than names are refused')
     call open_two_columns(table, 'short.dat', err)
     call table%write_row([1.0_wp], err)

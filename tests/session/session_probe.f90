@@ -6,6 +6,7 @@ program session_probe
   use mech9_error, only: error_type, exit_interrupted
   use mech9_text, only: string_type, to_text
   use mech9_table, only: table_type
+  use mech9_heading, only: new_heading
   use mech9_command_line, only: get_command_words
   use mech9_progress, only: progress_type
   use mech9_system, only: exit_program, catch_interrupts, interrupted
@@ -77,7 +78,7 @@ contains
       names(i)%text = 'q'//to_text(i)
       units(i)%text = 'm'
     end do
-    call table%open(path, 'Probe', 'probe', names, units, err)
+    call table%open(path, new_heading('Probe', names, units), 'probe', err)
     do i = 1, rows
       if (allocated(err)) exit
       row(1) = i

@@ -4,6 +4,7 @@ module mech9_equilibria
   use mech9_error, only: error_type, raise, exit_assembly, exit_singular, exit_interrupted
   use mech9_random, only: random_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_partition, only: partition_type, free_coordinate
   use mech9_plan, only: plan_type, within_range
   use mech9_state, only: state_type, copy_state
@@ -14,7 +15,7 @@ module mech9_equilibria
   use mech9_simulation, only: interruption_type
   use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, is_balanced, copy_resting
   use mech9_same_position, only: is_same_position, same_position
-  use mech9_resting_motors, only: hold_setpoints
+  use mech9_resting_motors, only: held_position_type, hold_setpoints
   use mech9_linearised_equilibrium, only: equilibrium_type, linearise, copy_equilibrium
   use mech9_equilibrium_search, only: find_from_start, find_any
   implicit none
@@ -42,12 +43,10 @@ contains
     type(equilibrium_type), intent(out) :: found        !< the equilibrium
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    type(partition_type) :: held
-    type(plan_type) :: held_plan
-    type(state_type) :: position
+    type(held_position_type) :: held
 
-    call hold_setpoints(mechanism, partition, plan, assembled, held, held_plan, position, err)
-    if (.not. allocated(err)) call put_to_rest(mechanism, held, held_plan, position, found%resting, err)
+    call hold_setpoints(mechanism, partition, plan, assembled, held, err)
+    if (.not. allocated(err)) call put_to_rest(mechanism, held%partition, held%plan, held%state, found%resting, err)
     if (allocated(err)) return
     if (size(found%resting%free) > 0) call find_from_start(mechanism, found%resting, err)
     if (.not. allocated(err)) call linearise(mechanism, partition, found, err)
@@ -75,9 +74,8 @@ contains
   !> All equilibria to which an assembled position and random ones lead, sorted by their coordinates. The random positions are
   !> the same in every run. Fails as find_equilibrium does, but with exit_assembly and exit_singular only where none is found.
   !> Fails with exit_interrupted where it shall stop, with the equilibria that were found before.
-  subroutine find_equilibria(mechanism, partition, plan, assembled, n_starts, list, err, interruption)
-    type(mechanism_type), intent(in) :: mechanism                     !< the mechanism
-    type(partition_type), intent(in) :: partition                     !< driven, free and dependent coordinates
+  subroutine find_equilibria(model, plan, assembled, n_starts, list, err, interruption)
+    type(model_type), intent(in) :: model                             !< the mechanism with the kinds of its coordinates
     type(plan_type), intent(in) :: plan                               !< its plan, in space
     type(state_type), intent(in) :: assembled                         !< closed, with the motion of the driven coordinates
     integer, intent(in) :: n_starts                                   !< number of random positions
@@ -89,33 +87,32 @@ contains
     type(posture_type) :: posture
     type(random_type) :: random
     type(error_type), allocatable :: failure
-    type(partition_type) :: held
-    type(plan_type) :: held_plan
-    type(state_type) :: position
+    type(held_position_type) :: held
     integer :: i, n
     logical :: reached
 
     allocate (list(0), slots(16))
     n = 0
-    posture = new_posture(mechanism, plan)
-    call find_equilibrium(mechanism, partition, plan, assembled, found, failure)
-    if (allocated(failure)) then
-      if (failure%code /= exit_assembly .and. failure%code /= exit_singular) call move_alloc(failure, err)
+    associate (mechanism => model%mechanism, partition => model%problem%partition)
+      posture = new_posture(mechanism, plan)
+      call find_equilibrium(mechanism, partition, plan, assembled, found, failure)
+      if (allocated(failure)) then
+        if (failure%code /= exit_assembly .and. failure%code /= exit_singular) call move_alloc(failure, err)
+        if (allocated(err)) return
+      else
+        call add_new(mechanism, posture, found, slots, n)
+      end if
+      call hold_setpoints(mechanism, partition, plan, assembled, held, err)
       if (allocated(err)) return
-    else
-      call add_new(mechanism, posture, found, slots, n)
-    end if
-    call hold_setpoints(mechanism, partition, plan, assembled, held, held_plan, position, err)
-    if (allocated(err)) return
-    do i = 1, n_starts
-      ! setpoints may hold all coordinates, and there is one position then
-      if (.not. any(held%kind == free_coordinate)) exit
-      if (present(interruption)) call stop_if_interrupted(interruption, i - 1, n_starts, err)
-      if (.not. allocated(err)) call try_anywhere(mechanism, partition, held, held_plan, position, random, found, &
-                                                   reached, err)
-      if (allocated(err)) exit
-      if (reached) call add_new(mechanism, posture, found, slots, n)
-    end do
+      do i = 1, n_starts
+        ! setpoints may hold all coordinates, and there is one position then
+        if (.not. any(held%partition%kind == free_coordinate)) exit
+        if (present(interruption)) call stop_if_interrupted(interruption, i - 1, n_starts, err)
+        if (.not. allocated(err)) call try_anywhere(mechanism, partition, held, random, found, reached, err)
+        if (allocated(err)) exit
+        if (reached) call add_new(mechanism, posture, found, slots, n)
+      end do
+    end associate
     if (allocated(err)) then
       if (err%code /= exit_interrupted) return
     else if (n == 0) then
@@ -138,12 +135,10 @@ contains
   end subroutine stop_if_interrupted
 
   !> The equilibrium to which one random position leads. `reached` is false where there is none.
-  subroutine try_anywhere(mechanism, partition, held, plan, assembled, random, found, reached, err)
+  subroutine try_anywhere(mechanism, partition, held, random, found, reached, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(partition_type), intent(in) :: partition       !< driven, free and dependent coordinates
-    type(partition_type), intent(in) :: held            !< the same with driven setpoints
-    type(plan_type), intent(in) :: plan                 !< its plan, in space
-    type(state_type), intent(in) :: assembled           !< closed, with the motion of the driven coordinates
+    type(held_position_type), intent(in) :: held        !< the assembled position, with driven setpoints
     type(random_type), intent(inout) :: random          !< source of random numbers
     type(equilibrium_type), intent(inout) :: found      !< the equilibrium
     logical, intent(out) :: reached                     !< there is one
@@ -151,11 +146,11 @@ contains
     type(resting_type) :: resting
     type(error_type), allocatable :: at_lock
 
-    call start_anywhere(mechanism, held, plan, assembled, random, resting, reached)
+    call start_anywhere(mechanism, held, random, resting, reached)
     if (.not. reached) return
     call find_any(mechanism, resting, reached, err)
     if (allocated(err) .or. .not. reached) return
-    call reduce_turns(mechanism, assembled, resting)
+    call reduce_turns(mechanism, held%state, resting)
     call copy_resting(resting, found%resting)
     call linearise(mechanism, partition, found, at_lock)
     ! without inertia, the forces say nothing about a coordinate: angles of a ball joint in gimbal lock
@@ -163,11 +158,9 @@ contains
   end subroutine try_anywhere
 
   !> A mechanism at rest in a random position. `reached` is false where the chains do not close.
-  subroutine start_anywhere(mechanism, partition, plan, assembled, random, resting, reached)
+  subroutine start_anywhere(mechanism, held, random, resting, reached)
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
-    type(partition_type), intent(in) :: partition     !< driven, free and dependent coordinates
-    type(plan_type), intent(in) :: plan               !< its plan, in space
-    type(state_type), intent(in) :: assembled         !< closed, with the motion of the driven coordinates
+    type(held_position_type), intent(in) :: held      !< the assembled position, with driven setpoints
     type(random_type), intent(inout) :: random        !< source of random numbers
     type(resting_type), intent(out) :: resting        !< the mechanism in that position
     logical, intent(out) :: reached                   !< the chains close
@@ -177,20 +170,20 @@ contains
     integer :: trial, i, k
 
     reached = .false.
-    call put_to_rest(mechanism, partition, plan, assembled, resting, err)
+    call put_to_rest(mechanism, held%partition, held%plan, held%state, resting, err)
     if (allocated(err)) return
     do trial = 1, most_trials
-      call copy_state(assembled, position)
+      call copy_state(held%state, position)
       do i = 1, size(resting%free)
         k = resting%free(i)
-        associate (step => plan%steps(plan%step_of(k)))
+        associate (step => held%plan%steps(held%plan%step_of(k)))
           ! half a turn, or the size of the mechanism, in each direction
-          change = merge(0.5_wp*step%period, plan%unit_of(k), step%period > 0.0_wp)
+          change = merge(0.5_wp*step%period, held%plan%unit_of(k), step%period > 0.0_wp)
           position%q(k) = within_range(step, position%q(k) + change*random%symmetric())
         end associate
       end do
-      call place_all(plan, position, err)
-      if (.not. allocated(err)) call close_from(plan, plan%blocks, pi, random, position, reached)
+      call place_all(held%plan, position, err)
+      if (.not. allocated(err)) call close_from(held%plan, held%plan%blocks, pi, random, position, reached)
       if (reached) exit
     end do
     if (.not. reached) return

@@ -9,7 +9,7 @@ module mech9_mode_shapes
   use mech9_linearised_equilibrium, only: equilibrium_type
   implicit none
   private
-  public :: shape_of_mode, energy_shares, position_in_vibration
+  public :: shape_of_mode, energy_shares, displacement, position_in_vibration
 
 contains
 
@@ -51,25 +51,33 @@ contains
     end associate
   end subroutine energy_shares
 
-  !> A position of a vibration: the equilibrium, and so many times the mode at a phase. `found` is false where the mechanism cannot go
-  !> so far.
-  subroutine position_in_vibration(mechanism, equilibrium, mode, amplitude, phase, position, found, err)
-    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+  !> The displacement of the free coordinates in a vibration.
+  pure function displacement(equilibrium, mode, amplitude, phase)
     type(equilibrium_type), intent(in) :: equilibrium      !< with its modes
     integer, intent(in) :: mode                            !< number of the mode
     real(wp), intent(in) :: amplitude                      !< of the largest free coordinate [rad, lengths of the mechanism]
     real(wp), intent(in) :: phase                          !< [rad]
-    type(state_type), intent(out) :: position              !< closed
-    logical, intent(out) :: found                          !< the position exists
-    type(error_type), allocatable, intent(out) :: err      !< allocated if a load failed
-    type(resting_type) :: other
+    real(wp) :: displacement(size(equilibrium%resting%free))
     complex(wp) :: step(size(equilibrium%resting%free))
 
     associate (resting => equilibrium%resting)
       step = equilibrium%modes%shapes(:, mode)/resting%plan%unit_of(resting%free)
       step = step*exp(cmplx(0.0_wp, phase, wp))*(amplitude/maxval(abs(step)))
-      call try_step(mechanism, resting, real(step, wp), other, found, err)
+      displacement = real(step, wp)
     end associate
+  end function displacement
+
+  !> A position beside an equilibrium, as in a vibration. `found` is false where the mechanism cannot go so far.
+  subroutine position_in_vibration(mechanism, equilibrium, step, position, found, err)
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(equilibrium_type), intent(in) :: equilibrium      !< the equilibrium
+    real(wp), intent(in) :: step(:)                        !< (n) displacement of its free coordinates
+    type(state_type), intent(out) :: position              !< closed
+    logical, intent(out) :: found                          !< the position exists
+    type(error_type), allocatable, intent(out) :: err      !< allocated if a load failed
+    type(resting_type) :: other
+
+    call try_step(mechanism, equilibrium%resting, step, other, found, err)
     if (found) position = other%state
   end subroutine position_in_vibration
 end module mech9_mode_shapes

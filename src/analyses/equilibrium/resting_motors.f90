@@ -19,7 +19,14 @@ module mech9_resting_motors
   use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, copy_resting
   implicit none
   private
-  public :: motor_coupling_type, hold_setpoints, release_setpoints, couple_motors
+  public :: held_position_type, motor_coupling_type, hold_setpoints, release_setpoints, couple_motors
+
+  !> A closed position in which coordinates of controllers are driven to their setpoints.
+  type :: held_position_type
+    type(partition_type) :: partition   !< driven, free and dependent coordinates
+    type(plan_type) :: plan             !< in space
+    type(state_type) :: state           !< with rates and accelerations of the driven coordinates
+  end type held_position_type
 
   !> Derivatives of forces and of the rates of motors' states, in SI units.
   type :: motor_coupling_type
@@ -37,20 +44,18 @@ contains
 
   !> Drive the coordinates of controllers with an integral part to their setpoints. Without such controllers all stays as it is.
   !> Fails where the mechanism cannot be assembled there.
-  subroutine hold_setpoints(mechanism, partition, plan, assembled, held, held_plan, position, err)
+  subroutine hold_setpoints(mechanism, partition, plan, assembled, held, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(partition_type), intent(in) :: partition       !< driven, free and dependent coordinates
     type(plan_type), intent(in) :: plan                 !< its plan, in space
     type(state_type), intent(in) :: assembled           !< closed, with rates and accelerations of the driven coordinates
-    type(partition_type), intent(out) :: held           !< with driven coordinates in place of those with setpoints
-    type(plan_type), intent(out) :: held_plan           !< its plan, in space
-    type(state_type), intent(out) :: position           !< closed, with these coordinates at their setpoints
+    type(held_position_type), intent(out) :: held       !< with driven coordinates in place of those with setpoints, at these
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: q(size(assembled%q)), rate, acceleration
     logical :: is_held(size(assembled%q))
     integer :: i
 
-    held = partition
+    held%partition = partition
     q = assembled%q
     is_held = .false.
     do i = 1, size(mechanism%motors)
@@ -61,17 +66,17 @@ contains
         is_held(motor%coordinate) = .true.
       end associate
     end do
-    where (is_held) held%kind = driven_coordinate
+    where (is_held) held%partition%kind = driven_coordinate
     ! setpoints may be far from the assembled position, which the plan of closed positions does not expect
-    if (any(is_held)) call make_plan(mechanism, held, q, held_plan, position, err, in_space=.true.)
+    if (any(is_held)) call make_plan(mechanism, held%partition, q, held%plan, held%state, err, in_space=.true.)
     if (allocated(err)) return
-    if (any(is_held)) q = position%q
-    call plan_by_geometry(mechanism, held, plan, q, held_plan, position, err)
+    if (any(is_held)) q = held%state%q
+    call plan_by_geometry(mechanism, held%partition, plan, q, held%plan, held%state, err)
     if (allocated(err)) return
-    position%t = assembled%t
+    held%state%t = assembled%t
     where (partition%kind == driven_coordinate)
-      position%dq = assembled%dq
-      position%ddq = assembled%ddq
+      held%state%dq = assembled%dq
+      held%state%ddq = assembled%ddq
     end where
   end subroutine hold_setpoints
 

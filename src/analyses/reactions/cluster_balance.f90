@@ -29,6 +29,8 @@ module mech9_cluster_balance
   !> The equations of one cluster in one position. Nodes are its links but the one on which it stands.
   type :: cluster_balance_type
     type(block_cholesky_type) :: factors          !< of M^T M
+    integer, allocatable :: nodes(:, :)           !< (2,pairs) nodes of moving and reference link of each pair; 0: none
+    integer :: n_nodes = 0                        !< how many nodes there are
     integer, allocatable :: block_of(:)           !< (pairs) block that joins both links; 0 where one is not a node
     logical, allocatable :: turned(:)             !< (pairs) the block's rows are those of the reference link
     logical, allocatable :: held(:)               !< (pairs) only the part across the axis is unknown
@@ -55,6 +57,8 @@ contains
     integer :: n
 
     n = size(cluster%pairs)
+    self%nodes = cluster%nodes
+    self%n_nodes = size(cluster%links)
     self%factors = new_block_cholesky(6, size(cluster%links), cluster%nodes)
     call self%factors%find_blocks(cluster%nodes, self%block_of, self%turned)
     self%held = reactions%pairs(cluster%pairs)%dependent
@@ -154,25 +158,23 @@ contains
   end subroutine add_block
 
   !> Add M y to the wrenches, for displacements y of the links.
-  pure subroutine spread(self, cluster, y, wrenches)
+  pure subroutine spread(self, y, wrenches)
     class(cluster_balance_type), intent(in) :: self       !< the equations of a position
-    type(joined_cluster_type), intent(in) :: cluster      !< the cluster
     real(wp), intent(in) :: y(:, :)                       !< (6,nodes) displacements, scaled
     real(wp), intent(inout), contiguous :: wrenches(:, :) !< (6,pairs) scaled
     real(wp) :: motion(6)
     integer :: i
 
-    do i = 1, size(cluster%pairs)
-      motion = self%find_motion(cluster, i, y)
+    do i = 1, size(self%nodes, 2)
+      motion = self%find_motion(i, y)
       if (self%held(i)) motion = motion - dot_product(self%axis(:, i), motion)*self%axis(:, i)
       wrenches(:, i) = wrenches(:, i) + self%parts(i)*motion
     end do
   end subroutine spread
 
   !> The motion of the moving link of a pair in its reference link at the point of the pair, for displacements y of the links.
-  pure function find_motion(self, cluster, i, y) result(motion)
+  pure function find_motion(self, i, y) result(motion)
     class(cluster_balance_type), intent(in) :: self       !< the equations of a position
-    type(joined_cluster_type), intent(in) :: cluster      !< the cluster
     integer, intent(in) :: i                              !< place of the pair in the cluster
     real(wp), intent(in) :: y(:, :)                       !< (6,nodes) displacements, scaled
     real(wp) :: motion(6)
@@ -180,8 +182,8 @@ contains
 
     motion = 0.0_wp
     do side = 1, 2
-      if (cluster%nodes(side, i) == 0) cycle
-      associate (d => y(:, cluster%nodes(side, i)), sign => 3 - 2*side)
+      if (self%nodes(side, i) == 0) cycle
+      associate (d => y(:, self%nodes(side, i)), sign => 3 - 2*side)
         motion(1:3) = motion(1:3) + sign*(d(1:3) + cross(d(4:6), self%arm(:, side, i)))
         motion(4:6) = motion(4:6) + sign*d(4:6)
       end associate
@@ -189,9 +191,8 @@ contains
   end function find_motion
 
   !> Complete the wrenches in a regular position. `converged` is false where corrections do not lead to balance.
-  pure subroutine complete(self, cluster, required, wrenches, lacking, converged, displacements, size_of_all)
+  pure subroutine complete(self, required, wrenches, lacking, converged, displacements, size_of_all)
     class(cluster_balance_type), intent(inout) :: self       !< the equations, factorized
-    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
     real(wp), intent(in), contiguous :: required(:, :)       !< (6,nodes) scaled
     real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled: those that are given; complete
     real(wp), intent(inout), contiguous :: lacking(:, :)     !< (6,nodes) scratch
@@ -205,7 +206,7 @@ contains
     before = huge(before)
     if (present(displacements)) displacements = 0.0_wp
     do i = 0, most_corrections
-      call self%find_lacking(cluster, required, wrenches, lacking)
+      call self%find_lacking(required, wrenches, lacking)
       error = maxval(abs(lacking))
       largest = max(maxval(abs(wrenches)), maxval(abs(required)))
       converged = error <= 32.0_wp*epsilon(error)*largest
@@ -213,7 +214,7 @@ contains
       if (converged .or. (i > 1 .and. .not. error < 0.5_wp*before)) exit
       before = error
       call self%factors%solve(lacking)
-      call self%spread(cluster, lacking, wrenches)
+      call self%spread(lacking, wrenches)
       if (present(displacements)) displacements = displacements + lacking
     end do
     if (present(size_of_all)) largest = max(largest, size_of_all)
@@ -222,14 +223,13 @@ contains
 
   !> Remove from wrenches in a regular position the part that the balance of the links determines. `removed` is false where removals
   !> do not end in round-off: components of the rest that are zero could count as others.
-  pure subroutine remove_determined(self, cluster, wrenches, removed)
+  pure subroutine remove_determined(self, wrenches, removed)
     class(cluster_balance_type), intent(inout) :: self       !< the equations, factorized
-    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
     real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled
     logical, intent(out), optional :: removed                !< the rest balances nothing but for round-off
     !> Each removal leaves a part of the round-off of the one before it.
     integer, parameter :: most_removals = 12
-    real(wp) :: lacking(6, size(cluster%links)), nothing(6, size(cluster%links)), before(6, size(cluster%pairs)), largest
+    real(wp) :: lacking(6, self%n_nodes), nothing(6, self%n_nodes), before(6, size(self%nodes, 2)), largest
     logical :: is_round_off
     integer :: i
 
@@ -237,9 +237,9 @@ contains
     largest = maxval(abs(wrenches))
     do i = 1, most_removals
       before = wrenches
-      call self%find_lacking(cluster, nothing, wrenches, lacking)
+      call self%find_lacking(nothing, wrenches, lacking)
       call self%factors%solve(lacking)
-      call self%spread(cluster, lacking, wrenches)
+      call self%spread(lacking, wrenches)
       is_round_off = maxval(abs(wrenches - before)) <= balanced*largest
       if (is_round_off) exit
     end do
@@ -247,19 +247,18 @@ contains
   end subroutine remove_determined
 
   !> The wrench about its place that each link requires beside those that it receives from its pairs.
-  pure subroutine find_lacking(self, cluster, required, wrenches, lacking)
+  pure subroutine find_lacking(self, required, wrenches, lacking)
     class(cluster_balance_type), intent(in) :: self       !< the equations of a position
-    type(joined_cluster_type), intent(in) :: cluster      !< the cluster
     real(wp), intent(in), contiguous :: required(:, :)    !< (6,nodes) scaled
     real(wp), intent(in), contiguous :: wrenches(:, :)    !< (6,pairs) scaled
     real(wp), intent(out), contiguous :: lacking(:, :)    !< (6,nodes) scaled
     integer :: i, side
 
     lacking = required
-    do i = 1, size(cluster%pairs)
+    do i = 1, size(self%nodes, 2)
       do side = 1, 2
-        if (cluster%nodes(side, i) == 0) cycle
-        associate (sum => lacking(:, cluster%nodes(side, i)), sign => 2*side - 3)
+        if (self%nodes(side, i) == 0) cycle
+        associate (sum => lacking(:, self%nodes(side, i)), sign => 2*side - 3)
           sum(1:3) = sum(1:3) + sign*wrenches(1:3, i)
           sum(4:6) = sum(4:6) + sign*(wrenches(4:6, i) + cross(self%arm(:, side, i), wrenches(1:3, i)))
         end associate

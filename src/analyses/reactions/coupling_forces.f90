@@ -13,9 +13,8 @@ module mech9_coupling_forces
   use mech9_block_solver, only: block_work_type, new_block_work, factorize_block
   use mech9_loop_forces, only: loop_forces_type, new_loop_forces, eliminate_dependent, draw_idle_forces, coupling_force, &
     coupling_multiplier
-  use mech9_force_sum, only: force_sum_type
   use mech9_reaction_plan, only: reaction_plan_type
-  use mech9_joint_geometry, only: joint_geometry_type
+  use mech9_required_wrenches, only: required_wrenches_type
   implicit none
   private
   public :: coupling_forces_type, new_coupling_forces, add_couplings, draw_idle_couplings
@@ -54,30 +53,29 @@ contains
   end function new_coupling_forces
 
   !> Find the forces of couplings, and add them to the loads on the coordinates.
-  subroutine add_couplings(plan, reactions, state, geometry, force, moment, loads, self)
+  subroutine add_couplings(plan, reactions, state, links, self)
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism, with all blocks
     type(reaction_plan_type), intent(in) :: reactions     !< the plan of inverse dynamics
     type(state_type), intent(in) :: state                 !< the position
-    type(joint_geometry_type), intent(in) :: geometry     !< of the position
-    real(wp), intent(in), contiguous :: force(:, :)       !< (3,N) what each link requires with all beyond it, axes of link 1 [N]
-    real(wp), intent(in), contiguous :: moment(:, :)      !< (3,N) about the places of the links [N m]
-    type(force_sum_type), intent(inout) :: loads          !< sums of the loads; those on coordinates grow
+    type(required_wrenches_type), intent(inout) :: links  !< requirements of each link with all beyond it; loads on coordinates grow
     type(coupling_forces_type), intent(inout) :: self     !< gets the forces
 
     if (size(plan%couplings) == 0) return
-    call require(plan, reactions, geometry, force, moment, self%required)
-    if (loads%any_generalized) self%required = self%required - loads%generalized
+    call require(plan, reactions, links, self%required)
+    if (links%loads%any_generalized) self%required = self%required - links%loads%generalized
     call factorize(plan, state, self)
     call eliminate_dependent(plan, state, self%blocks, self%loops, self%required)
     call take_multipliers(plan, self%loops, self%multipliers)
     call take_least(plan, state, self)
     call sum_forces(plan, state, self)
-    if (loads%any_generalized) then
-      self%largest = max(self%largest, abs(loads%generalized))
-      self%together = self%together + loads%generalized
-    end if
-    loads%generalized = self%together
-    loads%any_generalized = .true.
+    associate (loads => links%loads)
+      if (loads%any_generalized) then
+        self%largest = max(self%largest, abs(loads%generalized))
+        self%together = self%together + loads%generalized
+      end if
+      loads%generalized = self%together
+      loads%any_generalized = .true.
+    end associate
   end subroutine add_couplings
 
   !> Forces of couplings, at random, that have no effect on the motion of the links together with forces of closed chains.
@@ -180,25 +178,25 @@ contains
   end subroutine sum_forces
 
   !> The generalized forces that the coordinates require for all links beyond them, with all chains cut at their closing frames.
-  pure subroutine require(plan, reactions, geometry, force, moment, required)
+  pure subroutine require(plan, reactions, links, required)
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(reaction_plan_type), intent(in) :: reactions     !< the plan of inverse dynamics
-    type(joint_geometry_type), intent(in) :: geometry     !< of the position
-    real(wp), intent(in), contiguous :: force(:, :)       !< (3,N) what each link requires with all beyond it, axes of link 1 [N]
-    real(wp), intent(in), contiguous :: moment(:, :)      !< (3,N) about the places of the links [N m]
+    type(required_wrenches_type), intent(in) :: links     !< requirements of each link with all beyond it
     real(wp), intent(out) :: required(:)                  !< (M) [N m, N]
     real(wp) :: arm(3), about_point(3)
     integer :: i, k, link
 
     required = 0.0_wp
-    do i = 1, size(reactions%inwards)
-      k = plan%steps(reactions%inwards(i))%coordinate
-      link = plan%steps(reactions%inwards(i))%link
-      arm = geometry%place(:, link) - geometry%point(:, k)
-      about_point = moment(:, link) + cross(arm, force(:, link))
-      required(k) = reactions%pairs(k)%direction*geometry%length(k)*(dot_product(geometry%axis(1:3, k), force(:, link)) &
-                                                                     + dot_product(geometry%axis(4:6, k), about_point)/ &
-                                                                     reactions%length)
-    end do
+    associate (geometry => links%geometry, force => links%total_force)
+      do i = 1, size(reactions%inwards)
+        k = plan%steps(reactions%inwards(i))%coordinate
+        link = plan%steps(reactions%inwards(i))%link
+        arm = geometry%place(:, link) - geometry%point(:, k)
+        about_point = links%total_moment(:, link) + cross(arm, force(:, link))
+        required(k) = reactions%pairs(k)%direction*geometry%length(k)*(dot_product(geometry%axis(1:3, k), force(:, link)) &
+                                                                       + dot_product(geometry%axis(4:6, k), about_point)/ &
+                                                                       reactions%length)
+      end do
+    end associate
   end subroutine require
 end module mech9_coupling_forces

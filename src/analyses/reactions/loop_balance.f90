@@ -15,6 +15,7 @@ module mech9_loop_balance
   use mech9_force_sum, only: force_sum_type
   use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type
   use mech9_joint_geometry, only: joint_geometry_type
+  use mech9_required_wrenches, only: required_wrenches_type
   implicit none
   private
   public :: loop_balance_type, new_loop_balance, balance_loops, show_loops
@@ -50,15 +51,12 @@ contains
   end function new_loop_balance
 
   !> Find the wrenches of a cluster. `done` is false where corrections do not lead to balance, as beside singular positions.
-  subroutine balance_loops(plan, reactions, cluster, state, geometry, required_force, required_moment, loads, self, done)
+  subroutine balance_loops(plan, reactions, cluster, state, links, self, done)
     type(plan_type), intent(in) :: plan                        !< the plan of the mechanism
     type(reaction_plan_type), intent(in) :: reactions          !< the plan of inverse dynamics
     type(joined_cluster_type), intent(in) :: cluster           !< the cluster
     type(state_type), intent(in) :: state                      !< the position
-    type(joint_geometry_type), intent(in) :: geometry          !< of the position
-    real(wp), intent(in), contiguous :: required_force(:, :)   !< (3,N) what each link requires [N]
-    real(wp), intent(in), contiguous :: required_moment(:, :)  !< (3,N) about its place [N m]
-    type(force_sum_type), intent(in) :: loads                  !< with the loads on coordinates
+    type(required_wrenches_type), intent(in) :: links          !< requirements of the links, and loads on coordinates
     type(loop_balance_type), intent(inout) :: self             !< equations and scratch; gets the wrenches
     logical, intent(out) :: done                               !< the wrenches are found
     integer, parameter :: most_corrections = 6
@@ -68,15 +66,15 @@ contains
     do i = 1, size(cluster%blocks)
       call factorize_block(plan, plan%blocks(cluster%blocks(i)), state, self%blocks(cluster%blocks(i)))
     end do
-    call carry_within(plan, reactions, cluster, geometry, required_force, required_moment, self)
+    call carry_within(plan, reactions, cluster, links, self)
     before = huge(before)
     do i = 0, most_corrections
-      error = imbalance(reactions, cluster, geometry, loads, self)
+      error = imbalance(reactions, cluster, links%geometry, links%loads, self)
       ! the first solution shows whether the position is singular, also where nothing is lacking
       if ((i > 0 .and. error <= 32.0_wp*epsilon(error)) .or. (i > 1 .and. .not. error < 0.5_wp*before)) exit
       before = error
       do j = size(cluster%blocks), 1, -1
-        call close_block_loops(plan, cluster%blocks(j), state, geometry, loads, self, done)
+        call close_block_loops(plan, cluster%blocks(j), state, links%geometry, links%loads, self, done)
         if (.not. done) return
       end do
     end do
@@ -84,13 +82,11 @@ contains
   end subroutine balance_loops
 
   !> Take the links of the cut chains from their ends inwards: each requires what it and all beyond it do.
-  pure subroutine carry_within(plan, reactions, cluster, geometry, required_force, required_moment, self)
+  pure subroutine carry_within(plan, reactions, cluster, links, self)
     type(plan_type), intent(in) :: plan                        !< the plan of the mechanism
     type(reaction_plan_type), intent(in) :: reactions          !< the plan of inverse dynamics
     type(joined_cluster_type), intent(in) :: cluster           !< the cluster
-    type(joint_geometry_type), intent(in) :: geometry          !< of the position
-    real(wp), intent(in), contiguous :: required_force(:, :)   !< (3,N) what each link requires [N]
-    real(wp), intent(in), contiguous :: required_moment(:, :)  !< (3,N) about its place, the origin of its first frame [N m]
+    type(required_wrenches_type), intent(in) :: links          !< requirements of each link, about the origin of its first frame
     type(loop_balance_type), intent(inout) :: self             !< gets the wrenches of the cut chains
     integer :: i, s
 
@@ -99,13 +95,13 @@ contains
       self%force(:, s) = 0.0_wp
       self%moment(:, s) = 0.0_wp
       if (plan%frame_of(plan%steps(s)%link) /= s) cycle
-      self%force(:, s) = required_force(:, plan%steps(s)%link)
-      self%moment(:, s) = required_moment(:, plan%steps(s)%link)
+      self%force(:, s) = links%force(:, plan%steps(s)%link)
+      self%moment(:, s) = links%moment(:, plan%steps(s)%link)
     end do
     do i = size(cluster%pairs), 1, -1
       s = reactions%pairs(cluster%pairs(i))%step
       if (reactions%begins(s)) cycle
-      associate (onto => plan%steps(s)%parent)
+      associate (onto => plan%steps(s)%parent, geometry => links%geometry)
         call add_at(1.0_wp, self%force(:, s), self%moment(:, s), geometry%reached(:, s), geometry%reached(:, onto), &
                     self%force(:, onto), self%moment(:, onto))
       end associate

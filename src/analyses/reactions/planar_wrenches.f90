@@ -19,7 +19,7 @@ module mech9_planar_wrenches
   use mech9_reaction_plan, only: reaction_plan_type
   implicit none
   private
-  public :: planar_wrenches_type, new_planar_wrenches, balance_in_plane, show_wrenches
+  public :: planar_wrenches_type, new_planar_wrenches, balance_in_plane, show_wrenches, show_needed
 
   !> Equations and wrenches of a planar mechanism.
   type :: planar_wrenches_type
@@ -231,16 +231,14 @@ contains
     end do
   end subroutine close_block_loops
 
-  !> The wrenches in space, and the generalized forces that independent coordinates need beside the loads on them.
-  pure subroutine show_wrenches(plan, reactions, state, loads, self, force, moment, needed)
+  !> The wrenches in space.
+  pure subroutine show_wrenches(plan, reactions, state, self, force, moment)
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
     type(reaction_plan_type), intent(in) :: reactions   !< the plan of inverse dynamics
     type(state_type), intent(in) :: state               !< position
-    type(force_sum_type), intent(in) :: loads           !< with the loads on coordinates
     type(planar_wrenches_type), intent(in) :: self      !< with the wrenches
     real(wp), intent(out), contiguous :: force(:, :)    !< (3,M) of each pair, axes of link 1 [N]
     real(wp), intent(out), contiguous :: moment(:, :)   !< (3,M) about the origin of its frame in the moving link [N m]
-    real(wp), intent(out) :: needed(:)                  !< (M) zero for dependent coordinates [N m, N]
     real(wp) :: m, d
     integer :: k, s
 
@@ -254,11 +252,25 @@ contains
           m = m + (state%q(k) + plan%steps(s)%offset)*(slide(1)*w(3) - slide(2)*w(2))
         force(:, k) = to_space(plan%planar, d*w(2), d*w(3), 0.0_wp)
         moment(:, k) = to_space(plan%planar, 0.0_wp, 0.0_wp, d*m)
-        needed(k) = 0.0_wp
-        if (plan%steps(s)%dependent) cycle
-        needed(k) = along(step, slide, w)
-        if (loads%any_generalized) needed(k) = needed(k) - loads%generalized(k)
       end associate
     end do
   end subroutine show_wrenches
+
+  !> The generalized forces that independent coordinates need beside the loads on them.
+  pure subroutine show_needed(plan, state, loads, self, needed)
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(state_type), intent(in) :: state               !< position
+    type(force_sum_type), intent(in) :: loads           !< with the loads on coordinates
+    type(planar_wrenches_type), intent(in) :: self      !< with the wrenches
+    real(wp), intent(out) :: needed(:)                  !< (M) zero for dependent coordinates [N m, N]
+    integer :: k, s
+
+    needed = 0.0_wp
+    do s = 1, plan%n_coordinates
+      if (plan%steps(s)%dependent) cycle
+      k = plan%planar%steps(s)%coordinate
+      needed(k) = along(plan%planar%steps(s), state%planar%slide(:, s), self%wrench(:, s))
+      if (loads%any_generalized) needed(k) = needed(k) - loads%generalized(k)
+    end do
+  end subroutine show_needed
 end module mech9_planar_wrenches

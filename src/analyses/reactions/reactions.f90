@@ -16,16 +16,15 @@ module mech9_reactions
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_motion_view, only: motion_view_type
-  use mech9_force_sum, only: force_sum_type, new_force_sum
   use mech9_generalized_forces, only: sum_forces
   use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type
-  use mech9_required_wrenches, only: find_required
-  use mech9_joint_geometry, only: joint_geometry_type, new_joint_geometry, find_geometry
+  use mech9_required_wrenches, only: required_wrenches_type, new_required_wrenches, find_required
+  use mech9_joint_geometry, only: find_geometry
   use mech9_cluster_balance, only: cluster_balance_type, new_cluster_balance
   use mech9_loop_balance, only: loop_balance_type, new_loop_balance, balance_loops, show_loops
   use mech9_coupling_forces, only: coupling_forces_type, new_coupling_forces, add_couplings
-  use mech9_planar_wrenches, only: planar_wrenches_type, new_planar_wrenches, balance_in_plane, show_wrenches
+  use mech9_planar_wrenches, only: planar_wrenches_type, new_planar_wrenches, balance_in_plane, show_wrenches, &
+    show_needed
   use mech9_planar_balance, only: planar_balance_type, new_planar_balance
   use mech9_singular_cluster, only: singular_cluster_type, decompose_cluster
   implicit none
@@ -39,18 +38,12 @@ module mech9_reactions
     !> (M) generalized force that an independent coordinate needs beside the loads on it: of its drive, or zero where it moves
     !> freely and the accelerations satisfy the equations of motion; zero for dependent coordinates [N m, N]
     real(wp), allocatable :: needed(:)
-    type(joint_geometry_type) :: geometry         !< of the position
-    type(motion_view_type) :: view                !< the motion as loads read it
-    type(force_sum_type) :: sum                   !< of the loads
+    type(required_wrenches_type) :: links         !< requirements of the links, with clusters that stand on them
     type(coupling_forces_type) :: couplings       !< forces of the couplings
     type(planar_wrenches_type) :: flat            !< of a flat mechanism
     type(loop_balance_type) :: loops              !< of the clusters that equilibrium determines
     type(cluster_balance_type), allocatable :: balances(:)   !< of the clusters
     type(planar_balance_type), allocatable :: in_plane(:)    !< of the clusters of a planar mechanism
-    real(wp), allocatable :: link_force(:, :)     !< (3,N) scratch: what links require, with clusters that stand on them [N]
-    real(wp), allocatable :: link_moment(:, :)    !< (3,N) scratch: about the links' places [N m]
-    real(wp), allocatable :: total_force(:, :)    !< (3,N) scratch: the same with all links beyond [N]
-    real(wp), allocatable :: total_moment(:, :)   !< (3,N) scratch [N m]
     real(wp), allocatable :: wrenches(:, :)       !< (6,M) scratch: scaled, of the pairs of one cluster
     real(wp), allocatable :: changes(:, :)        !< (6,M) scratch
     real(wp), allocatable :: required(:, :)       !< (6,N) scratch: scaled, of the links of one cluster
@@ -69,12 +62,8 @@ contains
     associate (m => plan%n_coordinates, n => plan%n_links)
       allocate (self%force(3, m), self%moment(3, m), self%needed(m), source=0.0_wp)
       allocate (self%wrenches(6, m), self%changes(6, m), self%required(6, n), self%lacking(6, n), source=0.0_wp)
-      allocate (self%link_force(3, n), self%link_moment(3, n), self%total_force(3, n), self%total_moment(3, n), source=0.0_wp)
-      allocate (self%view%links(n))
-      allocate (self%view%q(m), self%view%dq(m), source=0.0_wp)
-      self%sum = new_force_sum(n, m)
     end associate
-    self%geometry = new_joint_geometry(plan)
+    self%links = new_required_wrenches(plan)
     if (reactions%flat) self%flat = new_planar_wrenches(plan)
     self%loops = new_loop_balance(plan, reactions)
     self%couplings = new_coupling_forces(plan)
@@ -98,24 +87,24 @@ contains
     logical :: done
 
     if (size(reactions%acting) > 0 .or. size(mechanism%motors) > 0) then
-      call sum_forces(mechanism, plan, reactions%acting, reactions%loaded, state, self%view, self%sum, err)
+      call sum_forces(mechanism, plan, reactions%acting, reactions%loaded, state, self%links%view, self%links%loads, err)
       if (allocated(err)) return
     else if (size(plan%couplings) > 0) then
-      call self%sum%clear()
+      call self%links%loads%clear()
     end if
     if (reactions%flat) then
-      call balance_in_plane(plan, reactions, state, self%view, self%sum, self%flat, done)
+      call balance_in_plane(plan, reactions, state, self%links%view, self%links%loads, self%flat, done)
       if (done) then
-        call show_wrenches(plan, reactions, state, self%sum, self%flat, self%force, self%moment, self%needed)
+        call show_wrenches(plan, reactions, state, self%flat, self%force, self%moment)
+        call show_needed(plan, state, self%links%loads, self%flat, self%needed)
         call show_joints(mechanism%structure, self)
         return
       end if
     end if
-    call find_geometry(plan, reactions, state, self%geometry)
-    call find_required(mechanism, plan, reactions, state, self%geometry%place, self%view, self%sum, self%link_force, &
-                       self%link_moment)
+    call find_geometry(plan, reactions, state, self%links%geometry)
+    call find_required(mechanism, plan, reactions, state, self%links)
     call carry_inwards(plan, reactions, self)
-    call add_couplings(plan, reactions, state, self%geometry, self%total_force, self%total_moment, self%sum, self%couplings)
+    call add_couplings(plan, reactions, state, self%links, self%couplings)
     do c = 1, size(reactions%clusters)
       call leave_unloaded(reactions%clusters(c), self, done)
       if (.not. done) then
@@ -161,29 +150,31 @@ contains
     real(wp) :: moment(3), arm(3)
     integer :: i, k, s, link, onto
 
-    self%total_force = self%link_force
-    self%total_moment = self%link_moment
-    do i = 1, size(reactions%inwards)
-      s = reactions%inwards(i)
-      k = plan%steps(s)%coordinate
-      link = plan%steps(s)%link
-      onto = 1
-      if (plan%steps(s)%parent > 0) onto = plan%steps(plan%steps(s)%parent)%link
-      associate (place => self%geometry%place, force => self%total_force(:, link))
-        arm = place(:, link) - place(:, onto)
-        moment = self%total_moment(:, link) + cross(arm, force)
-        self%total_force(:, onto) = self%total_force(:, onto) + force
-        self%total_moment(:, onto) = self%total_moment(:, onto) + moment
-        if (.not. reactions%begins(s)) cycle
-        self%link_force(:, onto) = self%link_force(:, onto) + force
-        self%link_moment(:, onto) = self%link_moment(:, onto) + moment
-        if (.not. reactions%alone(s)) cycle
-        arm = place(:, link) - self%geometry%point(:, k)
-        self%force(:, k) = reactions%pairs(k)%direction*force
-        moment = self%total_moment(:, link) + cross(arm, force)
-        self%moment(:, k) = reactions%pairs(k)%direction*moment
-      end associate
-    end do
+    associate (links => self%links, place => self%links%geometry%place)
+      links%total_force = links%force
+      links%total_moment = links%moment
+      do i = 1, size(reactions%inwards)
+        s = reactions%inwards(i)
+        k = plan%steps(s)%coordinate
+        link = plan%steps(s)%link
+        onto = 1
+        if (plan%steps(s)%parent > 0) onto = plan%steps(plan%steps(s)%parent)%link
+        associate (force => links%total_force(:, link))
+          arm = place(:, link) - place(:, onto)
+          moment = links%total_moment(:, link) + cross(arm, force)
+          links%total_force(:, onto) = links%total_force(:, onto) + force
+          links%total_moment(:, onto) = links%total_moment(:, onto) + moment
+          if (.not. reactions%begins(s)) cycle
+          links%force(:, onto) = links%force(:, onto) + force
+          links%moment(:, onto) = links%moment(:, onto) + moment
+          if (.not. reactions%alone(s)) cycle
+          arm = place(:, link) - links%geometry%point(:, k)
+          self%force(:, k) = reactions%pairs(k)%direction*force
+          moment = links%total_moment(:, link) + cross(arm, force)
+          self%moment(:, k) = reactions%pairs(k)%direction*moment
+        end associate
+      end do
+    end associate
   end subroutine carry_inwards
 
   !> The wrenches of a cluster whose links require nothing are zero; `done` is whether this is so.
@@ -193,10 +184,10 @@ contains
     logical, intent(out) :: done                       !< nothing is required
     integer :: i, k
 
-    done = .not. self%sum%any_generalized
+    done = .not. self%links%loads%any_generalized
     do i = 1, size(cluster%links)
       k = cluster%links(i)
-      if (done) done = .not. (any(abs(self%link_force(:, k)) > 0.0_wp) .or. any(abs(self%link_moment(:, k)) > 0.0_wp))
+      if (done) done = .not. (any(abs(self%links%force(:, k)) > 0.0_wp) .or. any(abs(self%links%moment(:, k)) > 0.0_wp))
     end do
     if (.not. done) return
     do i = 1, size(cluster%pairs)
@@ -214,9 +205,8 @@ contains
     type(reactions_type), intent(inout) :: self         !< with what its links require; gets the wrenches
     logical, intent(out) :: done                        !< the wrenches are found
 
-    call balance_loops(plan, reactions, cluster, state, self%geometry, self%link_force, self%link_moment, self%sum, &
-                       self%loops, done)
-    if (done) call show_loops(reactions, cluster, self%geometry, self%loops, self%force, self%moment)
+    call balance_loops(plan, reactions, cluster, state, self%links, self%loops, done)
+    if (done) call show_loops(reactions, cluster, self%links%geometry, self%loops, self%force, self%moment)
   end subroutine solve_loops
 
   !> The wrenches of the pairs of a planar cluster across whose plane nothing acts. `done` is false where something does, and
@@ -264,8 +254,8 @@ contains
     across = 0.0_wp
     largest = 0.0_wp
     do i = 1, size(cluster%links)
-      f = turn_back(axes, self%link_force(:, cluster%links(i)))
-      m = turn_back(axes, self%link_moment(:, cluster%links(i)))/reactions%length
+      f = turn_back(axes, self%links%force(:, cluster%links(i)))
+      m = turn_back(axes, self%links%moment(:, cluster%links(i)))/reactions%length
       balance%required(:, i) = [f(1), f(2), m(3)]
       across = max(across, abs(f(3)), abs(m(1)), abs(m(2)))
       largest = max(largest, abs(f(1)), abs(f(2)), abs(m(3)))
@@ -274,20 +264,20 @@ contains
     do i = 1, size(cluster%pairs)
       if (.not. flat) return
       k = cluster%pairs(i)
-      f = turn_back(axes, self%geometry%axis(1:3, k))
-      m = turn_back(axes, self%geometry%axis(4:6, k))
+      f = turn_back(axes, self%links%geometry%axis(1:3, k))
+      m = turn_back(axes, self%links%geometry%axis(4:6, k))
       balance%axis(:, i) = [f(1), f(2), m(3)]
       across = max(abs(f(3)), abs(m(1)), abs(m(2)))
       do side = 1, 2
-        d = self%geometry%point(:, k) - self%geometry%place(:, reactions%pairs(k)%links(side))
+        d = self%links%geometry%point(:, k) - self%links%geometry%place(:, reactions%pairs(k)%links(side))
         d = turn_back(axes, d)/reactions%length
         balance%arm(:, side, i) = d(1:2)
         across = max(across, abs(d(3)))
       end do
       flat = across <= planar_round_off
       balance%wrenches(:, i) = 0.0_wp
-      if (held(i) .and. self%sum%any_generalized) &
-        balance%wrenches(:, i) = (self%sum%generalized(k)/self%geometry%length(k))*balance%axis(:, i)
+      if (held(i) .and. self%links%loads%any_generalized) &
+        balance%wrenches(:, i) = (self%links%loads%generalized(k)/self%links%geometry%length(k))*balance%axis(:, i)
     end do
   end subroutine lay_in_plane
 
@@ -306,23 +296,23 @@ contains
 
     n = size(cluster%links)
     m = size(cluster%pairs)
-    call balance%set_position(cluster, self%geometry, reactions, reactions%length, regular)
+    call balance%set_position(cluster, self%links%geometry, reactions, reactions%length, regular)
     do i = 1, n
-      self%required(1:3, i) = self%link_force(:, cluster%links(i))
-      self%required(4:6, i) = self%link_moment(:, cluster%links(i))/reactions%length
+      self%required(1:3, i) = self%links%force(:, cluster%links(i))
+      self%required(4:6, i) = self%links%moment(:, cluster%links(i))/reactions%length
     end do
     call hold_loads(cluster, balance, self)
     loads = largest_load(plan, cluster, balance, self)
     associate (wrenches => self%wrenches(:, :m), required => self%required(:, :n), lacking => self%lacking(:, :n))
-      if (regular) call balance%complete(cluster, required, wrenches, lacking, regular, size_of_all=loads)
+      if (regular) call balance%complete(required, wrenches, lacking, regular, size_of_all=loads)
       if (.not. regular) then
         call hold_loads(cluster, balance, self)
         call decompose_cluster(cluster, balance, rank_tolerance_for(plan%data_tolerance), singular)
         call singular%hold_motions(cluster, balance)
-        call balance%find_lacking(cluster, required, wrenches, lacking)
+        call balance%find_lacking(required, wrenches, lacking)
         call singular%solve(lacking, self%changes(:, :m))
         wrenches = wrenches + self%changes(:, :m)
-        call balance%find_lacking(cluster, required, wrenches, lacking)
+        call balance%find_lacking(required, wrenches, lacking)
         largest = max(maxval(abs(wrenches)), maxval(abs(required)), loads)
         if (maxval(abs(lacking)) > balanced_singular*largest) then
           call raise(err, exit_singular, failure_unbalanced)
@@ -348,9 +338,9 @@ contains
     do i = 1, size(cluster%pairs)
       k = cluster%pairs(i)
       self%wrenches(:, i) = 0.0_wp
-      if (.not. (self%sum%any_generalized .and. balance%held(i))) cycle
-      if (self%geometry%length(k) > 0.0_wp) &
-        self%wrenches(:, i) = (self%sum%generalized(k)/self%geometry%length(k))*self%geometry%axis(:, k)
+      if (.not. (self%links%loads%any_generalized .and. balance%held(i))) cycle
+      if (self%links%geometry%length(k) > 0.0_wp) &
+        self%wrenches(:, i) = (self%links%loads%generalized(k)/self%links%geometry%length(k))*self%links%geometry%axis(:, k)
     end do
   end subroutine hold_loads
 
@@ -367,8 +357,8 @@ contains
     if (size(plan%couplings) == 0) return
     do i = 1, size(cluster%pairs)
       k = cluster%pairs(i)
-      if (balance%held(i) .and. self%geometry%length(k) > 0.0_wp) &
-        largest = max(largest, self%couplings%largest(k)/self%geometry%length(k))
+      if (balance%held(i) .and. self%links%geometry%length(k) > 0.0_wp) &
+        largest = max(largest, self%couplings%largest(k)/self%links%geometry%length(k))
     end do
   end function largest_load
 
@@ -382,11 +372,11 @@ contains
     self%needed = 0.0_wp
     do k = 1, plan%n_coordinates
       if (reactions%pairs(k)%dependent) cycle
-      associate (axis => self%geometry%axis(:, k))
-        self%needed(k) = self%geometry%length(k)*(dot_product(axis(1:3), self%force(:, k)) &
+      associate (axis => self%links%geometry%axis(:, k))
+        self%needed(k) = self%links%geometry%length(k)*(dot_product(axis(1:3), self%force(:, k)) &
                                                   + dot_product(axis(4:6), self%moment(:, k))/reactions%length)
       end associate
-      if (self%sum%any_generalized) self%needed(k) = self%needed(k) - self%sum%generalized(k)
+      if (self%links%loads%any_generalized) self%needed(k) = self%needed(k) - self%links%loads%generalized(k)
     end do
   end subroutine find_needed
 end module mech9_reactions

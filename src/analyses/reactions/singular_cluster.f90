@@ -45,7 +45,7 @@ contains
       one = 0.0_wp
       one(1 + mod(j - 1, 6), 1 + (j - 1)/6) = 1.0_wp
       motion = 0.0_wp
-      call balance%spread(cluster, one, motion)
+      call balance%spread(one, motion)
       ! of the unknowns that are divided by the roots of the parts in which they count
       do i = 1, size(cluster%pairs)
         motion(:, i) = motion(:, i)/sqrt(balance%parts(i))
@@ -77,10 +77,9 @@ contains
   end subroutine solve
 
   !> Complete the wrenches as far as they can balance the links. `converged` is false where something is left.
-  subroutine complete(self, balance, cluster, required, wrenches, converged, displacements, size_of_all)
+  subroutine complete(self, balance, required, wrenches, converged, displacements, size_of_all)
     class(singular_cluster_type), intent(in) :: self         !< singular values and vectors
     type(cluster_balance_type), intent(in) :: balance        !< the equations of the position
-    type(joined_cluster_type), intent(in) :: cluster         !< the cluster
     real(wp), intent(in), contiguous :: required(:, :)       !< (6,nodes) scaled
     real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled: those that are given; complete
     logical, intent(out) :: converged                        !< the links are in balance
@@ -93,7 +92,7 @@ contains
     if (present(displacements)) displacements = 0.0_wp
     ! the second round removes the round-off of the first
     do round = 1, 2
-      call balance%find_lacking(cluster, required, wrenches, lacking)
+      call balance%find_lacking(required, wrenches, lacking)
       call self%solve(lacking, changes)
       wrenches = wrenches + changes
       if (.not. present(displacements)) cycle
@@ -102,7 +101,7 @@ contains
       end do
       displacements = displacements + reshape(matmul(self%forces(:, :self%rank), parts), shape(displacements))
     end do
-    call balance%find_lacking(cluster, required, wrenches, lacking)
+    call balance%find_lacking(required, wrenches, lacking)
     largest = max(maxval(abs(wrenches)), maxval(abs(required)))
     if (present(size_of_all)) largest = max(largest, size_of_all)
     converged = maxval(abs(lacking)) <= balanced_singular*largest
@@ -142,7 +141,7 @@ contains
     do j = 1, size(along, 2)
       do i = 1, size(cluster%pairs)
         if (balance%held(i)) along(i, j) = &
-          dot_product(balance%axis(:, i), balance%find_motion(cluster, i, reshape(self%forces(:, self%rank + j), [6, n])))
+          dot_product(balance%axis(:, i), balance%find_motion(i, reshape(self%forces(:, self%rank + j), [6, n])))
       end do
     end do
     do j = 1, size(along, 2)

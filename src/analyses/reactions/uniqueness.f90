@@ -103,7 +103,7 @@ contains
     do sample = 1, samples
       call draw(balance, cluster, geometry, forces(:, sample), random, wrenches)
       removed = .false.
-      if (regular) call balance%remove_determined(cluster, wrenches, removed)
+      if (regular) call balance%remove_determined(wrenches, removed)
       if (regular .and. .not. removed) then
         regular = .false.
         call decompose_cluster(cluster, balance, tolerance, singular)

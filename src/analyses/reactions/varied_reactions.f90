@@ -16,10 +16,10 @@ module mech9_varied_reactions
   use mech9_varied_motion, only: varied_motion_type
   use mech9_link_requirements, only: link_requirements_type
   use mech9_reaction_plan, only: reaction_plan_type, joined_cluster_type, make_reaction_plan
-  use mech9_joint_geometry, only: joint_geometry_type, new_joint_geometry, find_geometry
+  use mech9_joint_geometry, only: new_joint_geometry, find_geometry
   use mech9_coupling_forces, only: coupling_forces_type, new_coupling_forces, draw_idle_couplings
-  use mech9_varied_geometry, only: varied_geometry_type, new_varied_geometry, find_varied_geometry
-  use mech9_varied_cluster, only: equations_type, new_equations, vary_cluster
+  use mech9_varied_geometry, only: new_varied_geometry, find_varied_geometry
+  use mech9_varied_cluster, only: varied_position_type, equations_type, new_equations, vary_cluster
   implicit none
   private
   public :: varied_reactions_type, new_varied_reactions, find_varied_reactions
@@ -29,8 +29,7 @@ module mech9_varied_reactions
     real(wp), allocatable :: force(:, :, :)    !< (P,3,M) of the force in each pair [N per unit of the parameter]
     real(wp), allocatable :: moment(:, :, :)   !< (P,3,M) of its moment, about the origin of its frame in the moving link [N m per unit]
     type(reaction_plan_type), private :: plan                          !< of inverse dynamics, in space
-    type(joint_geometry_type), private :: geometry                     !< of the position
-    type(varied_geometry_type), private :: varied                      !< its derivatives
+    type(varied_position_type), private :: position                    !< with its derivatives
     type(equations_type), allocatable, private :: equations(:)         !< of the clusters
   end type varied_reactions_type
 
@@ -45,11 +44,11 @@ contains
     integer :: c
 
     call make_reaction_plan(model%mechanism, motion%plan, self%plan)
-    self%geometry = new_joint_geometry(motion%plan)
-    self%varied = new_varied_geometry(motion)
+    self%position%geometry = new_joint_geometry(motion%plan)
+    self%position%changes = new_varied_geometry(motion)
     allocate (self%equations(size(self%plan%clusters)))
     do c = 1, size(self%equations)
-      self%equations(c) = new_equations(self%plan, self%plan%clusters(c))
+      self%equations(c) = new_equations(self%plan, self%plan%clusters(c), rank_tolerance_for(motion%plan%data_tolerance))
     end do
     associate (n => motion%n_parameters, m => motion%plan%n_coordinates)
       allocate (self%force(n, 3, m), self%moment(n, 3, m), source=0.0_wp)
@@ -82,17 +81,16 @@ contains
     type(link_requirements_type), intent(in) :: required     !< wrenches that links require, and loads, with their derivatives
     type(varied_reactions_type), intent(inout) :: self       !< gets the derivatives
     type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
-    type(link_requirements_type) :: links
     integer :: c
     logical :: regular
 
-    call find_geometry(motion%plan, self%plan, motion%state, self%geometry)
-    call find_varied_geometry(motion, self%plan, self%geometry, self%varied)
-    links = required
-    call carry_inwards(motion, links, self)
+    call find_geometry(motion%plan, self%plan, motion%state, self%position%geometry)
+    call find_varied_geometry(motion, self%plan, self%position%geometry, self%position%changes)
+    self%position%sizes = motion%tangents%size
+    self%position%links = required
+    call carry_inwards(motion, self)
     do c = 1, size(self%equations)
-      call vary_cluster(self%plan, self%plan%clusters(c), self%geometry, self%varied, links, motion%tangents%size, &
-                        rank_tolerance_for(motion%plan%data_tolerance), self%equations(c), self%force, self%moment, regular)
+      call vary_cluster(self%plan, self%position, self%equations(c), self%force, self%moment, regular)
       if (regular) cycle
       call raise(err, exit_singular, failure_singular_sensitivity)
       err%failure%chains = chains_of(motion, self%plan%clusters(c))
@@ -103,15 +101,15 @@ contains
   end subroutine find_varied_reactions
 
   !> Take the links from the ends of chains inwards: each passes what it and all beyond it require on to the link on which it stands.
-  subroutine carry_inwards(motion, links, self)
+  subroutine carry_inwards(motion, self)
     type(varied_motion_type), intent(in) :: motion           !< derivatives of the motion
-    type(link_requirements_type), intent(inout) :: links     !< of each link; then with the clusters and chains that stand on it
-    type(varied_reactions_type), intent(inout) :: self       !< gets the derivatives of open chains
-    real(wp) :: wrench(6, size(links%wrench, 2)), wrenches(size(links%wrenches, 1), 6, size(links%wrench, 2))
+    type(varied_reactions_type), intent(inout) :: self       !< with the requirements of each link, which get those of
+                                                             !< all that stands on it; gets the derivatives of open chains
+    real(wp), allocatable :: wrench(:, :), wrenches(:, :, :)
     integer :: i, s, link, onto
 
-    wrench = links%wrench
-    wrenches = links%wrenches
+    wrench = self%position%links%wrench
+    wrenches = self%position%links%wrenches
     associate (plan => motion%plan)
       do i = 1, size(self%plan%inwards)
         s = self%plan%inwards(i)
@@ -121,8 +119,10 @@ contains
         wrench(:, onto) = wrench(:, onto) + wrench(:, link)
         wrenches(:, :, onto) = wrenches(:, :, onto) + wrenches(:, :, link)
         if (.not. self%plan%begins(s)) cycle
-        links%wrench(:, onto) = links%wrench(:, onto) + wrench(:, link)
-        links%wrenches(:, :, onto) = links%wrenches(:, :, onto) + wrenches(:, :, link)
+        associate (links => self%position%links)
+          links%wrench(:, onto) = links%wrench(:, onto) + wrench(:, link)
+          links%wrenches(:, :, onto) = links%wrenches(:, :, onto) + wrenches(:, :, link)
+        end associate
         if (self%plan%alone(s)) call vary_pair(plan%steps(s)%coordinate, wrench(:, link), wrenches(:, :, link), self)
       end do
     end associate
@@ -137,10 +137,10 @@ contains
     real(wp) :: force(3), lever(3)
     integer :: p
 
-    associate (direction => self%plan%pairs(k)%direction, point => self%geometry%point(:, k))
+    associate (direction => self%plan%pairs(k)%direction, point => self%position%geometry%point(:, k))
       do p = 1, size(wrenches, 1)
         force = wrenches(p, 4:6)
-        lever = self%varied%point(p, :, k)
+        lever = self%position%changes%point(p, :, k)
         self%force(p, :, k) = direction*force
         self%moment(p, :, k) = direction*(wrenches(p, 1:3) - cross(point, force) - cross(lever, wrench(4:6)))
       end do

@@ -43,7 +43,7 @@ contains
     do line = 1, size(source%line_start)
       call source%line_bounds(line, first, last)
       if (index(source%text(first:last), '#') > 0) last = first + index(source%text(first:last), '#') - 2
-      call read_line(source%text, first, last, lines%source, lines%numbers(:, n + 1), count, diagnostics, is_good)
+      call read_line(source%text, span_type(lines%source, first, last), lines%numbers(:, n + 1), count, diagnostics, is_good)
       if (count == 0 .or. .not. is_good) cycle
       n = n + 1
       lines%counts(n) = count
@@ -55,11 +55,9 @@ contains
   end subroutine read_number_file
 
   !> Read the numbers of a line.
-  pure subroutine read_line(text, first, last, source, numbers, count, diagnostics, is_good)
+  pure subroutine read_line(text, line, numbers, count, diagnostics, is_good)
     character(len=*), intent(in) :: text                  !< of the file
-    integer, intent(in) :: first                          !< place of the line's first character
-    integer, intent(in) :: last                           !< place of its last one before a comment
-    integer, intent(in) :: source                         !< number of the file as a source
+    type(span_type), intent(in) :: line                   !< place of the line, without its comment
     real(wp), intent(inout) :: numbers(:)                 !< gets the first ones
     integer, intent(out) :: count                         !< how many there are
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the error
@@ -69,16 +67,16 @@ contains
 
     is_good = .false.
     count = 0
-    at = first
-    do while (at <= last)
-      length = verify(text(at:last), gaps)
+    at = line%first
+    do while (at <= line%last)
+      length = verify(text(at:line%last), gaps)
       if (length == 0) exit
       at = at + length - 1
-      length = scan(text(at:last)//' ', gaps) - 1
+      length = scan(text(at:line%last)//' ', gaps) - 1
       count = count + 1
       call read_numeral(text(at:at + length - 1), numeral)
       if (allocated(numeral%problem)) then
-        call diagnostics%add(span_type(source, at, at + length - 1), &
+        call diagnostics%add(span_type(line%source, at, at + length - 1), &
                              ''''//printable(text(at:at + length - 1))//''' '//numeral%problem)
         return
       end if

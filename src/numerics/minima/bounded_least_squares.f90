@@ -11,7 +11,8 @@ module mech9_bounded_least_squares
   use mech9_reflections, only: triangulate, solve_upper
   implicit none
   private
-  public :: residuals_type, residual_values_type, least_squares_settings_type, least_squares_outcome_type, minimise_squares
+  public :: residuals_type, residual_values_type, bounds_type, least_squares_settings_type, least_squares_outcome_type, &
+    minimise_squares
   public :: ended_flat, ended_short, ended_small, ended_by_count, ended_without_value
 
   integer, parameter :: ended_flat = 1           !< the residual is orthogonal to all columns that may move it
@@ -39,6 +40,14 @@ module mech9_bounded_least_squares
   contains
     procedure(evaluate_interface), deferred :: evaluate
   end type residuals_type
+
+  !> Bounds of the unknowns.
+  type :: bounds_type
+    real(wp), allocatable :: low(:)         !< (n) least shared unknowns
+    real(wp), allocatable :: high(:)        !< (n) largest shared unknowns
+    real(wp), allocatable :: y_low(:, :)    !< (own,groups) least unknowns of each group
+    real(wp), allocatable :: y_high(:, :)   !< (own,groups) largest unknowns of each group
+  end type bounds_type
 
   !> When to end.
   type :: least_squares_settings_type
@@ -73,8 +82,7 @@ module mech9_bounded_least_squares
   !> The present place and what is known of it.
   type :: search_type
     real(wp), allocatable :: x(:), y(:, :)                     !< the unknowns
-    real(wp), allocatable :: low(:), high(:)                   !< bounds of the shared unknowns
-    real(wp), allocatable :: y_low(:, :), y_high(:, :)         !< bounds of the others
+    type(bounds_type) :: bounds
     real(wp), allocatable :: scale_x(:), scale_y(:, :)         !< largest norms of the columns so far
     logical, allocatable :: held_x(:), held_y(:, :)            !< unknowns that the step does not solve for
     real(wp), allocatable :: dx(:), dy(:, :)                   !< the step
@@ -88,21 +96,18 @@ module mech9_bounded_least_squares
 contains
 
   !> Make the sum of squares least between bounds. The unknowns are moved into their bounds first.
-  subroutine minimise_squares(residuals, x, y, low, high, y_low, y_high, settings, outcome)
+  subroutine minimise_squares(residuals, x, y, bounds, settings, outcome)
     class(residuals_type), intent(inout) :: residuals               !< the residuals
     real(wp), intent(inout) :: x(:)                                 !< (n) shared unknowns: start, then the place of the minimum
     real(wp), intent(inout) :: y(:, :)                              !< (n_y,groups) unknowns of each group
-    real(wp), intent(in) :: low(:)                                  !< (n) least x
-    real(wp), intent(in) :: high(:)                                 !< (n) largest x
-    real(wp), intent(in) :: y_low(:, :)                             !< (n_y,groups) least y
-    real(wp), intent(in) :: y_high(:, :)                            !< (n_y,groups) largest y
+    type(bounds_type), intent(in) :: bounds                         !< of the unknowns
     type(least_squares_settings_type), intent(in) :: settings       !< when to end
     type(least_squares_outcome_type), intent(out) :: outcome        !< how the search ended
     type(search_type) :: search
     real(wp) :: predicted, value
     logical :: has_value, is_last
 
-    call begin_search(residuals, x, y, low, high, y_low, y_high, settings, search, has_value)
+    call begin_search(residuals, x, y, bounds, settings, search, has_value)
     outcome%kind = merge(ended_by_count, ended_without_value, has_value)
     do while (has_value .and. outcome%steps < settings%most_steps)
       if (search%value <= settings%small) outcome%kind = ended_small
@@ -140,24 +145,18 @@ contains
   end function is_improvement
 
   !> Evaluate the residuals at the start.
-  subroutine begin_search(residuals, x, y, low, high, y_low, y_high, settings, search, has_value)
+  subroutine begin_search(residuals, x, y, bounds, settings, search, has_value)
     class(residuals_type), intent(inout) :: residuals            !< the residuals
     real(wp), intent(in) :: x(:)                                 !< (n) shared unknowns
     real(wp), intent(in) :: y(:, :)                              !< (n_y,groups) unknowns of each group
-    real(wp), intent(in) :: low(:)                               !< (n) least x
-    real(wp), intent(in) :: high(:)                              !< (n) largest x
-    real(wp), intent(in) :: y_low(:, :)                          !< (n_y,groups) least y
-    real(wp), intent(in) :: y_high(:, :)                         !< (n_y,groups) largest y
+    type(bounds_type), intent(in) :: bounds                      !< of the unknowns
     type(least_squares_settings_type), intent(in) :: settings    !< with the first damping
     type(search_type), intent(out) :: search                     !< at the start
     logical, intent(out) :: has_value                            !< the residuals have a value there
 
-    search%low = low
-    search%high = high
-    search%y_low = y_low
-    search%y_high = y_high
-    search%x = min(max(x, low), high)
-    search%y = min(max(y, y_low), y_high)
+    search%bounds = bounds
+    search%x = min(max(x, bounds%low), bounds%high)
+    search%y = min(max(y, bounds%y_low), bounds%y_high)
     search%dx = 0.0_wp*x
     search%dy = 0.0_wp*y
     search%scale_x = search%dx
@@ -188,12 +187,13 @@ contains
     if (.not. has_value) return
     do j = 1, residuals%n
       search%scale_x(j) = max(search%scale_x(j), norm2(search%values%by_x(:, j, :)))
-      search%held_x(j) = is_held(search%x(j), search%low(j), search%high(j), sum(search%values%by_x(:, j, :)*search%values%r))
+      search%held_x(j) = is_held(search%x(j), search%bounds%low(j), search%bounds%high(j), &
+                                 sum(search%values%by_x(:, j, :)*search%values%r))
     end do
     do g = 1, residuals%groups
       do j = 1, residuals%n_y
         search%scale_y(j, g) = max(search%scale_y(j, g), norm2(search%values%by_y(:, j, g)))
-        search%held_y(j, g) = is_held(search%y(j, g), search%y_low(j, g), search%y_high(j, g), &
+        search%held_y(j, g) = is_held(search%y(j, g), search%bounds%y_low(j, g), search%bounds%y_high(j, g), &
                                       dot_product(search%values%by_y(:, j, g), search%values%r(:, g)))
       end do
     end do
@@ -246,15 +246,15 @@ contains
     search%dy = 0.0_wp
     do pass = 1, 10
       call solve_linear(residuals, held_x, held_y, search)
-      if (.not. (any(leaves(search%x + search%dx, search%low, search%high) .and. .not. held_x) .or. &
-                 any(leaves(search%y + search%dy, search%y_low, search%y_high) .and. .not. held_y))) exit
-      where (.not. held_x) held_x = leaves(search%x + search%dx, search%low, search%high)
-      where (.not. held_y) held_y = leaves(search%y + search%dy, search%y_low, search%y_high)
-      search%dx = min(max(search%x + search%dx, search%low), search%high) - search%x
-      search%dy = min(max(search%y + search%dy, search%y_low), search%y_high) - search%y
+      if (.not. (any(leaves(search%x + search%dx, search%bounds%low, search%bounds%high) .and. .not. held_x) .or. &
+                 any(leaves(search%y + search%dy, search%bounds%y_low, search%bounds%y_high) .and. .not. held_y))) exit
+      where (.not. held_x) held_x = leaves(search%x + search%dx, search%bounds%low, search%bounds%high)
+      where (.not. held_y) held_y = leaves(search%y + search%dy, search%bounds%y_low, search%bounds%y_high)
+      search%dx = min(max(search%x + search%dx, search%bounds%low), search%bounds%high) - search%x
+      search%dy = min(max(search%y + search%dy, search%bounds%y_low), search%bounds%y_high) - search%y
     end do
-    search%dx = min(max(search%x + search%dx, search%low), search%high) - search%x
-    search%dy = min(max(search%y + search%dy, search%y_low), search%y_high) - search%y
+    search%dx = min(max(search%x + search%dx, search%bounds%low), search%bounds%high) - search%x
+    search%dy = min(max(search%y + search%dy, search%bounds%y_low), search%bounds%y_high) - search%y
     predicted = 0.0_wp
     do g = 1, residuals%groups
       ! -2 r.J d - |J d|^2, without the difference of two large numbers

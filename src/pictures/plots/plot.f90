@@ -3,8 +3,9 @@
 module mech9_plot
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_text, only: string_type, to_text
+  use mech9_text, only: to_text
   use mech9_path, only: folder_of, name_of, ending_of, with_ending
+  use mech9_heading, only: heading_type
   use mech9_result_sink, only: result_sink_type
   use mech9_plot_drawing, only: draw_picture, draw_in_terminal, script_of_plot
   use mech9_terminal_size, only: find_terminal_size
@@ -36,25 +37,23 @@ module mech9_plot
 contains
 
   !> Read the request before the run, so that a wrong name costs no time (exit_usage).
-  subroutine open_plot(self, text, title, names, units, expected, picture, table, err)
+  subroutine open_plot(self, text, heading, expected, picture, table, err)
     class(plot_type), intent(inout) :: self            !< request and rows of the plot
     character(len=*), intent(in) :: text               !< the argument of --plot
-    character(len=*), intent(in) :: title              !< title of the mechanism
-    type(string_type), intent(in) :: names(:)          !< names of the columns of the results, the time first
-    type(string_type), intent(in) :: units(:)          !< units of the columns of the results
+    type(heading_type), intent(in) :: heading          !< title, and columns of the results, the time first
     integer, intent(in) :: expected                    !< largest number of rows that will come
     character(len=*), intent(in) :: picture            !< file of the picture, unless `text` names one
     character(len=*), intent(in) :: table              !< file with the whole results; empty or '-': none
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
-    call read_plot_request(text, names, self%request, err)
+    call read_plot_request(text, heading%names, self%request, err)
     if (allocated(err)) return
-    self%title = title
+    self%title = heading%title
     self%picture = picture
     if (self%request%target /= '') self%picture = self%request%target
     self%table = table
     self%said = ''
-    self%data = new_plot_data(names, units, self%request%curves, expected)
+    self%data = new_plot_data(heading%names, heading%units, self%request%curves, expected)
     self%is_open = .true.
   end subroutine open_plot
 
@@ -145,11 +144,9 @@ contains
   end subroutine picture_of_plot
 
   !> Plot rows that are in memory.
-  subroutine plot_columns(text, title, names, units, rows, picture, said, err)
+  subroutine plot_columns(text, heading, rows, picture, said, err)
     character(len=*), intent(in) :: text                !< request in the form of the argument of --plot
-    character(len=*), intent(in) :: title               !< title of the mechanism
-    type(string_type), intent(in) :: names(:)           !< names of the columns of the results, the time first
-    type(string_type), intent(in) :: units(:)           !< units of the columns of the results
+    type(heading_type), intent(in) :: heading           !< title, and columns of the results, the time first
     real(wp), intent(in) :: rows(:, :)                  !< (columns,rows) rows of the results
     character(len=*), intent(in) :: picture             !< file of the picture, unless `text` names one
     character(len=:), allocatable, intent(out) :: said  !< a line for the user; empty: nothing to say
@@ -157,7 +154,7 @@ contains
     type(plot_type) :: plot
 
     said = ''
-    call plot%open(text, title, names, units, size(rows, 2), picture, '', err)
+    call plot%open(text, heading, size(rows, 2), picture, '', err)
     if (allocated(err)) return
     call plot%write_rows(rows, err)
     call plot%close(err)

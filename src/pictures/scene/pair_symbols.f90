@@ -231,7 +231,7 @@ contains
         direction = [0.0_wp, 1.0_wp]
         symbols%hangs(symbols%joint(k)) = hangs(film, skeleton, projection, symbols%joint, k)
         if (symbols%hangs(symbols%joint(k))) direction = -direction
-        call scene%add_item(mark, as_stand, symbols%node(k:k), shift=direction)
+        call scene%add_shifted(mark, as_stand, symbols%node(k:k), direction)
       end associate
     end do
   end subroutine add_stands

@@ -47,6 +47,8 @@ module mech9_scene
   contains
     procedure :: add_node
     procedure :: add_item
+    procedure :: add_shifted
+    procedure :: add_label
     procedure :: places_at
   end type scene_type
 
@@ -83,15 +85,14 @@ contains
   end subroutine add_node
 
   !> Add one more thing to draw, above those that are there.
-  pure subroutine add_item(self, shape, style, nodes, link, above, text, shift)
+  pure subroutine add_item(self, shape, style, nodes, link, above, text)
     class(scene_type), intent(inout) :: self        !< nodes and items of the picture
     integer, intent(in) :: shape                    !< shape of the item, one of the numbers from open_path to label
     integer, intent(in) :: style                    !< style of the item, one of the in_ and as_ numbers
     integer, intent(in) :: nodes(:)                 !< numbers of the nodes
     integer, intent(in), optional :: link           !< number of the link whose colour the item has; none unless given
     integer, intent(in), optional :: above(:)       !< numbers of items below this one; the first four count, and zeros do not
-    character(len=*), intent(in), optional :: text  !< text of a label, or names of the coordinates of a joint
-    real(wp), intent(in), optional :: shift(2)      !< displacement from the node, to the right and down [px]; see item_type
+    character(len=*), intent(in), optional :: text  !< names of the coordinates of a joint
     type(item_type), allocatable :: grown(:)
     integer :: i
 
@@ -111,11 +112,36 @@ contains
       if (present(link)) item%link = link
       if (present(above)) item%above(:min(4, size(above))) = above(:min(4, size(above)))
       if (present(text)) item%text = text
-      if (present(shift)) item%shift = shift
     end associate
   end subroutine add_item
 
   !> Move the content of an item to another item.
+  pure subroutine add_shifted(self, shape, style, nodes, shift, above)
+    class(scene_type), intent(inout) :: self        !< nodes and items of the picture
+    integer, intent(in) :: shape                    !< shape of the item, one of the numbers from open_path to label
+    integer, intent(in) :: style                    !< style of the item, one of the in_ and as_ numbers
+    integer, intent(in) :: nodes(:)                 !< numbers of the nodes
+    real(wp), intent(in) :: shift(2)                !< to the right and down [px]; see item_type
+    integer, intent(in), optional :: above(:)       !< numbers of items below this one; the first four count, and zeros do not
+
+    call self%add_item(shape, style, nodes, above=above)
+    self%items(self%n_items)%shift = shift
+  end subroutine add_shifted
+
+  !> One more label is added.
+  pure subroutine add_label(self, style, node, text, shift, link)
+    class(scene_type), intent(inout) :: self        !< nodes and items of the picture
+    integer, intent(in) :: style                    !< style of the label, one of the as_ numbers
+    integer, intent(in) :: node                     !< number of the node
+    character(len=*), intent(in) :: text            !< its text
+    real(wp), intent(in) :: shift(2)                !< displacement from the node, to the right and down [px]
+    integer, intent(in), optional :: link           !< number of the link whose colour the label has; none unless given
+
+    call self%add_item(label, style, [node], link, text=text)
+    self%items(self%n_items)%shift = shift
+  end subroutine add_label
+
+  !> The content of an item is moved to another item.
   pure subroutine move_item(from, to)
     type(item_type), intent(inout) :: from  !< loses its nodes and its text
     type(item_type), intent(inout) :: to    !< receives them

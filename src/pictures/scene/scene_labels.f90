@@ -6,7 +6,7 @@ module mech9_scene_labels
   use mech9_mechanism, only: mechanism_type
   use mech9_film, only: film_type
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, closed_path, segments, mark, label, as_name, as_number, as_coordinate, &
+  use mech9_scene, only: scene_type, closed_path, segments, mark, as_name, as_number, as_coordinate, &
                          as_input, as_leader
   use mech9_drawing, only: drawing_type, draw_frame
   use mech9_label_places, only: obstacles_type, label_type, spot_type, spots_around, place_labels
@@ -26,6 +26,7 @@ module mech9_scene_labels
 
   !> A label that will be added to the scene when its place is chosen.
   type :: entry_type
+    type(label_type) :: label                    !< spots where it can stand
     integer :: style = as_name
     integer :: node = 0                          !< node of the label; 0: a new node on a link, at the chosen spot
     integer :: link = 0                          !< link whose colour the label has
@@ -56,63 +57,62 @@ contains
 
     drawing = draw_frame(scene, film, projection, 1)
     call find_obstacles(scene, drawing, projection, obstacles)
-    allocate (labels(size(nodes) + size(symbols%joint) + size(shapes, 2)))
-    allocate (entries(size(labels)))
+    allocate (entries(size(nodes) + size(symbols%joint) + size(shapes, 2)))
     n = 0
     do i = 1, size(nodes)
       n = n + 1
-      call enter_name(mechanism%points(i)%name, nodes(i), scene, drawing, projection, entries(n), labels(n))
+      call enter_name(mechanism%points(i)%name, nodes(i), scene, drawing, projection, entries(n))
     end do
     if (size(symbols%joint) <= most_labelled) then
       do i = 1, size(symbols%joint)
         if (symbols%joint(i) /= i) cycle
         n = n + 1
-        call enter_coordinates(i, film%independent, symbols, scene, drawing, projection, entries(n), labels(n))
+        call enter_coordinates(i, film%independent, symbols, scene, drawing, projection, entries(n))
       end do
     end if
     if (size(shapes, 2) <= most_labelled) then
       do i = 2, size(shapes, 2)
         if (all(shapes(:, i) == 0)) cycle
         n = n + 1
-        call enter_number(i, shapes(:, i), film, scene, drawing, projection, entries(n), labels(n))
+        call enter_number(i, shapes(:, i), film, scene, drawing, projection, entries(n))
       end do
     end if
-    call place_labels(obstacles, [projection%width, projection%height], labels(:n))
+    labels = entries(:n)%label
+    call place_labels(obstacles, [projection%width, projection%height], labels)
     do i = 1, n
-      call add_entry(entries(i), labels(i), film%independent, film, drawing, projection, scene)
+      entries(i)%label = labels(i)
+      call add_entry(entries(i), film, drawing, projection, scene)
     end do
   end subroutine add_labels
 
   !> Form the label with the name of a point.
-  subroutine enter_name(name, node, scene, drawing, projection, entry, label)
+  subroutine enter_name(name, node, scene, drawing, projection, entry)
     character(len=*), intent(in) :: name             !< name of the point
     integer, intent(in) :: node                      !< number of the node of the point
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
     type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page
     type(projection_type), intent(in) :: projection  !< from space to the page
-    type(entry_type), intent(out) :: entry           !< text and node of the label
-    type(label_type), intent(out) :: label           !< spots where the label can stand
+    type(entry_type), intent(out) :: entry           !< text, node and spots of the label
 
     entry%style = as_name
     entry%node = node
     entry%text = name
-    label%at = drawing%xy(:, node)
-    associate (at => label%at)
-      label%spots = spots_around(at, clear_radius(scene, drawing, projection%symbol, at), &
+    entry%label%at = drawing%xy(:, node)
+    associate (at => entry%label%at)
+      entry%label%spots = spots_around(at, clear_radius(scene, drawing, projection%symbol, at), &
                                  [name_letter*len(name), name_height], to_left=.false.)
     end associate
   end subroutine enter_name
 
   !> Form the label with the names of the coordinates of a joint, in a row or one below the other.
-  subroutine enter_coordinates(joint, independent, symbols, scene, drawing, projection, entry, label)
+  subroutine enter_coordinates(joint, independent, symbols, scene, drawing, projection, entry)
     integer, intent(in) :: joint                     !< number of the first pair of the joint
     logical, intent(in) :: independent(:)            !< (M) which coordinates are independent
     type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
     type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page
     type(projection_type), intent(in) :: projection  !< from space to the page
-    type(entry_type), intent(out) :: entry           !< text and node of the label
-    type(label_type), intent(out) :: label           !< spots where the label can stand
+    type(entry_type), intent(out) :: entry           !< text, node and spots of the label
     type(spot_type), allocatable :: stacked(:)
     real(wp), parameter :: dislike = 2.0_wp
     real(wp) :: widths(most_labelled), clear
@@ -128,29 +128,28 @@ contains
     entry%n_pairs = n
     entry%style = as_coordinate
     entry%node = symbols%node(joint)
-    label%at = drawing%xy(:, entry%node)
-    associate (at => label%at)
+    entry%label%at = drawing%xy(:, entry%node)
+    associate (at => entry%label%at)
       clear = clear_radius(scene, drawing, projection%symbol, at)
-      label%spots = spots_around(at, clear, [sum(widths(:n)) + between*(n - 1), coordinate_height], to_left=.true.)
+      entry%label%spots = spots_around(at, clear, [sum(widths(:n)) + between*(n - 1), coordinate_height], to_left=.true.)
       if (n == 1) return
       stacked = spots_around(at, clear, [maxval(widths(:n)), coordinate_height*n], to_left=.true.)
       stacked%cost = stacked%cost + dislike
-      entry%first_stacked = size(label%spots) + 1
-      label%spots = [label%spots, stacked]
+      entry%first_stacked = size(entry%label%spots) + 1
+      entry%label%spots = [entry%label%spots, stacked]
     end associate
   end subroutine enter_coordinates
 
   !> Form the label with the number of a link: on its bars or its plate, beside them, or with a leading line. The number
   !> of a link that is drawn at one place only stands beside this place.
-  subroutine enter_number(link, shape, film, scene, drawing, projection, entry, label)
+  subroutine enter_number(link, shape, film, scene, drawing, projection, entry)
     integer, intent(in) :: link                      !< number of the link
     integer, intent(in) :: shape(2)                  !< number of the item that shows the link, and of a node of the link; 0: none
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
     type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page
     type(projection_type), intent(in) :: projection  !< from space to the page
-    type(entry_type), intent(out) :: entry           !< text and node of the label
-    type(label_type), intent(out) :: label           !< spots where the label can stand
+    type(entry_type), intent(out) :: entry           !< text, node and spots of the label
     real(wp) :: size_of_box(2)
     real(wp), allocatable :: places(:, :)
 
@@ -158,12 +157,12 @@ contains
     entry%link = link
     entry%text = to_text(link)
     size_of_box = [number_letter*len(entry%text), number_height]
-    label%owner = link
-    label%of_place = .false.
+    entry%label%owner = link
+    entry%label%of_place = .false.
     if (shape(1) == 0) then
       entry%node = shape(2)
       associate (at => drawing%xy(:, entry%node))
-        label%spots = spots_around(at, max(9.0_wp*projection%symbol, clear_radius(scene, drawing, projection%symbol, at)), &
+        entry%label%spots = spots_around(at, max(9.0_wp*projection%symbol, clear_radius(scene, drawing, projection%symbol, at)), &
                                    size_of_box, to_left=.false.)
       end associate
       return
@@ -171,9 +170,9 @@ contains
     places = scene%places_at(film, 1)
     associate (item => scene%items(shape(1)))
       if (item%shape == closed_path) then
-        call look_in_plate(places(:, item%nodes), projection, size_of_box, entry%places, label%spots)
+        call look_in_plate(places(:, item%nodes), projection, size_of_box, entry%places, entry%label%spots)
       else
-        call look_on_bars(places(:, item%nodes), item%shape == segments, projection, size_of_box, entry%places, label%spots)
+        call look_on_bars(places(:, item%nodes), item%shape == segments, projection, size_of_box, entry%places, entry%label%spots)
       end if
     end associate
   end subroutine enter_number
@@ -271,10 +270,8 @@ contains
   end function spot_at
 
   !> Add a label at its chosen spot, with its leading line.
-  subroutine add_entry(entry, placed, independent, film, drawing, projection, scene)
-    type(entry_type), intent(in) :: entry            !< text and node of the label
-    type(label_type), intent(in) :: placed           !< the label with its chosen spot
-    logical, intent(in) :: independent(:)            !< (M) which coordinates are independent
+  subroutine add_entry(entry, film, drawing, projection, scene)
+    type(entry_type), intent(in) :: entry            !< text and node of the label, with its chosen spot
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -282,23 +279,23 @@ contains
     real(wp) :: at(2), depth
     integer :: node
 
-    associate (spot => placed%spots(placed%chosen))
+    associate (chosen => entry%label%chosen, spot => entry%label%spots(entry%label%chosen))
       node = entry%node
       if (node == 0) then
-        call scene%add_node(entry%link, film%local(1, entry%link, entry%places(:, placed%chosen)), node)
-        call projection%on_page(entry%places(:, placed%chosen), at, depth)
+        call scene%add_node(entry%link, film%local(1, entry%link, entry%places(:, chosen)), node)
+        call projection%on_page(entry%places(:, chosen), at, depth)
       else
         at = drawing%xy(:, node)
       end if
       if (any(abs(spot%to - spot%from) > 0.0_wp)) &
-        call scene%add_item(mark, as_leader, [node], shift=(spot%to - at)/projection%symbol)
+        call scene%add_shifted(mark, as_leader, [node], (spot%to - at)/projection%symbol)
       select case (entry%style)
       case (as_name)
-        call scene%add_item(label, as_name, [node], text=entry%text, shift=[spot%low(1), spot%high(2) - below] - at)
+        call scene%add_label(as_name, node, entry%text, [spot%low(1), spot%high(2) - below] - at)
       case (as_number)
-        call scene%add_item(label, as_number, [node], entry%link, text=entry%text, shift=0.5_wp*(spot%low + spot%high) - at)
+        call scene%add_label(as_number, node, entry%text, 0.5_wp*(spot%low + spot%high) - at, entry%link)
       case default
-        call add_coordinates(entry, node, spot, placed%chosen >= entry%first_stacked, at, independent, scene)
+        call add_coordinates(entry, node, spot, chosen >= entry%first_stacked, at, film%independent, scene)
       end select
     end associate
   end subroutine add_entry
@@ -322,7 +319,7 @@ contains
     do i = 1, entry%n_pairs
       k = entry%pairs(i)
       if (.not. stacked) last(1) = last(1) + width_of(k, independent)
-      call scene%add_item(label, merge(as_input, as_coordinate, independent(k)), [node], text='q'//to_text(k), shift=last - at)
+      call scene%add_label(merge(as_input, as_coordinate, independent(k)), node, 'q'//to_text(k), last - at)
       if (stacked) then
         last(2) = last(2) + coordinate_height
       else

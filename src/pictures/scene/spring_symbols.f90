@@ -64,8 +64,8 @@ contains
 
     aside = 0.0_wp
     if (is_spring .and. is_damper) aside(1) = beside
-    if (is_spring .or. .not. is_damper) call scene%add_item(spring, in_spring, nodes, above=above, shift=aside)
-    if (is_damper) call scene%add_item(spring, in_damper, nodes, above=above, shift=-aside)
+    if (is_spring .or. .not. is_damper) call scene%add_shifted(spring, in_spring, nodes, aside, above)
+    if (is_damper) call scene%add_shifted(spring, in_damper, nodes, -aside, above)
   end subroutine add_between
 
   !> Add a spring and damper on a coordinate. For a turning pair they are around the joint. For a sliding pair they are

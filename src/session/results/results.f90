@@ -6,6 +6,7 @@ module mech9_results
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type
   use mech9_result_sink, only: result_sink_type, sink_slot_type, append_sink
+  use mech9_heading, only: heading_of
   use mech9_table, only: table_type
   use mech9_plot, only: plot_type, picture_of_plot
   use mech9_hdf5_sink, only: hdf5_sink_type
@@ -89,8 +90,8 @@ contains
     do i = 1, size(requests)
       call picture_of_plot(requests(i)%text, self%table_path, options%file, i, picture)
       allocate (plot)
-      call plot%open(requests(i)%text, model%mechanism%title, columns%names(:columns%count), &
-                     columns%units(:columns%count), model%request%time%intervals + 1, picture, self%table_path, err)
+      call plot%open(requests(i)%text, heading_of(model%mechanism%title, columns), model%request%time%intervals + 1, picture, &
+                     self%table_path, err)
       if (allocated(err)) then
         if (leaves_out(model)) err%message = err%message//' (&output coordinates, derivatives or energies leave some out)'
         return
@@ -120,8 +121,7 @@ contains
 
     allocate (table)
     if (columns%sensitivities > 0) order = columns%order_in_table()
-    call table%open(self%table_path, model%mechanism%title, name_and_version(model%program), &
-                    columns%names(:columns%count), columns%units(:columns%count), err, order)
+    call table%open(self%table_path, heading_of(model%mechanism%title, columns), name_and_version(model%program), err, order)
     if (allocated(err)) return
     call move_alloc(table, sink)
     call append_sink(self%sinks, sink)

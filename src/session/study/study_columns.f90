@@ -10,6 +10,7 @@ module mech9_study_columns
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type
   use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_hdf5_quantity, only: new_quantity, scale_length
   use mech9_hdf5_series, only: hdf5_series_type
   use mech9_hdf5_columns, only: column_sets_type, most_column_sets
   use mech9_hdf5_scales, only: put_scales, names_of_scales
@@ -18,9 +19,6 @@ module mech9_study_columns
   implicit none
   private
   public :: study_columns_type, refuse_varied_times
-
-  !> Longest path of a scale.
-  integer, parameter :: longest_path = 20
 
   type :: study_columns_type
     private
@@ -112,7 +110,7 @@ contains
       return
     end if
     call self%series%create(file)
-    call copy_data_sets(other, file, [character(len=longest_path) :: 'time', names_of_scales])
+    call copy_data_sets(other, file, [character(len=scale_length) :: 'time', names_of_scales])
     call self%series%attach(file)
     call file%put('study/columns', names, 'data sets over the runs and time')
     call fill_rows(self%series, file, self%numbers, runs)
@@ -166,14 +164,14 @@ contains
     integer, intent(in) :: runs                        !< how many the data sets are to have
     integer, allocatable :: extents(:)
     type(string_type), allocatable :: scales(:)
-    character(len=longest_path), allocatable :: paths(:)
+    character(len=scale_length), allocatable :: paths(:)
     integer :: n, i, k
 
     self%runs = runs
     call self%series%start_fixed(size(names), 1, runs, .true.)
     do i = 1, size(names)
       call extents_of(file, names(i)%text, extents)
-      call scales_of(file, names(i)%text, [character(len=longest_path) :: 'run', 'time', names_of_scales], scales)
+      call scales_of(file, names(i)%text, [character(len=scale_length) :: 'run', 'time', names_of_scales], scales)
       if (allocated(file%failure)) return
       allocate (paths(size(scales)))
       do k = 1, size(scales)
@@ -181,8 +179,9 @@ contains
       end do
       ! the last extent is that of the runs
       n = product(extents(:size(extents) - 1))
-      call self%series%add(names(i)%text, [(self%numbers + k, k=1, n)], extents(:size(extents) - 1), &
-                           attribute_of(file, names(i)%text, 'long_name'), attribute_of(file, names(i)%text, 'units'), paths)
+      call self%series%add(new_quantity(names(i)%text, [(self%numbers + k, k=1, n)], extents(:size(extents) - 1), &
+                                        attribute_of(file, names(i)%text, 'long_name'), &
+                                        attribute_of(file, names(i)%text, 'units'), paths))
       self%numbers = self%numbers + n
       deallocate (paths)
     end do

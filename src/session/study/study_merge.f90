@@ -13,6 +13,7 @@ module mech9_study_merge
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_reading, only: read_text
   use mech9_table, only: table_type
+  use mech9_heading, only: new_heading
   use mech9_overwriting, only: refuse_overwriting
   use mech9_study_definition, only: tell_difference
   use mech9_study_file, only: study_file_type, not_made
@@ -200,7 +201,7 @@ contains
       units(i)%text = ''
       if (i > n + 1 .and. i < n + m + 2) units(i)%text = layout%units(i - n - 1)%text
     end do
-    call table%open(path, layout%title, name_and_version(program), names, units, err)
+    call table%open(path, new_heading(layout%title, names, units), name_and_version(program), err)
   end subroutine open_table
 
   !> Copy the origin of the first part.

@@ -6,6 +6,7 @@ module mech9_study_plots
   use mech9_model, only: model_type
   use mech9_plot, only: picture_of_plot
   use mech9_study_plot, only: study_plot_type
+  use mech9_heading, only: new_heading
   use mech9_quantity_record, only: quantity_record_type
   use mech9_study_statistics, only: study_statistics_type
   implicit none
@@ -48,7 +49,7 @@ contains
     allocate (self%plots(size(requests)))
     do i = 1, size(requests)
       call picture_of_plot(requests(i)%text, table, options%file, i, picture)
-      call self%plots(i)%open(requests(i)%text, model%mechanism%title, names, units, n, picture, err)
+      call self%plots(i)%open(requests(i)%text, new_heading(model%mechanism%title, names, units), n, picture, err)
       if (allocated(err)) return
     end do
   end subroutine open_plots

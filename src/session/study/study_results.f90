@@ -11,6 +11,7 @@ module mech9_study_results
   use mech9_columns, only: columns_type
   use mech9_table, only: table_type
   use mech9_progress, only: progress_type
+  use mech9_heading, only: heading_of
   use mech9_written_files, only: result_paths_type, find_result_paths, standard_output_path
   use mech9_quantity_record, only: quantity_record_type
   use mech9_run_maker, only: made_run_type
@@ -78,8 +79,7 @@ contains
     columns = columns_of_study(model, quantities)
     allocate (self%row(columns%count), source=0.0_wp)
     if (self%paths%table /= '') &
-      call self%table%open(self%paths%table, model%mechanism%title, name_and_version(model%program), &
-                           columns%names(:columns%count), columns%units(:columns%count), err)
+      call self%table%open(self%paths%table, heading_of(model%mechanism%title, columns), name_and_version(model%program), err)
     if (.not. allocated(err) .and. self%paths%hdf5 /= '' .and. .not. options%has('continue')) call self%file%publish(err)
     if (allocated(err)) then
       call self%close(at_close)

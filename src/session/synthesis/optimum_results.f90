@@ -11,6 +11,7 @@ module mech9_optimum_results
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type
   use mech9_table, only: table_type
+  use mech9_heading, only: heading_of
   use mech9_text_file, only: replace_text
   use mech9_written_files, only: result_paths_type, find_result_paths, standard_output_path
   use mech9_hdf5_reading, only: read_text
@@ -177,8 +178,7 @@ contains
       call columns%append(model%parameters(i)%name, '')
     end do
     call columns%append('starts', '')
-    call table%open(path, model%mechanism%title, name_and_version(model%program), columns%names(:columns%count), &
-                    columns%units(:columns%count), err)
+    call table%open(path, heading_of(model%mechanism%title, columns), name_and_version(model%program), err)
     if (allocated(err)) return
     do i = 1, size(synthesis%optima)
       row(1) = synthesis%optima(i)%value

@@ -7,7 +7,6 @@ module test_mechanism_readers
   use mech9_checker, only: check_document
   use mech9_compound_joint, only: compound_joint_type
   use mech9_coordinate_load, only: coordinate_load_type
-  use mech9_coupling, only: coupling_slot_type
   use mech9_coupling_reader, only: read_couplings
   use mech9_dc_motor, only: dc_motor_type
   use mech9_diagnostics, only: diagnostics_type
@@ -24,7 +23,8 @@ module test_mechanism_readers
   use mech9_model, only: model_type
   use mech9_motor_reader, only: read_motors
   use mech9_objective_reader, only: read_objectives
-  use mech9_pair, only: pair_slot_type, pair_motion_type
+  use mech9_pair, only: pair_motion_type
+  use mech9_mechanism, only: mechanism_type
   use mech9_pair_reader, only: read_pairs
   use mech9_parser, only: parse_document
   use mech9_partition, only: partition_type
@@ -83,9 +83,8 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics
-    type(structure_type) :: structure
+    type(mechanism_type) :: mechanism
     type(partition_type) :: partition
-    type(pair_slot_type), allocatable :: list(:)
     type(pair_motion_type) :: motion
     type(error_type), allocatable :: err
     logical :: known
@@ -95,19 +94,23 @@ contains
       "&pair coordinate=2, links=2,3, kind='prismatic', axis=0,3,4 /"//eol// &
       "&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1,0,0, moving_point=0,2,0 /"//eol), document, diagnostics)
     call check_document(document, diagnostics)
-    call read_structure(document, structure, partition, known, diagnostics)
-    call read_pairs(document, structure, degree, [real(wp) ::], list, diagnostics)
-    call tester%is_true(.not. diagnostics%failed() .and. known .and. size(list) == 3, 'three pairs')
-    if (size(list) /= 3 .or. diagnostics%failed()) return
-    call list(1)%pair%evaluate(pi/2.0_wp, motion, err)
+    call read_structure(document, mechanism%structure, partition, known, diagnostics)
+    mechanism%angle_unit = degree
+    mechanism%parameters = [real(wp) ::]
+    call read_pairs(document, mechanism, diagnostics)
+    call tester%is_true(.not. diagnostics%failed() .and. known .and. size(mechanism%pairs) == 3, 'three pairs')
+    if (size(mechanism%pairs) /= 3 .or. diagnostics%failed()) return
+    call mechanism%pairs(1)%pair%evaluate(pi/2.0_wp, motion, err)
     call near_vector(tester, [motion%pose%p, motion%pose%r(:, 1)], [0.0_wp, 0.0_wp, 0.0025_wp, 0.0_wp, 1.0_wp, 0.0_wp], tol, &
                      'a quarter turn of the screw')
-    call list(2)%pair%evaluate(2.0_wp, motion, err)
+    call mechanism%pairs(2)%pair%evaluate(2.0_wp, motion, err)
     call near_vector(tester, motion%pose%p, [0.0_wp, 1.2_wp, 1.6_wp], tol, 'a slide')
-    call list(3)%pair%evaluate(pi, motion, err)
+    call mechanism%pairs(3)%pair%evaluate(pi, motion, err)
     call near_vector(tester, motion%pose%p, [1.0_wp, 2.0_wp, 0.0_wp], tol, 'half a turn about a point of both links')
-    call tester%is_true(list(1)%pair%angular .and. .not. list(2)%pair%angular .and. all([list(3)%pair%reference, &
-                        list(3)%pair%moving] == [3, 4]), 'angles, lengths and links')
+    associate (list => mechanism%pairs)
+      call tester%is_true(list(1)%pair%angular .and. .not. list(2)%pair%angular .and. all([list(3)%pair%reference, &
+                          list(3)%pair%moving] == [3, 4]), 'angles, lengths and links')
+    end associate
   end subroutine pairs
 
   !> Links of joints get numbers above those of the user.
@@ -170,7 +173,8 @@ contains
       real(wp) :: found(3)
 
       call checked(tester, '&drive coordinate=1, '//items//' /'//eol, document, model, diagnostics)
-      call read_drives(document, model%problem%partition, model%mechanism%pairs, degree, 0.0_wp, [real(wp) ::], list, diagnostics)
+      model%mechanism%angle_unit = degree
+      call read_drives(document, model%mechanism, 0.0_wp, model%problem%partition, list, diagnostics)
       call tester%is_true(.not. diagnostics%failed() .and. size(list) == 1, 'a drive: '//items)
       if (size(list) /= 1) return
       call list(1)%drive%evaluate(t, found(1), found(2), found(3), err)
@@ -196,7 +200,8 @@ contains
       type(drive_slot_type), allocatable :: list(:)
 
       call checked(tester, groups, document, model, diagnostics)
-      call read_drives(document, model%problem%partition, model%mechanism%pairs, degree, 0.0_wp, [real(wp) ::], list, diagnostics)
+      model%mechanism%angle_unit = degree
+      call read_drives(document, model%mechanism, 0.0_wp, model%problem%partition, list, diagnostics)
       call move_alloc(list, model%problem%drives)
       model%program = kinematics
       call check_drives(document, model, diagnostics)
@@ -224,16 +229,15 @@ contains
       type(document_type) :: document
       type(model_type) :: model
       type(diagnostics_type) :: diagnostics
-      type(coupling_slot_type), allocatable :: list(:)
       real(wp), parameter :: no_curve(0:2) = 0.0_wp
       real(wp) :: at, beside
 
       call checked(tester, '&coupling '//items//' /'//eol, document, model, diagnostics)
-      call read_couplings(document, model%mechanism%pairs, [0.0_wp, 0.0_wp, 0.0_wp, 1.2_wp], degree, [real(wp) ::], list, &
-                          diagnostics)
-      call tester%is_true(.not. diagnostics%failed() .and. size(list) == 1, 'a coupling: '//items)
-      if (size(list) /= 1) return
-      associate (coupling => list(1)%coupling)
+      model%mechanism%angle_unit = degree
+      call read_couplings(document, [0.0_wp, 0.0_wp, 0.0_wp, 1.2_wp], model%mechanism, diagnostics)
+      call tester%is_true(.not. diagnostics%failed() .and. size(model%mechanism%couplings) == 1, 'a coupling: '//items)
+      if (size(model%mechanism%couplings) /= 1) return
+      associate (coupling => model%mechanism%couplings(1)%coupling)
         call tester%is_true(all(coupling%coordinates == [first, second]), 'its coordinates')
         at = coupling%term(1, q1, no_curve, 0) + coupling%term(2, q2, no_curve, 0)
         beside = coupling%term(1, q1, no_curve, 0) + coupling%term(2, q2 + 0.1_wp, no_curve, 0)
@@ -250,7 +254,6 @@ contains
     type(document_type) :: document
     type(model_type) :: model
     type(diagnostics_type) :: diagnostics
-    type(load_slot_type), allocatable :: list(:)
     real(wp) :: factor
     type(error_type), allocatable :: err
 
@@ -258,17 +261,18 @@ contains
                  "&load kind='spring', links=1,4, position=1,2,3, second_position=4,5,6, stiffness=7, free_length=0.5 /"//eol// &
                  "&load kind='coordinate', coordinate=4, force=1, law='polynomial', coefficients=1,2 /"//eol, document, model, &
                  diagnostics)
-    call read_loads(document, 4, model%mechanism%pairs, degree, [real(wp) ::], list, diagnostics)
-    call tester%is_true(.not. diagnostics%failed() .and. size(list) == 3, 'three loads')
-    if (size(list) /= 3) return
-    select type (load => list(1)%load)
+    model%mechanism%angle_unit = degree
+    call read_loads(document, model%mechanism, diagnostics)
+    call tester%is_true(.not. diagnostics%failed() .and. size(model%mechanism%loads) == 3, 'three loads')
+    if (size(model%mechanism%loads) /= 3) return
+    select type (load => model%mechanism%loads(1)%load)
     type is (coordinate_load_type)
       call near_vector(tester, [load%stiffness, load%rest, load%damping, load%force], [5.0_wp, pi/2.0_wp, 2.0_wp, 3.0_wp], tol, &
                        'a load on a coordinate')
     class default
       call tester%is_true(.false., 'the kind of the first load')
     end select
-    select type (load => list(2)%load)
+    select type (load => model%mechanism%loads(2)%load)
     type is (spring_load_type)
       call tester%is_true(all(load%links == [1, 4]), 'the links of a spring')
       call near_vector(tester, [load%positions, [load%stiffness, load%free_length]], [1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp, 5.0_wp, &
@@ -276,7 +280,7 @@ contains
     class default
       call tester%is_true(.false., 'the kind of the second load')
     end select
-    call list(3)%load%find_factor(3.0_wp, factor, err)
+    call model%mechanism%loads(3)%load%find_factor(3.0_wp, factor, err)
     call tester%near(factor, 7.0_wp, tol, 'a law of time')
   end subroutine loads
 

@@ -41,50 +41,49 @@ contains
     if (i > 0) message = message(:i - 1)
   end function first_message
 
-  subroutine read_table(tester, lines, t, q, ok, diagnostics)
+  subroutine read_table(tester, lines, points, ok, diagnostics)
     type(tester_type), intent(inout) :: tester            !< counts the checks
     character(len=*), intent(in) :: lines(:)              !< of the file
-    real(wp), allocatable, intent(out) :: t(:)            !< first numbers
-    real(wp), allocatable, intent(out) :: q(:)            !< second numbers
+    real(wp), allocatable, intent(out) :: points(:, :)    !< (2,n) numbers of the lines
     logical, intent(out) :: ok                            !< no error was reported
     type(diagnostics_type), intent(out) :: diagnostics    !< gets the errors
 
     call save_lines(tester, path, lines)
-    call read_table_file(path, span_type(), 't', 'q', t, q, ok, diagnostics)
+    call read_table_file(path, span_type(), 't', 'q', points, ok, diagnostics)
     call remove_file(path)
   end subroutine read_table
 
   subroutine tables(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(diagnostics_type) :: diagnostics
-    real(wp), allocatable :: t(:), q(:)
+    real(wp), allocatable :: points(:, :)
     logical :: ok
 
     call read_table(tester, [character(len=30) :: '# comment', 't, q', '0 1', '', ' 1e0,2.5 # one', achar(9)//'2'//achar(9)//'3', &
-                             '3 -4'//achar(13)], t, q, ok, diagnostics)
+                             '3 -4'//achar(13)], points, ok, diagnostics)
     call tester%is_true(ok, 'a table: '//first_message(diagnostics))
-    call near_vector(tester, t, [0.0_wp, 1.0_wp, 2.0_wp, 3.0_wp], 0.0_wp, 'times')
-    call near_vector(tester, q, [1.0_wp, 2.5_wp, 3.0_wp, -4.0_wp], 0.0_wp, 'values')
+    call near_vector(tester, points(1, :), [0.0_wp, 1.0_wp, 2.0_wp, 3.0_wp], 0.0_wp, 'times')
+    call near_vector(tester, points(2, :), [1.0_wp, 2.5_wp, 3.0_wp, -4.0_wp], 0.0_wp, 'values')
   end subroutine tables
 
   subroutine bad_tables(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(diagnostics_type) :: diagnostics
-    real(wp), allocatable :: t(:), q(:)
+    real(wp), allocatable :: points(:, :)
     logical :: ok
 
     call says([character(len=12) :: '0 1', '1 2', '1 3', '2 4'], path//':3:1: t must increase from line to line')
     call says([character(len=12) :: '0 1', '1', '2 3', '3 4'], path//':2:1: each line holds two numbers, t and q; this one has 1')
     call says([character(len=12) :: '0 1', '1 2', '2 3'], 'a smooth curve needs at least 4 points, and the table has 3')
     call says([character(len=12) :: '0 1', '1 x', '2 3', '3 4'], path//':2:3: ')
-    call read_table_file('there_is_no_such_file', span_type(), 't', 'q', t, q, ok, diagnostics)
+    call read_table_file('there_is_no_such_file', span_type(), 't', 'q', points, ok, diagnostics)
     call tester%is_true(.not. ok .and. diagnostics%code() == exit_file, 'a file that is not there')
   contains
     subroutine says(lines, words)
       character(len=*), intent(in) :: lines(:)   !< of the file
       character(len=*), intent(in) :: words      !< part of the message
 
-      call read_table(tester, lines, t, q, ok, diagnostics)
+      call read_table(tester, lines, points, ok, diagnostics)
       call tester%is_true(.not. ok .and. index(first_message(diagnostics), words) > 0, 'message: '//first_message(diagnostics))
     end subroutine says
   end subroutine bad_tables

@@ -6,6 +6,7 @@ module test_hdf5_files
   use mech9_facts, only: facts_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_reading, only: open_existing, read_text, read_texts, read_integer, has_data_set
+  use mech9_hdf5_quantity, only: new_quantity
   use mech9_hdf5_series, only: hdf5_series_type
   use mech9_hdf5_copying, only: copy_data_sets, extents_of, scales_of, attribute_of
   use mech9_hdf5_scales, only: common_unit
@@ -130,9 +131,9 @@ contains
       numbers = reshape([((real(i, wp)/(k + 2), k=1, 3), real(i, wp), i=1, n)], [4, n])
       call file%create(path, err)
       call series%start(3, 4, n, compression)
-      call series%add('time', [1], [integer ::], 'time', 's', [character(len=5) ::])
-      call series%add('vector', [2, 3], [2], 'two numbers', 'm', ['/time', '/axis'])
-      call series%add('count', [4], [integer ::], 'a whole number', '1', ['/time'], whole=.true.)
+      call series%add(new_quantity('time', [1], [integer ::], 'time', 's', [character(len=5) ::]))
+      call series%add(new_quantity('vector', [2, 3], [2], 'two numbers', 'm', ['/time', '/axis']))
+      call series%add(new_quantity('count', [4], [integer ::], 'a whole number', '1', ['/time'], whole=.true.))
       call series%create(file)
       call file%put('axis', [1, 2], 'number of the axis')
       call file%make_scale('axis')
@@ -169,8 +170,8 @@ contains
     expected = reshape([(real(i, wp), -0.5_wp*i, i=1, n)], [2, n])
     call file%create(path, err)
     call series%start_fixed(2, 2, n, .false.)
-    call series%add('a', [1], [integer ::], 'first', '1', [character(len=1) ::])
-    call series%add('b', [2], [integer ::], 'second', '1', [character(len=1) ::])
+    call series%add(new_quantity('a', [1], [integer ::], 'first', '1', [character(len=1) ::]))
+    call series%add(new_quantity('b', [2], [integer ::], 'second', '1', [character(len=1) ::]))
     call series%create(file)
     do i = 1, n
       place = 1 + modulo(i*7, n)      ! 7 and 50 have no common factor: each place comes once
@@ -183,8 +184,8 @@ contains
     call tester%is_true(.not. allocated(file%failure), 'rows are written')
     call open_existing(path, .false., file, err)
     call again%start_fixed(2, 2, n, .true.)
-    call again%add('a', [1], [integer ::], 'first', '1', [character(len=1) ::])
-    call again%add('b', [2], [integer ::], 'second', '1', [character(len=1) ::])
+    call again%add(new_quantity('a', [1], [integer ::], 'first', '1', [character(len=1) ::]))
+    call again%add(new_quantity('b', [2], [integer ::], 'second', '1', [character(len=1) ::]))
     call again%open(file)
     call again%read_rows(file, 1, back)
     call near_matrix(tester, back, expected, 0.0_wp, 'all rows')

@@ -5,6 +5,7 @@ module test_plots_of_runs
   use mech9_error, only: error_type, exit_usage
   use mech9_picture_style, only: styles, style_sheet, colour_of, dark_colours, light_colours
   use mech9_plot, only: plot_type, picture_of_plot
+  use mech9_heading, only: new_heading
   use mech9_scene, only: in_trace, in_plate, in_force, in_cam
   use mech9_study_request, only: study_request_type, read_study_request
   use mech9_study_script, only: study_script, study_terminal_script
@@ -53,9 +54,9 @@ contains
 
     call named(['t ', 'q1', 'q2'], names)
     call named(['s  ', 'rad', 'm  '], units)
-    call other%open('q3', 'a title', names, units, 5, stem//'.svg', '', err)
+    call other%open('q3', new_heading('a title', names, units), 5, stem//'.svg', '', err)
     call has_message(tester, err, exit_usage, 'q3', 'a wrong name')
-    call plot%open('q1:q2', 'a title', names, units, 5, stem//'.svg', '', err)
+    call plot%open('q1:q2', new_heading('a title', names, units), 5, stem//'.svg', '', err)
     call tester%no_error(err, 'a plot')
     rows = reshape([(1.0_wp*i, 0.25_wp*i, -0.5_wp*i, i=1, 5)], [3, 5])
     call plot%write_rows(rows, err)
