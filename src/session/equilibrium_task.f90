@@ -12,7 +12,7 @@ module mech9_equilibrium_task
   use mech9_partition, only: free_coordinate, driven_coordinate
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_start_path, only: start_way_type
   use mech9_start_way_text, only: print_start_way
   use mech9_explained_assembly, only: assemble_model
@@ -129,7 +129,8 @@ contains
     end if
     call assemble_model(model, own_plan, own_start, err, way)
     if (allocated(err)) return
-    call make_plan(model%mechanism, model%problem%partition, own_start%q, plan, start, err, in_space=.true.)
+    call make_plan(model%mechanism, model%problem%partition, own_start%q, plan, start, err, &
+                   planning_settings_type(in_space=.true.))
     if (allocated(err)) return
     start%t = model%request%time%start
     do i = 1, size(model%problem%drives)

@@ -2,7 +2,7 @@
 !> block, with the factors that close the chains.
 !>
 !> A closed chain stays closed: the motion of its closing frame relative to the target does not vary, in position, velocity and
-!> acceleration. The plan must be in space (`in_space` of make_plan).
+!> acceleration. The plan must be in space (`in_space` of the settings of planning).
 module mech9_motion_variation
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
