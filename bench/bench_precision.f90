@@ -17,7 +17,7 @@ program bench_precision
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_integration_methods, only: integration_methods
-  use mech9_integrator, only: integrator_type, integration_statistics_type
+  use mech9_integrator, only: integrator_type, integration_statistics_type, step_tolerance_type
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation, assemble_free
   use mech9_row_source, only: row_source_type, new_row_source
   use mech9_closed_andrews, only: closed_andrews_type, andrews_angles
@@ -187,7 +187,7 @@ contains
     t = model%request%time%start
     y = [model%problem%initial%position(1), model%problem%initial%velocity(1)]
     begin = seconds()
-    call integrator%create(system, 'prince-dormand', tolerance, [tolerance, tolerance], t, y, err)
+    call integrator%create(system, 'prince-dormand', step_tolerance_type(tolerance, [tolerance, tolerance]), t, y, err)
     do while (.not. allocated(err) .and. t < model%request%time%end)
       call integrator%step(model%request%time%end, t, y, err)
     end do

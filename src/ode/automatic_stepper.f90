@@ -8,7 +8,7 @@
 module mech9_automatic_stepper
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type
-  use mech9_integration_methods, only: integration_methods, method_index, tolerance_share
+  use mech9_integration_methods, only: integration_methods, method_index, step_tolerance_type, tolerance_for
   use mech9_stepper, only: stepper_type, stepper_counts_type, stepped
   use mech9_sundials_system, only: system_box_type
   use mech9_sundials_runge_kutta, only: runge_kutta_type, new_runge_kutta
@@ -50,8 +50,7 @@ module mech9_automatic_stepper
     class(stepper_type), pointer :: active => null()        !< the one that made the last step
     logical :: is_implicit = .false.                        !< it is the implicit one
     logical :: goes_over = .false.                          !< the other one makes the next step
-    real(wp) :: relative = 0.0_wp                           !< relative tolerance
-    real(wp), allocatable :: absolute(:)                    !< absolute tolerances
+    type(step_tolerance_type) :: tolerance                  !< of the steps
     real(wp) :: largest_step = 0.0_wp                       !< 0: no limit [s]
     real(wp) :: t = 0.0_wp                                  !< end of the last step [s]
     real(wp), allocatable :: y(:)                           !< values there
@@ -80,27 +79,24 @@ module mech9_automatic_stepper
 contains
 
   !> The method at work on the system in the box, from (t, y). `outcome` is `stepped` when all is well.
-  subroutine new_automatic(box, relative_tolerance, absolute_tolerance, t, y, stepper, outcome)
+  subroutine new_automatic(box, tolerance, t, y, stepper, outcome)
     type(system_box_type), pointer, intent(in) :: box   !< holds the system; must outlive the stepper
-    real(wp), intent(in) :: relative_tolerance          !< of each variable, in a step
-    real(wp), intent(in) :: absolute_tolerance(:)       !< of each variable, in its unit
+    type(step_tolerance_type), intent(in) :: tolerance  !< of the steps
     real(wp), intent(in) :: t                           !< [s]
     real(wp), intent(in) :: y(:)                        !< initial values
     type(automatic_type), intent(inout) :: stepper      !< the method at work
     integer, intent(out) :: outcome                     !< `stepped`, or why it failed
 
     stepper%box => box
-    stepper%relative = relative_tolerance
-    stepper%absolute = absolute_tolerance
-    stepper%stiff_from = stiff_product*min(1.0_wp, (relative_tolerance/loose_tolerance)**power_of_tolerance)
+    stepper%tolerance = tolerance
+    stepper%stiff_from = stiff_product*min(1.0_wp, (tolerance%relative/loose_tolerance)**power_of_tolerance)
     stepper%t = t
     stepper%y = y
     stepper%direction = y
     call box%watch(size(y))
     allocate (stepper%explicit)
     stepper%active => stepper%explicit
-    call new_runge_kutta(integration_methods(method_index('prince-dormand')), box, relative_tolerance, absolute_tolerance, t, y, &
-                         stepper%explicit, outcome)
+    call new_runge_kutta(integration_methods(method_index('prince-dormand')), box, tolerance, t, y, stepper%explicit, outcome)
   end subroutine new_automatic
 
   !> A step of the active method, after which its stiffness is judged.
@@ -245,15 +241,13 @@ contains
   subroutine start_implicit(self, outcome)
     class(automatic_type), intent(inout) :: self   !< the method at work
     integer, intent(out) :: outcome                !< `stepped`, or why it failed
-    real(wp) :: share
 
     if (associated(self%implicit)) then
       call self%implicit%restart(self%t, self%y, 0.0_wp, outcome)
     else
       allocate (self%implicit)
       associate (method => integration_methods(method_index('bdf')))
-        share = tolerance_share(method, self%relative)
-        call new_multistep(method, self%box, share*self%relative, share*self%absolute, self%t, self%y, self%implicit, outcome)
+        call new_multistep(method, self%box, tolerance_for(method, self%tolerance), self%t, self%y, self%implicit, outcome)
       end associate
       if (outcome == stepped) call self%implicit%limit(self%largest_step, outcome)
     end if

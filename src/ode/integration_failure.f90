@@ -6,7 +6,7 @@ module mech9_integration_failure
   use mech9_ode_failures, only: failure_unknown_method, failure_tolerance_count, failure_relative_tolerance, &
     failure_absolute_tolerance, failure_inaccurate_step, failure_unsolved_step, failure_accurate_step, &
     failure_step_memory, failure_step_settings, failure_short_step
-  use mech9_integration_methods, only: method_index
+  use mech9_integration_methods, only: method_index, step_tolerance_type
   use mech9_stepper, only: evaluation_failed, too_inaccurate, not_convergent, too_accurate, out_of_memory
   use mech9_sundials_system, only: system_box_type
   implicit none
@@ -30,20 +30,21 @@ contains
   end subroutine check_method
 
   !> Fails for tolerances with which no step can be judged.
-  pure subroutine check_tolerances(relative, absolute, n, err)
-    real(wp), intent(in) :: relative                    !< relative tolerance
-    real(wp), intent(in) :: absolute(:)                 !< absolute tolerances, one for each variable
+  pure subroutine check_tolerances(tolerance, n, err)
+    type(step_tolerance_type), intent(in) :: tolerance  !< of the steps
     integer, intent(in) :: n                            !< number of variables
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    if (n < 1 .or. size(absolute) /= n) then
-      call raise(err, exit_internal, failure_tolerance_count)
-    else if (.not. (relative > 0.0_wp .and. relative < 1.0_wp)) then
-      call raise(err, exit_data, failure_relative_tolerance)
-      err%failure%tolerance = relative
-    else if (.not. all(absolute > 0.0_wp .and. absolute <= huge(absolute))) then
-      call raise(err, exit_data, failure_absolute_tolerance)
-    end if
+    associate (relative => tolerance%relative, absolute => tolerance%absolute)
+      if (n < 1 .or. size(absolute) /= n) then
+        call raise(err, exit_internal, failure_tolerance_count)
+      else if (.not. (relative > 0.0_wp .and. relative < 1.0_wp)) then
+        call raise(err, exit_data, failure_relative_tolerance)
+        err%failure%tolerance = relative
+      else if (.not. all(absolute > 0.0_wp .and. absolute <= huge(absolute))) then
+        call raise(err, exit_data, failure_absolute_tolerance)
+      end if
+    end associate
   end subroutine check_tolerances
 
   !> The failure of a step: that of the system where it explains the outcome, else that of the method.

@@ -3,7 +3,7 @@ module mech9_integration_methods
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: integration_method_type, integration_methods, method_index, tolerance_share, least_tolerance
+  public :: integration_method_type, integration_methods, method_index, step_tolerance_type, tolerance_for, least_tolerance
   public :: runge_kutta, multistep, automatic
   public :: no_table, prince_dormand_table, dormand_prince_table, verner_table, fehlberg_table, kutta_merson_table
 
@@ -52,18 +52,29 @@ module mech9_integration_methods
     integration_method_type('bdf', multistep, no_table, 5, 0, .false., 3.0e-4_wp, &
                             'backward differences, orders 1 to 5; for stiff motions')]
 
+  !> The error that is allowed in a step.
+  type :: step_tolerance_type
+    real(wp) :: relative = 0.0_wp          !< of each variable
+    real(wp), allocatable :: absolute(:)   !< of each variable, in its unit
+  end type step_tolerance_type
+
   !> A relative tolerance at which the error of a step still stands above round-off.
   real(wp), parameter :: above_round_off = 1.0e-14_wp
 
 contains
 
-  !> Part of the tolerances by which the steps of a method are judged; larger where round-off would decide otherwise.
-  pure real(wp) function tolerance_share(method, relative_tolerance)
+  !> The tolerance by which the steps of a method are judged: its share of the given one, or more where round-off would decide
+  !> otherwise.
+  pure function tolerance_for(method, given) result(own)
     type(integration_method_type), intent(in) :: method   !< the method
-    real(wp), intent(in) :: relative_tolerance            !< as the user gave it
+    type(step_tolerance_type), intent(in) :: given        !< as the user gave it
+    type(step_tolerance_type) :: own
+    real(wp) :: share
 
-    tolerance_share = max(method%share, min(1.0_wp, above_round_off/relative_tolerance))
-  end function tolerance_share
+    share = max(method%share, min(1.0_wp, above_round_off/given%relative))
+    own%relative = share*given%relative
+    own%absolute = share*given%absolute
+  end function tolerance_for
 
   !> The least tolerance of a method; smaller ones change nothing, or only what round-off does.
   pure real(wp) function least_tolerance(method)

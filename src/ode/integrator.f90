@@ -4,7 +4,7 @@ module mech9_integrator
   use mech9_error, only: error_type, raise, exit_integrator
   use mech9_ode_failures, only: failure_many_steps
   use mech9_ode_system, only: ode_system_type
-  use mech9_integration_methods, only: integration_methods, tolerance_share, runge_kutta, automatic
+  use mech9_integration_methods, only: integration_methods, step_tolerance_type, tolerance_for, runge_kutta, automatic
   use mech9_stepper, only: stepper_type, stepper_counts_type, stepped, evaluation_failed
   use mech9_sundials_system, only: system_box_type
   use mech9_sundials_runge_kutta, only: runge_kutta_type, new_runge_kutta
@@ -13,7 +13,7 @@ module mech9_integrator
   use mech9_integration_failure, only: check_method, check_tolerances, fail_by_outcome, fail_by_vanishing_step
   implicit none
   private
-  public :: integrator_type, integration_statistics_type
+  public :: integrator_type, integration_statistics_type, step_tolerance_type
 
   !> Trials that the system refused, in a row, before the integration is given up; each makes the step
   !> a quarter at most, so that all of them together make it 1e-24 of what it was.
@@ -69,23 +69,21 @@ module mech9_integrator
 contains
 
   !> Begin at (t, y). The system must have the target attribute (or be a pointer's target), outlive the
-  !> integrator, and not be used by others meanwhile. Fails for an unknown method or useless tolerances.
-  subroutine create(self, system, method, relative_tolerance, absolute_tolerance, t, y, err)
+  !> integrator, and not be used by others meanwhile. Fails for an unknown method or a useless tolerance.
+  subroutine create(self, system, method, tolerance, t, y, err)
     class(integrator_type), intent(inout) :: self   !< an integrator, which is destroyed first
     class(ode_system_type), intent(inout), target :: system   !< the equations, which must be no temporary value
     character(len=*), intent(in) :: method              !< name, as in integration_methods; blank: the first one
-    real(wp), intent(in) :: relative_tolerance          !< of each part of y, in a step
-    real(wp), intent(in) :: absolute_tolerance(:)       !< of each part of y, in its unit
+    type(step_tolerance_type), intent(in) :: tolerance  !< of the steps
     real(wp), intent(in) :: t                           !< [s]
     real(wp), intent(in) :: y(:)   !< initial values, one for each variable
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp) :: share
     integer :: index, outcome
 
     call self%destroy()
     call check_method(method, index, err)
     if (allocated(err)) return
-    call check_tolerances(relative_tolerance, absolute_tolerance, size(y), err)
+    call check_tolerances(tolerance, size(y), err)
     if (allocated(err)) return
     allocate (self%box)
     self%box%system => system
@@ -95,25 +93,24 @@ contains
     self%t_stop = t
     self%y = y
     self%trial = y
-    share = tolerance_share(integration_methods(index), relative_tolerance)
-    select case (integration_methods(index)%family)
-    case (runge_kutta)
-      allocate (runge_kutta_type :: self%stepper)
-    case (automatic)
-      allocate (automatic_type :: self%stepper)
-    case default
-      allocate (multistep_type :: self%stepper)
-    end select
-    select type (stepper => self%stepper)
-    type is (runge_kutta_type)
-      call new_runge_kutta(integration_methods(index), self%box, share*relative_tolerance, &
-                           share*absolute_tolerance, 0.0_wp, y, stepper, outcome)
-    type is (multistep_type)
-      call new_multistep(integration_methods(index), self%box, share*relative_tolerance, &
-                         share*absolute_tolerance, 0.0_wp, y, stepper, outcome)
-    type is (automatic_type)
-      call new_automatic(self%box, relative_tolerance, absolute_tolerance, 0.0_wp, y, stepper, outcome)
-    end select
+    associate (chosen => integration_methods(index))
+      select case (chosen%family)
+      case (runge_kutta)
+        allocate (runge_kutta_type :: self%stepper)
+      case (automatic)
+        allocate (automatic_type :: self%stepper)
+      case default
+        allocate (multistep_type :: self%stepper)
+      end select
+      select type (stepper => self%stepper)
+      type is (runge_kutta_type)
+        call new_runge_kutta(chosen, self%box, tolerance_for(chosen, tolerance), 0.0_wp, y, stepper, outcome)
+      type is (multistep_type)
+        call new_multistep(chosen, self%box, tolerance_for(chosen, tolerance), 0.0_wp, y, stepper, outcome)
+      type is (automatic_type)
+        call new_automatic(self%box, tolerance, 0.0_wp, y, stepper, outcome)
+      end select
+    end associate
     if (outcome /= stepped) call fail_by_outcome(self%box, outcome, self%t_given_out, err)
   end subroutine create
 

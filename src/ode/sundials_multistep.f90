@@ -3,7 +3,7 @@ module mech9_sundials_multistep
   use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_associated, c_int, c_long, c_double, c_loc, &
     c_funloc, c_f_pointer
   use mech9_kinds, only: wp, long
-  use mech9_integration_methods, only: integration_method_type
+  use mech9_integration_methods, only: integration_method_type, step_tolerance_type
   use mech9_stepper, only: stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
     not_convergent, too_accurate, out_of_memory, refused
   use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, FN_VDestroy, SUNMatrix, FSUNMatDestroy, SUNLinearSolver, &
@@ -52,11 +52,10 @@ module mech9_sundials_multistep
 contains
 
   !> The method at work on the system in the box, from (t, y). `outcome` is `stepped` when all is well.
-  subroutine new_multistep(method, box, relative_tolerance, absolute_tolerance, t, y, stepper, outcome)
+  subroutine new_multistep(method, box, tolerance, t, y, stepper, outcome)
     type(integration_method_type), intent(in) :: method   !< adams or bdf
     type(system_box_type), pointer, intent(in) :: box     !< holds the system; must outlive the stepper
-    real(wp), intent(in) :: relative_tolerance            !< of each variable, in a step
-    real(wp), intent(in) :: absolute_tolerance(:)         !< of each variable, in its unit
+    type(step_tolerance_type), intent(in) :: tolerance    !< of the steps
     real(wp), intent(in) :: t                             !< [s]
     real(wp), intent(in) :: y(:)                          !< initial values
     type(multistep_type), intent(inout) :: stepper        !< the method at work
@@ -71,27 +70,26 @@ contains
     if (.not. c_associated(stepper%memory)) return
     call silence_cvode(stepper%memory, flag)
     if (flag == 0) flag = FCVodeInit(stepper%memory, c_funloc(evaluate_rate), t, stepper%vector)
-    if (flag == 0) call set_tolerances(stepper, relative_tolerance, absolute_tolerance, flag)
+    if (flag == 0) call set_tolerance(stepper, tolerance, flag)
     if (flag == 0) call set_solver(stepper, method, flag)
     if (flag == 0) call set_options(stepper, flag)
     if (flag == 0) call find_history(stepper, flag)
     outcome = merge(stepped, refused, flag == 0)
   end subroutine new_multistep
 
-  !> Give CVODE the tolerances.
-  subroutine set_tolerances(self, relative_tolerance, absolute_tolerance, flag)
+  !> Give CVODE the tolerance.
+  subroutine set_tolerance(self, tolerance, flag)
     type(multistep_type), intent(inout) :: self     !< the method at work
-    real(wp), intent(in) :: relative_tolerance      !< of each variable, in a step
-    real(wp), intent(in) :: absolute_tolerance(:)   !< of each variable, in its unit
+    type(step_tolerance_type), intent(in) :: tolerance   !< of the steps
     integer(c_int), intent(out) :: flag             !< 0 when all is well
     type(N_Vector), pointer :: absolute
 
     flag = CV_MEM_FAIL
-    absolute => self%new_vector(absolute_tolerance)
+    absolute => self%new_vector(tolerance%absolute)
     if (.not. associated(absolute)) return
-    flag = FCVodeSVtolerances(self%memory, relative_tolerance, absolute)   ! SUNDIALS keeps a copy
+    flag = FCVodeSVtolerances(self%memory, tolerance%relative, absolute)   ! SUNDIALS keeps a copy
     call FN_VDestroy(absolute)
-  end subroutine set_tolerances
+  end subroutine set_tolerance
 
   !> Adams' equations are solved by iterating them, those of backward differences by Newton's method.
   subroutine set_solver(self, method, flag)

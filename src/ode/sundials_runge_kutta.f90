@@ -2,8 +2,8 @@
 module mech9_sundials_runge_kutta
   use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_associated, c_int, c_long, c_double, c_loc, c_funloc
   use mech9_kinds, only: wp, long
-  use mech9_integration_methods, only: integration_method_type, prince_dormand_table, dormand_prince_table, verner_table, &
-    fehlberg_table, kutta_merson_table
+  use mech9_integration_methods, only: integration_method_type, step_tolerance_type, prince_dormand_table, &
+    dormand_prince_table, verner_table, fehlberg_table, kutta_merson_table
   use mech9_butcher_tables, only: butcher_table_type, kutta_merson, prince_dormand
   use mech9_step_choice, only: next_step_length, safety
   use mech9_stepper, only: stepper_counts_type, stepped, evaluation_failed, too_inaccurate, &
@@ -43,11 +43,10 @@ module mech9_sundials_runge_kutta
 contains
 
   !> The method at work on the system in the box, from (t, y). `outcome` is `stepped` when all is well.
-  subroutine new_runge_kutta(method, box, relative_tolerance, absolute_tolerance, t, y, stepper, outcome)
+  subroutine new_runge_kutta(method, box, tolerance, t, y, stepper, outcome)
     type(integration_method_type), intent(in) :: method   !< one of the Runge-Kutta methods
     type(system_box_type), pointer, intent(in) :: box     !< holds the system; must outlive the stepper
-    real(wp), intent(in) :: relative_tolerance            !< of each variable, in a step
-    real(wp), intent(in) :: absolute_tolerance(:)         !< of each variable, in its unit
+    type(step_tolerance_type), intent(in) :: tolerance    !< of the steps
     real(wp), intent(in) :: t                             !< [s]
     real(wp), intent(in) :: y(:)                          !< initial values
     type(runge_kutta_type), intent(inout) :: stepper      !< the method at work
@@ -65,26 +64,25 @@ contains
     stepper%memory = FERKStepCreate(c_funloc(evaluate_rate), t, stepper%vector, stepper%context)
     if (.not. c_associated(stepper%memory)) return
     call silence_erkstep(stepper%memory, flag)
-    if (flag == 0) call set_tolerances(stepper, relative_tolerance, absolute_tolerance, flag)
+    if (flag == 0) call set_tolerance(stepper, tolerance, flag)
     if (flag == 0) call set_table(stepper, method, flag)
     if (flag == 0) call set_options(stepper, method, flag)
     outcome = merge(stepped, refused, flag == 0)
   end subroutine new_runge_kutta
 
-  !> Give ERKStep the tolerances.
-  subroutine set_tolerances(self, relative_tolerance, absolute_tolerance, flag)
+  !> Give ERKStep the tolerance.
+  subroutine set_tolerance(self, tolerance, flag)
     type(runge_kutta_type), intent(inout) :: self   !< the method at work
-    real(wp), intent(in) :: relative_tolerance      !< of each variable, in a step
-    real(wp), intent(in) :: absolute_tolerance(:)   !< of each variable, in its unit
+    type(step_tolerance_type), intent(in) :: tolerance   !< of the steps
     integer(c_int), intent(out) :: flag             !< 0 when all is well
     type(N_Vector), pointer :: absolute
 
     flag = ARK_MEM_FAIL
-    absolute => self%new_vector(absolute_tolerance)
+    absolute => self%new_vector(tolerance%absolute)
     if (.not. associated(absolute)) return
-    flag = FERKStepSVtolerances(self%memory, relative_tolerance, absolute)   ! SUNDIALS keeps a copy
+    flag = FERKStepSVtolerances(self%memory, tolerance%relative, absolute)   ! SUNDIALS keeps a copy
     call FN_VDestroy(absolute)
-  end subroutine set_tolerances
+  end subroutine set_tolerance
 
   !> Give SUNDIALS the coefficients. A method whose table is not known is refused.
   subroutine set_table(self, method, flag)

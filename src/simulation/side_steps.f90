@@ -5,7 +5,7 @@ module mech9_side_steps
   use mech9_error, only: error_type
   use mech9_expectation, only: expectation_type
   use mech9_motion_system, only: motion_system_type
-  use mech9_integrator, only: integrator_type, integration_statistics_type
+  use mech9_integrator, only: integrator_type, integration_statistics_type, step_tolerance_type
   implicit none
   private
   public :: side_steps_type, begin_integration
@@ -31,21 +31,26 @@ contains
     real(wp), intent(in) :: t                                   !< time of the start [s]
     real(wp), intent(in) :: y(:)   !< the vector: all coordinates, and the rates of the free ones
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
-    real(wp) :: absolute(size(y)), strict
+    type(step_tolerance_type) :: tolerance
+    real(wp) :: strict
     integer :: i, n
 
     associate (solver => system%model%request%solver)
-      absolute = solver%absolute_tolerance
-      strict = 1.0_wp
+      tolerance%relative = solver%relative_tolerance
+      allocate (tolerance%absolute(size(y)), source=solver%absolute_tolerance)
       if (allocated(system%sensitivity)) then
         ! the error of a step is a mean over the vector, in which the derivatives by parameters must not hide that of the motion
         n = system%size_of_motion()
         strict = sqrt(real(n, wp)/size(y))
-        do i = n + 1, size(y)
-          absolute(i) = absolute(i)*system%sensitivity%size_of(mod(i - n - 1, size(system%sensitivity%size_of)) + 1)
-        end do
+        associate (size_of => system%sensitivity%size_of)
+          do i = n + 1, size(y)
+            tolerance%absolute(i) = tolerance%absolute(i)*size_of(mod(i - n - 1, size(size_of)) + 1)
+          end do
+        end associate
+        tolerance%relative = strict*tolerance%relative
+        tolerance%absolute = strict*tolerance%absolute
       end if
-      call integrator%create(system, solver%method, strict*solver%relative_tolerance, strict*absolute, t, y, err)
+      call integrator%create(system, solver%method, tolerance, t, y, err)
       if (.not. allocated(err)) call integrator%limit(err, maximum_steps=solver%maximum_steps)
     end associate
   end subroutine begin_integration

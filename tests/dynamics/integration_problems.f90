@@ -4,7 +4,7 @@ module mech9_integration_problems
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_ode_system, only: ode_system_type
-  use mech9_integrator, only: integrator_type, integration_statistics_type
+  use mech9_integrator, only: integrator_type, integration_statistics_type, step_tolerance_type
   implicit none
   private
   public :: orbit_type, orbit_start, orbit_at, pendulum_type, pendulum_quarter_period, swing_type, push_type
@@ -289,7 +289,7 @@ contains
     if (present(outputs)) n = outputs
     absolute = tolerance
     t = 0.0_wp
-    call integrator%create(system, method, min(tolerance, 0.1_wp), absolute, t, y, err)
+    call integrator%create(system, method, step_tolerance_type(min(tolerance, 0.1_wp), absolute), t, y, err)
     if (.not. allocated(err) .and. present(equal_step)) &
       call integrator%limit(err, largest_step=equal_step, first_step=equal_step)
     do i = 1, n

@@ -2,7 +2,7 @@
 module test_automatic_method
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
-  use mech9_integrator, only: integrator_type, integration_statistics_type
+  use mech9_integrator, only: integrator_type, integration_statistics_type, step_tolerance_type
   use mech9_testing, only: tester_type
   use mech9_integration_problems, only: orbit_type, orbit_start, stiff_type, fading_type, integrate
   implicit none
@@ -107,7 +107,7 @@ contains
     y = 1.0_wp
     worst = 0.0_wp
     told = 0
-    call integrator%create(fading, 'auto', 1.0e-8_wp, [1.0e-8_wp, 1.0e-8_wp], t, y, err)
+    call integrator%create(fading, 'auto', step_tolerance_type(1.0e-8_wp, [1.0e-8_wp, 1.0e-8_wp]), t, y, err)
     do while (t < 40.0_wp*pi .and. .not. allocated(err))
       from = t
       call integrator%step(40.0_wp*pi, t, y, err)
@@ -134,7 +134,7 @@ contains
 
     t = 0.0_wp
     y = 1.0_wp
-    call integrator%create(stiff, 'auto', 1.0e-7_wp, [1.0e-7_wp, 1.0e-7_wp], t, y, err)
+    call integrator%create(stiff, 'auto', step_tolerance_type(1.0e-7_wp, [1.0e-7_wp, 1.0e-7_wp]), t, y, err)
     do while (t < 1.0_wp .and. .not. allocated(err))
       call integrator%step(1.0_wp, t, y, err)
     end do

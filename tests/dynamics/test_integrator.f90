@@ -4,7 +4,7 @@ module test_integrator
   use mech9_error, only: error_type
   use mech9_ode_system, only: ode_system_type
   use mech9_integration_methods, only: integration_methods, runge_kutta, multistep
-  use mech9_integrator, only: integrator_type, integration_statistics_type
+  use mech9_integrator, only: integrator_type, integration_statistics_type, step_tolerance_type
   use mech9_integration_problems, only: orbit_type, orbit_start, orbit_at, pendulum_type, pendulum_quarter_period, &
     swing_type, push_type, stiff_type, integrate
   use mech9_testing, only: tester_type
@@ -102,7 +102,7 @@ contains
 
     t = start
     y = orbit_start(0.5_wp)
-    call integrator%create(orbit, name, 1.0e-6_wp, spread(1.0e-6_wp, 1, 4), t, y, err)
+    call integrator%create(orbit, name, step_tolerance_type(1.0e-6_wp, spread(1.0e-6_wp, 1, 4)), t, y, err)
     do while (.not. allocated(err) .and. t < start + 8.0_wp)
       call integrator%step(start + 8.0_wp, t, y, err)
     end do

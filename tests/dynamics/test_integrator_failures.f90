@@ -6,7 +6,7 @@ module test_integrator_failures
   use mech9_stepper, only: refused
   use mech9_sundials_system, only: system_box_type
   use mech9_sundials_runge_kutta, only: runge_kutta_type, new_runge_kutta
-  use mech9_integrator, only: integrator_type, integration_statistics_type
+  use mech9_integrator, only: integrator_type, integration_statistics_type, step_tolerance_type
   use mech9_integration_problems, only: explosion_type, obstacle_type, rotation_type, orbit_type, &
     orbit_start, integrate
   use mech9_testing, only: tester_type, message_of
@@ -52,7 +52,7 @@ contains
 
     t = 0.0_wp
     y = 1.0_wp
-    call integrator%create(explosion, method, 1.0e-8_wp, [1.0e-8_wp], t, y, err)
+    call integrator%create(explosion, method, step_tolerance_type(1.0e-8_wp, [1.0e-8_wp]), t, y, err)
     do while (t < 2.0_wp .and. .not. allocated(err))
       call integrator%step(2.0_wp, t, y, err)
     end do
@@ -83,7 +83,7 @@ contains
         obstacle%edge = merge(0.5_wp, sin(0.5_wp), k == 1)   ! y = sin t
         t = 0.0_wp
         y = 0.0_wp
-        call integrator%create(obstacle, method, 1.0e-6_wp, [1.0e-6_wp, 1.0e-6_wp], t, y, err)
+        call integrator%create(obstacle, method, step_tolerance_type(1.0e-6_wp, [1.0e-6_wp, 1.0e-6_wp]), t, y, err)
         do while (t < 2.0_wp .and. .not. allocated(err))
           call integrator%step(2.0_wp, t, y, err)
         end do
@@ -163,7 +163,7 @@ contains
 
     t = 0.0_wp
     y = orbit_start(0.5_wp)
-    call integrator%create(orbit, method, 1.0e-8_wp, spread(1.0e-8_wp, 1, 4), t, y, err)
+    call integrator%create(orbit, method, step_tolerance_type(1.0e-8_wp, spread(1.0e-8_wp, 1, 4)), t, y, err)
     call integrator%limit(err, maximum_steps=20)
     steps = 0
     do while (t < 100.0_wp .and. .not. allocated(err))
@@ -202,17 +202,17 @@ contains
     real(wp) :: y(4)
 
     y = orbit_start(0.5_wp)
-    call integrator%create(orbit, 'fehlbreg', 1.0e-6_wp, [1.0e-6_wp], 0.0_wp, y, err)
+    call integrator%create(orbit, 'fehlbreg', step_tolerance_type(1.0e-6_wp, [1.0e-6_wp]), 0.0_wp, y, err)
     call test%has_error(err, exit_data, 'an unknown method is refused')
     call check_words(test, err, ['''fehlbreg''', '''fehlberg''', 'merson    '], &
                      'the message about an unknown method names it and those there are')
-    call integrator%create(orbit, '', 1.0e-6_wp, [1.0e-6_wp], 0.0_wp, y, err)
+    call integrator%create(orbit, '', step_tolerance_type(1.0e-6_wp, [1.0e-6_wp]), 0.0_wp, y, err)
     call test%has_error(err, exit_internal, 'one absolute tolerance for four variables is refused')
-    call integrator%create(orbit, '', 0.0_wp, spread(1.0e-6_wp, 1, 4), 0.0_wp, y, err)
+    call integrator%create(orbit, '', step_tolerance_type(0.0_wp, spread(1.0e-6_wp, 1, 4)), 0.0_wp, y, err)
     call test%has_error(err, exit_data, 'a relative tolerance of zero is refused')
-    call integrator%create(orbit, '', 1.0e-6_wp, spread(0.0_wp, 1, 4), 0.0_wp, y, err)
+    call integrator%create(orbit, '', step_tolerance_type(1.0e-6_wp, spread(0.0_wp, 1, 4)), 0.0_wp, y, err)
     call test%has_error(err, exit_data, 'an absolute tolerance of zero is refused')
-    call integrator%create(orbit, '', 1.0e-6_wp, spread(1.0e-6_wp, 1, 4), 0.0_wp, y, err)
+    call integrator%create(orbit, '', step_tolerance_type(1.0e-6_wp, spread(1.0e-6_wp, 1, 4)), 0.0_wp, y, err)
     call test%no_error(err, 'where no method is named the first one is taken')
     call integrator%destroy()
   end subroutine check_settings
@@ -237,7 +237,8 @@ contains
     method%table = no_table
     allocate (box)
     box%system => orbit
-    call new_runge_kutta(method, box, 1.0e-6_wp, spread(1.0e-6_wp, 1, 4), 0.0_wp, orbit_start(0.5_wp), stepper, outcome)
+    call new_runge_kutta(method, box, step_tolerance_type(1.0e-6_wp, spread(1.0e-6_wp, 1, 4)), &
+                         0.0_wp, orbit_start(0.5_wp), stepper, outcome)
     call test%is_true(outcome == refused, 'a method without a table is refused')
     call stepper%close()
     deallocate (box)

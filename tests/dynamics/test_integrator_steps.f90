@@ -5,7 +5,7 @@ module test_integrator_steps
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_integration_methods, only: integration_methods
-  use mech9_integrator, only: integrator_type, integration_statistics_type
+  use mech9_integrator, only: integrator_type, integration_statistics_type, step_tolerance_type
   use mech9_integration_problems, only: orbit_type, orbit_start, orbit_at, power_type, rotation_type, stiff_type, &
     integrate
   use mech9_testing, only: tester_type
@@ -63,7 +63,7 @@ contains
       direction = merge(1.0_wp, -1.0_wp, k == 1)
       t = 0.3_wp
       y = orbit_at(0.5_wp, t)
-      call integrator%create(orbit, method, 1.0e-9_wp, spread(1.0e-9_wp, 1, 4), t, y, err)
+      call integrator%create(orbit, method, step_tolerance_type(1.0e-9_wp, spread(1.0e-9_wp, 1, 4)), t, y, err)
       call test%no_error(err, 'an integration is created')
       passed = .false.
       do i = 1, 50
@@ -97,7 +97,7 @@ contains
 
     t = 0.0_wp
     y = orbit_at(0.5_wp, t)
-    call integrator%create(orbit, method, tolerance, spread(tolerance, 1, 4), t, y, err)
+    call integrator%create(orbit, method, step_tolerance_type(tolerance, spread(tolerance, 1, 4)), t, y, err)
     call test%no_error(err, 'an integration is created')
     passed = .false.
     worst = 0.0_wp
@@ -138,7 +138,7 @@ contains
     do k = 1, size(rests)
       t = 0.0_wp
       y = orbit_start(0.5_wp)
-      call integrator%create(orbit, method, 1.0e-9_wp, spread(1.0e-9_wp, 1, 4), t, y, err)
+      call integrator%create(orbit, method, step_tolerance_type(1.0e-9_wp, spread(1.0e-9_wp, 1, 4)), t, y, err)
       call integrator%limit(err, first_step=1.0e-4_wp)   ! the steps would otherwise depend on the stop
       do i = 1, 60
         call integrator%step(1.0e3_wp, t, y, err)
@@ -146,7 +146,7 @@ contains
       t_stop = t + rests(k)
       t = 0.0_wp
       y = orbit_start(0.5_wp)
-      call integrator%create(orbit, method, 1.0e-9_wp, spread(1.0e-9_wp, 1, 4), t, y, err)
+      call integrator%create(orbit, method, step_tolerance_type(1.0e-9_wp, spread(1.0e-9_wp, 1, 4)), t, y, err)
       call integrator%limit(err, first_step=1.0e-4_wp)   ! the steps would otherwise depend on the stop
       shortest = huge(1.0_wp)
       i = 0
@@ -175,7 +175,7 @@ contains
 
     t = 0.0_wp
     y = orbit_start(0.5_wp)
-    call integrator%create(orbit, method, 1.0e-10_wp, spread(1.0e-10_wp, 1, 4), t, y, err)
+    call integrator%create(orbit, method, step_tolerance_type(1.0e-10_wp, spread(1.0e-10_wp, 1, 4)), t, y, err)
     do while (t < 3.0_wp .and. .not. allocated(err))
       call integrator%step(3.0_wp, t, y, err)
     end do
@@ -244,7 +244,7 @@ contains
       free_error = norm2(y - [cos(20.0_wp), sin(20.0_wp)])
       t = 0.0_wp
       y = [1.0_wp, 0.0_wp]
-      call integrator%create(rotation, m%name, 1.0e-9_wp, spread(1.0e-9_wp, 1, 2), t, y, err)
+      call integrator%create(rotation, m%name, step_tolerance_type(1.0e-9_wp, spread(1.0e-9_wp, 1, 2)), t, y, err)
       do while (t < 20.0_wp .and. .not. allocated(err))
         call integrator%step(20.0_wp, t, y, err)
         if (allocated(err)) exit
@@ -278,7 +278,7 @@ contains
 
     t = 0.0_wp
     y = orbit_start(0.2_wp)
-    call integrator%create(orbit, method, 1.0e-9_wp, spread(1.0e-9_wp, 1, 4), t, y, err)
+    call integrator%create(orbit, method, step_tolerance_type(1.0e-9_wp, spread(1.0e-9_wp, 1, 4)), t, y, err)
     do while (t < 1.0_wp .and. .not. allocated(err))
       call integrator%step(1.0_wp, t, y, err)
     end do
@@ -309,7 +309,7 @@ contains
     y = orbit_start(0.0_wp)
     first = -1.0_wp
     longest = 0.0_wp
-    call integrator%create(orbit, method, 1.0e-5_wp, spread(1.0e-5_wp, 1, 4), t, y, err)
+    call integrator%create(orbit, method, step_tolerance_type(1.0e-5_wp, spread(1.0e-5_wp, 1, 4)), t, y, err)
     call integrator%limit(err, largest_step=0.02_wp, first_step=1.0e-5_wp)
     do while (t < 3.0_wp .and. .not. allocated(err))
       t_before = t
@@ -340,9 +340,9 @@ contains
     rotation%settles = .true.
     stiff%has_jacobian = .true.
     if (method == 'bdf') then
-      call integrator%create(stiff, method, 1.0e-8_wp, [1.0e-8_wp, 1.0e-8_wp], t, y, err)
+      call integrator%create(stiff, method, step_tolerance_type(1.0e-8_wp, [1.0e-8_wp, 1.0e-8_wp]), t, y, err)
     else
-      call integrator%create(rotation, method, 1.0e-8_wp, [1.0e-8_wp, 1.0e-8_wp], t, y, err)
+      call integrator%create(rotation, method, step_tolerance_type(1.0e-8_wp, [1.0e-8_wp, 1.0e-8_wp]), t, y, err)
     end if
     do i = 1, 5
       call integrator%step(100.0_wp, t, y, err)
@@ -374,7 +374,7 @@ contains
     y = 0.0_wp
     ends(0) = t
     ! relative errors count for nothing beside 1e-6
-    call integrator%create(system, method, 1.0e-14_wp, [1.0e-6_wp], t, y, err)
+    call integrator%create(system, method, step_tolerance_type(1.0e-14_wp, [1.0e-6_wp]), t, y, err)
     call integrator%limit(err, first_step=0.1_wp)
     do i = 1, 6
       call integrator%step(1.0e3_wp, t, y, err)
@@ -407,7 +407,7 @@ contains
       alone(:, i) = orbit_start(0.1_wp*i)
       call integrate(orbits(i), methods(i), 1.0e-8_wp, 6.0_wp, alone(:, i), statistics, err)
       y(:, i) = orbit_start(0.1_wp*i)
-      call integrators(i)%create(orbits(i), methods(i), 1.0e-8_wp, spread(1.0e-8_wp, 1, 4), t(i), y(:, i), err)
+      call integrators(i)%create(orbits(i), methods(i), step_tolerance_type(1.0e-8_wp, spread(1.0e-8_wp, 1, 4)), t(i), y(:, i), err)
     end do
     do while (any(t < 6.0_wp))
       do i = 1, 2
