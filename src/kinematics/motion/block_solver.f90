@@ -1,7 +1,7 @@
 !> The solution of one block at one time: Newton's method for the positions, then the exact rates and accelerations.
 module mech9_block_solver
   use mech9_kinds, only: wp, long
-  use mech9_tolerances, only: closed_to_round_off, last_correction, small_turn, unchanged_position, unchanged_factors
+  use mech9_tolerances, only: closed_to_round_off, last_correction, small_turn, unchanged_position
   use mech9_error, only: error_type
   use mech9_least_squares, only: least_squares_type
   use mech9_plan, only: plan_type, block_type
@@ -45,7 +45,8 @@ module mech9_block_solver
     integer :: iterations = 0            !< number of corrections applied
     real(wp) :: correction = 0.0_wp      !< sum over the iterations of the largest change of a coordinate, in its unit
     real(wp) :: contraction = 0.0_wp     !< ratio of the second correction to the first; 0 where one was enough
-    logical :: factorized = .false.      !< the factors of the Jacobian serve at the closed position
+    !> Largest change of a coordinate in the last iteration, in its unit; if it is small, the factors serve at the closed position
+    real(wp) :: last = huge(1.0_wp)
   end type newton_outcome_type
 
 contains
@@ -74,9 +75,8 @@ contains
   end function new_block_work
 
   !> Close the chains of a block by Newton's method from the coordinates in `state`; at the end its frames are in place.
-  !> `outcome` says whether the method converged, and whether the factors of its last correction serve at the end, too: they do
-  !> after a correction up to `unchanged`, which is `last_correction` at most. An error arises only where a pair has no pose.
-  subroutine close_block(plan, block, state, work, outcome, err, at_least, unchanged)
+  !> `outcome` says whether the method converged. An error arises only where a pair has no pose.
+  subroutine close_block(plan, block, state, work, outcome, err, at_least)
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
     type(block_type), intent(in) :: block               !< the block
     type(state_type), intent(inout) :: state            !< first guess in; the closed block and poses of its frames out
@@ -84,14 +84,11 @@ contains
     type(newton_outcome_type), intent(out) :: outcome   !< the course of Newton's method
     type(error_type), allocatable, intent(out) :: err   !< allocated if a pair has no pose
     integer, intent(in), optional :: at_least           !< least number of iterations; 0 unless given
-    real(wp), intent(in), optional :: unchanged   !< correction that factors may miss; unchanged_factors unless given
-    real(wp) :: size_of_change, previous, residual_norm, same
+    real(wp) :: size_of_change, previous, residual_norm
     integer :: least
 
     least = 0
     if (present(at_least)) least = at_least
-    same = unchanged_factors
-    if (present(unchanged)) same = unchanged
     previous = 0.0_wp
     call place_unshown(plan, block, state, err)
     if (allocated(err)) return
@@ -106,7 +103,7 @@ contains
       call factorize_block(plan, block, state, work)
       call correct(plan, block, state, work, size_of_change)
       outcome%iterations = outcome%iterations + 1
-      outcome%factorized = size_of_change <= same
+      outcome%last = size_of_change
       if (size_of_change > unchanged_position) then
         work%count%frames_placed = work%count%frames_placed + steps_of(block)
         if (size_of_change <= small_turn) then

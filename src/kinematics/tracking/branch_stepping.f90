@@ -249,14 +249,14 @@ contains
       associate (block => plan%blocks(b), work => stepper%work(b))
         call predict(block, stepper%predictor, stepper%state)
         ! Newton's method goes on to round-off, because beside a singular position a small residual means a large error
-        call close_block(plan, block, stepper%state, work, newton, err, 1, unchanged)
+        call close_block(plan, block, stepper%state, work, newton, err, 1)
         stepper%iterations = stepper%iterations + newton%iterations
         stepper%correction = max(stepper%correction, newton%correction)
         ! a pair may have no pose at the end of a step that is too long
         if (allocated(err) .or. .not. newton%converged) worst = 4.0_wp
         if (worst > 1.0_wp) return
         if (size(block%unknowns) > 0) &
-          call monitor_step(plan, block, stepper%state, newton%factorized, work, stepper%monitors(b), worst)
+          call monitor_step(plan, block, stepper%state, newton%last <= unchanged, work, stepper%monitors(b), worst)
         if (worst > 1.0_wp) return
         if (complete) then
           call solve_motion(plan, block, stepper%state, work)
