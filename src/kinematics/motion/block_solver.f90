@@ -32,7 +32,7 @@ module mech9_block_solver
     real(wp), allocatable :: jacobian(:, :)    !< (equations,unknowns) the Jacobian that was factorized last
     type(least_squares_type) :: equations      !< its factors
     type(planar_chain_type) :: chain           !< the block as a planar chain, if it is one
-    integer, allocatable :: column_of(:)       !< (steps of the block) number of the unknown of each step; 0: none
+    integer, allocatable :: column_of(:)       !< (first_step:last_step) number of the unknown of each step; 0: none
     real(wp), allocatable :: right(:)          !< (equations) right-hand sides
     real(wp), allocatable :: change(:)         !< (unknowns) solution, in units of the coordinates
     logical :: factors_stay = .false.          !< the Jacobian is constant and has been factorized
@@ -60,9 +60,9 @@ contains
     integer :: i
 
     allocate (work%jacobian(block%equations, size(block%unknowns)), source=0.0_wp)
-    allocate (work%column_of(block%last_step - block%first_step + 1), source=0)
+    allocate (work%column_of(block%first_step:block%last_step), source=0)
     do i = 1, size(block%unknowns)
-      work%column_of(block%unknowns(i) - block%first_step + 1) = i
+      work%column_of(block%unknowns(i)) = i
     end do
     if (present(plan)) then
       call work%equations%create(block%equations, size(block%unknowns), block_fronts(plan, block, work%column_of))

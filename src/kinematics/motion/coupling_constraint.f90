@@ -43,12 +43,11 @@ contains
   end subroutine residual
 
   !> Derivatives with respect to the coordinates of steps of a loop, each in its unit.
-  pure subroutine jacobian(self, plan, loop, first, column_of, state, row, matrix)
+  pure subroutine jacobian(self, plan, loop, column_of, state, row, matrix)
     class(coupling_constraint_type), intent(in) :: self   !< the constraint
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(loop_type), intent(in) :: loop                   !< steps of coupled coordinates
-    integer, intent(in) :: first                          !< earlier steps are left out
-    integer, intent(in), contiguous :: column_of(:)       !< column of step `first` and each later one; 0: none
+    integer, allocatable, intent(in) :: column_of(:)      !< (steps of the block) column of each step; 0: none
     type(state_type), intent(in) :: state                 !< with the coordinates
     integer, intent(in) :: row                            !< number of rows of `matrix` before that of this constraint
     real(wp), intent(inout), contiguous :: matrix(:, :)   !< Jacobian of the block; gets the row of this constraint
@@ -56,9 +55,9 @@ contains
 
     do i = 1, size(loop%steps)
       s = loop%steps(i)
-      if (s < first) cycle
-      if (column_of(s - first + 1) == 0) cycle
-      call self%column(plan, s, loop%signs(i), state, matrix(row + 1:row + 1, column_of(s - first + 1)))
+      if (s < lbound(column_of, 1)) cycle
+      if (column_of(s) == 0) cycle
+      call self%column(plan, s, loop%signs(i), state, matrix(row + 1:row + 1, column_of(s)))
     end do
   end subroutine jacobian
 
