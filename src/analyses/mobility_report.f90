@@ -121,7 +121,7 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    integer, intent(in) :: column_of(:)   !< column of each step in the block's Jacobian, 0 if none
+    integer, allocatable, intent(in) :: column_of(:)   !< column of each step in the block's Jacobian, 0 if none
     integer, intent(inout) :: redundant(:)   !< number of redundant equations of each closure
     type(least_squares_type) :: equations
     real(wp) :: a(block%equations, size(block%unknowns))

@@ -248,8 +248,8 @@ contains
       x = f(3, s) - f(3, p)
       y = f(4, s) - f(4, p)
       rate = dq(steps(s)%coordinate)
-      call step_velocity(steps(s), rate, x, y, slide(:, s), v(:, p), v(:, s))
-      call step_acceleration(steps(s), rate, 0.0_wp, x, y, slide(:, s), v(1, p), a(:, p), a(:, s))
+      call step_velocity(steps(s), rate, [x, y], slide(:, s), v(:, p), v(:, s))
+      call step_acceleration(steps(s), [rate, 0.0_wp], [x, y], slide(:, s), v(1, p), a(:, p), a(:, s))
       if (carries(s)) &
         call carry_columns(n_b, entries(s), entries(s + 1) - 1, parent_entry, steps(s), slide(:, s), x, y, b, columns)
     end do

@@ -58,13 +58,13 @@ contains
       rate = dq(steps(s)%coordinate)
       x = f(3, s) - f(3, p)
       y = f(4, s) - f(4, p)
-      call step_velocity(steps(s), rate, x, y, slide(:, s), v(:, p), v(:, s))
-      call add_bias(steps(s), signs(s), rate, x, y, slide(:, s), v(1, p), bias)
+      call step_velocity(steps(s), rate, [x, y], slide(:, s), v(:, p), v(:, s))
+      call add_bias(steps(s), signs(s), rate, [x, y], slide(:, s), v(1, p), bias)
       if (.not. carries(s)) cycle
       do e = entries(s), entries(s + 1) - 1
         carried = 0.0_wp
         if (parent_entry(e) > 0) carried = columns(:, parent_entry(e))
-        call step_velocity(steps(s), b(e), x, y, slide(:, s), carried, columns(:, e))
+        call step_velocity(steps(s), b(e), [x, y], slide(:, s), carried, columns(:, e))
       end do
     end do
   end subroutine chain_columns

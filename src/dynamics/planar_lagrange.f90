@@ -82,7 +82,7 @@ contains
     do e = first, last
       carried = 0.0_wp
       if (parent_entry(e) > 0) carried = columns(:, parent_entry(e))
-      call step_velocity(step, b(e), x, y, slide, carried, columns(:, e))
+      call step_velocity(step, b(e), [x, y], slide, carried, columns(:, e))
     end do
   end subroutine carry_columns
 

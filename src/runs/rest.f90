@@ -6,7 +6,7 @@ module mech9_rest
   use mech9_partition, only: free_coordinate, driven_coordinate
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_start_path, only: start_way_type
   use mech9_simulation, only: interruption_type
   use mech9_linearised_equilibrium, only: equilibrium_type
@@ -49,7 +49,8 @@ contains
     if (.not. allocated(self%plan)) allocate (self%plan, self%start)
     call assemble_model(model, first_plan, first_start, err, self%way)
     if (.not. allocated(err)) &
-      call make_plan(model%mechanism, model%problem%partition, first_start%q, self%plan, self%start, err, in_space=.true.)
+      call make_plan(model%mechanism, model%problem%partition, first_start%q, self%plan, self%start, err, &
+                     planning_settings_type(in_space=.true.))
     if (allocated(err)) return
     associate (start => self%start)
       start%t = model%request%time%start

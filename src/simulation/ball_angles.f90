@@ -16,6 +16,7 @@ module mech9_ball_angles
   use mech9_state, only: state_type, copy_state
   use mech9_frame_motion, only: place_all, spread_all_velocities, spread_all_accelerations
   use mech9_requested, only: requested_type
+  use mech9_replanning, only: wanted_type
   use mech9_ball_joints, only: ball_joint_type, find_ball_joints
   use mech9_held_angles, only: held_angles_type
   implicit none
@@ -25,6 +26,7 @@ module mech9_ball_angles
   !> The angles. The plan and the state are polymorphic because these are copied by calls, which keeps the code of copies small.
   type :: ball_angles_type
     type(held_angles_type) :: held                    !< angles of rods that are held, and what they imply
+    type(requested_type) :: requested                 !< the part of the motion that is worked out
     type(ball_joint_type), allocatable :: joints(:)   !< all whose angles may be replaced
     logical, allocatable :: replaced(:)               !< (joints) other angles are integrated
     class(plan_type), allocatable :: plan             !< with the angles of the data file; set where joints are found
@@ -63,20 +65,21 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
 
     if (.not. allocated(self%plan)) allocate (self%plan, self%state)
+    self%requested = requested
     call self%held%begin(model, plan)
-    call self%restart(model, model%problem%partition, requested, plan, state, err)
+    call self%restart(model, model%problem%partition, plan, state, err)
   end subroutine begin
 
   !> Find the ball joints of a plan and replace the angles of those that are near gimbal lock. In the angles that move the joints then,
   !> hold or free other angles of rods where these serve clearly better.
-  subroutine restart(self, model, partition, requested, plan, state, err)
+  subroutine restart(self, model, partition, plan, state, err)
     class(ball_angles_type), intent(inout) :: self      !< the angles; gets the partition of the motion
     type(model_type), intent(in) :: model               !< the model
     type(partition_type), intent(in) :: partition       !< of the coordinates, with the angles that were held so far
-    type(requested_type), intent(in) :: requested       !< the part of the motion that is worked out
     type(plan_type), intent(inout) :: plan              !< with the angles of the data file; then of the integrated motion
     type(state_type), intent(inout) :: state            !< for this plan, with rates
     type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
+    type(wanted_type) :: wanted
     type(state_type) :: given
     logical :: changed
 
@@ -91,7 +94,9 @@ contains
         if (allocated(err)) return
       end if
     end if
-    call self%held%take_best(model, requested, self%in_use(), plan, state, changed, err)
+    wanted%requested = self%requested
+    wanted%from_known_only = self%in_use()
+    call self%held%take_best(model, wanted, plan, state, changed, err)
     if (.not. allocated(err) .and. changed) call self%follow(model, plan, state, err)
     if (.not. allocated(err)) call self%held%hold_positions(plan, state)
   end subroutine restart

@@ -17,7 +17,7 @@ module mech9_coordinate_choice
   use mech9_state, only: state_type
   use mech9_requested, only: requested_type
   use mech9_block_solver, only: block_work_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_replanning, only: replanning_type, wanted_type, replan
   implicit none
   private
@@ -235,68 +235,62 @@ contains
   end subroutine divide
 
   !> The plan and the state in other independent coordinates. Blocks that do not change are copied; where that cannot be, the
-  !> plan is made from the beginning. Fails with exit_singular where these coordinates cannot serve or the state cannot be
-  !> carried over, and with the code of the failure where a pair or the program itself fails.
-  subroutine carry_over(mechanism, partition, plan, state, requested, new_plan, new_state, err, wanted, rejected, same_frames, &
-                        other_turns)
+  !> plan is made from the beginning, and `carried%serves` is false. Fails with exit_singular where these coordinates cannot serve
+  !> or the state cannot be carried over, and with the code of the failure where a pair or the program itself fails. There is no
+  !> plan where the change is rejected.
+  subroutine carry_over(mechanism, partition, plan, state, wanted, carried, err)
     type(mechanism_type), intent(in) :: mechanism        !< the mechanism
     type(partition_type), intent(in) :: partition        !< with the other independent coordinates
     type(plan_type), intent(in) :: plan                  !< the present plan
     type(state_type), intent(in) :: state                !< closed, with rates of all coordinates
-    type(requested_type), intent(in) :: requested        !< requested quantities; blocks that do not serve them are left out
-    type(plan_type), intent(out) :: new_plan             !< the plan in the other coordinates
-    type(state_type), intent(out) :: new_state           !< the same position and motion, for the new plan
+    type(wanted_type), intent(in) :: wanted              !< requested quantities, and conditioning that is worth the change
+    type(replanning_type), intent(out) :: carried        !< the plan in the other coordinates, and the same motion for it
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
-    type(wanted_type), intent(in), optional :: wanted    !< conditioning for which the change is worthwhile; any unless given
-    logical, intent(out), optional :: rejected           !< it is not worthwhile, and no plan was made
-    logical, intent(out), optional :: same_frames        !< the plan has the frames of the present one, perhaps in another order
-    logical, intent(in), optional :: other_turns         !< the present plan has other angles of ball joints than the mechanism, so that
-                                                         !< none can be made from the beginning; not unless given
-    type(replanning_type) :: replanning
-    type(wanted_type) :: enough
 
-    if (present(wanted)) enough = wanted
-    call replan(plan, state, partition%independent(), partition%driven(), requested, enough, new_plan, new_state, replanning, err)
-    if (present(rejected)) rejected = replanning%rejected
-    if (present(same_frames)) same_frames = replanning%serves
-    if (allocated(err) .or. replanning%rejected) return
-    if (.not. replanning%serves) then
-      if (present(other_turns)) then
-        if (other_turns) call raise(err, exit_singular, failure_other_branch)
+    call replan(plan, state, partition, wanted, carried, err)
+    if (allocated(err) .or. carried%rejected) return
+    if (.not. carried%serves) then
+      if (wanted%from_known_only) then
+        call raise(err, exit_singular, failure_other_branch)
+      else
+        call plan_from_beginning(mechanism, partition, plan, state, wanted%requested, carried, err)
       end if
-      if (.not. allocated(err)) call plan_from_beginning(mechanism, partition, plan, state, requested, new_plan, new_state, err)
     end if
     if (allocated(err)) return
-    new_state%t = state%t
-    new_state%dq = state%dq
+    carried%state%t = state%t
+    carried%state%dq = state%dq
     if (.not. allocated(state%motor)) return
-    new_state%motor = state%motor
-    new_state%motor_rate = state%motor_rate
-    new_state%limited = state%limited
+    carried%state%motor = state%motor
+    carried%state%motor_rate = state%motor_rate
+    carried%state%limited = state%limited
   end subroutine carry_over
 
   !> The plan and the position in other independent coordinates, made from the beginning.
-  subroutine plan_from_beginning(mechanism, partition, plan, state, requested, new_plan, new_state, err)
+  subroutine plan_from_beginning(mechanism, partition, plan, state, requested, carried, err)
     type(mechanism_type), intent(in) :: mechanism        !< the mechanism
     type(partition_type), intent(in) :: partition        !< with the other independent coordinates
-    type(plan_type), intent(in) :: plan                  !< the present plan
+    type(plan_type), intent(in), target :: plan          !< the present plan
     type(state_type), intent(in) :: state                !< closed
     type(requested_type), intent(in) :: requested        !< requested quantities; blocks that do not serve them are left out
-    type(plan_type), intent(out) :: new_plan             !< the plan in the other coordinates
-    type(state_type), intent(out) :: new_state           !< the same position, for the new plan
+    type(replanning_type), intent(inout) :: carried      !< gets the plan in the other coordinates, and the same position for it
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(partition_type) :: ordered
+    type(planning_settings_type) :: settings
     integer :: k
 
     call partition%with_independent(mechanism%structure, partition%independent(), ordered)
-    call make_plan(mechanism, ordered, state%q, new_plan, new_state, err, requested=requested, known=plan)
+    settings%requested = requested
+    settings%known => plan
+    call make_plan(mechanism, ordered, state%q, carried%plan, carried%state, err, settings)
     if (allocated(err)) then
       if (err%code == exit_structure .or. err%code == exit_assembly) err%code = exit_singular
       return
     end if
-    ! chains that were left out so far close anywhere
-    k = maxloc(abs(new_state%q - state%q)/new_plan%unit_of, dim=1, mask=requested%coordinates)
-    if (abs(new_state%q(k) - state%q(k)) <= 1.0e-6_wp*new_plan%unit_of(k)) return
+    associate (q => carried%state%q, units => carried%plan%unit_of)
+      ! chains that were left out so far close anywhere
+      k = maxloc(abs(q - state%q)/units, dim=1, mask=requested%coordinates)
+      if (abs(q(k) - state%q(k)) <= 1.0e-6_wp*units(k)) return
+    end associate
     call raise(err, exit_singular, failure_other_branch)
     err%failure%coordinates = [k]
   end subroutine plan_from_beginning

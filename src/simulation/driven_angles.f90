@@ -26,19 +26,17 @@ module mech9_driven_angles
 contains
 
   !> Begin a motion at its assembled start, with other angles in ball joints that stand near gimbal lock.
-  subroutine begin_with_angles(model, requested, plan, assembled, t, driven, angles, err)
+  subroutine begin_with_angles(model, requested, plan, start, driven, angles, err)
     type(model_type), intent(in) :: model                  !< the model
     type(requested_type), intent(in) :: requested          !< the part of the motion that is worked out
     type(plan_type), intent(inout) :: plan                 !< with the angles of the data file; then as the motion executes it
-    type(state_type), intent(in) :: assembled              !< the assembled position
-    real(wp), intent(in) :: t                              !< time of the start [s]
+    type(state_type), intent(inout) :: start               !< the assembled position and its time; then in the angles of the motion
     type(driven_motion_type), intent(out) :: driven        !< the driven motion
     type(ball_angles_type), intent(inout) :: angles        !< of the ball joints
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    type(state_type) :: start
+    real(wp) :: t
 
-    call copy_state(assembled, start)
-    start%t = t
+    t = start%t
     call angles%begin(model, requested, plan, start, err)
     if (allocated(err)) return
     call start_driven_motion(angles%held%drives, plan, start, t, driven, err, requested%derivatives)
@@ -48,9 +46,8 @@ contains
   end subroutine begin_with_angles
 
   !> Go on towards a time, as `advance` does: as far as the same angles lead, and not by more than many steps.
-  subroutine advance_with_angles(model, requested, plan, t, driven, angles, reached, err)
+  subroutine advance_with_angles(model, plan, t, driven, angles, reached, err)
     type(model_type), intent(in) :: model                  !< the model
-    type(requested_type), intent(in) :: requested          !< the part of the motion that is worked out
     type(plan_type), intent(inout) :: plan                 !< as the motion executes it
     real(wp), intent(in) :: t                              !< time to go to [s]
     type(driven_motion_type), intent(inout) :: driven      !< the driven motion
@@ -66,7 +63,7 @@ contains
     end if
     if (allocated(err)) return
     if (driven%paused) then
-      if (angles_in_doubt(driven)) call change_angles(model, requested, plan, driven, angles, err)
+      if (angles_in_doubt(driven)) call change_angles(model, plan, driven, angles, err)
     else if (reached) then
       call show_angles(plan, angles, driven, err)
     end if
@@ -103,9 +100,8 @@ contains
   end subroutine advance_short
 
   !> Start anew at the present position with other angles in the joints that are near gimbal lock, or with other angles of rods held.
-  subroutine change_angles(model, requested, plan, driven, angles, err)
+  subroutine change_angles(model, plan, driven, angles, err)
     type(model_type), intent(in) :: model                  !< the model
-    type(requested_type), intent(in) :: requested          !< the part of the motion that is worked out
     type(plan_type), intent(inout) :: plan                 !< as the motion executes it
     type(driven_motion_type), intent(inout) :: driven      !< the driven motion
     type(ball_angles_type), intent(inout) :: angles        !< of the ball joints
@@ -129,7 +125,7 @@ contains
         call copy_state(driven%state, changed)
       end if
       partition = angles%held%partition
-      call angles%restart(model, partition, requested, changed_plan, changed, err)
+      call angles%restart(model, partition, changed_plan, changed, err)
     else
       call angles%change(driven%state, changed_plan, changed, err)
     end if

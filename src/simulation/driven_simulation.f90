@@ -89,8 +89,11 @@ contains
     class(driven_simulation_type), intent(inout) :: self   !< the simulation
     real(wp), intent(in) :: t                              !< time of the start [s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(state_type) :: start
 
-    call begin_with_angles(self%model, self%requested, self%plan, self%assembled, t, self%driven, self%angles, err)
+    call copy_state(self%assembled, start)
+    start%t = t
+    call begin_with_angles(self%model, self%requested, self%plan, start, self%driven, self%angles, err)
   end subroutine begin
 
   !> The position at time t, on the same branch. Whether the motion shall stop is asked after many steps, too.
@@ -101,7 +104,7 @@ contains
     logical :: reached
 
     do
-      call advance_with_angles(self%model, self%requested, self%plan, t, self%driven, self%angles, reached, err)
+      call advance_with_angles(self%model, self%plan, t, self%driven, self%angles, reached, err)
       if (reached .or. allocated(err)) return
       call self%stop_if_interrupted(self%driven%predictor%t, err)
       if (allocated(err)) return

@@ -317,7 +317,7 @@ contains
     logical, intent(out) :: changed                      !< the independent coordinates are others now
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
 
-    call self%motion%change_coordinates(self%requested, changed, err)
+    call self%motion%change_coordinates(changed, err)
     if (changed) call add_event(self)
   end subroutine change_coordinates
 
@@ -334,7 +334,7 @@ contains
         call self%continue_angles(motion%t, err)
         if (allocated(err)) return
       end if
-      call motion%change_angles(self%requested, changed, err)
+      call motion%change_angles(changed, err)
     end associate
     if (changed) changed = .not. (same_replaced(self) .and. same_independent(self))
     if (changed) call add_event(self)

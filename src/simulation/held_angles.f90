@@ -8,9 +8,10 @@ module mech9_held_angles
   use mech9_polynomial_law, only: polynomial_law_type
   use mech9_partition, only: partition_type, dependent_coordinate
   use mech9_model, only: model_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
-  use mech9_requested, only: requested_type, request_planned
+  use mech9_plan, only: plan_type, copy_plan
+  use mech9_state, only: state_type, copy_state
+  use mech9_requested, only: request_planned
+  use mech9_replanning, only: replanning_type, wanted_type
   use mech9_frame_motion, only: place_all
   use mech9_held_rods, only: held_rod_type, find_held_rods, find_steps, best_angles, should_change, stop_turn, note_free
   use mech9_coordinate_choice, only: carry_over
@@ -80,20 +81,18 @@ contains
   end function in_doubt
 
   !> Hold other angles of rods where these serve clearly better, in the angles that move the joints.
-  subroutine take_best(self, model, requested, other_turns, plan, state, changed, err)
+  subroutine take_best(self, model, wanted, plan, state, changed, err)
     class(held_angles_type), intent(inout) :: self      !< the angles
     type(model_type), intent(in) :: model               !< the model
-    type(requested_type), intent(in) :: requested       !< the part of the motion that is worked out
-    logical, intent(in) :: other_turns                  !< other angles than those of the data file move joints
+    type(wanted_type), intent(in) :: wanted             !< the part of the motion that is worked out
     type(plan_type), intent(inout) :: plan              !< with the angles that move the joints
     type(state_type), intent(inout) :: state            !< for this plan, with rates
     logical, intent(out) :: changed                     !< plan and state are those with other angles held
     type(error_type), allocatable, intent(out) :: err   !< allocated if a user pair has no pose
-    type(requested_type) :: all_requested
+    type(wanted_type) :: whole
     type(error_type), allocatable :: failure
     type(partition_type) :: partition
-    type(plan_type) :: other_plan
-    type(state_type) :: other_state
+    type(replanning_type) :: carried
     integer, dimension(size(self%rods)) :: before, held
     integer :: i, kind
 
@@ -111,15 +110,14 @@ contains
       partition%kind(before(i)) = dependent_coordinate
       partition%kind(held(i)) = kind
     end do
-    all_requested = requested
-    call request_planned(plan, all_requested)
-    call carry_over(model%mechanism, partition, plan, state, all_requested, other_plan, other_state, failure, &
-                    other_turns=other_turns)
+    whole = wanted
+    call request_planned(plan, whole%requested)
+    call carry_over(model%mechanism, partition, plan, state, whole, carried, failure)
     ! the present angles serve, too, if not as well
     if (allocated(failure)) return
-    other_state%ddq = state%ddq
-    plan = other_plan
-    state = other_state
+    carried%state%ddq = state%ddq
+    call copy_plan(carried%plan, plan)
+    call copy_state(carried%state, state)
     self%partition = partition
     do i = 1, size(held)
       if (.not. self%rods(i)%is_free) call exchange_drive(before(i), held(i), self%drives)

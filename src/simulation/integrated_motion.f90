@@ -10,8 +10,7 @@ module mech9_integrated_motion
   use mech9_plan, only: copy_plan
   use mech9_state, only: copy_state
   use mech9_block_solver, only: work_count_type, work_of
-  use mech9_requested, only: requested_type
-  use mech9_replanning, only: wanted_type
+  use mech9_replanning, only: replanning_type, wanted_type
   use mech9_expectation, only: expectation_type
   use mech9_ode_system, only: is_recoverable
   use mech9_integrator, only: integrator_type, integration_statistics_type
@@ -88,15 +87,14 @@ contains
 
   !> Go on in better conditioned independent coordinates, if there are any. Where the others cannot serve, the motion goes on
   !> in the present ones; any other failure ends it.
-  subroutine change_coordinates(self, requested, changed, err)
+  subroutine change_coordinates(self, changed, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion
-    type(requested_type), intent(in) :: requested          !< the part of the motion that is worked out
     logical, intent(out) :: changed                        !< the independent coordinates are others now
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(motion_system_type), pointer :: other
     type(ball_angles_type) :: angles
     type(error_type), allocatable :: failure
-    logical :: independent(self%system%plan%n_coordinates), rejected
+    logical :: independent(self%system%plan%n_coordinates), made
 
     changed = .false.
     self%system%refuse_below = 0.0_wp
@@ -106,14 +104,13 @@ contains
     if (gives_up(failure, err)) return
     call best_independent(self%system%plan, self%system%state, independent)
     if (all(independent .eqv. self%system%partition%independent())) then
-      self%look_below = self%system%conditioning()/worthwhile_improvement
+      call look_when_worse(self)
       return
     end if
     allocate (other)
     call other%make_room()
-    call take_coordinates(self, independent, requested, other, angles, rejected, failure, err)
-    if (.not. (rejected .or. allocated(failure) .or. allocated(err))) &
-      changed = other%conditioning() >= worthwhile_improvement*self%system%conditioning()
+    call take_coordinates(self, independent, other, angles, made, err)
+    if (made) changed = other%conditioning() >= worthwhile_improvement*self%system%conditioning()
     if (changed) then
       call hand_on_sensitivity(self, angles, other, err)
       self%angles = angles
@@ -121,10 +118,16 @@ contains
       if (.not. allocated(err)) call self%begin(err)
     else
       deallocate (other)
-      if (.not. (allocated(failure) .or. allocated(err))) &
-        self%look_below = self%system%conditioning()/worthwhile_improvement
+      if (made) call look_when_worse(self)
     end if
   end subroutine change_coordinates
+
+  !> Look for other coordinates again when the present ones have become clearly worse.
+  subroutine look_when_worse(self)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion
+
+    self%look_below = self%system%conditioning()/worthwhile_improvement
+  end subroutine look_when_worse
 
   !> Let another system go on with the derivatives by parameters, if there are any. Fails where it moves in other angles than those
   !> of the data file.
@@ -152,38 +155,45 @@ contains
     err%failure%t = t
   end subroutine refuse_angles
 
-  !> Make the system in other independent coordinates, at the present state. Data of frames and blocks that do not
-  !> change are copied. `failure` means that these coordinates cannot serve, `err` that the motion ends.
-  subroutine take_coordinates(self, independent, requested, other, angles, rejected, failure, err)
+  !> Make the system in other independent coordinates, at the present state. What belongs to frames and blocks that do not change
+  !> is copied. The system is not made where these coordinates cannot serve, or the change is not worthwhile.
+  subroutine take_coordinates(self, independent, other, angles, made, err)
     class(integrated_motion_type), intent(inout) :: self       !< the motion
     logical, intent(in) :: independent(:)                      !< (M) the coordinate is independent
-    type(requested_type), intent(in) :: requested              !< the part of the motion that is worked out
     type(motion_system_type), intent(inout) :: other           !< the system in these coordinates
     type(ball_angles_type), intent(inout) :: angles            !< of ball joints, for this system
-    logical, intent(out) :: rejected                           !< the change is not worthwhile, and the system was not made
-    type(error_type), allocatable, intent(out) :: failure      !< allocated if these coordinates cannot serve
+    logical, intent(out) :: made                               !< the system was made
     type(error_type), allocatable, intent(out) :: err          !< allocated if the motion ends
+    type(error_type), allocatable :: failure
     type(partition_type) :: partition
     type(wanted_type) :: wanted
+    type(replanning_type) :: carried
     logical :: same_frames
 
-    rejected = .false.
+    made = .false.
     partition = self%system%partition%in_same_order(independent)
     wanted = worth_taking(self%system%conditioning(), self%system%work%blocks)
+    wanted%requested = self%angles%requested
+    wanted%from_known_only = self%angles%in_use()
     call self%show_angles(err)
     if (allocated(err)) return
-    call carry_over(self%system%model%mechanism, partition, self%system%plan, self%system%state, requested, other%plan, &
-                    other%state, failure, wanted, rejected, same_frames, self%angles%in_use())
-    if (gives_up(failure, err) .or. rejected) return
+    call carry_over(self%system%model%mechanism, partition, self%system%plan, self%system%state, wanted, carried, failure)
+    if (gives_up(failure, err)) return
+    if (carried%rejected) then
+      call look_when_worse(self)
+      return
+    end if
+    call move_alloc(carried%plan, other%plan)
+    call move_alloc(carried%state, other%state)
     angles = self%angles
     if (angles%in_use()) then
       angles%held%partition = partition
       call angles%follow(self%system%model, other%plan, other%state, failure)
     else
-      call angles%restart(self%system%model, partition, requested, other%plan, other%state, failure)
+      call angles%restart(self%system%model, partition, other%plan, other%state, failure)
     end if
     if (gives_up(failure, err)) return
-    same_frames = same_frames .and. .not. angles%in_use() .and. all(angles%held%partition%kind == partition%kind)
+    same_frames = carried%serves .and. .not. angles%in_use() .and. all(angles%held%partition%kind == partition%kind)
     call copy_drives(angles%held%drives, other%drives)
     ! they may have no inertia in this position; what fails in any coordinates will do so in the present ones, too
     if (same_frames) then
@@ -191,12 +201,12 @@ contains
     else
       call set_motion_system(self%system%model, angles%held%partition, other, failure)
     end if
+    made = .not. allocated(failure)
   end subroutine take_coordinates
 
   !> Go on with other angles in the ball joints whose present ones are near gimbal lock, or with other angles of rods held.
-  subroutine change_angles(self, requested, changed, err)
+  subroutine change_angles(self, changed, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion, to whose end the angles are continued
-    type(requested_type), intent(in) :: requested          !< the part of the motion that is worked out
     logical, intent(out) :: changed                        !< the angles are others now
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(motion_system_type), pointer :: other
@@ -212,7 +222,7 @@ contains
     angles = self%angles
     allocate (other)
     call other%make_room()
-    call take_angles(self, requested, angles, other, failure)
+    call take_angles(self, angles, other, failure)
     changed = .not. (gives_up(failure, err) .or. angles%move_as(self%angles))
     if (changed .and. allocated(self%system%sensitivity)) then
       call raise(err, exit_singular, failure_angles_sensitivity)
@@ -228,9 +238,8 @@ contains
   end subroutine change_angles
 
   !> Make the system in the angles that serve best, at the present state.
-  subroutine take_angles(self, requested, angles, other, failure)
+  subroutine take_angles(self, angles, other, failure)
     class(integrated_motion_type), intent(in) :: self       !< the motion
-    type(requested_type), intent(in) :: requested           !< the part of the motion that is worked out
     type(ball_angles_type), intent(inout) :: angles         !< ball joints of the motion; then of the system
     type(motion_system_type), intent(inout) :: other        !< gets the system
     type(error_type), allocatable, intent(out) :: failure   !< allocated if these angles cannot serve
@@ -243,7 +252,7 @@ contains
         call copy_plan(self%system%plan, other%plan)
         call copy_state(self%system%state, other%state)
       end if
-      call angles%restart(self%system%model, self%system%partition, requested, other%plan, other%state, failure)
+      call angles%restart(self%system%model, self%system%partition, other%plan, other%state, failure)
     else
       call angles%change(self%system%state, other%plan, other%state, failure)
     end if

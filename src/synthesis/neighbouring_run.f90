@@ -166,15 +166,15 @@ contains
     do i = 1, near%trial%n
       g = near%trial%target(i)
       if (g == 0) cycle
-      associate (target => targets(g), pose => near%run%pose)
+      associate (target => targets(g), frames => near%run%frames)
         r(:, g) = 0.0_wp
         if (target%coordinate > 0) then
           r(1, g) = target%factor*(near%trial%q(i, target%coordinate) - target%place(1))
         else
           f = plan%frame_of(target%link)
           associate (point => near%design%points(:, target%point))
-            place(1) = pose(i, 3, f) + pose(i, 1, f)*point(1) - pose(i, 2, f)*point(2)
-            place(2) = pose(i, 4, f) + pose(i, 2, f)*point(1) + pose(i, 1, f)*point(2)
+            place(1) = frames(i, 3, f) + frames(i, 1, f)*point(1) - frames(i, 2, f)*point(2)
+            place(2) = frames(i, 4, f) + frames(i, 2, f)*point(1) + frames(i, 1, f)*point(2)
             place(3) = point(3)
           end associate
           if (.not. plan%planar%in_xy_plane) place = matmul(plan%planar%axes, place)

@@ -21,8 +21,7 @@ module mech9_planar_slopes
     logical, allocatable :: touched(:, :)             !< (M,P) coordinates that change with each parameter
     real(wp), allocatable :: q(:, :), dq(:, :)        !< (n,M) coordinates and their rates [rad, m; per s]
     real(wp), allocatable :: turn(:, :, :)            !< (n,2,M) cosine and sine of the angle by which each step turns
-    real(wp), allocatable :: pose(:, :, :)            !< (n,4,0:M) poses of the frames [m]
-    real(wp), allocatable :: slide(:, :, :)           !< (n,2,M) velocity of each frame's origin per unit rate
+    real(wp), allocatable :: frames(:, :, :)          !< (n,6,0:M) the frames, see mech9_planar_loop
     real(wp), allocatable :: by_x(:, :, :)            !< (n,M,P) derivatives of the coordinates by the parameters
     real(wp), allocatable :: jacobian(:, :, :), inverse(:, :, :), columns(:, :, :)   !< scratch
     real(wp), allocatable :: pivots(:, :), rows(:, :), change(:, :)                  !< scratch
@@ -43,10 +42,10 @@ contains
     slopes%n = n
     allocate (slopes%at(n), source=1)
     allocate (slopes%touched(m, size(design%at)), source=.false.)
-    allocate (slopes%q(n, m), slopes%dq(n, m), slopes%turn(n, 2, m), slopes%pose(n, 4, 0:m), slopes%slide(n, 2, m), &
+    allocate (slopes%q(n, m), slopes%dq(n, m), slopes%turn(n, 2, m), slopes%frames(n, 6, 0:m), &
               slopes%by_x(n, m, size(design%at)), slopes%jacobian(n, 3, 3), slopes%inverse(n, 3, 3), slopes%columns(n, 3, m), &
               slopes%pivots(n, 2), slopes%rows(n, 3), slopes%change(n, 3), source=0.0_wp)
-    slopes%pose(:, 1, 0) = 1.0_wp
+    slopes%frames(:, 1, 0) = 1.0_wp
     do p = 1, size(design%at)
       do i = 1, size(space_design%drives)
         slopes%touched(space_design%drives(i)%drive%coordinate, p) = space_design%tangents(p)%drives(i)%varies
@@ -128,7 +127,7 @@ contains
         slopes%turn(g, 2, k) = positions%turn(slopes%at(g), 2, k)
       end do
     end do
-    call place_frames(slopes%n, slopes%n, run%m, design%steps, 1, run%m, slopes%q, slopes%turn, slopes%pose, slopes%slide)
+    call place_frames(slopes%n, design%steps, 1, run%m, slopes%q, slopes%turn, slopes%frames)
     do i = 1, size(space_design%drives)
       k = space_design%drives(i)%drive%coordinate
       if (.not. any(slopes%touched(k, :))) cycle
@@ -142,14 +141,14 @@ contains
       associate (loop => run%loops(b), base => design%closures(run%loops(b)%closure)%base)
         do i = 1, 3
           s = loop%unknowns(i)
-          call find_column(slopes%n, slopes%n, design%steps(s), loop%signs(s)*loop%units(i), run%per_length, &
-                           slopes%pose(:, :, s), slopes%slide(:, :, s), slopes%pose(:, :, base), slopes%jacobian(:, :, i))
+          call find_column(slopes%n, slopes%n, design%steps(s), loop%signs(s)*loop%units(i)*[1.0_wp, run%per_length], &
+                           slopes%frames(:, :, s), slopes%frames(:, :, base), slopes%jacobian(:, :, i))
         end do
         call invert_several(slopes%n, slopes%n, 0.0_wp, slopes%jacobian, slopes%inverse, slopes%pivots(:, 1), slopes%pivots(:, 2))
         do i = 1, size(loop%given)
           s = loop%given(i)
-          call find_column(slopes%n, slopes%n, design%steps(s), loop%signs(s), run%per_length, slopes%pose(:, :, s), &
-                           slopes%slide(:, :, s), slopes%pose(:, :, base), slopes%columns(:, :, s))
+          call find_column(slopes%n, slopes%n, design%steps(s), loop%signs(s)*[1.0_wp, run%per_length], &
+                           slopes%frames(:, :, s), slopes%frames(:, :, base), slopes%columns(:, :, s))
         end do
         call find_rates(design, loop, slopes)
         do i = 1, size(design%at)
@@ -195,17 +194,17 @@ contains
         if (.not. abs(loop%signs(s)) > 0.0_wp) cycle
         of_step = step_slopes(design, s, p)
         if (any(abs(of_step(1:2)) > 0.0_wp)) call add_shift(n, loop%signs(s)*per_length*of_step(1:2), &
-                                                            slopes%pose(:, :, design%steps(s)%parent), rows(:, 2), rows(:, 3))
+                                                            slopes%frames(:, :, design%steps(s)%parent), rows(:, 2), rows(:, 3))
         if (abs(of_step(3)) > 0.0_wp) then
           w = loop%signs(s)*of_step(3)
           rows(:, 1) = rows(:, 1) + w
-          rows(:, 2) = rows(:, 2) + w*per_length*(slopes%pose(:, 4, s) - slopes%pose(:, 4, closure%base))
-          rows(:, 3) = rows(:, 3) - w*per_length*(slopes%pose(:, 3, s) - slopes%pose(:, 3, closure%base))
+          rows(:, 2) = rows(:, 2) + w*per_length*(slopes%frames(:, 4, s) - slopes%frames(:, 4, closure%base))
+          rows(:, 3) = rows(:, 3) - w*per_length*(slopes%frames(:, 3, s) - slopes%frames(:, 3, closure%base))
         end if
       end do
       of_closure = closure_slopes(design, loop%closure, p)
       if (any(abs(of_closure) > 0.0_wp)) &
-        call add_shift(n, -per_length*of_closure, slopes%pose(:, :, closure%target), rows(:, 2), rows(:, 3))
+        call add_shift(n, -per_length*of_closure, slopes%frames(:, :, closure%target), rows(:, 2), rows(:, 3))
       do i = 1, size(loop%given)
         s = loop%given(i)
         if (.not. slopes%touched(design%steps(s)%coordinate, p)) cycle
@@ -264,16 +263,16 @@ contains
     integer :: p, s, n
 
     n = slopes%n
-    place(:, 1) = slopes%pose(:, 3, frame)
-    place(:, 2) = slopes%pose(:, 4, frame)
+    place(:, 1) = slopes%frames(:, 3, frame)
+    place(:, 2) = slopes%frames(:, 4, frame)
     place(:, 3) = design%points(3, number)
-    call add_shift(n, design%points(1:2, number), slopes%pose(:, :, frame), place(:, 1), place(:, 2))
+    call add_shift(n, design%points(1:2, number), slopes%frames(:, :, frame), place(:, 1), place(:, 2))
     by_x = 0.0_wp
     by_t = 0.0_wp
     do p = 1, size(design%at)
       of_point = point_slopes(design, number, p)
       if (any(abs(of_point(1:2)) > 0.0_wp)) &
-        call add_shift(n, of_point(1:2), slopes%pose(:, :, frame), by_x(:, 1, p), by_x(:, 2, p))
+        call add_shift(n, of_point(1:2), slopes%frames(:, :, frame), by_x(:, 1, p), by_x(:, 2, p))
       by_x(:, 3, p) = of_point(3)
     end do
     s = frame
@@ -282,9 +281,9 @@ contains
         do p = 1, size(design%at)
           of_step = step_slopes(design, s, p)
           if (any(abs(of_step(1:2)) > 0.0_wp)) &
-            call add_shift(n, of_step(1:2), slopes%pose(:, :, step%parent), by_x(:, 1, p), by_x(:, 2, p))
+            call add_shift(n, of_step(1:2), slopes%frames(:, :, step%parent), by_x(:, 1, p), by_x(:, 2, p))
           if (abs(of_step(3)) > 0.0_wp) &
-            call add_turn(n, spread(of_step(3), 1, n), slopes%pose(:, :, s), place(:, 1:2), by_x(:, 1, p), by_x(:, 2, p))
+            call add_turn(n, spread(of_step(3), 1, n), slopes%frames(:, :, s), place(:, 1:2), by_x(:, 1, p), by_x(:, 2, p))
           if (slopes%touched(k, p)) call add_motion(slopes%by_x(:, k, p), by_x(:, :, p))
         end do
         call add_motion(slopes%dq(:, k), by_t)
@@ -298,10 +297,10 @@ contains
       real(wp), intent(inout) :: shift(:, :)   !< (n,3) gets the shift
 
       if (design%steps(s)%turns) then
-        call add_turn(n, design%steps(s)%turn*change, slopes%pose(:, :, s), place(:, 1:2), shift(:, 1), shift(:, 2))
+        call add_turn(n, design%steps(s)%turn*change, slopes%frames(:, :, s), place(:, 1:2), shift(:, 1), shift(:, 2))
       else
-        shift(:, 1) = shift(:, 1) + slopes%slide(:, 1, s)*change
-        shift(:, 2) = shift(:, 2) + slopes%slide(:, 2, s)*change
+        shift(:, 1) = shift(:, 1) + slopes%frames(:, 5, s)*change
+        shift(:, 2) = shift(:, 2) + slopes%frames(:, 6, s)*change
       end if
     end subroutine add_motion
   end subroutine find_point_slopes

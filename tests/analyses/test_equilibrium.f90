@@ -8,7 +8,7 @@ module test_equilibrium
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_resting_mechanism, only: resting_type, put_to_rest, find_stiffness, try_step, is_balanced
   use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_equilibria, only: find_equilibrium, find_equilibria
@@ -57,7 +57,8 @@ contains
     type(error_type), allocatable :: err
 
     call model_from_text(tester, text, dynamics, model)
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space=.true.)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, &
+                   planning_settings_type(in_space=.true.))
     call tester%no_error(err, 'there is a plan in space')
   end subroutine assemble
 
@@ -238,7 +239,8 @@ contains
     integer :: i, j, n
     logical :: moved
 
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space=.true.)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, &
+                   planning_settings_type(in_space=.true.))
     if (.not. allocated(err)) call put_to_rest(model%mechanism, model%problem%partition, plan, state, resting, err)
     if (.not. allocated(err)) call find_stiffness(model%mechanism, resting, err)
     call tester%no_error(err, why//': the stiffness is found')

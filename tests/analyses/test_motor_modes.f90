@@ -10,7 +10,7 @@ module test_motor_modes
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_motor_modes, only: find_motor_modes
   use mech9_resting_motors, only: motor_coupling_type, couple_motors
   use mech9_linearised_equilibrium, only: equilibrium_type
@@ -174,7 +174,8 @@ contains
     type(state_type) :: state
 
     call model_from_text(tester, text, dynamics, model)
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space=.true.)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, &
+                   planning_settings_type(in_space=.true.))
     if (.not. allocated(err)) call find_equilibrium(model%mechanism, model%problem%partition, plan, state, found, err)
   end subroutine rest
 

@@ -67,7 +67,7 @@ contains
     integer, parameter :: m = 6, lead = 5
     type(planar_step_type) :: steps(m)
     type(random_type) :: random
-    real(wp) :: q(lead, m), turn(lead, 2, m), pose(lead, 4, 0:m), slide(lead, 2, m)
+    real(wp) :: q(lead, m), turn(lead, 2, m), frame(lead, 6, 0:m)
     complex(wp) :: place(0:m), direction(0:m), velocity
     integer :: i, k
 
@@ -82,10 +82,9 @@ contains
         turn(i, :, k) = [cos(q(i, k)), sin(q(i, k))]
       end do
     end do
-    pose = 0.0_wp
-    pose(:, 1, 0) = 1.0_wp
-    slide = 0.0_wp
-    call place_frames(lead, lead, m, steps, 1, m, q, turn, pose, slide)
+    frame = 0.0_wp
+    frame(:, 1, 0) = 1.0_wp
+    call place_frames(lead, steps, 1, m, q, turn, frame)
     do i = 1, lead
       place(0) = 0.0_wp
       direction(0) = 1.0_wp
@@ -97,9 +96,10 @@ contains
           direction(k) = direction(from)
           if (step%turns) direction(k) = direction(k)*exp(cmplx(0.0_wp, q(i, k), wp))
           ! sums and products of a few numbers of order one
-          call tester%near(abs(cmplx(pose(i, 1, k), pose(i, 2, k), wp) - direction(k)), 0.0_wp, 1.0e-14_wp, 'directions of frames')
-          call tester%near(abs(cmplx(pose(i, 3, k), pose(i, 4, k), wp) - place(k)), 0.0_wp, 1.0e-14_wp, 'origins of frames')
-          if (.not. step%turns) call tester%near(abs(cmplx(slide(i, 1, k), slide(i, 2, k), wp) - velocity), 0.0_wp, 1.0e-14_wp, &
+          call tester%near(abs(cmplx(frame(i, 1, k), frame(i, 2, k), wp) - direction(k)), 0.0_wp, 1.0e-14_wp, &
+                           'directions of frames')
+          call tester%near(abs(cmplx(frame(i, 3, k), frame(i, 4, k), wp) - place(k)), 0.0_wp, 1.0e-14_wp, 'origins of frames')
+          if (.not. step%turns) call tester%near(abs(cmplx(frame(i, 5, k), frame(i, 6, k), wp) - velocity), 0.0_wp, 1.0e-14_wp, &
                                                  'velocities of slides')
         end associate
       end do
@@ -174,15 +174,14 @@ contains
         q(k, i) = q(k, i) + h*(i - half_width - 1)
       end do
       call take_positions(design, [(0.0_wp, i=1, lead)], [(0, i=1, lead)], q, whole, positions)
-      call place_frames(lead, whole%room, whole%m, design%steps, 1, whole%m, positions%q, positions%turn, whole%pose, whole%slide)
+      call place_frames(lead, design%steps, 1, whole%m, positions%q, positions%turn, whole%frames)
       s = plan%step_of(k)
       associate (closure => design%closures(1))
-        call find_residual(lead, whole%room, closure, whole%per_length, whole%pose(:, :, closure%closing), &
-                           whole%pose(:, :, closure%target), whole%pose(:, :, closure%base), whole%r)
+        call find_residual(lead, whole%room, whole%m, closure, whole%per_length, whole%frames, whole%r)
         r = whole%r(:lead, :)
-        call find_column(lead, whole%room, design%steps(s), real(plan%closures(1)%loop%signs( &
-                         findloc(plan%closures(1)%loop%steps, s, dim=1)), wp), whole%per_length, whole%pose(:, :, s), &
-                         whole%slide(:, :, s), whole%pose(:, :, closure%base), whole%column)
+        call find_column(lead, whole%room, design%steps(s), plan%closures(1)%loop%signs( &
+                         findloc(plan%closures(1)%loop%steps, s, dim=1))*[1.0_wp, whole%per_length], whole%frames(:, :, s), &
+                         whole%frames(:, :, closure%base), whole%column)
         column = whole%column(:lead, :)
       end associate
       do row = 1, 3

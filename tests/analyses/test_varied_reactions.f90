@@ -9,7 +9,7 @@ module test_varied_reactions
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_linearisation, only: linearisation_type, new_linearisation, find_forces
   use mech9_varied_motion, only: varied_motion_type, new_varied_motion, find_varied_motion
   use mech9_varied_forces, only: varied_forces_type, new_varied_forces, find_varied_forces
@@ -47,7 +47,7 @@ contains
     type(reaction_plan_type) :: reaction_plan
     type(reactions_type) :: reactions
 
-    call make_plan(model%mechanism, model%problem%partition, start, plan, state, err, in_space=.true.)
+    call make_plan(model%mechanism, model%problem%partition, start, plan, state, err, planning_settings_type(in_space=.true.))
     if (allocated(err)) return
     state%dq(1) = 1.3_wp
     state%ddq(1) = -0.7_wp

@@ -9,7 +9,7 @@ module test_wrenches
   use mech9_force_load, only: force_load_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion
   use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
   use mech9_reactions, only: reactions_type, new_reactions, find_reactions
@@ -57,7 +57,8 @@ contains
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
 
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space=in_space)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, &
+                   planning_settings_type(in_space=in_space))
     call tester%no_error(err, 'there is a plan')
     call start_driven_motion(model%problem%drives, plan, state, 0.0_wp, driven, err)
     call tester%no_error(err, 'the motion starts')

@@ -6,7 +6,7 @@ module mech9_cluster_case
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_lagrange_work, only: new_lagrange_work
@@ -40,7 +40,7 @@ contains
     integer :: i
 
     call make_plan(this%model%mechanism, this%model%problem%partition, this%model%problem%initial%position, this%plan, &
-                   this%state, err, in_space=in_space)
+                   this%state, err, planning_settings_type(in_space=in_space))
     found = .not. allocated(err)
     if (.not. found) return
     call make_dynamics_plan(this%model%mechanism, this%plan, this%dynamics)

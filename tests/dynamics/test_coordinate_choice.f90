@@ -7,7 +7,8 @@ module test_coordinate_choice
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_requested, only: requested_type, requested_by_results
+  use mech9_requested, only: requested_by_results
+  use mech9_replanning, only: replanning_type, wanted_type
   use mech9_coordinate_choice, only: carry_over
   use mech9_curved_pair, only: curved_pair_type
   use mech9_sample_mechanisms, only: four_bar
@@ -45,9 +46,10 @@ contains
     character(len=*), intent(in) :: why        !< the statement that is checked, printed where it is wrong
     type(model_type) :: whole
     type(partition_type) :: partition
-    type(plan_type) :: plan, other_plan
-    type(state_type) :: state, other_state
-    type(requested_type) :: requested
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(wanted_type) :: wanted
+    type(replanning_type) :: carried
     type(error_type), allocatable :: err
 
     call new_four_bar(whole)
@@ -56,17 +58,18 @@ contains
     if (broken) call break_pair(plan)
     state%t = 7.0_wp
     state%dq = [1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp]
-    requested = requested_by_results(whole%mechanism, whole%request%output)
+    wanted%requested = requested_by_results(whole%mechanism, whole%request%output)
     call whole%problem%partition%with_independent(whole%mechanism%structure, independent, partition)
-    call carry_over(whole%mechanism, partition, plan, state, requested, other_plan, other_state, err)
+    call carry_over(whole%mechanism, partition, plan, state, wanted, carried, err)
     if (code == 0) then
       call test%no_error(err, why//': the coordinates are accepted')
       if (allocated(err)) return
-      call test%is_true(all(other_plan%independent == pack([1, 2, 3, 4], independent)), &
+      call test%is_true(all(carried%plan%independent == pack([1, 2, 3, 4], independent)), &
                         why//': the chosen coordinates are the independent ones')
       ! both positions are closed to round-off over a conditioning of 0.1
-      call test%near(maxval(abs(other_state%q - state%q)), 0.0_wp, 1.0e-13_wp, why//': the position stays')
-      call test%is_true(all(abs([other_state%t - state%t, other_state%dq - state%dq]) <= 0.0_wp), why//': time and rates stay')
+      call test%near(maxval(abs(carried%state%q - state%q)), 0.0_wp, 1.0e-13_wp, why//': the position stays')
+      call test%is_true(all(abs([carried%state%t - state%t, carried%state%dq - state%dq]) <= 0.0_wp), &
+                        why//': time and rates stay')
     else
       call test%has_error(err, code, why//': the coordinates are refused')
     end if

@@ -7,7 +7,7 @@ module test_force_gradient
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_lagrange_work, only: new_lagrange_work
@@ -87,7 +87,7 @@ contains
     real(wp) :: expected(size(free), size(free)), magnitude
     integer :: i
 
-    call make_plan(model%mechanism, model%problem%partition, motion%q, plan, state, err, in_space=.true.)
+    call make_plan(model%mechanism, model%problem%partition, motion%q, plan, state, err, planning_settings_type(in_space=.true.))
     call test%no_error(err, why//': there is a plan in space')
     if (allocated(err)) return
     state%dq(free) = motion%dq(free)

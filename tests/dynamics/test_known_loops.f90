@@ -8,8 +8,8 @@ module test_known_loops
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type, closure_type
   use mech9_state, only: state_type
-  use mech9_requested, only: requested_type, requested_by_results
-  use mech9_planning, only: make_plan
+  use mech9_requested, only: requested_by_results
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_known_loops, only: take_known_loops
   use mech9_mixed_structures, only: structure_type, random_structure, exchange_some, finished
   use mech9_testing, only: tester_type
@@ -60,26 +60,29 @@ contains
     type(tester_type), intent(inout) :: test     !< counts the checks
     type(random_type), intent(inout) :: random   !< source of the random numbers
     type(model_type), intent(in) :: model        !< the mechanism
-    type(plan_type), intent(in) :: plan          !< its plan
+    type(plan_type), intent(in), target :: plan  !< its plan
     type(state_type), intent(in) :: state        !< its closed position
     integer, intent(inout) :: compared           !< number of changes that were compared
     integer, intent(inout) :: taken              !< number of loops that pass the same pairs as before
     integer, intent(inout) :: alike              !< number of those that begin at the same base in the same direction
-    type(plan_type) :: bare, whole, shared
+    type(plan_type), target :: bare
+    type(plan_type) :: whole, shared
     type(state_type) :: whole_state, shared_state
     type(partition_type) :: partition
-    type(requested_type) :: requested
+    type(planning_settings_type) :: settings
     type(error_type), allocatable :: err, shared_err
     logical :: independent(plan%n_coordinates)
     logical, allocatable :: ranked(:), complete(:)
 
     call exchange_some(random, plan, independent)
-    requested = requested_by_results(model%mechanism, model%request%output, pictures=.true.)
+    settings%requested = requested_by_results(model%mechanism, model%request%output, pictures=.true.)
     call model%problem%partition%with_independent(model%mechanism%structure, independent, partition)
     bare = plan
     bare%closures = plan%closures(:0)
-    call make_plan(model%mechanism, partition, state%q, whole, whole_state, err, requested=requested, known=bare)
-    call make_plan(model%mechanism, partition, state%q, shared, shared_state, shared_err, requested=requested, known=plan)
+    settings%known => bare
+    call make_plan(model%mechanism, partition, state%q, whole, whole_state, err, settings)
+    settings%known => plan
+    call make_plan(model%mechanism, partition, state%q, shared, shared_state, shared_err, settings)
     call test%is_true(allocated(err) .eqv. allocated(shared_err), 'known loops do not decide whether coordinates can serve')
     if (allocated(err) .or. allocated(shared_err)) return
     compared = compared + 1

@@ -8,7 +8,7 @@ module test_loop_forces
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_frame_motion, only: point_motion
   use mech9_linearisation, only: linearisation_type, new_linearisation, find_forces
   use mech9_loop_forces, only: loop_forces_type, new_loop_forces, draw_idle_forces, loop_wrenches, eliminate_dependent
@@ -49,7 +49,8 @@ contains
     integer :: trial, k
 
     call four_bar(bar%ground, bar%crank, bar%coupler, bar%rocker, four_bar_guess(bar, 0.8_wp, 1), model)
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space=.true.)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, &
+                   planning_settings_type(in_space=.true.))
     call test%no_error(err, 'there is a plan')
     state%dq(1) = 1.0_wp
     call new_linearisation(model%mechanism, plan, linearisation)
@@ -121,7 +122,8 @@ contains
     type(random_type) :: random
     type(error_type), allocatable :: err
 
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space=.true.)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, &
+                   planning_settings_type(in_space=.true.))
     call test%no_error(err, 'there is a plan')
     call new_linearisation(model%mechanism, plan, linearisation)
     call find_forces(model%mechanism, plan, state, linearisation, err)
@@ -169,7 +171,8 @@ contains
 
     deallocate (model%mechanism%loads)
     allocate (model%mechanism%loads(0))
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space=.true.)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, &
+                   planning_settings_type(in_space=.true.))
     call test%no_error(err, why//': there is a plan')
     if (allocated(err)) return
     do i = 1, size(plan%independent)

@@ -9,7 +9,7 @@ module test_motion_variation
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_linearisation, only: linearisation_type, new_linearisation, find_forces
   use mech9_variation, only: variation_type, new_variation
   use mech9_motion_variation, only: vary_motion, vary_position
@@ -43,7 +43,8 @@ contains
     real(wp), allocatable :: numbers(:, :)
     integer :: i, order, k
 
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space=.true.)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, &
+                   planning_settings_type(in_space=.true.))
     call test%no_error(err, why//': there is a plan')
     if (allocated(err)) return
     do i = 1, size(plan%independent)

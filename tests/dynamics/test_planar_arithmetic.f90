@@ -11,7 +11,7 @@ module test_planar_arithmetic
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_lagrange_work, only: new_lagrange_work
@@ -202,7 +202,8 @@ contains
     type(error_type), allocatable :: err
     integer :: i
 
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, &
+                   planning_settings_type(in_space=in_space))
     call test%no_error(err, why//': there is a plan')
     if (allocated(err)) return
     call make_dynamics_plan(model%mechanism, plan, dynamics)

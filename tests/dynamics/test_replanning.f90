@@ -8,10 +8,10 @@ module test_replanning
   use mech9_random, only: random_type
   use mech9_partition, only: partition_type
   use mech9_model, only: model_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
-  use mech9_requested, only: requested_type, requested_by_results, add_forces
-  use mech9_planning, only: make_plan
+  use mech9_plan, only: plan_type, copy_plan
+  use mech9_state, only: state_type, copy_state
+  use mech9_requested, only: requested_by_results, add_forces
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_replanning, only: replanning_type, wanted_type, replan
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_dynamics_plan, only: make_dynamics_plan
@@ -80,7 +80,7 @@ contains
   subroutine compare_change(test, model, plan, state, independent, other, other_state, found, same, kept)
     type(tester_type), intent(inout) :: test       !< counts the checks
     type(model_type), intent(in) :: model          !< the mechanism
-    type(plan_type), intent(in) :: plan            !< its plan
+    type(plan_type), intent(in), target :: plan    !< its plan
     type(state_type), intent(in) :: state          !< its closed position
     logical, intent(in) :: independent(:)          !< (M) the other choice
     type(plan_type), intent(out) :: other          !< the plan in these coordinates
@@ -91,27 +91,31 @@ contains
     type(plan_type) :: whole
     type(state_type) :: whole_state
     type(partition_type) :: partition
-    type(requested_type) :: requested
     type(replanning_type) :: replanning
     type(wanted_type) :: wanted
+    type(planning_settings_type) :: settings
     type(error_type), allocatable :: err
     type(dynamics_plan_type) :: before, dynamics, continued
     real(wp), dimension(size(independent)) :: rates, a, b
     real(wp) :: worst
     integer :: k
 
-    requested = requested_by_results(model%mechanism, model%request%output, pictures=.true.)
-    call add_forces(model%mechanism, requested)
+    wanted%requested = requested_by_results(model%mechanism, model%request%output, pictures=.true.)
+    call add_forces(model%mechanism, wanted%requested)
     call model%problem%partition%with_independent(model%mechanism%structure, independent, partition)
-    call replan(plan, state, independent, partition%driven(), requested, wanted, other, other_state, replanning, err)
+    call replan(plan, state, partition, wanted, replanning, err)
     call test%no_error(err, 'pairs with fixed axes have poses')
     found = replanning%serves
     if (.not. found) return
+    call copy_plan(replanning%plan, other)
+    call copy_state(replanning%state, other_state)
     same = same + count(replanning%same_as > 0)
     call test%is_true(all(other%independent == pack([(k, k=1, size(independent))], independent)), &
                       'the chosen coordinates are the independent ones')
     call test%is_true(maxval(abs(other_state%q - state%q)) <= 0.0_wp, 'the position stays')
-    call make_plan(model%mechanism, partition, state%q, whole, whole_state, err, requested=requested, known=plan)
+    settings%requested = wanted%requested
+    settings%known => plan
+    call make_plan(model%mechanism, partition, state%q, whole, whole_state, err, settings)
     call test%no_error(err, 'coordinates that serve a plan made from the plan before serve one made from the beginning')
     if (allocated(err)) return
     rates = [(sin(3.0_wp*k), k=1, size(rates))]
@@ -163,13 +167,13 @@ contains
     type(random_type) :: random
     type(structure_type) :: structure
     type(model_type) :: model
-    type(plan_type) :: plan, other
-    type(state_type) :: state, other_state
-    type(requested_type) :: requested
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(partition_type) :: partition
     type(replanning_type) :: replanning
     type(wanted_type) :: wanted
     type(error_type), allocatable :: err
-    logical, allocatable :: independent(:), driven(:)
+    logical, allocatable :: independent(:)
     integer :: i
 
     do i = 1, size(numbers)
@@ -180,21 +184,21 @@ contains
       call test%no_error(err, 'a row of windows has a plan')
       if (allocated(err)) return
       call test%is_true(size(plan%blocks) == numbers(i), 'each window is a block')
-      if (allocated(independent)) deallocate (independent, driven)
-      allocate (independent(plan%n_coordinates), driven(plan%n_coordinates), source=.false.)
+      if (allocated(independent)) deallocate (independent)
+      allocate (independent(plan%n_coordinates), source=.false.)
       independent(plan%blocks(1)%coordinates(1)) = .true.
-      requested = requested_by_results(model%mechanism, model%request%output, pictures=.true.)
-      wanted = wanted_type()
-      call replan(plan, state, independent, driven, requested, wanted, other, other_state, replanning, err)
+      partition = model%problem%partition%in_same_order(independent)
+      wanted = wanted_type(requested_by_results(model%mechanism, model%request%output, pictures=.true.))
+      call replan(plan, state, partition, wanted, replanning, err)
       call test%is_true(replanning%serves .and. .not. replanning%rejected, 'a coordinate of the first window serves')
       call test%is_true(count(replanning%same_as == 0) == 1, 'one window is planned anew')
       wanted%least = 1.1_wp
-      call replan(plan, state, independent, driven, requested, wanted, other, other_state, replanning, err)
+      call replan(plan, state, partition, wanted, replanning, err)
       call test%is_true(replanning%rejected, 'no window is conditioned better than the best')
       wanted%least = 1.0e-6_wp
       allocate (wanted%conditioning(numbers(i)), source=1.0_wp)
       wanted%conditioning(numbers(i)) = 1.0e-9_wp
-      call replan(plan, state, independent, driven, requested, wanted, other, other_state, replanning, err)
+      call replan(plan, state, partition, wanted, replanning, err)
       call test%is_true(replanning%rejected, 'a window that stays as it is, worse than wanted, makes the change rejected')
     end do
   end subroutine rows_of_windows

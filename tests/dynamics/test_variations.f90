@@ -8,7 +8,7 @@ module test_variations
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_lagrange_work, only: new_lagrange_work
@@ -48,7 +48,8 @@ contains
     integer :: i, by, n
 
     call add_load(model, unknown_load_type(links=[2, model%mechanism%structure%n_links]))
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space=.true.)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, &
+                   planning_settings_type(in_space=.true.))
     call test%no_error(err, why//': there is a plan')
     if (allocated(err)) return
     n = size(plan%independent)

@@ -9,7 +9,7 @@ module test_varied_motion
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_frame_motion, only: link_motion, point_motion
   use mech9_linearisation, only: linearisation_type, new_linearisation, find_forces
   use mech9_energy, only: kinetic_energy, potential_energy
@@ -50,7 +50,7 @@ contains
     real(wp), allocatable :: poses(:)
     integer :: i
 
-    call make_plan(model%mechanism, model%problem%partition, start, plan, state, err, in_space=.true.)
+    call make_plan(model%mechanism, model%problem%partition, start, plan, state, err, planning_settings_type(in_space=.true.))
     if (allocated(err)) return
     state%dq(1) = 1.3_wp
     state%ddq(1) = -0.7_wp

@@ -9,7 +9,7 @@ module test_closures
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion
   use mech9_frame_motion, only: place_all, spread_all_velocities, spread_all_accelerations
   use mech9_spatial_closure, only: spatial_closure_type
@@ -94,7 +94,8 @@ contains
     type(error_type), allocatable :: err
     integer :: c
 
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, &
+                   planning_settings_type(in_space=in_space))
     call test%no_error(err, why//': there is a plan')
     if (allocated(err)) return
     call start_driven_motion(model%problem%drives, plan, state, 0.0_wp, driven, err)
@@ -213,7 +214,8 @@ contains
     integer :: k
 
     call slider_crank(0.3_wp, 1.1_wp, 0.1_wp, 0.8_wp, 1, model)
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, in_space)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, &
+                   planning_settings_type(in_space=in_space))
     call test%no_error(err, 'there is a plan')
     do k = 1, 4
       moved = state

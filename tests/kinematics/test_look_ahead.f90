@@ -85,7 +85,6 @@ contains
     real(wp), parameter :: start = pi - 0.5_wp
     type(finding_type) :: finding
     type(branch_crossing_type) :: crossing
-    type(state_type) :: state
     type(error_type), allocatable :: err
     real(wp) :: t
     integer :: i
@@ -102,15 +101,14 @@ contains
     call test%no_error(err, 'the motion through the crossing is looked for without a failure')
     call test%is_true(crossing%exists .and. .not. crossing%ends, 'the motion through the crossing is found')
     call test%is_true(crossing%from < 0.5_wp .and. crossing%to > 0.5_wp, 'the motion leads from before the crossing to beyond it')
-    state = stepper%state
     do i = 0, 8
       t = crossing%from + (crossing%to - crossing%from)*i/8.0_wp
-      call position_within(model%problem%drives, plan, crossing, t, state, stepper%work, stepper%monitors, err)
+      call position_within(model%problem%drives, plan, crossing, t, stepper, err)
       call test%no_error(err, 'a position within the crossing is found')
       ! the rocker stays parallel to the crank, and the coupler to the ground; the polynomial of this linear motion is exact
-      call test%near(maxval(abs(state%q - [start + t, -start - t, start + t, start + t])), 0.0_wp, at_crossing(0), &
+      call test%near(maxval(abs(stepper%state%q - [start + t, -start - t, start + t, start + t])), 0.0_wp, at_crossing(0), &
                      'a position within the crossing is that of the parallelogram')
-      call test%near(maxval(abs(state%dq - [1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp])), 0.0_wp, at_crossing(1), &
+      call test%near(maxval(abs(stepper%state%dq - [1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp])), 0.0_wp, at_crossing(1), &
                      'rates within the crossing are those of the parallelogram')
     end do
   end subroutine check_crossing

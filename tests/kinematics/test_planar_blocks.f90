@@ -11,7 +11,7 @@ module test_planar_blocks
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_requested, only: requested_type, leave_out_unrequested
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_frame_motion, only: point_motion, link_motion, step_screw
@@ -134,7 +134,8 @@ contains
     real(wp) :: rotation(3, 3)
     integer :: i
 
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, start, err, in_space)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, start, err, &
+                   planning_settings_type(in_space=in_space))
     call test%no_error(err, 'plan')
     if (allocated(err)) call test%finish()
     if (allocated(plan%planar%planes)) motion%planes = size(plan%planar%planes)

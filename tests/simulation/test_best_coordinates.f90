@@ -12,8 +12,7 @@ module test_best_coordinates
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: place_all
-  use mech9_planning, only: make_plan
-  use mech9_requested, only: requested_type
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_coordinate_choice, only: best_independent
   use mech9_sample_mechanisms, only: new_mechanism, add_revolute, frame, four_bar, general_loop
   use mech9_planar_mechanisms, only: four_bar_type, four_bar_guess, four_bar_limit, two_circles
@@ -178,7 +177,7 @@ contains
     integer, parameter :: links(2, 8) = reshape([1, 2, 2, 3, 3, 4, 1, 4, 1, 5, 5, 6, 6, 7, 1, 7], [2, 8])
     real(wp), parameter :: at(4) = [0.0_wp, bar%crank, bar%coupler, bar%ground]
     real(wp), parameter :: moving_at(4) = [0.0_wp, 0.0_wp, bar%rocker, 0.0_wp], z(3) = [0.0_wp, 0.0_wp, 1.0_wp]
-    type(requested_type) :: requested
+    type(planning_settings_type) :: settings
     type(error_type), allocatable :: err
     integer :: i, k
 
@@ -190,9 +189,10 @@ contains
     end do
     model%problem%initial%position(:4) = four_bar_guess(bar, four_bar_limit(bar, stretched=.true.) - 0.3_wp, 1)
     model%problem%initial%position(5:) = model%problem%initial%position(:4)
-    requested%coordinates = [(both .or. k <= 4, k=1, 8)]
-    requested%links = [(.false., k=1, 7)]
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, requested=requested)
+    allocate (settings%requested)
+    settings%requested%coordinates = [(both .or. k <= 4, k=1, 8)]
+    settings%requested%links = [(.false., k=1, 7)]
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err, settings)
     call test%no_error(err, 'two four-bars have a plan')
   end subroutine new_two_four_bars
 

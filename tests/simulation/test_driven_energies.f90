@@ -8,7 +8,7 @@ module test_driven_energies
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
   use mech9_mixed_mechanisms, only: mixed_axes, mixed_mechanism
   use mech9_loaded_mechanisms, only: load_everything
@@ -56,7 +56,8 @@ contains
     type(driven_simulation_type) :: simulation
     type(error_type), allocatable :: err
 
-    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, start, err, in_space)
+    call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, start, err, &
+                   planning_settings_type(in_space=in_space))
     call test%no_error(err, 'plan')
     call new_driven_simulation(model, plan, start, simulation)
     call simulation%start(err)

@@ -13,7 +13,7 @@ module mech9_resting_motors
   use mech9_partition, only: partition_type, driven_coordinate
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type, copy_state
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_resting_plan, only: plan_by_geometry
   use mech9_motion_variation, only: vary_motion
   use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, copy_resting
@@ -68,7 +68,8 @@ contains
     end do
     where (is_held) held%partition%kind = driven_coordinate
     ! setpoints may be far from the assembled position, which the plan of closed positions does not expect
-    if (any(is_held)) call make_plan(mechanism, held%partition, q, held%plan, held%state, err, in_space=.true.)
+    if (any(is_held)) &
+      call make_plan(mechanism, held%partition, q, held%plan, held%state, err, planning_settings_type(in_space=.true.))
     if (allocated(err)) return
     if (any(is_held)) q = held%state%q
     call plan_by_geometry(mechanism, held%partition, plan, q, held%plan, held%state, err)

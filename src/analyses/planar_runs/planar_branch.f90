@@ -10,7 +10,6 @@ module mech9_planar_branch
   use mech9_tolerances, only: longest_drive, longest_move, near_singular, trusted_change, trusted_correction, trusted_rate_change
   use mech9_law, only: drive_slot_type
   use mech9_planar_numbers, only: planar_design_type
-  use mech9_planar_loop, only: planar_loop_type
   use mech9_planar_run, only: planar_run_type, planar_positions_type, find_turns, sort_positions, close_positions
   implicit none
   private
@@ -69,56 +68,78 @@ contains
         if (run%loops(b)%closure == 0) cycle
         if (minval(run%pivot(:n, b)) < near_singular*maxval(run%pivot(:n, b))) regular = .false.
         if (.not. regular) return
-        call judge_loop(run%loops(b), n, run%room, run%m, positions%t, positions%q, positions%dq, run%jacobian(:, :, :, b), &
-                        run%inverse(:, :, :, b), run%pivot(:, b), run%splits)
+        call judge_loop(b, positions, run)
       end do
     end associate
   end subroutine judge_pairs
 
-  !> Judge the pairs of neighbouring positions of one chain, from plain arrays.
-  pure subroutine judge_loop(loop, n, room, m, t, q, dq, jacobian, inverse, pivot, splits)
-    type(planar_loop_type), intent(in) :: loop          !< the chain
-    integer, intent(in) :: n                            !< number of positions
-    integer, intent(in) :: room                         !< room for so many positions
-    integer, intent(in) :: m                            !< number of coordinates
-    real(wp), intent(in) :: t(room)                     !< times [s]
-    real(wp), intent(in) :: q(room, m)                  !< coordinates [rad, m]
-    real(wp), intent(in) :: dq(room, m)                 !< their rates [rad/s, m/s]
-    real(wp), intent(in) :: jacobian(room, 3, 3)        !< by the unknowns, each in its unit
-    real(wp), intent(in) :: inverse(room, 3, 3)         !< their inverses
-    real(wp), intent(in) :: pivot(room)                 !< their least pivots
-    logical, intent(inout) :: splits(room)              !< set where another position is needed
-    real(wp), dimension(room) :: move, correction, rate_change, change
-    real(wp) :: h, per_unit, d2, d3, trusted
-    integer :: i, j, k
+  !> Judge the pairs of neighbouring positions of one chain.
+  subroutine judge_loop(b, positions, run)
+    integer, intent(in) :: b                                !< number of the chain
+    type(planar_positions_type), intent(in) :: positions    !< closed, with rates
+    type(planar_run_type), intent(inout) :: run             !< with the Jacobians of the positions; gets the judgement
+    real(wp) :: moves(positions%n, 3), change(positions%n), trusted
+    integer :: i, j
 
-    move = 0.0_wp
-    correction = 0.0_wp
-    rate_change = 0.0_wp
+    moves = 0.0_wp
     change = 0.0_wp
     do j = 1, 3
-      k = loop%coordinates(j)
-      per_unit = 1.0_wp/loop%units(j)
-      do i = 1, n - 1
-        h = t(i + 1) - t(i)
-        move(i) = max(move(i), per_unit*abs(q(i + 1, k) - q(i, k)))
-        rate_change(i) = max(rate_change(i), per_unit*abs(h*(dq(i + 1, k) - dq(i, k))))
-        correction(i) = max(correction(i), per_unit*abs(q(i + 1, k) - q(i, k) - 0.5_wp*h*(dq(i + 1, k) + dq(i, k))))
-        ! the first row of the Jacobian, of the angle, is constant
-        d2 = jacobian(i + 1, 2, j) - jacobian(i, 2, j)
-        d3 = jacobian(i + 1, 3, j) - jacobian(i, 3, j)
-        change(i) = change(i) + (inverse(i + 1, 1, 2)*d2 + inverse(i + 1, 1, 3)*d3)**2 &
-                    + (inverse(i + 1, 2, 2)*d2 + inverse(i + 1, 2, 3)*d3)**2 &
-                    + (inverse(i + 1, 3, 2)*d2 + inverse(i + 1, 3, 3)*d3)**2
-      end do
+      associate (loop => run%loops(b), k => run%loops(b)%coordinates(j))
+        call find_moves(positions%n, 1.0_wp/loop%units(j), positions%t, positions%q(:, k), positions%dq(:, k), moves)
+      end associate
+      call add_change(positions%n, run%room, run%jacobian(:, :, j, b), run%inverse(:, :, :, b), change)
     end do
-    do i = 1, n - 1
-      trusted = trusted_correction*min(pivot(i), pivot(i + 1))
-      splits(i) = splits(i) .or. .not. (change(i) <= trusted_change**2 .and. move(i) <= longest_move .and. &
-                                        correction(i) <= trusted .and. &
-                                        rate_change(i) <= trusted_rate_change*max(move(i), trusted))
+    do i = 1, positions%n - 1
+      trusted = trusted_correction*min(run%pivot(i, b), run%pivot(i + 1, b))
+      associate (move => moves(i, 1), correction => moves(i, 2), rate_change => moves(i, 3))
+        run%splits(i) = run%splits(i) .or. .not. (change(i) <= trusted_change**2 .and. move <= longest_move .and. &
+                                                  correction <= trusted .and. &
+                                                  rate_change <= trusted_rate_change*max(move, trusted))
+      end associate
     end do
   end subroutine judge_loop
+
+  ! The next two procedures take arrays of known shape, so that the compiler computes several positions at once.
+
+  !> Raise the measures of all pairs to those of one coordinate, in its unit: distance, correction of the prediction by the
+  !> trapezoidal rule, and change of the rate times the time between.
+  pure subroutine find_moves(n, per_unit, t, q, dq, moves)
+    integer, intent(in) :: n                    !< number of positions
+    real(wp), intent(in) :: per_unit            !< one over the unit of the coordinate
+    real(wp), intent(in) :: t(n)                !< times [s]
+    real(wp), intent(in) :: q(n)                !< the coordinate [rad, m]
+    real(wp), intent(in) :: dq(n)               !< its rates [rad/s, m/s]
+    real(wp), intent(inout) :: moves(n, 3)      !< the measures
+    real(wp) :: h
+    integer :: i
+
+    do i = 1, n - 1
+      h = t(i + 1) - t(i)
+      moves(i, 1) = max(moves(i, 1), per_unit*abs(q(i + 1) - q(i)))
+      moves(i, 2) = max(moves(i, 2), per_unit*abs(q(i + 1) - q(i) - 0.5_wp*h*(dq(i + 1) + dq(i))))
+      moves(i, 3) = max(moves(i, 3), per_unit*abs(h*(dq(i + 1) - dq(i))))
+    end do
+  end subroutine find_moves
+
+  !> Add the squares of the change of one column of the Jacobian, times the inverse at the second position of each pair.
+  pure subroutine add_change(n, room, column, inverse, change)
+    integer, intent(in) :: n                            !< number of positions
+    integer, intent(in) :: room                         !< room for so many positions
+    real(wp), intent(in) :: column(room, 3)             !< column of the Jacobians
+    real(wp), intent(in) :: inverse(room, 3, 3)         !< inverses of the Jacobians
+    real(wp), intent(inout) :: change(n)                !< the sums
+    real(wp) :: d2, d3
+    integer :: i
+
+    do i = 1, n - 1
+      ! the first row of the Jacobian, of the angle, is constant
+      d2 = column(i + 1, 2) - column(i, 2)
+      d3 = column(i + 1, 3) - column(i, 3)
+      change(i) = change(i) + (inverse(i + 1, 1, 2)*d2 + inverse(i + 1, 1, 3)*d3)**2 &
+                  + (inverse(i + 1, 2, 2)*d2 + inverse(i + 1, 2, 3)*d3)**2 &
+                  + (inverse(i + 1, 3, 2)*d2 + inverse(i + 1, 3, 3)*d3)**2
+    end do
+  end subroutine add_change
 
   !> Put positions between others, where the cubic through both and their rates leads.
   subroutine put_between(design, run, positions, done)

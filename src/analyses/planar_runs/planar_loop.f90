@@ -1,8 +1,9 @@
 !> A closed chain of a planar mechanism with three unknowns at many positions at once: its equations, their Jacobian, and the motion that
 !> keeps it closed. The position is the fastest index and runs innermost.
 !>
-!> A frame is given by cosine, sine, x, y in the plane's axes, from the origin of frame 0. All arrays have known shapes, so that the
-!> compiler keeps their addresses in registers and computes several positions at once.
+!> A frame is given by six numbers: cosine, sine, x, y in the plane's axes, from the origin of frame 0, and the velocity of its origin
+!> per unit rate, where its step slides. All arrays of the inner procedures have known shapes, so that the compiler keeps their
+!> addresses in registers and computes several positions at once.
 module mech9_planar_loop
   use mech9_kinds, only: wp
   use mech9_planar_plan, only: planar_step_type, planar_closure_type
@@ -47,92 +48,91 @@ contains
   end subroutine turn_on
 
   !> Poses of the frames first .. last.
-  pure subroutine place_frames(n, lead, m, steps, first, last, q, turn, pose, slide)
-    integer, intent(in) :: n                             !< number of positions
-    integer, intent(in) :: lead                          !< room for so many positions
-    integer, intent(in) :: m                             !< number of steps
-    type(planar_step_type), intent(in) :: steps(m)       !< the steps
-    integer, intent(in) :: first                         !< frames from this one
-    integer, intent(in) :: last                          !< to this one
-    real(wp), intent(in) :: q(lead, m)                   !< coordinates [rad, m]
-    real(wp), intent(in) :: turn(lead, 2, m)             !< cosine and sine of the angle by which each step turns
-    real(wp), intent(inout) :: pose(lead, 4, 0:m)        !< poses of the frames [m]
-    real(wp), intent(inout) :: slide(lead, 2, m)         !< velocity of each frame's origin per unit rate
-    integer :: k, p
+  pure subroutine place_frames(n, steps, first, last, q, turn, frames)
+    integer, intent(in) :: n                                   !< number of positions
+    type(planar_step_type), intent(in) :: steps(:)             !< (M) the steps
+    integer, intent(in) :: first                               !< frames from this one
+    integer, intent(in) :: last                                !< to this one
+    real(wp), intent(in), contiguous :: q(:, :)                !< (room,M) coordinates [rad, m]
+    real(wp), intent(in), contiguous :: turn(:, :, :)          !< (room,2,M) cosine and sine of the angle by which each step turns
+    real(wp), intent(inout), contiguous :: frames(:, :, 0:)    !< (room,6,0:M) the frames
+    integer :: k, p, room
 
+    room = size(frames, 1)
     do k = first, last
       p = steps(k)%parent
       if (steps(k)%turns) then
-        call place_turned(n, lead, steps(k)%place(1), steps(k)%place(2), pose(:, :, p), turn(:, :, k), pose(:, :, k))
+        call place_turned(n, room, steps(k)%place(1), steps(k)%place(2), frames(:, :, p), turn(:, :, k), frames(:, :, k))
       else
-        call place_slid(n, lead, steps(k), pose(:, :, p), q(:, steps(k)%coordinate), pose(:, :, k), slide(:, :, k))
+        call place_slid(n, room, steps(k), frames(:, :, p), q(:, steps(k)%coordinate), frames(:, :, k))
       end if
     end do
   end subroutine place_frames
 
   !> Poses of a frame that is turned against its parent. The poses of the two are separate arguments, so that several can be found at once.
-  pure subroutine place_turned(n, lead, x, y, parent, turn, pose)
+  pure subroutine place_turned(n, lead, x, y, parent, turn, frame)
     integer, intent(in) :: n                    !< number of positions
     integer, intent(in) :: lead                 !< room for so many positions
     real(wp), intent(in) :: x                   !< place of the frame along the parent's first axis [m]
     real(wp), intent(in) :: y                   !< the same along its second axis [m]
-    real(wp), intent(in) :: parent(lead, 4)     !< poses of the parent [m]
+    real(wp), intent(in) :: parent(lead, 6)     !< the parent
     real(wp), intent(in) :: turn(lead, 2)       !< cosines and sines of the angle between the two
-    real(wp), intent(inout) :: pose(lead, 4)    !< gets the poses of the frame [m]
+    real(wp), intent(inout) :: frame(lead, 6)   !< gets the poses
     integer :: i
 
     do i = 1, n
-      pose(i, 1) = parent(i, 1)*turn(i, 1) - parent(i, 2)*turn(i, 2)
-      pose(i, 2) = parent(i, 2)*turn(i, 1) + parent(i, 1)*turn(i, 2)
-      pose(i, 3) = parent(i, 3) + (parent(i, 1)*x - parent(i, 2)*y)
-      pose(i, 4) = parent(i, 4) + (parent(i, 2)*x + parent(i, 1)*y)
+      frame(i, 1) = parent(i, 1)*turn(i, 1) - parent(i, 2)*turn(i, 2)
+      frame(i, 2) = parent(i, 2)*turn(i, 1) + parent(i, 1)*turn(i, 2)
+      frame(i, 3) = parent(i, 3) + (parent(i, 1)*x - parent(i, 2)*y)
+      frame(i, 4) = parent(i, 4) + (parent(i, 2)*x + parent(i, 1)*y)
     end do
   end subroutine place_turned
 
   !> Poses of a frame that slides in its parent.
-  pure subroutine place_slid(n, lead, step, parent, q, pose, slide)
+  pure subroutine place_slid(n, lead, step, parent, q, frame)
     integer, intent(in) :: n                        !< number of positions
     integer, intent(in) :: lead                     !< room for so many positions
     type(planar_step_type), intent(in) :: step      !< the step
-    real(wp), intent(in) :: parent(lead, 4)         !< poses of the parent [m]
+    real(wp), intent(in) :: parent(lead, 6)         !< the parent
     real(wp), intent(in) :: q(lead)                 !< coordinates of the step [m]
-    real(wp), intent(inout) :: pose(lead, 4)        !< gets the poses of the frame [m]
-    real(wp), intent(inout) :: slide(lead, 2)       !< gets the velocity of the frame's origin per unit rate
+    real(wp), intent(inout) :: frame(lead, 6)       !< gets the poses and the velocity
     real(wp) :: x, y
     integer :: i
 
     do i = 1, n
       x = step%place(1) + q(i)*step%slide(1)
       y = step%place(2) + q(i)*step%slide(2)
-      slide(i, 1) = parent(i, 1)*step%slide(1) - parent(i, 2)*step%slide(2)
-      slide(i, 2) = parent(i, 2)*step%slide(1) + parent(i, 1)*step%slide(2)
-      pose(i, 1) = parent(i, 1)
-      pose(i, 2) = parent(i, 2)
-      pose(i, 3) = parent(i, 3) + (parent(i, 1)*x - parent(i, 2)*y)
-      pose(i, 4) = parent(i, 4) + (parent(i, 2)*x + parent(i, 1)*y)
+      frame(i, 1) = parent(i, 1)
+      frame(i, 2) = parent(i, 2)
+      frame(i, 3) = parent(i, 3) + (parent(i, 1)*x - parent(i, 2)*y)
+      frame(i, 4) = parent(i, 4) + (parent(i, 2)*x + parent(i, 1)*y)
+      frame(i, 5) = parent(i, 1)*step%slide(1) - parent(i, 2)*step%slide(2)
+      frame(i, 6) = parent(i, 2)*step%slide(1) + parent(i, 1)*step%slide(2)
     end do
   end subroutine place_slid
 
   !> The three equations of a closure: the angle, and the displacement at the origin of the base frame in lengths of the mechanism.
-  pure subroutine find_residual(n, lead, closure, per_length, closing, target, base, r)
+  pure subroutine find_residual(n, lead, m, closure, per_length, frames, r)
     integer, intent(in) :: n                             !< number of positions
     integer, intent(in) :: lead                          !< room for so many positions
+    integer, intent(in) :: m                             !< number of steps
     type(planar_closure_type), intent(in) :: closure     !< the closure
     real(wp), intent(in) :: per_length                   !< one over the mechanism's size [1/m]
-    real(wp), intent(in) :: closing(lead, 4)             !< pose of the closing frame [m]
-    real(wp), intent(in) :: target(lead, 4)              !< pose of the target frame [m]
-    real(wp), intent(in) :: base(lead, 4)                !< pose of the base frame [m]
+    real(wp), intent(in) :: frames(lead, 6, 0:m)         !< the frames
     real(wp), intent(inout) :: r(lead, 3)                !< gets the equations [rad, lengths of the mechanism]
     real(wp) :: c, s, x, y
     logical :: is_small
-    integer :: i
+    integer :: i, e, t, b
 
+    e = closure%closing
+    t = closure%target
+    b = closure%base
     is_small = .true.
     do i = 1, n
-      c = target(i, 1)*closure%cosine - target(i, 2)*closure%sine
-      s = target(i, 2)*closure%cosine + target(i, 1)*closure%sine
-      x = c*closing(i, 1) + s*closing(i, 2)
-      y = c*closing(i, 2) - s*closing(i, 1)
+      c = frames(i, 1, t)*closure%cosine - frames(i, 2, t)*closure%sine
+      s = frames(i, 2, t)*closure%cosine + frames(i, 1, t)*closure%sine
+      x = c*frames(i, 1, e) + s*frames(i, 2, e)
+      y = c*frames(i, 2, e) - s*frames(i, 1, e)
       r(i, 1) = y
       r(i, 2) = x
       is_small = is_small .and. x > 0.0_wp .and. abs(y) < 1.0e-2_wp
@@ -148,40 +148,38 @@ contains
       end do
     end if
     do i = 1, n
-      x = closing(i, 3) - target(i, 3) - (target(i, 1)*closure%place(1) - target(i, 2)*closure%place(2))
-      y = closing(i, 4) - target(i, 4) - (target(i, 2)*closure%place(1) + target(i, 1)*closure%place(2))
-      r(i, 2) = (x - r(i, 1)*(base(i, 4) - closing(i, 4)))*per_length
-      r(i, 3) = (y + r(i, 1)*(base(i, 3) - closing(i, 3)))*per_length
+      x = frames(i, 3, e) - frames(i, 3, t) - (frames(i, 1, t)*closure%place(1) - frames(i, 2, t)*closure%place(2))
+      y = frames(i, 4, e) - frames(i, 4, t) - (frames(i, 2, t)*closure%place(1) + frames(i, 1, t)*closure%place(2))
+      r(i, 2) = (x - r(i, 1)*(frames(i, 4, b) - frames(i, 4, e)))*per_length
+      r(i, 3) = (y + r(i, 1)*(frames(i, 3, b) - frames(i, 3, e)))*per_length
     end do
   end subroutine find_residual
 
   !> Derivatives of the three equations by the coordinate of one step.
-  pure subroutine find_column(n, lead, step, factor, per_length, pose, slide, base, column)
+  pure subroutine find_column(n, lead, step, factors, frame, base, column)
     integer, intent(in) :: n                        !< number of positions
     integer, intent(in) :: lead                     !< room for so many positions
     type(planar_step_type), intent(in) :: step      !< the step
-    real(wp), intent(in) :: factor                  !< sign of the step in the loop, times the unit of its coordinate
-    real(wp), intent(in) :: per_length              !< one over the mechanism's size [1/m]
-    real(wp), intent(in) :: pose(lead, 4)           !< of the step's frame [m]
-    real(wp), intent(in) :: slide(lead, 2)          !< velocity of the frame's origin per unit rate
-    real(wp), intent(in) :: base(lead, 4)           !< pose of the base frame [m]
+    real(wp), intent(in) :: factors(2)              !< sign of the step in the loop times the unit, and this over the size [1/m]
+    real(wp), intent(in) :: frame(lead, 6)          !< the step's frame
+    real(wp), intent(in) :: base(lead, 6)           !< the base frame
     real(wp), intent(inout) :: column(lead, 3)      !< gets the derivatives
     real(wp) :: w
     integer :: i
 
-    w = factor*per_length
+    w = factors(2)
     if (step%turns) then
       w = w*step%turn
       do i = 1, n
-        column(i, 1) = factor*step%turn
-        column(i, 2) = w*(pose(i, 4) - base(i, 4))
-        column(i, 3) = w*(base(i, 3) - pose(i, 3))
+        column(i, 1) = factors(1)*step%turn
+        column(i, 2) = w*(frame(i, 4) - base(i, 4))
+        column(i, 3) = w*(base(i, 3) - frame(i, 3))
       end do
     else
       do i = 1, n
         column(i, 1) = 0.0_wp
-        column(i, 2) = w*slide(i, 1)
-        column(i, 3) = w*slide(i, 2)
+        column(i, 2) = w*frame(i, 5)
+        column(i, 3) = w*frame(i, 6)
       end do
     end if
   end subroutine find_column

@@ -35,8 +35,7 @@ module mech9_planar_run
     real(wp), allocatable :: unit_of(:)              !< (M) units of the coordinates
     integer, allocatable :: driven(:)                !< steps of the driven coordinates
     type(planar_loop_type), allocatable :: loops(:)  !< one for each block
-    real(wp), allocatable :: pose(:, :, :)           !< (room,4,0:M) poses of the frames [m]
-    real(wp), allocatable :: slide(:, :, :)          !< (room,2,M) velocity of each frame's origin per unit rate
+    real(wp), allocatable :: frames(:, :, :)         !< (room,6,0:M) the frames, see mech9_planar_loop
     real(wp), allocatable :: jacobian(:, :, :, :)    !< (room,3,3,loops) by the unknowns, each in its unit
     real(wp), allocatable :: inverse(:, :, :, :)     !< (room,3,3,loops) their inverses
     real(wp), allocatable :: pivot(:, :)             !< (room,loops) their least pivots
@@ -104,15 +103,15 @@ contains
     m = run%m
     if (run%room < n + n/2) then
       run%room = 2*n + 16
-      if (allocated(run%pose)) deallocate (run%pose, run%slide, run%jacobian, run%inverse, run%pivot, run%r, run%change, &
+      if (allocated(run%frames)) deallocate (run%frames, run%jacobian, run%inverse, run%pivot, run%r, run%change, &
                                            run%column, run%angle, run%work, run%splits)
       associate (room => run%room, loops => size(run%loops))
-        allocate (run%pose(room, 4, 0:m), run%slide(room, 2, m), run%jacobian(room, 3, 3, loops), run%inverse(room, 3, 3, loops), &
+        allocate (run%frames(room, 6, 0:m), run%jacobian(room, 3, 3, loops), run%inverse(room, 3, 3, loops), &
                   run%pivot(room, loops), run%r(room, 3), run%change(room, 3), run%column(room, 3), run%angle(room), &
                   run%work(room), source=0.0_wp)
         allocate (run%splits(room), source=.false.)
       end associate
-      run%pose(:, 1, 0) = 1.0_wp
+      run%frames(:, 1, 0) = 1.0_wp
     end if
     if (allocated(positions%t)) then
       if (size(positions%t) /= run%room) deallocate (positions%target, positions%t, positions%q, positions%dq, positions%angle, &
@@ -195,8 +194,7 @@ contains
       if (.not. closed) return
       associate (loop => run%loops(b))
         if (loop%closure == 0) then
-          call place_frames(positions%n, run%room, run%m, design%steps, loop%first_step, loop%last_step, positions%q, &
-                            positions%turn, run%pose, run%slide)
+          call place_frames(positions%n, design%steps, loop%first_step, loop%last_step, positions%q, positions%turn, run%frames)
         else
           call close_loop(design, loop, b, run, positions, closed)
           if (closed) call find_rates(design, loop, b, run, positions)
@@ -250,13 +248,11 @@ contains
     integer :: iteration, j
 
     associate (n => positions%n, closure => design%closures(loop%closure))
-      call place_frames(n, run%room, run%m, design%steps, loop%first_step, loop%last_step, positions%q, positions%turn, run%pose, &
-                        run%slide)
+      call place_frames(n, design%steps, loop%first_step, loop%last_step, positions%q, positions%turn, run%frames)
       closed = .false.
       before = longest_correction
       do iteration = 1, most_iterations
-        call find_residual(n, run%room, closure, run%per_length, run%pose(:, :, closure%closing), &
-                           run%pose(:, :, closure%target), run%pose(:, :, closure%base), run%r)
+        call find_residual(n, run%room, run%m, closure, run%per_length, run%frames, run%r)
         ! after a small correction the inverse serves once more
         if (before > small_correction) call find_inverses(design, loop, b, n, run)
         call multiply(n, run%room, run%inverse(:, :, :, b), run%r, run%change)
@@ -270,8 +266,7 @@ contains
             call turn_on(n, run%angle, positions%turn(:, 1, s), positions%turn(:, 2, s))
           end associate
         end do
-        call place_frames(n, run%room, run%m, design%steps, minval(loop%unknowns), loop%last_step, positions%q, positions%turn, &
-                          run%pose, run%slide)
+        call place_frames(n, design%steps, minval(loop%unknowns), loop%last_step, positions%q, positions%turn, run%frames)
         ! corrections decrease by the same factor, or faster: the next one would be round-off
         closed = largest <= last_correction .and. largest**2 <= round_off*before
         if (closed) exit
@@ -291,8 +286,8 @@ contains
 
     do j = 1, 3
       associate (s => loop%unknowns(j))
-        call find_column(n, run%room, design%steps(s), loop%signs(s)*loop%units(j), run%per_length, run%pose(:, :, s), &
-                         run%slide(:, :, s), run%pose(:, :, design%closures(loop%closure)%base), run%jacobian(:, :, j, b))
+        call find_column(n, run%room, design%steps(s), loop%signs(s)*loop%units(j)*[1.0_wp, run%per_length], run%frames(:, :, s), &
+                         run%frames(:, :, design%closures(loop%closure)%base), run%jacobian(:, :, j, b))
       end associate
     end do
     call invert_several(n, run%room, 0.0_wp, run%jacobian(:, :, :, b), run%inverse(:, :, :, b), run%work, run%pivot(:, b))
@@ -353,8 +348,8 @@ contains
       do i = 1, size(loop%given)
         associate (s => loop%given(i))
           k = design%steps(s)%coordinate
-          call find_column(n, run%room, design%steps(s), loop%signs(s), run%per_length, run%pose(:, :, s), run%slide(:, :, s), &
-                           run%pose(:, :, base), run%column)
+          call find_column(n, run%room, design%steps(s), loop%signs(s)*[1.0_wp, run%per_length], run%frames(:, :, s), &
+                           run%frames(:, :, base), run%column)
           do j = 1, 3
             run%r(:n, j) = run%r(:n, j) + run%column(:n, j)*positions%dq(:n, k)
           end do

@@ -357,8 +357,10 @@ contains
     real(wp) :: by_numbers
     integer :: i, k
 
-    opening = varied_coupling(self%plan, c, self%state, self%third%couplings(self%plan%closures(c)%coupling), order, &
-                              self%q(p, 0, :), self%q(p, 1, :), self%q(p, 2, :))
+    associate (number => self%plan%closures(c)%coupling)
+      opening = varied_coupling(self%plan, c, self%state, self%third%couplings(number), order, &
+                                self%q(p, :, self%plan%couplings(number)%coupling%coordinates))
+    end associate
     associate (part => self%tangents(p)%couplings(self%plan%closures(c)%coupling), state => self%state, &
                coupling => model%mechanism%couplings(self%plan%closures(c)%coupling)%coupling)
       if (.not. part%varies) return

@@ -2,7 +2,7 @@
 !> block, with the factors that close the chains.
 !>
 !> A closed chain stays closed: the motion of its closing frame relative to the target does not vary, in position, velocity and
-!> acceleration. The plan must be in space (`in_space` of make_plan).
+!> acceleration. The plan must be in space (`in_space` of the settings of planning).
 module mech9_motion_variation
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -179,8 +179,10 @@ contains
     do c = block%first_closure, block%last_closure
       associate (constraint => plan%constraints(c)%item)
         if (plan%closures(c)%coupling > 0) then
-          values(row + 1) = varied_coupling(plan, c, state, third%couplings(plan%closures(c)%coupling), order, variation%q, &
-                                            variation%dq, variation%ddq)
+          associate (number => plan%closures(c)%coupling, k => plan%couplings(plan%closures(c)%coupling)%coupling%coordinates)
+            values(row + 1) = varied_coupling(plan, c, state, third%couplings(number), order, &
+              reshape([variation%q(k), variation%dq(k), variation%ddq(k)], [3, size(k)], order=[2, 1]))
+          end associate
         else
           call find_opening(plan%closures(c)%closing, plan%closures(c)%target, state, order, variation, w, v)
           call constraint%opening(plan, state, w, v, values(row + 1:row + constraint%equations))

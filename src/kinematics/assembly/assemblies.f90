@@ -22,7 +22,7 @@ module mech9_assemblies
     integer :: closed = 0                    !< number of starts that led to a closed position
     real(wp), allocatable :: q(:, :)         !< (M, assemblies) coordinates; angles within half a turn [rad, m]
     integer, allocatable :: found(:)         !< number of starts that led to each assembly
-    integer, allocatable :: unseen(:)        !< links whose positions make no assembly of their own (mech9_posture)
+    type(posture_type) :: posture            !< the quantities in which they differ
     real(wp), allocatable :: postures(:, :)  !< (n, assemblies) numbers of the posture of each assembly
     !> (independent coordinates, assemblies) the curve on which only this coordinate is free has been followed through the assembly
     logical, allocatable :: walked(:, :)
@@ -46,27 +46,25 @@ contains
     type(assembly_list_type), intent(out) :: list   !< the assemblies found
     type(state_type) :: trial
     type(random_type) :: random
-    type(posture_type) :: posture
     integer :: i, number
     logical :: closed
 
-    posture = new_posture(mechanism, plan)
-    list%unseen = posture%unseen
+    list%posture = new_posture(mechanism, plan)
     trial = start
-    allocate (list%q(plan%n_coordinates, 0), list%found(0), list%postures(size(posture%numbers(plan, trial)), 0))
+    allocate (list%q(plan%n_coordinates, 0), list%found(0), list%postures(size(list%posture%numbers(plan, trial)), 0))
     allocate (list%walked(size(plan%independent), 0))
-    call find_in_list(plan, posture, trial, list, number)
+    call find_in_list(plan, trial, list, number)
     list%starts = n_starts
     do i = 1, n_starts
       trial%q = start%q
       call close_from(plan, plan%blocks, pi, random, trial, closed)
       if (.not. closed) cycle
       list%closed = list%closed + 1
-      call find_in_list(plan, posture, trial, list, number)
+      call find_in_list(plan, trial, list, number)
       list%found(number) = list%found(number) + 1
     end do
     if (plan%n_coordinates > most_free_coordinates .or. n_starts < 1) return
-    call search_along_curves(plan, posture, start, steps_for_start*min(n_starts, counted_starts), list)
+    call search_along_curves(plan, start, steps_for_start*min(n_starts, counted_starts), list)
   end subroutine find_assemblies
 
   !> Close blocks, the last of which does not close with the others at their present positions, from starts farther and
@@ -121,25 +119,26 @@ contains
 
   !> Search from the assemblies that were found for others, along curves on which one independent coordinate is free: first from
   !> those to which few starts led. `most_steps` steps are made at most.
-  subroutine search_along_curves(plan, posture, start, most_steps, list)
+  subroutine search_along_curves(plan, start, most_steps, list)
     type(plan_type), intent(in) :: plan              !< the plan of the mechanism
-    type(posture_type), intent(in) :: posture        !< the quantities that make its posture
     type(state_type), intent(in) :: start            !< any assembly
     integer, intent(in) :: most_steps                !< number of steps on all curves together
     type(assembly_list_type), intent(inout) :: list  !< the assemblies found
     type(state_type) :: base
-    integer :: from, i, steps, direction
+    type(curve_type) :: curve
+    integer :: from, i, steps_left, direction
     logical :: returned
 
     base = start
-    steps = 0
-    do while (steps < most_steps)
+    steps_left = most_steps
+    do while (steps_left > 0)
       call choose_curve(list, from, i)
       if (from == 0) return
       list%walked(i, from) = .true.
       do direction = 1, -1, -2
         base%q = list%q(:, from)
-        call follow_curve(plan, posture, base, from, i, direction, most_steps, steps, returned, list)
+        call begin_curve(plan, base, plan%independent(i), real(direction, wp), curve)
+        call follow_curve(plan, curve, from, i, steps_left, returned, list)
         if (returned) exit
       end do
     end do
@@ -165,40 +164,34 @@ contains
   end subroutine choose_curve
 
   !> Follow one curve until it returns to its start or ends, and add the assemblies on it.
-  subroutine follow_curve(plan, posture, base, from, i, direction, most_steps, steps, returned, list)
+  subroutine follow_curve(plan, curve, from, i, steps_left, returned, list)
     type(plan_type), intent(in) :: plan              !< the plan of the mechanism
-    type(posture_type), intent(in) :: posture        !< the quantities that make its posture
-    type(state_type), intent(in) :: base             !< the assembly at which the curve begins
-    integer, intent(in) :: from                      !< its number
+    type(curve_type), intent(inout) :: curve         !< the curve, at the assembly where it begins
+    integer, intent(in) :: from                      !< number of this assembly
     integer, intent(in) :: i                         !< place of the free coordinate among the independent ones
-    integer, intent(in) :: direction                 !< 1: this coordinate grows at first, -1: it decreases
-    integer, intent(in) :: most_steps                !< number of steps on all curves together
-    integer, intent(inout) :: steps                  !< number of steps so far
+    integer, intent(inout) :: steps_left             !< number of steps that can be made on all curves from now on
     logical, intent(out) :: returned                 !< the curve came back to its start
     type(assembly_list_type), intent(inout) :: list  !< the assemblies found
-    type(curve_type) :: curve
     type(state_type) :: assembly
-    integer :: number, before
+    integer :: number, last
     logical :: passed
 
     returned = .false.
-    assembly = base
-    before = steps
-    call begin_curve(plan, base, plan%independent(i), real(direction, wp), curve)
-    do while (curve%goes_on .and. .not. returned .and. steps < min(most_steps, before + longest_curve))
-      steps = steps + 1
+    assembly = curve%state
+    last = max(0, steps_left - longest_curve)
+    do while (curve%goes_on .and. .not. returned .and. steps_left > last)
+      steps_left = steps_left - 1
       call curve%advance(plan, passed, assembly)
       if (.not. passed) cycle
-      call find_in_list(plan, posture, assembly, list, number)
+      call find_in_list(plan, assembly, list, number)
       list%walked(i, number) = .true.
       returned = number == from
     end do
   end subroutine follow_curve
 
   !> Find the number of an assembly in the list, and add it if its posture is new.
-  subroutine find_in_list(plan, posture, state, list, number)
+  subroutine find_in_list(plan, state, list, number)
     type(plan_type), intent(in) :: plan              !< the plan of the mechanism
-    type(posture_type), intent(in) :: posture        !< the quantities that make its posture
     type(state_type), intent(inout) :: state         !< the assembly, with frames in place
     type(assembly_list_type), intent(inout) :: list  !< the assemblies found
     integer, intent(out) :: number                   !< of the assembly in the list
@@ -208,7 +201,7 @@ contains
     integer :: k, n
 
     n = size(list%found)
-    values = posture%numbers(plan, state)
+    values = list%posture%numbers(plan, state)
     do number = 1, n
       if (is_same_posture(values, list%postures(:, number))) return
     end do

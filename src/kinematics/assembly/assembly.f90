@@ -38,6 +38,14 @@ module mech9_assembly
     real(wp) :: gap = 0.0_wp          !< this gap [m, rotations times the mechanism's size]
   end type assembly_outcome_type
 
+  !> The damped equations of a block: those of its closures, and one for each unknown that it shall not change.
+  type :: damped_equations_type
+    type(least_squares_type) :: equations   !< their matrix and its factors
+    integer, allocatable :: row_of(:)       !< (unknowns) the damped equation of each
+    real(wp), allocatable :: right(:)       !< right-hand side
+    real(wp) :: damping = 0.0_wp            !< factor of the squared changes that are added to the squared residual
+  end type damped_equations_type
+
 contains
 
   !> Close the chains of a block from the guesses in `state`. Where no closed position is found, the coordinates are those of
@@ -95,23 +103,23 @@ contains
     type(assembly_outcome_type), intent(out) :: outcome   !< result of the assembly
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(newton_outcome_type) :: newton
-    real(wp) :: before(size(block%unknowns)), residual_norm, small_enough
+    real(wp) :: before(size(block%unknowns)), small_enough
 
     ! the residual must be the least one where inexact redundant equations stay open
     small_enough = newton_radius
     if (plan%data_tolerance > 0.0_wp .and. block%equations > size(block%unknowns)) small_enough = closed_to_round_off
-    call reduce_errors(plan, block, state, work, small_enough, 1.0e-2_wp, residual_norm, err)
+    call reduce_errors(plan, block, state, work, small_enough, 1.0e-2_wp, err)
     if (allocated(err)) return
-    outcome%closed = residual_norm <= max(newton_radius, allowed_gap*plan%data_tolerance)
+    outcome%closed = norm2(work%right) <= max(newton_radius, allowed_gap*plan%data_tolerance)
     if (outcome%closed) then
       before = state%q(block%coordinates)
       call close_block(plan, block, state, work, newton, err)
       if (allocated(err)) return
       if (.not. newton%converged .or. newton%correction > regular_correction) then
         state%q(block%coordinates) = before
-        call reduce_errors(plan, block, state, work, closed_to_round_off, 1.0e-10_wp, residual_norm, err)
+        call reduce_errors(plan, block, state, work, closed_to_round_off, 1.0e-10_wp, err)
         if (allocated(err)) return
-        outcome%closed = residual_norm <= max(closed_singular, allowed_gap*plan%data_tolerance)
+        outcome%closed = norm2(work%right) <= max(closed_singular, allowed_gap*plan%data_tolerance)
       end if
     end if
     call find_worst_closure(plan, block, state, outcome)
@@ -119,45 +127,40 @@ contains
     outcome%closed = outcome%closed .and. outcome%gap <= max(1.0e-10_wp, plan%data_tolerance)*plan%length
   end subroutine close_from_guess
 
-  !> Damped least squares (Levenberg and Marquardt) until the residual is small enough, or becomes no smaller.
-  subroutine reduce_errors(plan, block, state, work, small_enough, damping_at_first, residual_norm, err)
+  !> Damped least squares (Levenberg and Marquardt) until the residual, in work%right, is small enough, or becomes no smaller.
+  subroutine reduce_errors(plan, block, state, work, small_enough, damping_at_first, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(block_work_type), intent(inout) :: work   !< scratch of the block
     real(wp), intent(in) :: small_enough   !< norm of the residual at which to stop
     real(wp), intent(in) :: damping_at_first   !< damping of the first step
-    real(wp), intent(out) :: residual_norm   !< norm of the residual at the end [rad, lengths of the mechanism]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(least_squares_type) :: damped
-    real(wp) :: right(block%equations + size(block%unknowns)), before(size(block%unknowns))
-    real(wp) :: damping, trial_norm, norm_then
-    type(front_plan_type) :: fronts
-    integer :: row_of(size(block%unknowns)), step
+    type(damped_equations_type) :: damped
+    real(wp) :: before(size(block%unknowns)), residual_norm, trial_norm, norm_then
+    integer :: step
 
-    damping = damping_at_first
-    call damped_fronts(plan, block, work%column_of, fronts, row_of)
-    call damped%create(block%equations + size(block%unknowns), size(block%unknowns), fronts)
+    call begin_damping(plan, block, work, damping_at_first, damped)
     call find_residual(plan, block, state, work, residual_norm, err)
     if (allocated(err)) return
     norm_then = residual_norm
     do step = 1, most_steps
       if (residual_norm <= small_enough .or. size(before) == 0) exit
-      call damped_change(plan, block, state, damping, row_of, damped, right, work)
+      call damped_change(plan, block, state, damped, work)
       before = state%q(block%coordinates)
       call apply_change(plan, block, work%change, state)
       call find_residual(plan, block, state, work, trial_norm, err)
       ! a step to a position where a user's pair has no pose is too long, like any other that does not reduce the residual
       if (allocated(err)) deallocate (err)
       if (trial_norm < residual_norm) then
-        damping = max(damping*0.2_wp, 1.0e-20_wp)
+        damped%damping = max(damped%damping*0.2_wp, 1.0e-20_wp)
         residual_norm = trial_norm
       else
         state%q(block%coordinates) = before
         call find_residual(plan, block, state, work, residual_norm, err)
         if (allocated(err)) return
-        damping = max(damping, 1.0e-16_wp)*5.0_wp
-        if (damping > 1.0e6_wp) exit
+        damped%damping = max(damped%damping, 1.0e-16_wp)*5.0_wp
+        if (damped%damping > 1.0e6_wp) exit
       end if
       if (mod(step, steps_between_checks) == 0) then
         if (residual_norm > 0.7_wp*norm_then) exit     ! a least distance that is not zero
@@ -166,28 +169,42 @@ contains
     end do
   end subroutine reduce_errors
 
+  !> Room for the damped equations of a block.
+  subroutine begin_damping(plan, block, work, damping, damped)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    type(block_type), intent(in) :: block   !< the block
+    type(block_work_type), intent(in) :: work   !< scratch of the block
+    real(wp), intent(in) :: damping   !< damping of the first step
+    type(damped_equations_type), intent(out) :: damped   !< the damped equations
+    type(front_plan_type) :: fronts
+
+    damped%damping = damping
+    allocate (damped%row_of(size(block%unknowns)), damped%right(block%equations + size(block%unknowns)))
+    call damped_fronts(plan, block, work%column_of, fronts, damped%row_of)
+    call damped%equations%create(size(damped%right), size(block%unknowns), fronts)
+  end subroutine begin_damping
+
   !> Find the change of the unknowns in a damped linear step, in work%change, from the residual in work%right.
-  subroutine damped_change(plan, block, state, damping, row_of, damped, right, work)
+  subroutine damped_change(plan, block, state, damped, work)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: block   !< the block
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(in) :: damping   !< factor of the squared changes that are added to the squared residual
-    integer, intent(in) :: row_of(:)   !< (unknowns) the damped equation of each
-    type(least_squares_type), intent(inout) :: damped   !< the damped equations; overwritten
-    real(wp), intent(out) :: right(:)   !< right-hand side of the damped equations
+    type(damped_equations_type), intent(inout) :: damped   !< with the damping; gets matrix and right-hand side
     type(block_work_type), intent(inout) :: work   !< scratch of the block
     integer :: i, m
 
     m = block%equations
-    call block_jacobian(plan, block, state, work%column_of, damped%a(:m, :))
-    damped%a(m + 1:, :) = 0.0_wp
-    do i = 1, size(block%unknowns)
-      damped%a(row_of(i), i) = sqrt(damping)
-    end do
-    right(:m) = -work%right
-    right(m + 1:) = 0.0_wp
-    call damped%factorize()
-    call damped%solve(right, work%change)
+    associate (a => damped%equations%a)
+      call block_jacobian(plan, block, state, work%column_of, a(:m, :))
+      a(m + 1:, :) = 0.0_wp
+      do i = 1, size(block%unknowns)
+        a(damped%row_of(i), i) = sqrt(damped%damping)
+      end do
+    end associate
+    damped%right(:m) = -work%right
+    damped%right(m + 1:) = 0.0_wp
+    call damped%equations%factorize()
+    call damped%equations%solve(damped%right, work%change)
     ! no more than about a radian at once: beyond it the linear model of the closures is useless
     if (.not. block%is_linear) work%change = work%change/max(1.0_wp, maxval(abs(work%change)))
   end subroutine damped_change

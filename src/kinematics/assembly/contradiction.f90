@@ -105,7 +105,8 @@ contains
     type(state_type), intent(in) :: state              !< the position
     type(equations_type), intent(out) :: equations     !< its equations
     type(block_type) :: block
-    integer :: columns(plan%n_coordinates), c, n
+    integer, allocatable :: columns(:)
+    integer :: c, n
 
     block = free_block(plan, plan%n_coordinates, size(plan%closures))
     allocate (equations%a(block%equations, plan%n_coordinates), equations%residual(block%equations), source=0.0_wp)

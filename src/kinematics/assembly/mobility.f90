@@ -24,11 +24,12 @@ contains
     real(wp), allocatable, intent(out) :: motions(:, :)    !< (M, mobility)
     type(block_type) :: block
     real(wp), allocatable :: a(:, :), vt(:, :), s(:), work(:)
-    integer :: column_of(plan%n_coordinates), i, k, m, n, rank, info
+    integer, allocatable :: column_of(:)
+    integer :: i, k, m, n, rank, info
     real(wp) :: u(1, 1)
 
     block = free_block(plan, plan%n_coordinates, size(plan%closures))
-    column_of = 0
+    allocate (column_of(plan%n_coordinates), source=0)
     n = 0
     do i = 1, plan%n_coordinates
       if (held(plan%steps(i)%coordinate)) cycle

@@ -33,7 +33,7 @@ contains
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(block_type), intent(in) :: block                 !< the block
     type(state_type), intent(in) :: state                 !< with the poses of the frames and the screws of the steps
-    integer, intent(in), contiguous :: column_of(:)   !< (steps of the block) column of each step's coordinate; 0: not an unknown
+    integer, allocatable, intent(in) :: column_of(:)      !< (steps of the block) column of each step; 0: not an unknown
     real(wp), intent(out), contiguous :: jacobian(:, :)   !< (equations, unknowns)
     integer :: c, row
 
@@ -42,9 +42,9 @@ contains
     do c = block%first_closure, block%last_closure
       associate (constraint => plan%constraints(c)%item)
         if (block%whole_loops) then
-          call constraint%jacobian(plan, plan%closures(c)%loop, block%first_step, column_of, state, row, jacobian)
+          call constraint%jacobian(plan, plan%closures(c)%loop, column_of, state, row, jacobian)
         else
-          call constraint%jacobian(plan, plan%closures(c)%part, block%first_step, column_of, state, row, jacobian)
+          call constraint%jacobian(plan, plan%closures(c)%part, column_of, state, row, jacobian)
         end if
         row = row + constraint%equations
       end associate
@@ -101,7 +101,7 @@ contains
   pure function block_fronts(plan, block, column_of) result(fronts)
     type(plan_type), intent(in) :: plan         !< the plan of the mechanism
     type(block_type), intent(in) :: block       !< the block
-    integer, intent(in) :: column_of(:)         !< (steps of the block) column of each step's coordinate; 0: not an unknown
+    integer, allocatable, intent(in) :: column_of(:)   !< (steps of the block) column of each step; 0: not an unknown
     type(front_plan_type) :: fronts
     type(row_groups_type) :: groups
 
@@ -113,7 +113,7 @@ contains
   pure subroutine damped_fronts(plan, block, column_of, fronts, row_of)
     type(plan_type), intent(in) :: plan             !< the plan of the mechanism
     type(block_type), intent(in) :: block           !< the block
-    integer, intent(in) :: column_of(:)             !< (steps of the block) column of each step's coordinate; 0: not an unknown
+    integer, allocatable, intent(in) :: column_of(:)   !< (steps of the block) column of each step; 0: not an unknown
     type(front_plan_type), intent(out) :: fronts    !< of the matrix of equations + unknowns rows
     integer, intent(out) :: row_of(:)               !< (unknowns) the row that is added for each
     type(row_groups_type) :: groups
@@ -127,7 +127,7 @@ contains
   pure function block_groups(plan, block, column_of) result(groups)
     type(plan_type), intent(in) :: plan         !< the plan of the mechanism
     type(block_type), intent(in) :: block       !< the block
-    integer, intent(in) :: column_of(:)         !< (steps of the block) column of each step's coordinate; 0: not an unknown
+    integer, allocatable, intent(in) :: column_of(:)   !< (steps of the block) column of each step; 0: not an unknown
     type(row_groups_type) :: groups
     integer, allocatable :: columns(:)
     integer :: c, i, n
@@ -144,7 +144,7 @@ contains
       else
         columns = plan%closures(c)%part%steps
       end if
-      columns = column_of(pack(columns, columns >= block%first_step) - block%first_step + 1)
+      columns = column_of(pack(columns, columns >= block%first_step))
       groups%members = [groups%members, pack(columns, columns > 0)]
       groups%first(i + 1) = size(groups%members) + 1
     end do

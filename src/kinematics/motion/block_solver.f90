@@ -1,7 +1,7 @@
 !> The solution of one block at one time: Newton's method for the positions, then the exact rates and accelerations.
 module mech9_block_solver
   use mech9_kinds, only: wp, long
-  use mech9_tolerances, only: closed_to_round_off, last_correction, unchanged_factors
+  use mech9_tolerances, only: closed_to_round_off, last_correction
   use mech9_motion_tolerances, only: small_turn, unchanged_position
   use mech9_error, only: error_type
   use mech9_least_squares, only: least_squares_type
@@ -33,7 +33,7 @@ module mech9_block_solver
     real(wp), allocatable :: jacobian(:, :)    !< (equations,unknowns) the Jacobian that was factorized last
     type(least_squares_type) :: equations      !< its factors
     type(planar_chain_type) :: chain           !< the block as a planar chain, if it is one
-    integer, allocatable :: column_of(:)       !< (steps of the block) number of the unknown of each step; 0: none
+    integer, allocatable :: column_of(:)       !< (first_step:last_step) number of the unknown of each step; 0: none
     real(wp), allocatable :: right(:)          !< (equations) right-hand sides
     real(wp), allocatable :: change(:)         !< (unknowns) solution, in units of the coordinates
     logical :: factors_stay = .false.          !< the Jacobian is constant and has been factorized
@@ -46,7 +46,8 @@ module mech9_block_solver
     integer :: iterations = 0            !< number of corrections applied
     real(wp) :: correction = 0.0_wp      !< sum over the iterations of the largest change of a coordinate, in its unit
     real(wp) :: contraction = 0.0_wp     !< ratio of the second correction to the first; 0 where one was enough
-    logical :: factorized = .false.      !< the factors of the Jacobian serve at the closed position
+    !> Largest change of a coordinate in the last iteration, in its unit; if it is small, the factors serve at the closed position
+    real(wp) :: last = huge(1.0_wp)
   end type newton_outcome_type
 
 contains
@@ -60,9 +61,9 @@ contains
     integer :: i
 
     allocate (work%jacobian(block%equations, size(block%unknowns)), source=0.0_wp)
-    allocate (work%column_of(block%last_step - block%first_step + 1), source=0)
+    allocate (work%column_of(block%first_step:block%last_step), source=0)
     do i = 1, size(block%unknowns)
-      work%column_of(block%unknowns(i) - block%first_step + 1) = i
+      work%column_of(block%unknowns(i)) = i
     end do
     if (present(plan)) then
       call work%equations%create(block%equations, size(block%unknowns), block_fronts(plan, block, work%column_of))
@@ -75,9 +76,8 @@ contains
   end function new_block_work
 
   !> Close the chains of a block by Newton's method from the coordinates in `state`; at the end its frames are in place.
-  !> `outcome` says whether the method converged, and whether the factors of its last correction serve at the end, too: they do
-  !> after a correction up to `unchanged`, which is `last_correction` at most. An error arises only where a pair has no pose.
-  subroutine close_block(plan, block, state, work, outcome, err, at_least, unchanged)
+  !> `outcome` says whether the method converged. An error arises only where a pair has no pose.
+  subroutine close_block(plan, block, state, work, outcome, err, at_least)
     type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
     type(block_type), intent(in) :: block               !< the block
     type(state_type), intent(inout) :: state            !< first guess in; the closed block and poses of its frames out
@@ -85,14 +85,11 @@ contains
     type(newton_outcome_type), intent(out) :: outcome   !< the course of Newton's method
     type(error_type), allocatable, intent(out) :: err   !< allocated if a pair has no pose
     integer, intent(in), optional :: at_least           !< least number of iterations; 0 unless given
-    real(wp), intent(in), optional :: unchanged   !< correction that factors may miss; unchanged_factors unless given
-    real(wp) :: size_of_change, previous, residual_norm, same
+    real(wp) :: size_of_change, previous, residual_norm
     integer :: least
 
     least = 0
     if (present(at_least)) least = at_least
-    same = unchanged_factors
-    if (present(unchanged)) same = unchanged
     previous = 0.0_wp
     call place_unshown(plan, block, state, err)
     if (allocated(err)) return
@@ -107,7 +104,7 @@ contains
       call factorize_block(plan, block, state, work)
       call correct(plan, block, state, work, size_of_change)
       outcome%iterations = outcome%iterations + 1
-      outcome%factorized = size_of_change <= same
+      outcome%last = size_of_change
       if (size_of_change > unchanged_position) then
         work%count%frames_placed = work%count%frames_placed + steps_of(block)
         if (size_of_change <= small_turn) then

@@ -43,12 +43,11 @@ contains
   end subroutine residual
 
   !> Derivatives with respect to the coordinates of steps of a loop, each in its unit.
-  pure subroutine jacobian(self, plan, loop, first, column_of, state, row, matrix)
+  pure subroutine jacobian(self, plan, loop, column_of, state, row, matrix)
     class(coupling_constraint_type), intent(in) :: self   !< the constraint
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(loop_type), intent(in) :: loop                   !< steps of coupled coordinates
-    integer, intent(in) :: first                          !< earlier steps are left out
-    integer, intent(in), contiguous :: column_of(:)       !< column of step `first` and each later one; 0: none
+    integer, allocatable, intent(in) :: column_of(:)      !< (steps of the block) column of each step; 0: none
     type(state_type), intent(in) :: state                 !< with the coordinates
     integer, intent(in) :: row                            !< number of rows of `matrix` before that of this constraint
     real(wp), intent(inout), contiguous :: matrix(:, :)   !< Jacobian of the block; gets the row of this constraint
@@ -56,9 +55,9 @@ contains
 
     do i = 1, size(loop%steps)
       s = loop%steps(i)
-      if (s < first) cycle
-      if (column_of(s - first + 1) == 0) cycle
-      call self%column(plan, s, loop%signs(i), state, matrix(row + 1:row + 1, column_of(s - first + 1)))
+      if (s < lbound(column_of, 1)) cycle
+      if (column_of(s) == 0) cycle
+      call self%column(plan, s, loop%signs(i), state, matrix(row + 1:row + 1, column_of(s)))
     end do
   end subroutine jacobian
 
@@ -170,33 +169,28 @@ contains
 
   !> The variation of the equation, or of its first or second time derivative, from variations of the motion. The motion
   !> itself is in `state`.
-  pure real(wp) function varied_coupling(plan, c, state, third, order, q, dq, ddq) result(change)
+  pure real(wp) function varied_coupling(plan, c, state, third, order, changes) result(change)
     type(plan_type), intent(in) :: plan     !< the plan of the mechanism
     integer, intent(in) :: c                !< number of the closure that is the coupling
     type(state_type), intent(in) :: state   !< coordinates, rates and accelerations
     real(wp), intent(in) :: third           !< third derivative of the coupling's function
     integer, intent(in) :: order            !< 0: of the equation; 1, 2: of its time derivatives
-    real(wp), intent(in) :: q(:)            !< (M) variations of the coordinates
-    real(wp), intent(in) :: dq(:)           !< (M) variations of the rates
-    real(wp), intent(in) :: ddq(:)          !< (M) variations of the accelerations
+    real(wp), intent(in) :: changes(0:, :)  !< (0:2,coordinates of the coupling) variations of their values, rates and accelerations
     real(wp) :: factors(0:2)
-    integer :: i, k
+    integer :: i
 
     change = 0.0_wp
-    associate (coupling => plan%couplings(plan%closures(c)%coupling)%coupling)
-      do i = 1, size(coupling%coordinates)
-        k = coupling%coordinates(i)
-        factors = coupling_factors(plan, c, state, third, i)
-        select case (order)
-        case (0)
-          change = change + factors(0)*q(k)
-        case (1)
-          change = change + factors(0)*dq(k) + factors(1)*q(k)
-        case default
-          change = change + factors(0)*ddq(k) + 2.0_wp*factors(1)*dq(k) + factors(2)*q(k)
-        end select
-      end do
-    end associate
+    do i = 1, size(changes, 2)
+      factors = coupling_factors(plan, c, state, third, i)
+      select case (order)
+      case (0)
+        change = change + factors(0)*changes(0, i)
+      case (1)
+        change = change + factors(0)*changes(1, i) + factors(1)*changes(0, i)
+      case default
+        change = change + factors(0)*changes(2, i) + 2.0_wp*factors(1)*changes(1, i) + factors(2)*changes(0, i)
+      end select
+    end do
   end function varied_coupling
 
   !> The derivative of the equation by one of its coordinates, and the first two derivatives of this number in time.

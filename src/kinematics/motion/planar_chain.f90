@@ -7,9 +7,8 @@ module mech9_planar_chain
   use mech9_kinds, only: wp
   use mech9_plan, only: plan_type, block_type
   use mech9_planar_plan, only: planar_plan_type, planar_closure_type, planar_step_type
-  use mech9_planar_motion, only: find_accelerations
-  use mech9_planar_formulas, only: step_column, step_velocity, add_rate, add_bias, stem_difference, rows_at_base, &
-    closing_error
+  use mech9_planar_motion, only: planar_velocities, planar_accelerations
+  use mech9_planar_formulas, only: step_column, step_velocity, add_rate, add_bias, stem_difference, rows_at_base, closing_error
   use mech9_state, only: planar_motion_type
   implicit none
   private
@@ -71,8 +70,8 @@ contains
     real(wp), intent(out) :: residual(3)             !< [rad, lengths of the mechanism]
     real(wp) :: error(3)
 
-    call closing_error(chain%closure, size(motion%angle), motion%pose, error)
-    call rows_at_base(chain%closure, chain%per_length, size(motion%angle), motion%pose, error, residual)
+    call closing_error(chain%closure, motion%pose, error)
+    call rows_at_base(chain%closure, chain%per_length, motion%pose, error, residual)
   end subroutine chain_residual
 
   !> Add to the three coordinates the change that cancels a residual.
@@ -97,8 +96,7 @@ contains
     type(planar_motion_type), intent(in) :: motion   !< with the poses of the frames
     real(wp), intent(out) :: jacobian(3, 3)          !< (equations, coordinates)
 
-    call fill(chain%unknowns, chain%first_step, chain%last_step, chain%signs, chain%closure%base, &
-              chain%per_length, size(planar%steps), planar%steps, motion%pose, motion%slide, jacobian)
+    call fill(chain, planar%steps, motion%pose, motion%slide, jacobian)
   end subroutine chain_jacobian
 
   !> Rates of the three coordinates and velocities of the frames up to frame `last`, from the rates of the given coordinates
@@ -110,13 +108,9 @@ contains
     integer, intent(in) :: last                         !< last frame whose velocity is found
     real(wp), intent(inout), contiguous :: dq(:)        !< (M) given rates in; rates of the three coordinates out [rad/s, m/s]
     type(planar_motion_type), intent(inout) :: motion   !< poses in; velocities of these frames out
-    real(wp) :: bias(2)
 
-    call find_rates(chain, chain%first_step, chain%last_step, chain%signs, size(chain%given), &
-                    chain%given, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
-                    motion%velocity, dq)
-    call find_velocities(chain%first_step, last, chain%signs, size(planar%steps), planar%steps, motion%pose, motion%slide, &
-                         dq, motion%velocity, bias)
+    call find_rates(chain, inverse, planar%steps, motion%pose, motion%slide, motion%velocity, dq)
+    call planar_velocities(planar, chain%first_step, last, dq, motion)
   end subroutine chain_rates
 
   !> Rates and accelerations of the three coordinates, velocities and accelerations of the frames, from the motion of the
@@ -130,11 +124,8 @@ contains
     type(planar_motion_type), intent(inout) :: motion   !< poses in; velocities and accelerations out
     real(wp) :: bias(2)
 
-    call find_rates(chain, chain%first_step, chain%last_step, chain%signs, size(chain%given), &
-                    chain%given, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
-                    motion%velocity, dq)
-    call find_velocities(chain%first_step, chain%last_step, chain%signs, size(planar%steps), planar%steps, motion%pose, &
-                         motion%slide, dq, motion%velocity, bias)
+    call find_rates(chain, inverse, planar%steps, motion%pose, motion%slide, motion%velocity, dq)
+    call find_velocities(chain, planar%steps, motion%pose, motion%slide, dq, motion%velocity, bias)
     call chain_accelerations(planar, chain, inverse, bias, dq, ddq, motion)
   end subroutine chain_motion
 
@@ -148,150 +139,108 @@ contains
     real(wp), intent(in), contiguous :: dq(:)           !< (M) rates of all coordinates [rad/s, m/s]
     real(wp), intent(inout), contiguous :: ddq(:)       !< (M) given accelerations in; all of the chain out [rad/s^2, m/s^2]
     type(planar_motion_type), intent(inout) :: motion   !< poses and velocities in; accelerations out
+    real(wp) :: opening(3), square
+    integer :: i, t
 
-    call accelerate(chain, chain%first_step, chain%last_step, chain%signs, size(chain%given), &
-                    chain%given, inverse, size(planar%steps), planar%steps, motion%pose, motion%slide, &
-                    dq, bias, motion%velocity, ddq, motion%acceleration)
+    i = chain%closure%closing
+    t = chain%closure%target
+    call find_opening(chain, planar%steps, motion%pose, motion%slide, motion%acceleration, ddq, opening)
+    ! the target's point at the closing frame's origin has a centripetal acceleration about the target's origin
+    square = motion%velocity(1, t)**2
+    opening(2) = opening(2) + bias(1) + square*(motion%pose(3, i) - motion%pose(3, t))
+    opening(3) = opening(3) + bias(2) + square*(motion%pose(4, i) - motion%pose(4, t))
+    call close_rates(chain, inverse, motion%pose, opening, ddq)
+    call planar_accelerations(planar, chain%first_step, chain%last_moved, dq, ddq, motion)
   end subroutine chain_accelerations
 
-  ! The following procedures take arrays of known shape beside their types, so that the compiler keeps their addresses in
+  ! The following procedures take arrays of which all but the last extent is known, so that the compiler keeps their addresses in
   ! registers.
 
   !> Derivatives of the three equations with respect to the three coordinates, each in its unit.
-  pure subroutine fill(unknowns, first, last, signs, base, per_length, m, steps, f, slide, jacobian)
-    integer, intent(in) :: unknowns(3)               !< steps of the three coordinates
-    integer, intent(in) :: first                     !< first step of the chain
-    integer, intent(in) :: last                      !< last step of the chain
-    integer, intent(in) :: base                      !< frame at which the closure is written
-    integer, intent(in) :: m                         !< number of steps of the plan
-    real(wp), intent(in) :: signs(first:last)        !< of each step in the loop: 1 or -1; 0: not in it
-    real(wp), intent(in) :: per_length               !< one over the mechanism's size [1/m]
-    real(wp), intent(in) :: f(4, 0:m)                !< (cosine, sine, x, y) pose of each frame [m]
-    real(wp), intent(in) :: slide(2, m)              !< velocity of each frame's origin per unit rate
-    type(planar_step_type), intent(in) :: steps(m)   !< steps of the plan
+  pure subroutine fill(chain, steps, f, slide, jacobian)
+    type(planar_chain_type), intent(in) :: chain     !< the chain
+    type(planar_step_type), intent(in) :: steps(*)   !< steps of the plan
+    real(wp), intent(in) :: f(4, 0:*)                !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(in) :: slide(2, *)              !< velocity of each frame's origin per unit rate
     real(wp), intent(out) :: jacobian(3, 3)          !< (equations, coordinates)
     integer :: j, s
 
     do j = 1, 3
-      s = unknowns(j)
-      call step_column(steps(s), signs(s), f(:, s), slide(:, s), f(3:4, base), per_length, jacobian(:, j))
+      s = chain%unknowns(j)
+      call step_column(steps(s), chain%signs(s), f(:, s), slide(:, s), f(3:4, chain%closure%base), chain%per_length, &
+                       jacobian(:, j))
     end do
   end subroutine fill
 
   !> Rates of the three coordinates, by which the loop stays closed.
-  pure subroutine find_rates(chain, first, last, signs, n_given, given, inverse, m, steps, f, slide, v, dq)
+  pure subroutine find_rates(chain, inverse, steps, f, slide, v, dq)
     type(planar_chain_type), intent(in) :: chain       !< the chain
-    integer, intent(in) :: first                       !< first step of the chain
-    integer, intent(in) :: last                        !< last step of the chain
-    integer, intent(in) :: n_given                     !< number of given steps
-    integer, intent(in) :: given(n_given)              !< steps of the loop whose coordinates are given
-    integer, intent(in) :: m                           !< number of steps of the plan
-    real(wp), intent(in) :: signs(first:last)          !< of each step in the loop: 1 or -1; 0: not in it
     real(wp), intent(in) :: inverse(3, 3)              !< inverse of the chain's Jacobian
-    real(wp), intent(in) :: f(4, 0:m)                  !< (cosine, sine, x, y) pose of each frame [m]
-    real(wp), intent(in) :: slide(2, m)                !< velocity of each frame's origin per unit rate
-    type(planar_step_type), intent(in) :: steps(m)     !< steps of the plan
-    real(wp), intent(in) :: v(3, 0:m)                  !< velocity of each frame of earlier blocks [rad/s, m/s]
-    real(wp), intent(inout) :: dq(m)                   !< rates of all coordinates [rad/s, m/s]
+    type(planar_step_type), intent(in) :: steps(*)     !< steps of the plan
+    real(wp), intent(in) :: f(4, 0:*)                  !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(in) :: slide(2, *)                !< velocity of each frame's origin per unit rate
+    real(wp), intent(in) :: v(3, 0:*)                  !< velocity of each frame of earlier blocks [rad/s, m/s]
+    real(wp), intent(inout) :: dq(*)                   !< rates of all coordinates [rad/s, m/s]
     real(wp) :: opening(3)
 
-    call stem_difference(m, chain%stems, f(3:4, chain%closure%closing), f, v, opening)
-    call add_given(n_given, given, first, last, signs, f(3:4, chain%closure%closing), m, steps, f, slide, dq, opening)
-    call close_rates(chain, inverse, m, f, opening, dq)
+    call find_opening(chain, steps, f, slide, v, dq, opening)
+    call close_rates(chain, inverse, f, opening, dq)
   end subroutine find_rates
 
-  !> Accelerations of the three coordinates and of the frames.
-  pure subroutine accelerate(chain, first, last, signs, n_given, given, inverse, m, steps, f, slide, &
-                             dq, bias, v, ddq, a)
+  !> Relative motion of the ends of the loop by the given coordinates and by the frames at which it begins, at the closing frame.
+  pure subroutine find_opening(chain, steps, f, slide, v, rates, opening)
     type(planar_chain_type), intent(in) :: chain       !< the chain
-    integer, intent(in) :: first                       !< first step of the chain
-    integer, intent(in) :: last                        !< last step of the chain
-    integer, intent(in) :: n_given                     !< number of given steps
-    integer, intent(in) :: given(n_given)              !< steps of the loop whose coordinates are given
-    integer, intent(in) :: m                           !< number of steps of the plan
-    real(wp), intent(in) :: signs(first:last)          !< of each step in the loop: 1 or -1; 0: not in it
-    real(wp), intent(in) :: inverse(3, 3)              !< inverse of the chain's Jacobian
-    real(wp), intent(in) :: f(4, 0:m)                  !< (cosine, sine, x, y) pose of each frame [m]
-    real(wp), intent(in) :: slide(2, m)                !< velocity of each frame's origin per unit rate
-    type(planar_step_type), intent(in) :: steps(m)     !< steps of the plan
-    real(wp), intent(in) :: dq(m)                      !< rates of all coordinates [rad/s, m/s]
-    real(wp), intent(in) :: bias(2)                    !< bias acceleration of the loop [m/s^2]
-    real(wp), intent(in) :: v(3, 0:m)                  !< velocity of each frame [rad/s, m/s]
-    real(wp), intent(inout) :: ddq(m)                  !< accelerations of all coordinates [rad/s^2, m/s^2]
-    real(wp), intent(inout) :: a(3, 0:m)               !< acceleration of each frame [rad/s^2, m/s^2]
-    real(wp) :: opening(3)
-
-    call stem_difference(m, chain%stems, f(3:4, chain%closure%closing), f, a, opening)
-    call add_given(n_given, given, first, last, signs, f(3:4, chain%closure%closing), m, steps, f, slide, ddq, opening)
-    ! the target's point at the closing frame's origin has a centripetal acceleration about the target's origin
-    opening(2) = opening(2) + bias(1) + v(1, chain%closure%target)**2*(f(3, chain%closure%closing) - f(3, chain%closure%target))
-    opening(3) = opening(3) + bias(2) + v(1, chain%closure%target)**2*(f(4, chain%closure%closing) - f(4, chain%closure%target))
-    call close_rates(chain, inverse, m, f, opening, ddq)
-    call find_accelerations(m, steps, first, chain%last_moved, dq, ddq, f, slide, v, a)
-  end subroutine accelerate
-
-  !> Add the contributions of the given coordinates to the relative motion of the ends of the loop, at a place.
-  pure subroutine add_given(n, given, first, last, signs, place, m, steps, f, slide, rates, opening)
-    integer, intent(in) :: n                         !< number of given steps
-    integer, intent(in) :: given(n)                  !< steps of the loop whose coordinates are given
-    integer, intent(in) :: first                     !< first step of the chain
-    integer, intent(in) :: last                      !< last step of the chain
-    integer, intent(in) :: m                         !< number of steps of the plan
-    real(wp), intent(in) :: signs(first:last)        !< of each step in the loop: 1 or -1; 0: not in it
-    real(wp), intent(in) :: place(2)                 !< the place [m]
-    real(wp), intent(in) :: f(4, 0:m)                !< (cosine, sine, x, y) pose of each frame [m]
-    real(wp), intent(in) :: slide(2, m)              !< velocity of each frame's origin per unit rate
-    real(wp), intent(in) :: rates(m)                 !< rates, or accelerations, of all coordinates
-    type(planar_step_type), intent(in) :: steps(m)   !< steps of the plan
-    real(wp), intent(inout) :: opening(3)            !< motion of the closing frame relative to the target, at the place
+    type(planar_step_type), intent(in) :: steps(*)     !< steps of the plan
+    real(wp), intent(in) :: f(4, 0:*)                  !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(in) :: slide(2, *)                !< velocity of each frame's origin per unit rate
+    real(wp), intent(in) :: v(3, 0:*)                  !< velocity, or acceleration, of each frame of earlier blocks
+    real(wp), intent(in) :: rates(*)                   !< rates, or accelerations, of all coordinates
+    real(wp), intent(out) :: opening(3)                !< motion of the closing frame relative to the target
     integer :: i, s
 
-    do i = 1, n
-      s = given(i)
-      call add_rate(steps(s), signs(s)*rates(steps(s)%coordinate), f(:, s), slide(:, s), place, opening)
+    call stem_difference(chain%stems, f(3:4, chain%closure%closing), f, v, opening)
+    do i = 1, size(chain%given)
+      s = chain%given(i)
+      call add_rate(steps(s), chain%signs(s)*rates(steps(s)%coordinate), f(:, s), slide(:, s), f(3:4, chain%closure%closing), &
+                    opening)
     end do
-  end subroutine add_given
+  end subroutine find_opening
 
   !> The rates of the three coordinates that cancel a relative motion of the ends of the loop.
-  pure subroutine close_rates(chain, inverse, m, f, opening, rates)
+  pure subroutine close_rates(chain, inverse, f, opening, rates)
     type(planar_chain_type), intent(in) :: chain       !< the chain
-    integer, intent(in) :: m                           !< number of steps of the plan
     real(wp), intent(in) :: inverse(3, 3)              !< inverse of the chain's Jacobian
-    real(wp), intent(in) :: f(4, 0:m)                  !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(in) :: f(4, 0:*)                  !< (cosine, sine, x, y) pose of each frame [m]
     real(wp), intent(in) :: opening(3)                 !< motion of the closing frame relative to the target, at the closing frame
-    real(wp), intent(inout) :: rates(m)                !< rates, or accelerations, of all coordinates; gets those of the three
+    real(wp), intent(inout) :: rates(*)                !< rates, or accelerations, of all coordinates; gets those of the three
     real(wp) :: rows(3)
     integer :: j
 
-    call rows_at_base(chain%closure, chain%per_length, m, f, opening, rows)
+    call rows_at_base(chain%closure, chain%per_length, f, opening, rows)
     do j = 1, 3
       rates(chain%coordinates(j)) = -chain%units(j)*(inverse(j, 1)*rows(1) + inverse(j, 2)*rows(2) + inverse(j, 3)*rows(3))
     end do
   end subroutine close_rates
 
   !> Velocities of the frames, and the bias acceleration of the loop: its centripetal and Coriolis terms.
-  pure subroutine find_velocities(first, last, signs, m, steps, f, slide, dq, v, bias)
-    integer, intent(in) :: first                     !< frames from this one
-    integer, intent(in) :: last                      !< to this one
-    integer, intent(in) :: m                         !< number of steps of the plan
-    real(wp), intent(in) :: signs(first:last)        !< of each step in the loop: 1 or -1; 0: not in it
-    real(wp), intent(in) :: f(4, 0:m)                !< (cosine, sine, x, y) pose of each frame [m]
-    real(wp), intent(in) :: slide(2, m)              !< velocity of each frame's origin per unit rate
-    real(wp), intent(in) :: dq(m)                    !< rates of all coordinates [rad/s, m/s]
-    type(planar_step_type), intent(in) :: steps(m)   !< steps of the plan
-    real(wp), intent(inout) :: v(3, 0:m)             !< velocity of each frame [rad/s, m/s]
-    real(wp), intent(out) :: bias(2)                 !< bias acceleration of the loop, by these steps [m/s^2]
-    real(wp) :: x, y, rate
+  pure subroutine find_velocities(chain, steps, f, slide, dq, v, bias)
+    type(planar_chain_type), intent(in) :: chain     !< the chain
+    type(planar_step_type), intent(in) :: steps(*)   !< steps of the plan
+    real(wp), intent(in) :: f(4, 0:*)                !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(in) :: slide(2, *)              !< velocity of each frame's origin per unit rate
+    real(wp), intent(in) :: dq(*)                    !< rates of all coordinates [rad/s, m/s]
+    real(wp), intent(inout) :: v(3, 0:*)             !< velocity of each frame [rad/s, m/s]
+    real(wp), intent(out) :: bias(2)                 !< bias acceleration of the loop, by its steps [m/s^2]
+    real(wp) :: arm(2), rate
     integer :: i, p
 
     bias = 0.0_wp
-    do i = first, last
+    do i = chain%first_step, chain%last_step
       p = steps(i)%parent
       rate = dq(steps(i)%coordinate)
-      x = f(3, i) - f(3, p)
-      y = f(4, i) - f(4, p)
-      call step_velocity(steps(i), rate, x, y, slide(:, i), v(:, p), v(:, i))
-      call add_bias(steps(i), signs(i), rate, x, y, slide(:, i), v(1, p), bias)
+      arm = f(3:4, i) - f(3:4, p)
+      call step_velocity(steps(i), rate, arm, slide(:, i), v(:, p), v(:, i))
+      call add_bias(steps(i), chain%signs(i), rate, arm, slide(:, i), v(1, p), bias)
     end do
   end subroutine find_velocities
 end module mech9_planar_chain

@@ -33,26 +33,48 @@ contains
     real(wp), intent(out), contiguous :: values(:)              !< (3) [rad, lengths of the mechanism]
     real(wp) :: error(3)
 
-    associate (closure => plan%planar%closures(self%closure), m => size(plan%planar%steps))
-      call closing_error(closure, m, state%planar%pose, error)
-      call rows_at_base(closure, 1.0_wp/plan%length, m, state%planar%pose, error, values)
+    associate (closure => plan%planar%closures(self%closure))
+      call closing_error(closure, state%planar%pose, error)
+      call rows_at_base(closure, 1.0_wp/plan%length, state%planar%pose, error, values)
     end associate
   end subroutine residual
 
   !> Derivatives with respect to the coordinates of steps of a loop, each in its unit.
-  pure subroutine jacobian(self, plan, loop, first, column_of, state, row, matrix)
+  pure subroutine jacobian(self, plan, loop, column_of, state, row, matrix)
     class(planar_closure_constraint_type), intent(in) :: self   !< the constraint
     type(plan_type), intent(in) :: plan                         !< the plan of the mechanism
     type(loop_type), intent(in) :: loop                         !< the steps of the loop
-    integer, intent(in) :: first                                !< earlier steps are left out
-    integer, intent(in), contiguous :: column_of(:)             !< column of step `first` and each later one; 0: none
+    integer, allocatable, intent(in) :: column_of(:)            !< (steps of the block) column of each step; 0: none
     type(state_type), intent(in) :: state                       !< with the poses of the frames
     integer, intent(in) :: row                                  !< number of rows of `matrix` before those of this constraint
     real(wp), intent(inout), contiguous :: matrix(:, :)         !< Jacobian of the block; gets three rows
+    integer :: base, m
 
-    call fill_columns(size(plan%planar%steps), plan%planar%steps, plan%planar%closures(self%closure)%base, &
-                      1.0_wp/plan%length, size(loop%steps), loop%steps, loop%signs, first, size(column_of), column_of, &
-                      state%planar%pose, state%planar%slide, size(matrix, 1), size(matrix, 2), row, matrix)
+    base = plan%planar%closures(self%closure)%base
+    m = size(matrix, 1)
+    call fill_columns(plan%planar%steps, state%planar%pose, state%planar%slide, matrix)
+
+  contains
+
+    !> The same from plain arrays of which all but the last extent is known, so that the compiler keeps their addresses in
+    !> registers.
+    pure subroutine fill_columns(steps, f, slide, matrix)
+      type(planar_step_type), intent(in) :: steps(*)   !< steps of the plan
+      real(wp), intent(in) :: f(4, 0:*)                !< poses of the frames [m]
+      real(wp), intent(in) :: slide(2, *)              !< velocity of each frame's origin per unit rate
+      real(wp), intent(inout) :: matrix(m, *)          !< gets three rows
+      real(wp) :: per_length
+      integer :: i, j, s
+
+      per_length = 1.0_wp/plan%length
+      do i = 1, size(loop%steps)
+        s = loop%steps(i)
+        if (s < lbound(column_of, 1)) cycle
+        j = column_of(s)
+        if (j == 0) cycle
+        call step_column(steps(s), loop%signs(i), f(:, s), slide(:, s), f(3:4, base), per_length, matrix(row + 1:row + 3, j))
+      end do
+    end subroutine fill_columns
   end subroutine jacobian
 
   !> Derivatives with respect to the coordinate of one step, in its unit.
@@ -81,11 +103,10 @@ contains
     associate (closure => plan%planar%closures(self%closure), part => plan%closures(self%closure)%part, &
                steps => plan%planar%steps, motion => state%planar)
       if (order == 1) then
-        call sum_rates(closure, size(steps), steps, size(part%steps), part%steps, part%signs, part%stems, state%dq, &
-                       motion%pose, motion%slide, motion%velocity, opening)
-        call rows_at_base(closure, 1.0_wp/plan%length, size(steps), motion%pose, opening, values)
+        call sum_rates(closure, part, steps, state%dq, motion, opening)
+        call rows_at_base(closure, 1.0_wp/plan%length, motion%pose, opening, values)
       else
-        call find_difference(closure, 1.0_wp/plan%length, size(steps), motion%pose, motion%acceleration(:, closure%closing), &
+        call find_difference(closure, 1.0_wp/plan%length, motion%pose, motion%acceleration(:, closure%closing), &
                              motion%acceleration(:, closure%target), motion%velocity(1, closure%target)**2, values)
       end if
     end associate
@@ -103,7 +124,7 @@ contains
 
     associate (closure => plan%planar%closures(self%closure))
       axes = plane_in_space(plan, state, closure%closing)
-      call rows_at_base(closure, 1.0_wp/plan%length, size(plan%planar%steps), state%planar%pose, &
+      call rows_at_base(closure, 1.0_wp/plan%length, state%planar%pose, &
                         [dot_product(axes(:, 3), w), dot_product(axes(:, 1), v), dot_product(axes(:, 2), v)], values)
     end associate
   end subroutine opening
@@ -115,65 +136,28 @@ contains
     type(state_type), intent(in) :: state                       !< with the poses of the frames
     real(wp) :: error(3)
 
-    call closing_error(plan%planar%closures(self%closure), size(plan%planar%steps), state%planar%pose, error)
+    call closing_error(plan%planar%closures(self%closure), state%planar%pose, error)
     gap = max(sqrt(error(2)**2 + error(3)**2), plan%length*abs(error(1)))
   end function gap
 
-  ! The following procedures take arrays of known shape beside their types, so that the compiler keeps their addresses in
-  ! registers.
-
-  !> Derivatives of a closure's equations with respect to the coordinates of steps of a loop, from plain arrays.
-  pure subroutine fill_columns(k, flat, base, per_length, n_steps, steps, signs, first, n_columns, column_of, f, slide, &
-                               m, n, row, matrix)
-    integer, intent(in) :: k                        !< number of steps of the plan
-    type(planar_step_type), intent(in) :: flat(k)   !< steps of the plan
-    integer, intent(in) :: base                     !< frame at which the closure is written
-    real(wp), intent(in) :: per_length              !< one over the mechanism's size [1/m]
-    integer, intent(in) :: n_steps                  !< number of steps of the loop
-    integer, intent(in) :: steps(n_steps)           !< steps of the loop
-    real(wp), intent(in) :: signs(n_steps)          !< of the steps in the loop: 1 or -1
-    integer, intent(in) :: first                    !< earlier steps are left out
-    integer, intent(in) :: n_columns                !< number of steps from `first` on
-    integer, intent(in) :: column_of(n_columns)     !< column of each of these; 0: none
-    real(wp), intent(in) :: f(4, 0:k)               !< poses of the frames [m]
-    real(wp), intent(in) :: slide(2, k)             !< velocity of each frame's origin per unit rate
-    integer, intent(in) :: m                        !< number of rows of the matrix
-    integer, intent(in) :: n                        !< number of columns of the matrix
-    integer, intent(in) :: row                      !< number of rows before those of this closure
-    real(wp), intent(inout) :: matrix(m, n)         !< gets three rows
-    integer :: i, j, s
-
-    do i = 1, n_steps
-      s = steps(i)
-      if (s < first) cycle
-      j = column_of(s - first + 1)
-      if (j == 0) cycle
-      call step_column(flat(s), signs(i), f(:, s), slide(:, s), f(3:4, base), per_length, matrix(row + 1:row + 3, j))
-    end do
-  end subroutine fill_columns
-
   !> Velocity of the closing frame relative to the target, at the closing frame's origin. It results from the rates of the
   !> coordinates in the closure's part, and from the velocities of the frames at which this part begins.
-  pure subroutine sum_rates(closure, m, flat, n_steps, steps, signs, stems, rates, f, slide, v, opening)
+  pure subroutine sum_rates(closure, part, steps, rates, motion, opening)
     type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
-    integer, intent(in) :: m                           !< number of steps of the plan
-    type(planar_step_type), intent(in) :: flat(m)      !< steps of the plan
-    integer, intent(in) :: n_steps                     !< number of steps of the part
-    integer, intent(in) :: steps(n_steps)              !< steps of the part
-    real(wp), intent(in) :: signs(n_steps)             !< of these steps in the loop: 1 or -1
-    integer, intent(in) :: stems(2)                    !< frames at which the two branches of the part begin
-    real(wp), intent(in) :: rates(m)                   !< rates of the coordinates [rad/s, m/s]
-    real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]
-    real(wp), intent(in) :: slide(2, m)                !< velocity of each frame's origin per unit rate
-    real(wp), intent(in) :: v(3, 0:m)                  !< velocities of the frames [rad/s, m/s]
+    type(loop_type), intent(in) :: part                !< its part
+    type(planar_step_type), intent(in) :: steps(:)     !< steps of the plan
+    real(wp), intent(in) :: rates(:)                   !< rates of the coordinates [rad/s, m/s]
+    type(planar_motion_type), intent(in) :: motion     !< poses and velocities of the frames
     real(wp), intent(out) :: opening(3)                !< relative velocity of the closing frame [rad/s, m/s]
     integer :: i, s
 
-    call stem_difference(m, stems, f(3:4, closure%closing), f, v, opening)
-    do i = 1, n_steps
-      s = steps(i)
-      call add_rate(flat(s), signs(i)*rates(flat(s)%coordinate), f(:, s), slide(:, s), f(3:4, closure%closing), opening)
-    end do
+    associate (place => motion%pose(3:4, closure%closing))
+      call stem_difference(part%stems, place, motion%pose, motion%velocity, opening)
+      do i = 1, size(part%steps)
+        s = part%steps(i)
+        call add_rate(steps(s), part%signs(i)*rates(steps(s)%coordinate), motion%pose(:, s), motion%slide(:, s), place, opening)
+      end do
+    end associate
   end subroutine sum_rates
 
   !> Second time derivatives of the closures first .. last, from the accelerations of their frames.
@@ -187,7 +171,7 @@ contains
 
     do c = first, last
       associate (closure => planar%closures(c), a => motion%acceleration)
-        call find_difference(closure, 1.0_wp/planar%length, size(planar%steps), motion%pose, a(:, closure%closing), &
+        call find_difference(closure, 1.0_wp/planar%length, motion%pose, a(:, closure%closing), &
                              a(:, closure%target), motion%velocity(1, closure%target)**2, rates(:, c))
       end associate
     end do
@@ -203,16 +187,14 @@ contains
     real(wp), intent(in) :: target(3)                !< angular velocity of the target, and velocity of its origin
     real(wp), intent(out) :: rows(3)                 !< the difference, translations in lengths of the mechanism
 
-    call find_difference(planar%closures(c), 1.0_wp/planar%length, size(planar%steps), motion%pose, closing, target, &
-                         0.0_wp, rows)
+    call find_difference(planar%closures(c), 1.0_wp/planar%length, motion%pose, closing, target, 0.0_wp, rows)
   end subroutine planar_difference
 
   !> The three equations of a closure for the motion of the closing frame less that of the target's point at the same place.
-  pure subroutine find_difference(closure, per_length, m, f, closing, target, square, rows)
+  pure subroutine find_difference(closure, per_length, f, closing, target, square, rows)
     type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
     real(wp), intent(in) :: per_length                 !< one over the mechanism's size [1/m]
-    integer, intent(in) :: m                           !< number of steps of the plan
-    real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]
+    real(wp), intent(in) :: f(4, 0:*)                  !< poses of the frames [m]
     real(wp), intent(in) :: closing(3)                 !< motion of the closing frame: angular, and of its origin
     real(wp), intent(in) :: target(3)                  !< motion of the target: angular, and of its origin
     real(wp), intent(in) :: square                     !< squared angular velocity of the target if these are accelerations, else 0
@@ -221,8 +203,8 @@ contains
 
     x = f(3, closure%closing) - f(3, closure%target)
     y = f(4, closure%closing) - f(4, closure%target)
-    call rows_at_base(closure, per_length, m, f, [closing(1) - target(1), &
-                                                  closing(2) - target(2) + target(1)*y + square*x, &
-                                                  closing(3) - target(3) - target(1)*x + square*y], rows)
+    call rows_at_base(closure, per_length, f, [closing(1) - target(1), &
+                                               closing(2) - target(2) + target(1)*y + square*x, &
+                                               closing(3) - target(3) - target(1)*x + square*y], rows)
   end subroutine find_difference
 end module mech9_planar_closure

@@ -2,7 +2,7 @@
 !>
 !> A pose is (cosine, sine, x, y) in the plane's axes; a velocity is (angular velocity about the normal, velocity of an
 !> origin), and an acceleration has the same three parts. The procedures are small, so that the compiler can put them into the
-!> loops that use them.
+!> loops that use them. All but the last extent of an array of frames is known, so that its address stays in a register.
 module mech9_planar_formulas
   use mech9_kinds, only: wp
   use mech9_planar_plan, only: planar_step_type, planar_closure_type
@@ -69,43 +69,40 @@ contains
   end subroutine step_column
 
   !> Velocity of a step's frame from the velocity of its parent frame.
-  pure subroutine step_velocity(step, rate, x, y, slide, parent, v)
+  pure subroutine step_velocity(step, rate, arm, slide, parent, v)
     type(planar_step_type), intent(in) :: step   !< the step
     real(wp), intent(in) :: rate                 !< of the step's coordinate [rad/s, m/s]
-    real(wp), intent(in) :: x                    !< from the parent's origin to the frame's, along the plane's first axis [m]
-    real(wp), intent(in) :: y                    !< the same along the plane's second axis [m]
+    real(wp), intent(in) :: arm(2)               !< from the parent's origin to the frame's [m]
     real(wp), intent(in) :: slide(2)             !< velocity of the frame's origin per unit rate
     real(wp), intent(in) :: parent(3)            !< velocity of the parent [rad/s, m/s]
     real(wp), intent(out) :: v(3)                !< velocity of the frame [rad/s, m/s]
 
     v(1) = parent(1) + step%turn*rate
-    v(2) = parent(2) - parent(1)*y
-    v(3) = parent(3) + parent(1)*x
+    v(2) = parent(2) - parent(1)*arm(2)
+    v(3) = parent(3) + parent(1)*arm(1)
     if (step%turns) return
     v(2) = v(2) + rate*slide(1)
     v(3) = v(3) + rate*slide(2)
   end subroutine step_velocity
 
   !> Acceleration of a step's frame from the acceleration of its parent frame.
-  pure subroutine step_acceleration(step, rate, acceleration, x, y, slide, w, parent, a)
+  pure subroutine step_acceleration(step, rates, arm, slide, w, parent, a)
     type(planar_step_type), intent(in) :: step   !< the step
-    real(wp), intent(in) :: rate                 !< of the step's coordinate [rad/s, m/s]
-    real(wp), intent(in) :: acceleration         !< of the step's coordinate [rad/s^2, m/s^2]
-    real(wp), intent(in) :: x                    !< from the parent's origin to the frame's, along the plane's first axis [m]
-    real(wp), intent(in) :: y                    !< the same along the plane's second axis [m]
+    real(wp), intent(in) :: rates(2)             !< rate and acceleration of the step's coordinate [rad/s, m/s; per s]
+    real(wp), intent(in) :: arm(2)               !< from the parent's origin to the frame's [m]
     real(wp), intent(in) :: slide(2)             !< velocity of the frame's origin per unit rate
     real(wp), intent(in) :: w                    !< angular velocity of the parent [rad/s]
     real(wp), intent(in) :: parent(3)            !< acceleration of the parent [rad/s^2, m/s^2]
     real(wp), intent(out) :: a(3)                !< acceleration of the frame [rad/s^2, m/s^2]
     real(wp) :: coriolis
 
-    a(1) = parent(1) + step%turn*acceleration
-    a(2) = parent(2) - parent(1)*y - w**2*x
-    a(3) = parent(3) + parent(1)*x - w**2*y
+    a(1) = parent(1) + step%turn*rates(2)
+    a(2) = parent(2) - parent(1)*arm(2) - w**2*arm(1)
+    a(3) = parent(3) + parent(1)*arm(1) - w**2*arm(2)
     if (step%turns) return
-    coriolis = 2.0_wp*w*rate
-    a(2) = a(2) + acceleration*slide(1) - coriolis*slide(2)
-    a(3) = a(3) + acceleration*slide(2) + coriolis*slide(1)
+    coriolis = 2.0_wp*w*rates(1)
+    a(2) = a(2) + rates(2)*slide(1) - coriolis*slide(2)
+    a(3) = a(3) + rates(2)*slide(2) + coriolis*slide(1)
   end subroutine step_acceleration
 
   !> Add the contribution of a step's coordinate to the relative motion of the ends of a loop, at a place.
@@ -131,20 +128,19 @@ contains
 
   !> Add the contribution of a step to the bias acceleration of a loop: the centripetal and Coriolis terms, which depend on
   !> velocities only.
-  pure subroutine add_bias(step, sign, rate, x, y, slide, w, bias)
+  pure subroutine add_bias(step, sign, rate, arm, slide, w, bias)
     type(planar_step_type), intent(in) :: step   !< the step
     real(wp), intent(in) :: sign                 !< of the step in the loop: 1 or -1; 0: not in it
     real(wp), intent(in) :: rate                 !< of the step's coordinate [rad/s, m/s]
-    real(wp), intent(in) :: x                    !< from the parent's origin to the frame's, along the plane's first axis [m]
-    real(wp), intent(in) :: y                    !< the same along the plane's second axis [m]
+    real(wp), intent(in) :: arm(2)               !< from the parent's origin to the frame's [m]
     real(wp), intent(in) :: slide(2)             !< velocity of the frame's origin per unit rate
     real(wp), intent(in) :: w                    !< angular velocity of the parent [rad/s]
     real(wp), intent(inout) :: bias(2)           !< acceleration of the closing frame relative to the target [m/s^2]
     real(wp) :: square, coriolis
 
     square = sign*w**2
-    bias(1) = bias(1) - square*x
-    bias(2) = bias(2) - square*y
+    bias(1) = bias(1) - square*arm(1)
+    bias(2) = bias(2) - square*arm(2)
     if (step%turns) return
     coriolis = 2.0_wp*sign*w*rate
     bias(1) = bias(1) - coriolis*slide(2)
@@ -153,12 +149,11 @@ contains
 
   !> Difference at a place between the motions of two bodies on which two frames are fixed: of the velocities, or of the
   !> accelerations without their centripetal terms.
-  pure subroutine stem_difference(m, stems, place, f, v, difference)
-    integer, intent(in) :: m                 !< number of steps of the plan
+  pure subroutine stem_difference(stems, place, f, v, difference)
     integer, intent(in) :: stems(2)          !< numbers of the two frames
     real(wp), intent(in) :: place(2)         !< the place [m]
-    real(wp), intent(in) :: f(4, 0:m)        !< poses of the frames [m]
-    real(wp), intent(in) :: v(3, 0:m)        !< velocities, or accelerations, of the frames
+    real(wp), intent(in) :: f(4, 0:*)        !< poses of the frames [m]
+    real(wp), intent(in) :: v(3, 0:*)        !< velocities, or accelerations, of the frames
     real(wp), intent(out) :: difference(3)   !< motion of the first frame less that of the second: angular, and at the place
     integer :: i, k
 
@@ -172,11 +167,10 @@ contains
   end subroutine stem_difference
 
   !> The three equations of a closure, from a motion that is given at the origin of its closing frame.
-  pure subroutine rows_at_base(closure, per_length, m, f, motion, rows)
+  pure subroutine rows_at_base(closure, per_length, f, motion, rows)
     type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
     real(wp), intent(in) :: per_length                 !< one over the mechanism's size [1/m]
-    integer, intent(in) :: m                           !< number of steps of the plan
-    real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]
+    real(wp), intent(in) :: f(4, 0:*)                  !< poses of the frames [m]
     real(wp), intent(in) :: motion(3)   !< angular and at that origin: displacement [rad, m], velocity or acceleration
     real(wp), intent(out) :: rows(3)   !< the same at the origin of the base frame, translations in lengths of the mechanism
     integer :: b, i
@@ -189,10 +183,9 @@ contains
   end subroutine rows_at_base
 
   !> The angle and the displacement from the target pose to the closing frame.
-  pure subroutine closing_error(closure, m, f, error)
+  pure subroutine closing_error(closure, f, error)
     type(planar_closure_type), intent(in) :: closure   !< the closure in planar arithmetic
-    integer, intent(in) :: m                           !< number of steps of the plan
-    real(wp), intent(in) :: f(4, 0:m)                  !< poses of the frames [m]
+    real(wp), intent(in) :: f(4, 0:*)                  !< poses of the frames [m]
     real(wp), intent(out) :: error(3)                  !< from the target pose to the closing frame [rad, m, m]
     real(wp) :: c, s
     integer :: i, t

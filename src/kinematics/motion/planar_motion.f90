@@ -11,8 +11,7 @@ module mech9_planar_motion
   use mech9_planar_formulas, only: step_velocity, step_acceleration
   implicit none
   private
-  public :: new_planar_motion, place_in_plane, change_in_plane, planar_velocities, planar_accelerations, &
-    find_accelerations, to_space, to_plane
+  public :: new_planar_motion, place_in_plane, change_in_plane, planar_velocities, planar_accelerations, to_space, to_plane
 
 contains
 
@@ -35,9 +34,9 @@ contains
     real(wp), intent(in), contiguous :: q(:)            !< (M) coordinates [rad, m]
     type(planar_motion_type), intent(inout) :: motion   !< gets the angles, poses and slides of these frames
 
-    call find_angles(size(q), planar%steps, first, last, q, motion%angle)
+    call find_angles(planar%steps, first, last, q, motion%angle)
     call cosines_and_sines(last - first + 1, motion%angle(first:last), motion%turn(:, first:last))
-    call place(size(q), planar%steps, first, last, q, motion%turn, motion%pose, motion%slide)
+    call place(planar%steps, first, last, q, motion%turn, motion%pose, motion%slide)
   end subroutine place_in_plane
 
   !> Poses of the frames first .. last after a small change of some coordinates. The cosines and sines of their angles are
@@ -56,19 +55,18 @@ contains
       if (planar%steps(changed(i))%turns) &
         call add_small_angle(planar%steps(changed(i))%turn*change(i), motion%turn(:, changed(i)))
     end do
-    call place(size(q), planar%steps, first, last, q, motion%turn, motion%pose, motion%slide)
+    call place(planar%steps, first, last, q, motion%turn, motion%pose, motion%slide)
   end subroutine change_in_plane
 
-  ! The next two procedures take arrays of known shape, so that the compiler keeps their addresses in registers.
+  ! Arrays of which all but the last extent is known: the compiler keeps their addresses in registers.
 
   !> The angles by which the steps first .. last turn.
-  pure subroutine find_angles(m, steps, first, last, q, angles)
-    integer, intent(in) :: m                         !< number of steps of the plan
+  pure subroutine find_angles(steps, first, last, q, angles)
+    type(planar_step_type), intent(in) :: steps(*)   !< steps of the plan
     integer, intent(in) :: first                     !< steps from this one
     integer, intent(in) :: last                      !< to this one
-    type(planar_step_type), intent(in) :: steps(m)   !< steps of the plan
-    real(wp), intent(in) :: q(m)                     !< (M) coordinates [rad, m]
-    real(wp), intent(inout) :: angles(m)             !< angle by which each step turns [rad]
+    real(wp), intent(in) :: q(*)                     !< (M) coordinates [rad, m]
+    real(wp), intent(inout) :: angles(*)             !< (M) angle by which each step turns [rad]
     integer :: i
 
     do i = first, last
@@ -77,15 +75,14 @@ contains
   end subroutine find_angles
 
   !> Poses of the frames first .. last from the cosines and sines of their steps, from plain arrays.
-  pure subroutine place(m, steps, first, last, q, cs, f, slide)
-    integer, intent(in) :: m                         !< number of steps of the plan
+  pure subroutine place(steps, first, last, q, cs, f, slide)
+    type(planar_step_type), intent(in) :: steps(*)   !< steps of the plan
     integer, intent(in) :: first                     !< frames from this one
     integer, intent(in) :: last                      !< to this one
-    type(planar_step_type), intent(in) :: steps(m)   !< steps of the plan
-    real(wp), intent(in) :: q(m)                     !< (M) coordinates [rad, m]
-    real(wp), intent(in) :: cs(2, m)                 !< cosine and sine of the angle by which each step turns
-    real(wp), intent(inout) :: f(4, 0:m)             !< (cosine, sine, x, y) pose of each frame [m]
-    real(wp), intent(inout) :: slide(2, m)           !< velocity of each frame's origin per unit rate
+    real(wp), intent(in) :: q(*)                     !< (M) coordinates [rad, m]
+    real(wp), intent(in) :: cs(2, *)                 !< cosine and sine of the angle by which each step turns
+    real(wp), intent(inout) :: f(4, 0:*)             !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(inout) :: slide(2, *)           !< velocity of each frame's origin per unit rate
     real(wp) :: x, y, cp, sp
     integer :: i, p
 
@@ -119,24 +116,23 @@ contains
     real(wp), intent(in), contiguous :: dq(:)           !< (M) rates [rad/s, m/s]
     type(planar_motion_type), intent(inout) :: motion   !< poses in; velocities of these frames out
 
-    call find_velocities(size(dq), planar%steps, first, last, dq, motion%pose, motion%slide, motion%velocity)
+    call find_velocities(planar%steps, first, last, dq, motion%pose, motion%slide, motion%velocity)
   end subroutine planar_velocities
 
   !> Velocities of the frames first .. last, from plain arrays.
-  pure subroutine find_velocities(m, steps, first, last, dq, f, slide, v)
-    integer, intent(in) :: m                         !< number of steps of the plan
+  pure subroutine find_velocities(steps, first, last, dq, f, slide, v)
+    type(planar_step_type), intent(in) :: steps(*)   !< steps of the plan
     integer, intent(in) :: first                     !< frames from this one
     integer, intent(in) :: last                      !< to this one
-    type(planar_step_type), intent(in) :: steps(m)   !< steps of the plan
-    real(wp), intent(in) :: dq(m)                    !< (M) rates [rad/s, m/s]
-    real(wp), intent(in) :: f(4, 0:m)                !< (cosine, sine, x, y) pose of each frame [m]
-    real(wp), intent(in) :: slide(2, m)              !< velocity of each frame's origin per unit rate
-    real(wp), intent(inout) :: v(3, 0:m)             !< velocity of each frame [rad/s, m/s]
+    real(wp), intent(in) :: dq(*)                    !< (M) rates [rad/s, m/s]
+    real(wp), intent(in) :: f(4, 0:*)                !< (cosine, sine, x, y) pose of each frame [m]
+    real(wp), intent(in) :: slide(2, *)              !< velocity of each frame's origin per unit rate
+    real(wp), intent(inout) :: v(3, 0:*)             !< velocity of each frame [rad/s, m/s]
     integer :: i, p
 
     do i = first, last
       p = steps(i)%parent
-      call step_velocity(steps(i), dq(steps(i)%coordinate), f(3, i) - f(3, p), f(4, i) - f(4, p), slide(:, i), v(:, p), v(:, i))
+      call step_velocity(steps(i), dq(steps(i)%coordinate), f(3:4, i) - f(3:4, p), slide(:, i), v(:, p), v(:, i))
     end do
   end subroutine find_velocities
 
@@ -149,30 +145,26 @@ contains
     real(wp), intent(in), contiguous :: ddq(:)          !< (M) accelerations [rad/s^2, m/s^2]
     type(planar_motion_type), intent(inout) :: motion   !< poses and velocities in; accelerations of these frames out
 
-    call find_accelerations(size(dq), planar%steps, first, last, dq, ddq, motion%pose, motion%slide, &
-                            motion%velocity, motion%acceleration)
+    call find_accelerations(planar%steps, motion%pose, motion%slide, motion%velocity, motion%acceleration)
+
+  contains
+
+    !> The same from plain arrays.
+    pure subroutine find_accelerations(steps, f, slide, v, a)
+      type(planar_step_type), intent(in) :: steps(*)   !< steps of the plan
+      real(wp), intent(in) :: f(4, 0:*)                !< (cosine, sine, x, y) pose of each frame [m]
+      real(wp), intent(in) :: slide(2, *)              !< velocity of each frame's origin per unit rate
+      real(wp), intent(in) :: v(3, 0:*)                !< velocity of each frame [rad/s, m/s]
+      real(wp), intent(inout) :: a(3, 0:*)             !< acceleration of each frame [rad/s^2, m/s^2]
+      integer :: i, k, p
+
+      do i = first, last
+        p = steps(i)%parent
+        k = steps(i)%coordinate
+        call step_acceleration(steps(i), [dq(k), ddq(k)], f(3:4, i) - f(3:4, p), slide(:, i), v(1, p), a(:, p), a(:, i))
+      end do
+    end subroutine find_accelerations
   end subroutine planar_accelerations
-
-  !> Accelerations of the frames first .. last, from plain arrays.
-  pure subroutine find_accelerations(m, steps, first, last, dq, ddq, f, slide, v, a)
-    integer, intent(in) :: m                         !< number of steps of the plan
-    integer, intent(in) :: first                     !< frames from this one
-    integer, intent(in) :: last                      !< to this one
-    type(planar_step_type), intent(in) :: steps(m)   !< steps of the plan
-    real(wp), intent(in) :: dq(m)                    !< (M) rates [rad/s, m/s]
-    real(wp), intent(in) :: ddq(m)                   !< (M) accelerations [rad/s^2, m/s^2]
-    real(wp), intent(in) :: f(4, 0:m)                !< (cosine, sine, x, y) pose of each frame [m]
-    real(wp), intent(in) :: slide(2, m)              !< velocity of each frame's origin per unit rate
-    real(wp), intent(in) :: v(3, 0:m)                !< velocity of each frame [rad/s, m/s]
-    real(wp), intent(inout) :: a(3, 0:m)             !< acceleration of each frame [rad/s^2, m/s^2]
-    integer :: i, p
-
-    do i = first, last
-      p = steps(i)%parent
-      call step_acceleration(steps(i), dq(steps(i)%coordinate), ddq(steps(i)%coordinate), f(3, i) - f(3, p), &
-                             f(4, i) - f(4, p), slide(:, i), v(1, p), a(:, p), a(:, i))
-    end do
-  end subroutine find_accelerations
 
   !> A vector in the axes of frame 0, from its components in the plane's axes.
   pure function to_space(planar, x, y, z) result(vector)

@@ -7,10 +7,22 @@ module mech9_planar_view
   use mech9_kinds, only: wp
   use mech9_rotation, only: combine, cross
   use mech9_plan, only: plan_type
+  use mech9_planar_plan, only: planar_plan_type
   use mech9_state, only: state_type
   implicit none
   private
   public :: plane_in_space, show_poses, show_velocities, show_accelerations, seen_velocity, seen_acceleration
+
+  !> A plane in space, and the motion of its base.
+  type :: moving_plane_type
+    logical :: moves = .false.           !< the base moves
+    real(wp) :: axes(3, 3) = 0.0_wp      !< axes of the plane, in those of frame 0
+    real(wp) :: p(3) = 0.0_wp            !< origin of the base [m]
+    real(wp) :: omega(3) = 0.0_wp        !< angular velocity of the base [rad/s]
+    real(wp) :: v(3) = 0.0_wp            !< velocity of its origin [m/s]
+    real(wp) :: alpha(3) = 0.0_wp        !< angular acceleration of the base [rad/s^2]
+    real(wp) :: a(3) = 0.0_wp            !< acceleration of its origin [m/s^2]
+  end type moving_plane_type
 
 contains
 
@@ -31,6 +43,24 @@ contains
     end associate
   end function plane_in_space
 
+  !> The plane of a frame, with the motion of its base as far as that is known.
+  pure function moving_plane(plan, state, frame) result(plane)
+    type(plan_type), intent(in) :: plan     !< the plan of the mechanism
+    type(state_type), intent(in) :: state   !< with the motion of the plane's base
+    integer, intent(in) :: frame            !< number of the frame, of a planar block of a spatial mechanism
+    type(moving_plane_type) :: plane
+
+    associate (b => plan%planar%planes(plan%planar%plane_of(frame))%base)
+      plane%moves = b > 0
+      plane%axes = plane_in_space(plan, state, frame)
+      plane%p = state%p(:, b)
+      plane%omega = state%omega(:, b)
+      plane%v = state%v(:, b)
+      plane%alpha = state%alpha(:, b)
+      plane%a = state%a(:, b)
+    end associate
+  end function moving_plane
+
   !> Poses of the shown frames first .. last in space, and the screws of their steps, from their poses in the plane.
   pure subroutine show_poses(plan, shown, first, last, state)
     type(plan_type), intent(in) :: plan        !< the plan of the mechanism
@@ -38,17 +68,22 @@ contains
     integer, intent(in) :: first               !< frames from this one, of planar blocks
     integer, intent(in) :: last                !< to this one
     type(state_type), intent(inout) :: state   !< planar poses and poses of bases in; poses and screws in space out
-    real(wp) :: axes(3, 3)
-    integer :: s, plane
+    type(moving_plane_type) :: plane
+    integer :: s, number
 
-    plane = 0
+    number = 0
     do s = first, last
       if (.not. shown(s)) cycle
-      if (plan%planar%plane_of(s) /= plane) axes = plane_in_space(plan, state, s)
-      plane = plan%planar%plane_of(s)
-      call show_pose(state%planar%pose(:, s), state%planar%slide(:, s), plan%planar%steps(s)%turns, plan%planar%steps(s)%turn, &
-                     plan%planar%height(s), plan%planar%to_planar(:, :, s), axes, state%p(:, plan%planar%planes(plane)%base), &
-                     state%r(:, :, s), state%p(:, s), state%axis_w(:, s), state%axis_v(:, s))
+      if (plan%planar%plane_of(s) /= number) plane = moving_plane(plan, state, s)
+      number = plan%planar%plane_of(s)
+      call show_pose(plan%planar, s, plane, state%planar%pose(:, s), state%r(:, :, s), state%p(:, s))
+      if (plan%planar%steps(s)%turns) then
+        state%axis_w(:, s) = plan%planar%steps(s)%turn*plane%axes(:, 3)
+        state%axis_v(:, s) = 0.0_wp
+      else
+        state%axis_w(:, s) = 0.0_wp
+        state%axis_v(:, s) = state%planar%slide(1, s)*plane%axes(:, 1) + state%planar%slide(2, s)*plane%axes(:, 2)
+      end if
     end do
   end subroutine show_poses
 
@@ -59,17 +94,15 @@ contains
     integer, intent(in) :: first               !< frames from this one, of planar blocks
     integer, intent(in) :: last                !< to this one
     type(state_type), intent(inout) :: state   !< poses, planar velocities and velocities of bases in; velocities in space out
-    real(wp) :: axes(3, 3)
-    integer :: s, b, plane
+    type(moving_plane_type) :: plane
+    integer :: s, number
 
-    plane = 0
+    number = 0
     do s = first, last
       if (.not. shown(s)) cycle
-      if (plan%planar%plane_of(s) /= plane) axes = plane_in_space(plan, state, s)
-      plane = plan%planar%plane_of(s)
-      b = plan%planar%planes(plane)%base
-      call show_velocity(state%planar%velocity(:, s), b > 0, axes, state%p(:, b), state%omega(:, b), state%v(:, b), &
-                         state%p(:, s), state%omega(:, s), state%v(:, s))
+      if (plan%planar%plane_of(s) /= number) plane = moving_plane(plan, state, s)
+      number = plan%planar%plane_of(s)
+      call show_velocity(state%planar%velocity(:, s), plane, state%p(:, s), state%omega(:, s), state%v(:, s))
     end do
   end subroutine show_velocities
 
@@ -80,98 +113,80 @@ contains
     integer, intent(in) :: first               !< frames from this one, of planar blocks
     integer, intent(in) :: last                !< to this one
     type(state_type), intent(inout) :: state   !< velocities, planar accelerations and those of bases in; accelerations out
-    real(wp) :: axes(3, 3)
-    integer :: s, b, plane
+    type(moving_plane_type) :: plane
+    integer :: s, number
 
-    plane = 0
+    number = 0
     do s = first, last
       if (.not. shown(s)) cycle
-      if (plan%planar%plane_of(s) /= plane) axes = plane_in_space(plan, state, s)
-      plane = plan%planar%plane_of(s)
-      b = plan%planar%planes(plane)%base
-      call show_acceleration(state%planar%velocity(:, s), state%planar%acceleration(:, s), b > 0, axes, state%p(:, b), &
-                             state%omega(:, b), state%alpha(:, b), state%a(:, b), state%p(:, s), state%alpha(:, s), state%a(:, s))
+      if (plan%planar%plane_of(s) /= number) plane = moving_plane(plan, state, s)
+      number = plan%planar%plane_of(s)
+      call show_acceleration(state%planar%velocity(:, s), state%planar%acceleration(:, s), plane, state%p(:, s), &
+                             state%alpha(:, s), state%a(:, s))
     end do
   end subroutine show_accelerations
 
   ! The next three procedures take arrays of known shape, so that the compiler keeps their addresses in registers.
 
-  !> The pose of one frame in space, and the screw of its step.
-  pure subroutine show_pose(pose, slide, turns, turn, height, to_planar, axes, p_base, r, p, axis_w, axis_v)
-    real(wp), intent(in) :: pose(4)           !< (cosine, sine, x, y) in the plane [m]
-    real(wp), intent(in) :: slide(2)          !< velocity of the frame's origin per unit rate, in the plane
-    logical, intent(in) :: turns              !< the step turns; else it slides
-    real(wp), intent(in) :: turn              !< rotation about the normal per unit of its coordinate
-    real(wp), intent(in) :: height            !< above the plane [m]
-    real(wp), intent(in) :: to_planar(3, 3)   !< turns components in the frame into those in the planar frame
-    real(wp), intent(in) :: axes(3, 3)        !< axes of the plane, in those of frame 0
-    real(wp), intent(in) :: p_base(3)         !< origin of the plane [m]
-    real(wp), intent(out) :: r(3, 3)          !< rotation of the frame
-    real(wp), intent(out) :: p(3)             !< its origin [m]
-    real(wp), intent(out) :: axis_w(3)        !< angular velocity per unit rate
-    real(wp), intent(out) :: axis_v(3)        !< velocity of the origin per unit rate
+  !> The pose of one frame in space.
+  pure subroutine show_pose(planar, s, plane, pose, r, p)
+    type(planar_plan_type), intent(in) :: planar     !< the plan in planar arithmetic
+    integer, intent(in) :: s                         !< number of the frame and its step
+    type(moving_plane_type), intent(in) :: plane     !< its plane
+    real(wp), intent(in) :: pose(4)                  !< (cosine, sine, x, y) in the plane [m]
+    real(wp), intent(out) :: r(3, 3)                 !< rotation of the frame
+    real(wp), intent(out) :: p(3)                    !< its origin [m]
     real(wp) :: x(3), y(3)
 
-    x = pose(1)*axes(:, 1) + pose(2)*axes(:, 2)
-    y = pose(1)*axes(:, 2) - pose(2)*axes(:, 1)
-    p = p_base + pose(3)*axes(:, 1) + pose(4)*axes(:, 2) + height*axes(:, 3)
-    if (turns) then
-      ! the axis of the step is the normal, in one direction or the other
-      r(:, 1) = x
-      r(:, 2) = to_planar(2, 2)*y
-      r(:, 3) = to_planar(3, 3)*axes(:, 3)
-      axis_w = turn*axes(:, 3)
-      axis_v = 0.0_wp
-    else
-      r(:, 1) = x*to_planar(1, 1) + y*to_planar(2, 1) + axes(:, 3)*to_planar(3, 1)
-      r(:, 2) = x*to_planar(1, 2) + y*to_planar(2, 2) + axes(:, 3)*to_planar(3, 2)
-      r(:, 3) = x*to_planar(1, 3) + y*to_planar(2, 3) + axes(:, 3)*to_planar(3, 3)
-      axis_w = 0.0_wp
-      axis_v = slide(1)*axes(:, 1) + slide(2)*axes(:, 2)
-    end if
+    associate (axes => plane%axes, to_planar => planar%to_planar(:, :, s))
+      x = pose(1)*axes(:, 1) + pose(2)*axes(:, 2)
+      y = pose(1)*axes(:, 2) - pose(2)*axes(:, 1)
+      p = plane%p + pose(3)*axes(:, 1) + pose(4)*axes(:, 2) + planar%height(s)*axes(:, 3)
+      if (planar%steps(s)%turns) then
+        ! the axis of the step is the normal, in one direction or the other
+        r(:, 1) = x
+        r(:, 2) = to_planar(2, 2)*y
+        r(:, 3) = to_planar(3, 3)*axes(:, 3)
+      else
+        r(:, 1) = x*to_planar(1, 1) + y*to_planar(2, 1) + axes(:, 3)*to_planar(3, 1)
+        r(:, 2) = x*to_planar(1, 2) + y*to_planar(2, 2) + axes(:, 3)*to_planar(3, 2)
+        r(:, 3) = x*to_planar(1, 3) + y*to_planar(2, 3) + axes(:, 3)*to_planar(3, 3)
+      end if
+    end associate
   end subroutine show_pose
 
   !> The velocity of one frame in space.
-  pure subroutine show_velocity(velocity, moves, axes, p_base, omega_base, v_base, p, omega, v)
-    real(wp), intent(in) :: velocity(3)     !< angular and of the origin, in the plane [rad/s, m/s]
-    logical, intent(in) :: moves            !< the base moves
-    real(wp), intent(in) :: axes(3, 3)      !< axes of the plane, in those of frame 0
-    real(wp), intent(in) :: p_base(3)       !< origin of the base [m]
-    real(wp), intent(in) :: omega_base(3)   !< angular velocity of the base [rad/s]
-    real(wp), intent(in) :: v_base(3)       !< velocity of its origin [m/s]
-    real(wp), intent(in) :: p(3)            !< origin of the frame [m]
-    real(wp), intent(out) :: omega(3)       !< angular velocity of the frame [rad/s]
-    real(wp), intent(out) :: v(3)           !< velocity of its origin [m/s]
+  pure subroutine show_velocity(velocity, plane, p, omega, v)
+    real(wp), intent(in) :: velocity(3)              !< angular and of the origin, in the plane [rad/s, m/s]
+    type(moving_plane_type), intent(in) :: plane     !< the plane
+    real(wp), intent(in) :: p(3)                     !< origin of the frame [m]
+    real(wp), intent(out) :: omega(3)                !< angular velocity of the frame [rad/s]
+    real(wp), intent(out) :: v(3)                    !< velocity of its origin [m/s]
 
-    omega = velocity(1)*axes(:, 3)
-    v = velocity(2)*axes(:, 1) + velocity(3)*axes(:, 2)
-    if (.not. moves) return
-    omega = omega + omega_base
-    v = v + v_base + cross(omega_base, p - p_base)
+    omega = velocity(1)*plane%axes(:, 3)
+    v = velocity(2)*plane%axes(:, 1) + velocity(3)*plane%axes(:, 2)
+    if (.not. plane%moves) return
+    omega = omega + plane%omega
+    v = v + plane%v + cross(plane%omega, p - plane%p)
   end subroutine show_velocity
 
   !> The acceleration of one frame in space.
-  pure subroutine show_acceleration(velocity, acceleration, moves, axes, p_base, omega_base, alpha_base, a_base, p, alpha, a)
-    real(wp), intent(in) :: velocity(3)       !< angular and of the origin, in the plane [rad/s, m/s]
-    real(wp), intent(in) :: acceleration(3)   !< the same [rad/s^2, m/s^2]
-    logical, intent(in) :: moves              !< the base moves
-    real(wp), intent(in) :: axes(3, 3)        !< axes of the plane, in those of frame 0
-    real(wp), intent(in) :: p_base(3)         !< origin of the base [m]
-    real(wp), intent(in) :: omega_base(3)     !< angular velocity of the base [rad/s]
-    real(wp), intent(in) :: alpha_base(3)     !< angular acceleration of the base [rad/s^2]
-    real(wp), intent(in) :: a_base(3)         !< acceleration of its origin [m/s^2]
-    real(wp), intent(in) :: p(3)              !< origin of the frame [m]
-    real(wp), intent(out) :: alpha(3)         !< angular acceleration of the frame [rad/s^2]
-    real(wp), intent(out) :: a(3)             !< acceleration of its origin [m/s^2]
+  pure subroutine show_acceleration(velocity, acceleration, plane, p, alpha, a)
+    real(wp), intent(in) :: velocity(3)              !< angular and of the origin, in the plane [rad/s, m/s]
+    real(wp), intent(in) :: acceleration(3)          !< the same [rad/s^2, m/s^2]
+    type(moving_plane_type), intent(in) :: plane     !< the plane
+    real(wp), intent(in) :: p(3)                     !< origin of the frame [m]
+    real(wp), intent(out) :: alpha(3)                !< angular acceleration of the frame [rad/s^2]
+    real(wp), intent(out) :: a(3)                    !< acceleration of its origin [m/s^2]
     real(wp) :: arm(3), slip(3)
 
-    alpha = acceleration(1)*axes(:, 3)
-    a = acceleration(2)*axes(:, 1) + acceleration(3)*axes(:, 2)
-    if (.not. moves) return
-    arm = p - p_base
-    alpha = alpha + alpha_base + velocity(1)*cross(omega_base, axes(:, 3))
-    slip = cross(omega_base, arm) + 2.0_wp*(velocity(2)*axes(:, 1) + velocity(3)*axes(:, 2))
-    a = a + a_base + cross(alpha_base, arm) + cross(omega_base, slip)
+    alpha = acceleration(1)*plane%axes(:, 3)
+    a = acceleration(2)*plane%axes(:, 1) + acceleration(3)*plane%axes(:, 2)
+    if (.not. plane%moves) return
+    arm = p - plane%p
+    alpha = alpha + plane%alpha + velocity(1)*cross(plane%omega, plane%axes(:, 3))
+    slip = cross(plane%omega, arm) + 2.0_wp*(velocity(2)*plane%axes(:, 1) + velocity(3)*plane%axes(:, 2))
+    a = a + plane%a + cross(plane%alpha, arm) + cross(plane%omega, slip)
   end subroutine show_acceleration
 
   !> The velocity of a point that moves in a plane, in the axes of frame 0 [m/s].
@@ -181,10 +196,11 @@ contains
     real(wp), intent(in) :: axes(3, 3)      !< axes of the plane, in those of frame 0
     real(wp), intent(in) :: arm(3)          !< from the plane's origin to the point, in the axes of frame 0 [m]
     real(wp), intent(in) :: velocity(2)     !< relative to the base, in the plane's axes [m/s]
+    type(moving_plane_type) :: plane
     real(wp) :: v(3), unused(3)
 
-    call show_velocity([0.0_wp, velocity], base > 0, axes, [0.0_wp, 0.0_wp, 0.0_wp], state%omega(:, base), state%v(:, base), arm, &
-                       unused, v)
+    plane = moving_plane_type(moves=base > 0, axes=axes, omega=state%omega(:, base), v=state%v(:, base))
+    call show_velocity([0.0_wp, velocity], plane, arm, unused, v)
   end function seen_velocity
 
   !> The acceleration of a point that moves in a plane, in the axes of frame 0 [m/s^2].
@@ -195,9 +211,11 @@ contains
     real(wp), intent(in) :: arm(3)            !< from the plane's origin to the point, in the axes of frame 0 [m]
     real(wp), intent(in) :: velocity(2)       !< relative to the base, in the plane's axes [m/s]
     real(wp), intent(in) :: acceleration(2)   !< relative to the base, in the plane's axes [m/s^2]
+    type(moving_plane_type) :: plane
     real(wp) :: a(3), unused(3)
 
-    call show_acceleration([0.0_wp, velocity], [0.0_wp, acceleration], base > 0, axes, [0.0_wp, 0.0_wp, 0.0_wp], &
-                           state%omega(:, base), state%alpha(:, base), state%a(:, base), arm, unused, a)
+    plane = moving_plane_type(moves=base > 0, axes=axes, omega=state%omega(:, base), alpha=state%alpha(:, base), &
+                              a=state%a(:, base))
+    call show_acceleration([0.0_wp, velocity], [0.0_wp, acceleration], plane, arm, unused, a)
   end function seen_acceleration
 end module mech9_planar_view

@@ -93,47 +93,46 @@ contains
 
     s = first
     do
-      call place_screws(size(plan%steps), plan%steps, s, last, state%q, state%turn, state%r, state%p, state%axis_w, state%axis_v)
+      call place_screws(plan%steps, s, state%turn, state%r, state%p, state%axis_w, state%axis_v)
       if (s > last) return
       call place_user(plan, s, state, err)
       if (allocated(err)) return
       s = s + 1
     end do
+
+  contains
+
+    !> Frames of steps along fixed axes, up to the first step that has none. Each is made by a constant pose, then a turn about z and
+    !> a slide along z. All but the last extent of the arrays is known, so that the compiler keeps their addresses in registers.
+    pure subroutine place_screws(steps, s, turn, r, p, axis_w, axis_v)
+      type(step_type), intent(in) :: steps(*)     !< steps of the plan
+      integer, intent(inout) :: s                 !< first step; then the first one that was not placed
+      real(wp), intent(in) :: turn(2, *)          !< cosine and sine of the angle of each step
+      real(wp), intent(inout) :: r(3, 3, 0:*)     !< rotations of the frames
+      real(wp), intent(inout) :: p(3, 0:*)        !< origins of the frames [m]
+      real(wp), intent(inout) :: axis_w(3, *)     !< angular velocity per unit rate
+      real(wp), intent(inout) :: axis_v(3, *)     !< velocity of the origin per unit rate
+      real(wp) :: x(3), y(3), z(3), offset(3)
+      integer :: i
+
+      do while (s <= last)
+        if (.not. steps(s)%is_screw) return
+        i = steps(s)%parent
+        ! axes and origin in the parent frame, which are turned by one product each
+        z = steps(s)%before%r(:, 3)
+        x = turn(1, s)*steps(s)%before%r(:, 1) + turn(2, s)*steps(s)%before%r(:, 2)
+        y = turn(1, s)*steps(s)%before%r(:, 2) - turn(2, s)*steps(s)%before%r(:, 1)
+        offset = steps(s)%before%p + steps(s)%slide*(state%q(steps(s)%coordinate) + steps(s)%offset)*z
+        r(:, 1, s) = r(:, 1, i)*x(1) + r(:, 2, i)*x(2) + r(:, 3, i)*x(3)
+        r(:, 2, s) = r(:, 1, i)*y(1) + r(:, 2, i)*y(2) + r(:, 3, i)*y(3)
+        r(:, 3, s) = r(:, 1, i)*z(1) + r(:, 2, i)*z(2) + r(:, 3, i)*z(3)
+        p(:, s) = p(:, i) + r(:, 1, i)*offset(1) + r(:, 2, i)*offset(2) + r(:, 3, i)*offset(3)
+        axis_w(:, s) = steps(s)%turn*r(:, 3, s)
+        axis_v(:, s) = steps(s)%slide*r(:, 3, s)
+        s = s + 1
+      end do
+    end subroutine place_screws
   end subroutine compose_frames
-
-  !> Frames of steps along fixed axes from plain arrays, up to the first step that has none. Each is made by a constant pose, then a
-  !> turn about z and a slide along z.
-  pure subroutine place_screws(m, steps, s, last, q, turn, r, p, axis_w, axis_v)
-    integer, intent(in) :: m                    !< number of steps of the plan
-    type(step_type), intent(in) :: steps(m)     !< steps of the plan
-    integer, intent(inout) :: s                 !< first step; then the first one that was not placed
-    integer, intent(in) :: last                 !< last step
-    real(wp), intent(in) :: q(m)                !< coordinates [rad, m]
-    real(wp), intent(in) :: turn(2, m)          !< cosine and sine of the angle of each step
-    real(wp), intent(inout) :: r(3, 3, 0:m)     !< rotations of the frames
-    real(wp), intent(inout) :: p(3, 0:m)        !< origins of the frames [m]
-    real(wp), intent(inout) :: axis_w(3, m)     !< angular velocity per unit rate
-    real(wp), intent(inout) :: axis_v(3, m)     !< velocity of the origin per unit rate
-    real(wp) :: x(3), y(3), z(3), offset(3)
-    integer :: i
-
-    do while (s <= last)
-      if (.not. steps(s)%is_screw) return
-      i = steps(s)%parent
-      ! axes and origin in the parent frame, which are turned by one product each
-      z = steps(s)%before%r(:, 3)
-      x = turn(1, s)*steps(s)%before%r(:, 1) + turn(2, s)*steps(s)%before%r(:, 2)
-      y = turn(1, s)*steps(s)%before%r(:, 2) - turn(2, s)*steps(s)%before%r(:, 1)
-      offset = steps(s)%before%p + steps(s)%slide*(q(steps(s)%coordinate) + steps(s)%offset)*z
-      r(:, 1, s) = r(:, 1, i)*x(1) + r(:, 2, i)*x(2) + r(:, 3, i)*x(3)
-      r(:, 2, s) = r(:, 1, i)*y(1) + r(:, 2, i)*y(2) + r(:, 3, i)*y(3)
-      r(:, 3, s) = r(:, 1, i)*z(1) + r(:, 2, i)*z(2) + r(:, 3, i)*z(3)
-      p(:, s) = p(:, i) + r(:, 1, i)*offset(1) + r(:, 2, i)*offset(2) + r(:, 3, i)*offset(3)
-      axis_w(:, s) = steps(s)%turn*r(:, 3, s)
-      axis_v(:, s) = steps(s)%slide*r(:, 3, s)
-      s = s + 1
-    end do
-  end subroutine place_screws
 
   !> The frame of one step through a pair that has no fixed axis.
   subroutine place_user(plan, s, state, err)
@@ -169,8 +168,29 @@ contains
     integer, intent(in) :: last                !< to this one
     type(state_type), intent(inout) :: state   !< rates in; velocities of these frames out
 
-    call find_velocities(size(plan%steps), plan%steps, first, last, state%dq, state%p, state%axis_w, state%axis_v, &
-                         state%omega, state%v)
+    call find_velocities(plan%steps, state%p, state%axis_w, state%axis_v, state%omega, state%v)
+
+  contains
+
+    !> The same from plain arrays as above.
+    pure subroutine find_velocities(steps, p, axis_w, axis_v, omega, v)
+      type(step_type), intent(in) :: steps(*)    !< steps of the plan
+      real(wp), intent(in) :: p(3, 0:*)          !< origins [m]
+      real(wp), intent(in) :: axis_w(3, *)       !< angular velocity per unit rate
+      real(wp), intent(in) :: axis_v(3, *)       !< velocity of the origin per unit rate
+      real(wp), intent(inout) :: omega(3, 0:*)   !< angular velocities [rad/s]
+      real(wp), intent(inout) :: v(3, 0:*)       !< velocities of the origins [m/s]
+      real(wp) :: rate, arm(3)
+      integer :: s, i
+
+      do s = first, last
+        i = steps(s)%parent
+        rate = state%dq(steps(s)%coordinate)
+        arm = p(:, s) - p(:, i)
+        omega(:, s) = omega(:, i) + rate*axis_w(:, s)
+        v(:, s) = v(:, i) + cross(omega(:, i), arm) + rate*axis_v(:, s)
+      end do
+    end subroutine find_velocities
   end subroutine spread_velocities
 
   !> Accelerations of frames from the rates and accelerations in `state`.
@@ -180,70 +200,38 @@ contains
     integer, intent(in) :: last                !< to this one
     type(state_type), intent(inout) :: state   !< rates and accelerations in; accelerations of these frames out
 
-    call find_accelerations(size(plan%steps), plan%steps, first, last, state%dq, state%ddq, state%p, state%axis_w, &
-                            state%axis_v, state%axis_w_rate, state%axis_v_rate, state%omega, state%v, state%alpha, state%a)
+    call find_accelerations(plan%steps, state%p, state%axis_w, state%axis_v, state%omega, state%alpha, state%a)
+
+  contains
+
+    !> The same from plain arrays as above.
+    pure subroutine find_accelerations(steps, p, axis_w, axis_v, omega, alpha, a)
+      type(step_type), intent(in) :: steps(*)     !< steps of the plan
+      real(wp), intent(in) :: p(3, 0:*)           !< origins [m]
+      real(wp), intent(in) :: axis_w(3, *)        !< angular velocity per unit rate
+      real(wp), intent(in) :: axis_v(3, *)        !< velocity of the origin per unit rate
+      real(wp), intent(in) :: omega(3, 0:*)       !< angular velocities [rad/s]
+      real(wp), intent(inout) :: alpha(3, 0:*)    !< angular accelerations [rad/s^2]
+      real(wp), intent(inout) :: a(3, 0:*)        !< accelerations of the origins [m/s^2]
+      real(wp) :: rate, acceleration, arm(3), slip(3), turning(3)
+      integer :: s, i
+
+      do s = first, last
+        i = steps(s)%parent
+        rate = state%dq(steps(s)%coordinate)
+        acceleration = state%ddq(steps(s)%coordinate)
+        arm = p(:, s) - p(:, i)
+        turning = rate*axis_w(:, s)
+        slip = cross(omega(:, i), arm) + 2.0_wp*rate*axis_v(:, s)
+        alpha(:, s) = alpha(:, i) + acceleration*axis_w(:, s) + cross(omega(:, i), turning)
+        a(:, s) = a(:, i) + cross(alpha(:, i), arm) + acceleration*axis_v(:, s) + cross(omega(:, i), slip)
+        if (steps(s)%is_screw) cycle
+        ! only pairs without a fixed axis have such terms
+        alpha(:, s) = alpha(:, s) + rate**2*state%axis_w_rate(:, s)
+        a(:, s) = a(:, s) + rate**2*state%axis_v_rate(:, s)
+      end do
+    end subroutine find_accelerations
   end subroutine spread_accelerations
-
-  ! The next two procedures take arrays of known shape, so that the compiler keeps their addresses in registers.
-
-  !> Velocities of frames from plain arrays, indexed as in the state.
-  pure subroutine find_velocities(m, steps, first, last, dq, p, axis_w, axis_v, omega, v)
-    integer, intent(in) :: m                   !< steps
-    type(step_type), intent(in) :: steps(m)    !< steps of the plan
-    integer, intent(in) :: first               !< frames from this one
-    integer, intent(in) :: last                !< to this one
-    real(wp), intent(in) :: dq(m)              !< rates of the coordinates [rad/s, m/s]
-    real(wp), intent(in) :: p(3, 0:m)          !< origins [m]
-    real(wp), intent(in) :: axis_w(3, m)       !< angular velocity per unit rate
-    real(wp), intent(in) :: axis_v(3, m)       !< velocity of the origin per unit rate
-    real(wp), intent(inout) :: omega(3, 0:m)   !< angular velocities [rad/s]
-    real(wp), intent(inout) :: v(3, 0:m)       !< velocities of the origins [m/s]
-    real(wp) :: rate, arm(3)
-    integer :: s, i
-
-    do s = first, last
-      i = steps(s)%parent
-      rate = dq(steps(s)%coordinate)
-      arm = p(:, s) - p(:, i)
-      omega(:, s) = omega(:, i) + rate*axis_w(:, s)
-      v(:, s) = v(:, i) + cross(omega(:, i), arm) + rate*axis_v(:, s)
-    end do
-  end subroutine find_velocities
-
-  !> Accelerations of frames from plain arrays, indexed as in the state.
-  pure subroutine find_accelerations(m, steps, first, last, dq, ddq, p, axis_w, axis_v, axis_w_rate, axis_v_rate, omega, v, &
-                                     alpha, a)
-    integer, intent(in) :: m                    !< steps
-    type(step_type), intent(in) :: steps(m)     !< steps of the plan
-    integer, intent(in) :: first                !< frames from this one
-    integer, intent(in) :: last                 !< to this one
-    real(wp), intent(in) :: dq(m)               !< rates of the coordinates [rad/s, m/s]
-    real(wp), intent(in) :: ddq(m)              !< accelerations of the coordinates [rad/s^2, m/s^2]
-    real(wp), intent(in) :: p(3, 0:m)           !< origins [m]
-    real(wp), intent(in) :: axis_w(3, m)        !< angular velocity per unit rate
-    real(wp), intent(in) :: axis_v(3, m)        !< velocity of the origin per unit rate
-    real(wp), intent(in) :: axis_w_rate(3, m)   !< derivative of axis_w in q, of user pairs
-    real(wp), intent(in) :: axis_v_rate(3, m)   !< derivative of axis_v in q, of user pairs
-    real(wp), intent(in) :: omega(3, 0:m)       !< angular velocities [rad/s]
-    real(wp), intent(in) :: v(3, 0:m)           !< velocities of the origins [m/s]
-    real(wp), intent(inout) :: alpha(3, 0:m)    !< angular accelerations [rad/s^2]
-    real(wp), intent(inout) :: a(3, 0:m)        !< accelerations of the origins [m/s^2]
-    real(wp) :: rate, arm(3), slip(3), turning(3)
-    integer :: s, i
-
-    do s = first, last
-      i = steps(s)%parent
-      rate = dq(steps(s)%coordinate)
-      arm = p(:, s) - p(:, i)
-      turning = rate*axis_w(:, s)
-      slip = cross(omega(:, i), arm) + 2.0_wp*rate*axis_v(:, s)
-      alpha(:, s) = alpha(:, i) + ddq(steps(s)%coordinate)*axis_w(:, s) + cross(omega(:, i), turning)
-      a(:, s) = a(:, i) + cross(alpha(:, i), arm) + ddq(steps(s)%coordinate)*axis_v(:, s) + cross(omega(:, i), slip)
-      if (steps(s)%is_screw) cycle
-      alpha(:, s) = alpha(:, s) + rate**2*axis_w_rate(:, s)
-      a(:, s) = a(:, s) + rate**2*axis_v_rate(:, s)
-    end do
-  end subroutine find_accelerations
 
   !> A link's own system and its motion, in the system of link 1.
   pure subroutine link_motion(plan, state, link, r, p, omega, v)

@@ -40,65 +40,54 @@ contains
   end subroutine residual
 
   !> Derivatives with respect to the coordinates of steps of a loop, each in its unit.
-  pure subroutine jacobian(self, plan, loop, first, column_of, state, row, matrix)
+  pure subroutine jacobian(self, plan, loop, column_of, state, row, matrix)
     class(spatial_closure_type), intent(in) :: self       !< the constraint
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(loop_type), intent(in) :: loop                   !< the steps of the loop
-    integer, intent(in) :: first                          !< earlier steps are left out
-    integer, intent(in), contiguous :: column_of(:)       !< column of step `first` and each later one; 0: none
+    integer, allocatable, intent(in) :: column_of(:)      !< (steps of the block) column of each step; 0: none
     type(state_type), intent(in) :: state                 !< with the poses of the frames and the screws of the steps
     integer, intent(in) :: row                            !< number of rows of `matrix` before those of this constraint
     real(wp), intent(inout), contiguous :: matrix(:, :)   !< Jacobian of the block; gets the rows of this closure
-    integer :: i, s
+    integer :: i, s, m
 
     if (self%equations == 6) then
-      call fill_columns(size(plan%steps), plan%steps, plan%unit_of, plan%closures(self%closure)%closing, 1.0_wp/plan%length, &
-                        size(loop%steps), loop%steps, loop%signs, first, size(column_of), column_of, state%p, state%axis_w, &
-                        state%axis_v, size(matrix, 1), size(matrix, 2), row, matrix)
+      m = size(matrix, 1)
+      call fill_columns(plan%steps, state%p, state%axis_w, state%axis_v, matrix)
       return
     end if
     do i = 1, size(loop%steps)
       s = loop%steps(i)
-      if (s < first) cycle
-      if (column_of(s - first + 1) == 0) cycle
-      call self%column(plan, s, loop%signs(i), state, matrix(row + 1:row + self%equations, column_of(s - first + 1)))
+      if (s < lbound(column_of, 1)) cycle
+      if (column_of(s) == 0) cycle
+      call self%column(plan, s, loop%signs(i), state, matrix(row + 1:row + self%equations, column_of(s)))
     end do
+
+  contains
+
+    !> The derivatives of all six equations, from plain arrays of which all but the last extent is known, so that the compiler keeps
+    !> their addresses in registers.
+    pure subroutine fill_columns(steps, p, axis_w, axis_v, matrix)
+      type(step_type), intent(in) :: steps(*)    !< steps of the plan
+      real(wp), intent(in) :: p(3, 0:*)          !< origins of the frames [m]
+      real(wp), intent(in) :: axis_w(3, *)       !< angular velocity per unit rate
+      real(wp), intent(in) :: axis_v(3, *)       !< velocity of the origin per unit rate
+      real(wp), intent(inout) :: matrix(m, *)    !< gets six rows
+      real(wp) :: w(3), v(3), per_length
+      integer :: closing, i, j, s
+
+      closing = plan%closures(self%closure)%closing
+      per_length = 1.0_wp/plan%length
+      do i = 1, size(loop%steps)
+        s = loop%steps(i)
+        if (s < lbound(column_of, 1)) cycle
+        j = column_of(s)
+        if (j == 0) cycle
+        call carry_screw(loop%signs(i)*plan%unit_of(steps(s)%coordinate), axis_w(:, s), axis_v(:, s), p(:, s), p(:, closing), w, v)
+        matrix(row + 1:row + 3, j) = w
+        matrix(row + 4:row + 6, j) = v*per_length
+      end do
+    end subroutine fill_columns
   end subroutine jacobian
-
-  !> Derivatives of the six equations of a closure with respect to the coordinates of steps of a loop, from plain arrays.
-  pure subroutine fill_columns(k, steps, unit_of, closing, per_length, n_steps, loop, signs, first, n_columns, column_of, p, &
-                               axis_w, axis_v, m, n, row, matrix)
-    integer, intent(in) :: k                      !< number of steps of the plan
-    type(step_type), intent(in) :: steps(k)       !< steps of the plan
-    real(wp), intent(in) :: unit_of(k)            !< units of the coordinates
-    integer, intent(in) :: closing                !< the closing frame
-    real(wp), intent(in) :: per_length            !< one over the mechanism's size [1/m]
-    integer, intent(in) :: n_steps                !< number of steps of the loop
-    integer, intent(in) :: loop(n_steps)          !< steps of the loop
-    real(wp), intent(in) :: signs(n_steps)        !< of the steps in the loop: 1 or -1
-    integer, intent(in) :: first                  !< earlier steps are left out
-    integer, intent(in) :: n_columns              !< number of steps from `first` on
-    integer, intent(in) :: column_of(n_columns)   !< column of each of these; 0: none
-    real(wp), intent(in) :: p(3, 0:k)             !< origins of the frames [m]
-    real(wp), intent(in) :: axis_w(3, k)          !< angular velocity per unit rate
-    real(wp), intent(in) :: axis_v(3, k)          !< velocity of the origin per unit rate
-    integer, intent(in) :: m                      !< number of rows of the matrix
-    integer, intent(in) :: n                      !< number of columns of the matrix
-    integer, intent(in) :: row                    !< number of rows before those of this closure
-    real(wp), intent(inout) :: matrix(m, n)       !< gets six rows
-    real(wp) :: w(3), v(3)
-    integer :: i, j, s
-
-    do i = 1, n_steps
-      s = loop(i)
-      if (s < first) cycle
-      j = column_of(s - first + 1)
-      if (j == 0) cycle
-      call carry_screw(signs(i)*unit_of(steps(s)%coordinate), axis_w(:, s), axis_v(:, s), p(:, s), p(:, closing), w, v)
-      matrix(row + 1:row + 3, j) = w
-      matrix(row + 4:row + 6, j) = v*per_length
-    end do
-  end subroutine fill_columns
 
   !> The screw of a step, with a weight, at another place.
   pure subroutine carry_screw(weight, axis_w, axis_v, from, place, w, v)
@@ -190,35 +179,31 @@ contains
 
     place = state%p(:, closure%closing)
     call stem_difference(closure, place, state%p, state%omega, state%v, w, v)
-    call add_velocities(size(plan%steps), plan%steps, size(closure%part%steps), closure%part%steps, closure%part%signs, place, &
-                        state%dq, state%p, state%axis_w, state%axis_v, w, v)
+    call add_velocities(plan%steps, state%p, state%axis_w, state%axis_v, w, v)
+
+  contains
+
+    !> Add the velocities that the rates of steps give, from plain arrays as above.
+    pure subroutine add_velocities(steps, p, axis_w, axis_v, w, v)
+      type(step_type), intent(in) :: steps(*)   !< steps of the plan
+      real(wp), intent(in) :: p(3, 0:*)         !< origins of the frames [m]
+      real(wp), intent(in) :: axis_w(3, *)      !< angular velocity per unit rate
+      real(wp), intent(in) :: axis_v(3, *)      !< velocity of the origin per unit rate
+      real(wp), intent(inout) :: w(3)           !< relative angular velocity [rad/s]
+      real(wp), intent(inout) :: v(3)           !< relative velocity at the place [m/s]
+      real(wp) :: spin(3), slip(3), rate
+      integer :: i, s
+
+      do i = 1, size(closure%part%steps)
+        s = closure%part%steps(i)
+        rate = state%dq(steps(s)%coordinate)
+        if (.not. abs(rate) > 0.0_wp) cycle
+        call carry_screw(closure%part%signs(i)*rate, axis_w(:, s), axis_v(:, s), p(:, s), place, spin, slip)
+        w = w + spin
+        v = v + slip
+      end do
+    end subroutine add_velocities
   end subroutine opening_velocity
-
-  !> Add the velocities that the rates of steps give to the relative velocity of a closure's frames, from plain arrays.
-  pure subroutine add_velocities(m, steps, n, part, signs, place, dq, p, axis_w, axis_v, w, v)
-    integer, intent(in) :: m                  !< number of steps of the plan
-    type(step_type), intent(in) :: steps(m)   !< steps of the plan
-    integer, intent(in) :: n                  !< number of steps of the part
-    integer, intent(in) :: part(n)            !< steps of the part
-    real(wp), intent(in) :: signs(n)          !< of these steps in the loop: 1 or -1
-    real(wp), intent(in) :: place(3)          !< the closing frame's origin [m]
-    real(wp), intent(in) :: dq(m)             !< rates of the coordinates [rad/s, m/s]
-    real(wp), intent(in) :: p(3, 0:m)         !< origins of the frames [m]
-    real(wp), intent(in) :: axis_w(3, m)      !< angular velocity per unit rate
-    real(wp), intent(in) :: axis_v(3, m)      !< velocity of the origin per unit rate
-    real(wp), intent(inout) :: w(3)           !< relative angular velocity [rad/s]
-    real(wp), intent(inout) :: v(3)           !< relative velocity at the place [m/s]
-    real(wp) :: spin(3), slip(3)
-    integer :: i, s
-
-    do i = 1, n
-      s = part(i)
-      if (.not. abs(dq(steps(s)%coordinate)) > 0.0_wp) cycle
-      call carry_screw(signs(i)*dq(steps(s)%coordinate), axis_w(:, s), axis_v(:, s), p(:, s), place, spin, slip)
-      w = w + spin
-      v = v + slip
-    end do
-  end subroutine add_velocities
 
   !> Difference at a place between the velocities of the two bodies on whose frames the part of a loop begins.
   pure subroutine stem_difference(closure, place, p, omega, v_frame, w, v)

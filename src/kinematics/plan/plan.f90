@@ -249,14 +249,14 @@ module mech9_plan
     end subroutine residual_interface
 
     !> Derivatives of the equations with respect to the coordinates of steps of a loop, each in its unit, into the rows from
-    !> `row` + 1 on. Columns of other coordinates are left as they are.
-    pure subroutine jacobian_interface(self, plan, loop, first, column_of, state, row, matrix)
+    !> `row` + 1 on. Columns of other coordinates are left as they are, and steps before those of the block are left out; an
+    !> allocatable argument knows the number of its first step.
+    pure subroutine jacobian_interface(self, plan, loop, column_of, state, row, matrix)
       import :: constraint_type, plan_type, loop_type, state_type, wp
       class(constraint_type), intent(in) :: self            !< the constraint
       type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
       type(loop_type), intent(in) :: loop                   !< the steps
-      integer, intent(in) :: first                          !< earlier steps are left out
-      integer, intent(in), contiguous :: column_of(:)       !< column of step `first` and each later one; 0: none
+      integer, allocatable, intent(in) :: column_of(:)      !< (steps of the block) column of each step; 0: none
       type(state_type), intent(in) :: state                 !< with the position of the frames
       integer, intent(in) :: row                            !< number of rows of `matrix` before those of this constraint
       real(wp), intent(inout), contiguous :: matrix(:, :)   !< Jacobian of all constraints of the block

@@ -36,7 +36,8 @@ module mech9_geometric_order
     integer :: links = 1                   !< number of links that are reached
     integer :: pairs = 0                   !< number of pairs that have a place
     type(pose_type), allocatable :: frame(:, :)   !< (2,M) frame of each pair in its reference link and in its moving link
-    type(screw_factors_type), allocatable :: factors(:)   !< (M) of each pair
+    !> (5,M) features of each pair that are the same from both of its links: kind, start, turn, slide and offset
+    real(wp), allocatable :: own(:, :)
     integer, allocatable :: first(:)       !< (N+1) place in `ends` of the first pair of each link
     integer, allocatable :: ends(:)        !< pairs, link by link
   end type order_type
@@ -82,6 +83,8 @@ contains
     integer :: i, j
 
     call begin_order(mechanism, plan, order)
+    order%own(1, :) = partition%kind
+    order%own(2, :) = start/plan%unit_of
     placed = .false.
     reached = .false.
     reached(1) = .true.
@@ -89,7 +92,7 @@ contains
     do while (i < order%links)
       i = i + 1
       associate (link => order%link_at(i))
-        call view_pairs(mechanism, partition, plan, start, order, link, placed, views)
+        call view_pairs(mechanism, plan, order, link, placed, views)
       end associate
       do j = 1, size(views)
         order%pairs = order%pairs + 1
@@ -104,24 +107,26 @@ contains
     end do
   end subroutine find_order
 
-  !> Collect the pairs of each link, and their frames.
+  !> Collect the pairs of each link, their frames and their own features but for kind and start.
   subroutine begin_order(mechanism, plan, order)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan             !< its plan in any order
     type(order_type), intent(inout) :: order        !< gets the pairs of each link
+    type(screw_factors_type) :: factors
     integer :: next(plan%n_links), k, i
     logical :: is_screw
 
     allocate (order%link_at(plan%n_links), order%pair_at(plan%n_coordinates), order%ends(2*plan%n_coordinates))
     allocate (order%entry(plan%n_links), order%first(plan%n_links + 1), source=0)
-    allocate (order%frame(2, plan%n_coordinates), order%factors(plan%n_coordinates))
+    allocate (order%frame(2, plan%n_coordinates), order%own(5, plan%n_coordinates))
     order%link_at(1) = 1
     order%first(1) = 1
     do k = 1, plan%n_coordinates
       associate (pair => mechanism%pairs(k)%pair)
-        call pair%as_screw(order%factors(k), is_screw)
-        order%frame(1, k) = order%factors(k)%before
-        order%frame(2, k) = inverse(order%factors(k)%after)
+        call pair%as_screw(factors, is_screw)
+        order%frame(1, k) = factors%before
+        order%frame(2, k) = inverse(factors%after)
+        order%own(3:5, k) = [factors%turn, factors%slide*plan%unit_of(k)/plan%length, factors%offset/plan%unit_of(k)]
         order%first(pair%reference + 1) = order%first(pair%reference + 1) + 1
         order%first(pair%moving + 1) = order%first(pair%moving + 1) + 1
       end associate
@@ -141,11 +146,9 @@ contains
   end subroutine begin_order
 
   !> The pairs of a link that have no place yet, in their order.
-  subroutine view_pairs(mechanism, partition, plan, start, order, link, placed, views)
+  subroutine view_pairs(mechanism, plan, order, link, placed, views)
     type(mechanism_type), intent(in) :: mechanism          !< the mechanism
-    type(partition_type), intent(in) :: partition          !< driven, free and dependent coordinates
     type(plan_type), intent(in) :: plan                    !< its plan in any order
-    real(wp), intent(in) :: start(:)                       !< (M) values and guesses of the coordinates [rad, m]
     type(order_type), intent(in) :: order                  !< the order so far
     integer, intent(in) :: link                            !< number of the link
     logical, intent(in) :: placed(:)                       !< (M) the pair has a place
@@ -157,7 +160,7 @@ contains
     n = 0
     do i = order%first(link), order%first(link + 1) - 1
       if (placed(order%ends(i))) cycle
-      call view_pair(mechanism, partition, plan, start, order, link, order%ends(i), view)
+      call view_pair(mechanism, plan, order, link, order%ends(i), view)
       j = n
       do while (j > 0)
         if (.not. comes_before(view, views(j))) exit
@@ -171,24 +174,21 @@ contains
   end subroutine view_pairs
 
   !> A pair as it is seen from one of its links.
-  pure subroutine view_pair(mechanism, partition, plan, start, order, link, pair, view)
+  pure subroutine view_pair(mechanism, plan, order, link, pair, view)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates
     type(plan_type), intent(in) :: plan             !< its plan in any order
-    real(wp), intent(in) :: start(:)                !< (M) values and guesses of the coordinates [rad, m]
     type(order_type), intent(in) :: order           !< with the pairs of each link
     integer, intent(in) :: link                     !< number of the link
     integer, intent(in) :: pair                     !< number of the pair
     type(view_type), intent(out) :: view            !< gets the features and numbers
     integer :: here, there
 
-    associate (item => mechanism%pairs(pair)%pair, factors => order%factors(pair))
+    associate (item => mechanism%pairs(pair)%pair, own => order%own(:, pair))
       here = merge(1, 2, item%reference == link)
       there = 3 - here
       view%pair = pair
       view%link = merge(item%moving, item%reference, here == 1)
-      view%features(:6) = whole([real(partition%kind(pair), wp), start(pair)/plan%unit_of(pair), real(here, wp), factors%turn, &
-                                 factors%slide*plan%unit_of(pair)/plan%length, factors%offset/plan%unit_of(pair)])
+      view%features(:6) = whole([own(1:2), real(here, wp), own(3:5)])
       view%features(7:9) = relations(mechanism, plan, order, link, order%entry(link), pair)
       view%features(10:11) = relations_of_all(mechanism, plan, order, link, pair)
       view%features(12) = relation_of_other_end(mechanism, plan, order, view%link, pair)

@@ -35,32 +35,44 @@ module mech9_planning
   use mech9_finite_motion, only: locked_chain_type, find_locked_chain
   implicit none
   private
-  public :: make_plan, plan_blocks_in_planes, find_constants
+  public :: planning_settings_type, make_plan, plan_blocks_in_planes, find_constants
 
   !> Largest number of unknowns of one block, whose equations are a full matrix: more would need too much memory and time.
   integer, parameter :: most_unknowns = 3000
+
+  !> Outcome of the assembly of a block: it determines all its coordinates, or it is too small and must be joined with the next one,
+  !> or it does not close near the guesses, where only such positions count.
+  integer, parameter :: is_complete = 1, is_too_small = 2, is_missed = 3
+
+  !> How a plan is made.
+  type :: planning_settings_type
+    logical :: in_space = .false.                    !< use spatial arithmetic even where planar arithmetic is possible
+    type(requested_type), allocatable :: requested   !< blocks that do not serve these are left out; not allocated: none are
+    type(plan_type), pointer :: known => null()      !< the plan in other independent coordinates, for size and properties of loops;
+                                                     !< not owned
+  end type planning_settings_type
 
 contains
 
   !> Make the plan of a mechanism and its assembled start, the positions of all coordinates for the given independent ones.
   !> Fails with exit_structure if the independent coordinates do not determine the dependent ones, and with exit_assembly if
   !> the chains do not close.
-  subroutine make_plan(mechanism, partition, start, plan, state, err, in_space, requested, known)
+  subroutine make_plan(mechanism, partition, start, plan, state, err, settings)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates, and the order of computation
     real(wp), intent(in) :: start(:)        !< (M) values of the independent coordinates, guesses of the others [rad, m]
     type(plan_type), intent(out) :: plan   !< the plan of the mechanism
     type(state_type), intent(out) :: state  !< the assembled start
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    logical, intent(in), optional :: in_space   !< use spatial arithmetic even where planar arithmetic is possible
-    type(requested_type), intent(in), optional :: requested   !< requested quantities; blocks that do not serve them are left out
-    type(plan_type), intent(in), optional :: known   !< the plan in other independent coordinates, for size and properties of loops
+    type(planning_settings_type), intent(in), optional :: settings   !< how it is made; the default ones unless given
+    type(planning_settings_type) :: chosen
     type(generic_position_type) :: generic
     logical :: missed
 
-    call propose_plan(mechanism, partition, start, plan, state, err, in_space, requested, known)
+    if (present(settings)) chosen = settings
+    call propose_plan(mechanism, partition, start, chosen, plan, state, err)
     if (allocated(err)) return
-    call assemble_blocks(plan, .not. present(known), state, generic, missed, err)
+    call assemble_blocks(plan, .not. associated(chosen%known), state, generic, missed, err)
     if (missed) then
       call find_start(mechanism, partition, plan, start, state)
       call assemble_blocks(plan, .false., state, generic, missed, err)
@@ -69,36 +81,26 @@ contains
     call check_inputs(plan, state, generic, err)
     if (allocated(err)) return
     ! a plan with `requested` is made for other independent coordinates of a mechanism that is known to move
-    if (.not. present(requested)) call check_motion(plan, state, err)
+    if (.not. allocated(chosen%requested)) call check_motion(plan, state, err)
     if (allocated(err)) return
-    if (.not. is_true(in_space) .and. .not. plan%planar%used) call plan_blocks_in_planes(plan, state, err)
-    if (present(requested)) call leave_out_unrequested(plan, requested)
+    if (.not. (chosen%in_space .or. plan%planar%used)) call plan_blocks_in_planes(plan, state, err)
+    if (allocated(chosen%requested)) call leave_out_unrequested(plan, chosen%requested)
     call find_constants(plan)
   end subroutine make_plan
 
-  !> The value of an argument that may be absent; false then.
-  pure logical function is_true(argument)
-    logical, intent(in), optional :: argument   !< the argument
-
-    is_true = .false.
-    if (present(argument)) is_true = argument
-  end function is_true
-
   !> Lay out frames, loops and blocks by structure and ranks, before any block is assembled.
-  subroutine propose_plan(mechanism, partition, start, plan, state, err, in_space, requested, known)
+  subroutine propose_plan(mechanism, partition, start, settings, plan, state, err)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates, and the order of computation
     real(wp), intent(in) :: start(:)        !< (M) values of the independent coordinates, guesses of the others [rad, m]
+    type(planning_settings_type), intent(in) :: settings   !< how the plan is made
     type(plan_type), intent(out) :: plan   !< the plan with the proposed blocks
     type(state_type), intent(out) :: state  !< with the coordinates of the start
     type(error_type), allocatable, intent(out) :: err   !< allocated if the blocks cannot determine all coordinates
-    logical, intent(in), optional :: in_space   !< use spatial arithmetic even where planar arithmetic is possible
-    type(requested_type), intent(in), optional :: requested   !< requested quantities; blocks that do not serve them are left out
-    type(plan_type), intent(in), optional :: known   !< the plan in other independent coordinates
     logical, allocatable :: ranked(:), complete(:)
 
-    if (present(known)) then
-      call lay_out_frames(mechanism, partition, start, plan, known%length)
+    if (associated(settings%known)) then
+      call lay_out_frames(mechanism, partition, start, plan, settings%known%length)
     else
       call lay_out_frames(mechanism, partition, start, plan)
     end if
@@ -106,15 +108,15 @@ contains
     state = new_state(plan)
     state%q = start
     allocate (ranked(size(plan%closures)), complete(size(plan%closures)), source=.false.)
-    if (present(known)) call take_known_loops(known, plan, ranked, complete)
+    if (associated(settings%known)) call take_known_loops(settings%known, plan, ranked, complete)
     call find_loop_spaces(plan, start, ranked, complete, err)
     if (allocated(err)) return
     call find_offers(plan, start, ranked)
     call propose_blocks(plan, state, err)
     if (allocated(err)) return
     call set_in_space(plan)
-    if (present(requested)) call leave_out_unrequested(plan, requested)
-    if (.not. is_true(in_space)) then
+    if (allocated(settings%requested)) call leave_out_unrequested(plan, settings%requested)
+    if (.not. settings%in_space) then
       call lay_out_in_plane(plan)
       call set_in_plane(plan)
     end if
@@ -139,7 +141,7 @@ contains
 
     state%q = start
     call order_by_geometry(mechanism, partition, plan, start, ordered)
-    call propose_plan(mechanism, ordered, start, other, position, err)
+    call propose_plan(mechanism, ordered, start, planning_settings_type(), other, position, err)
     if (.not. allocated(err)) call assemble_blocks(other, .false., position, generic, missed, err)
     if (.not. allocated(err)) state%q = position%q
   end subroutine find_start
@@ -195,15 +197,15 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(block_type), allocatable :: blocks(:)
     type(state_type) :: trial
-    integer :: b, n
-    logical :: complete, closed
+    integer :: b, n, outcome
+    logical :: closed
 
     allocate (blocks(size(plan%blocks)))
     n = 0
     missed = .false.
-    complete = .true.
+    outcome = is_complete
     do b = 1, size(plan%blocks)
-      if (complete) then
+      if (outcome == is_complete) then
         n = n + 1
         blocks(n) = plan%blocks(b)
       else
@@ -212,55 +214,65 @@ contains
         call count_block(plan, blocks(n))
         call split_loops(blocks(n), plan)
       end if
-      call assemble_next(plan, blocks(:n), near_only, state, generic, complete, missed, err)
+      call assemble_next(plan, blocks(:n), near_only, state, generic, outcome, err)
+      missed = outcome == is_missed
       if (allocated(err) .or. missed) return
     end do
     plan%blocks = blocks(:n)
-    if (complete) return
+    if (outcome == is_complete) return
     trial = state
     call judge_choice(plan, trial, closed, err)
     if (.not. allocated(err)) call refuse_block(failure_undetermined_block, blocks(n), err)
   end subroutine assemble_blocks
 
   !> Assemble the last block on the closed blocks before it, and find whether all its coordinates are determined.
-  subroutine assemble_next(plan, blocks, near_only, state, generic, complete, missed, err)
+  subroutine assemble_next(plan, blocks, near_only, state, generic, outcome, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(block_type), intent(in) :: blocks(:)   !< the blocks so far; the last one is to be assembled
     logical, intent(in) :: near_only   !< only a closed position near the guesses counts
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     type(generic_position_type), intent(inout) :: generic   !< a generic position, as far as it was made
-    logical, intent(out) :: complete   !< the block determines all its coordinates
-    logical, intent(out) :: missed   !< the block does not close near the guesses, where only such a position counts
+    integer, intent(out) :: outcome   !< is_complete, is_too_small or is_missed
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(block_work_type) :: work
-    type(assembly_outcome_type) :: outcome
+    type(assembly_outcome_type) :: assembly
     real(wp) :: guess(size(blocks(size(blocks))%coordinates))
     logical :: closed
 
-    complete = .false.
-    missed = .false.
+    outcome = is_too_small
     associate (block => blocks(size(blocks)))
       guess = state%q(block%coordinates)   ! no other coordinate changes here
       work = new_block_work(block)
-      call assemble_block(plan, block, state, work, .not. near_only, outcome, err)
+      call assemble_block(plan, block, state, work, .not. near_only, assembly, err)
       if (allocated(err)) return
-      if (near_only) missed = .not. outcome%closed .or. &
-                              any(abs(state%q(block%coordinates) - guess) > near_guesses*plan%unit_of(block%coordinates))
-      if (missed) return
-      if (.not. outcome%closed) then
-        call assemble_by_other_starts(plan, blocks, outcome, state, err)
+      if (near_only) then
+        if (.not. assembly%closed .or. &
+            any(abs(state%q(block%coordinates) - guess) > near_guesses*plan%unit_of(block%coordinates))) then
+          outcome = is_missed
+          return
+        end if
+      end if
+      if (.not. assembly%closed) then
+        call assemble_by_other_starts(plan, blocks, assembly, state, err)
         if (allocated(err)) return
         generic%exists = .false.
       end if
       call factorize_block(plan, block, state, work)
-      complete = work%equations%rank(rank_tolerance_for(plan%data_tolerance)) == size(block%unknowns)
-      if (complete .and. .not. generic%exists) return
+      if (determines_all()) outcome = is_complete
+      if (outcome == is_complete .and. .not. generic%exists) return
       ! a generic position shows whether the start is singular or the rank is small everywhere
       call find_generic_position(plan, blocks, state, generic, closed)
-      if (complete .or. .not. closed) return
+      if (outcome == is_complete .or. .not. closed) return
       call factorize_block(plan, block, generic%state, work)
-      complete = work%equations%rank(rank_tolerance_for(plan%data_tolerance)) == size(block%unknowns)
+      if (determines_all()) outcome = is_complete
     end associate
+
+  contains
+
+    !> Whether the block, whose Jacobian is factorized, determines all its coordinates.
+    logical function determines_all()
+      determines_all = work%equations%rank(rank_tolerance_for(plan%data_tolerance)) == size(work%change)
+    end function determines_all
   end subroutine assemble_next
 
   !> Assemble the last block where it does not close with the present assembly of the blocks before it: with other assemblies

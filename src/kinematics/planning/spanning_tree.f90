@@ -72,9 +72,12 @@ contains
     do i = 1, size(chains)
       associate (nrg => partition%vectors%nrg(chains(i)%first - 1:chains(i)%last), &
                  nws => partition%vectors%nws(chains(i)%first:chains(i)%last))
-        call lay_out_chain(mechanism, partition, i, nrg, nws, chains(i)%closed, plan, layout)
+        call lay_out_chain(mechanism, i, nrg, nws, chains(i)%closed, plan, layout)
       end associate
     end do
+    associate (independent => partition%independent())
+      plan%steps%dependent = .not. independent(plan%steps%coordinate)
+    end associate
     do i = 1, size(plan%couplings)
       layout%closures = layout%closures + 1
       call make_coupling(i, plan, plan%closures(layout%closures))
@@ -111,16 +114,15 @@ contains
   end subroutine renew_frames
 
   !> Lay out one chain. Open chains, and the stem of a chain that closes on itself, start at their known end.
-  subroutine lay_out_chain(mechanism, partition, chain, links, coordinates, closed, plan, layout)
+  subroutine lay_out_chain(mechanism, chain, links, coordinates, closed, plan, layout)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates
     integer, intent(in) :: chain   !< number of the chain
     integer, intent(in) :: links(0:)   !< (0:) the known link at which the chain starts, then the link of each step
     integer, intent(in) :: coordinates(:)   !< number of the coordinate of each step
     logical, intent(in) :: closed   !< the chain is closed
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(layout_type), intent(inout) :: layout   !< the frames that are laid out so far
-    integer :: i, n, stem, frame, reached
+    integer :: i, n, stem, frame
 
     n = size(coordinates)
     stem = n
@@ -131,23 +133,22 @@ contains
     end if
     frame = plan%frame_of(links(0))
     do i = 1, stem
-      call add_step(mechanism, partition, chain, links(i - 1), links(i), coordinates(i), frame, plan, layout, reached)
-      call make_first(links(i), reached, plan, layout)
-      frame = reached
+      call add_step(mechanism, step_type(parent=frame, coordinate=coordinates(i), link=links(i), chain=chain), plan, layout)
+      frame = layout%steps
+      call make_first(frame, plan, layout)
     end do
-    if (closed) call lay_out_loop(mechanism, partition, chain, links(stem:), coordinates(stem + 1:), plan, layout)
+    if (closed) call lay_out_loop(mechanism, chain, links(stem:), coordinates(stem + 1:), plan, layout)
   end subroutine lay_out_chain
 
   !> Lay out new links between two known ones from both ends, and the closure where they meet.
-  subroutine lay_out_loop(mechanism, partition, chain, links, coordinates, plan, layout)
+  subroutine lay_out_loop(mechanism, chain, links, coordinates, plan, layout)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates
     integer, intent(in) :: chain   !< number of the chain
     integer, intent(in) :: links(0:)   !< (0:) a known link, the new links, a known link
     integer, intent(in) :: coordinates(:)   !< number of the coordinate of each step
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(layout_type), intent(inout) :: layout   !< the frames that are laid out so far
-    integer :: n, here, there, from_here, i, reached
+    integer :: n, here, there, from_here, i
 
     n = size(coordinates)
     call nearest_frames(plan, layout, links(0), links(n), here, there)
@@ -158,20 +159,20 @@ contains
       from_here = from_here + 1
     end do
     do i = 1, from_here
-      call add_step(mechanism, partition, chain, links(i - 1), links(i), coordinates(i), here, plan, layout, reached)
-      call make_first(links(i), reached, plan, layout)
-      here = reached
+      call add_step(mechanism, step_type(parent=here, coordinate=coordinates(i), link=links(i), chain=chain), plan, layout)
+      here = layout%steps
+      call make_first(here, plan, layout)
     end do
     do i = n - 1, from_here + 1, -1
-      call add_step(mechanism, partition, chain, links(i + 1), links(i), coordinates(i + 1), there, plan, layout, reached)
-      call make_first(links(i), reached, plan, layout)
-      there = reached
+      call add_step(mechanism, step_type(parent=there, coordinate=coordinates(i + 1), link=links(i), chain=chain), plan, layout)
+      there = layout%steps
+      call make_first(there, plan, layout)
     end do
-    call add_step(mechanism, partition, chain, links(from_here), links(from_here + 1), coordinates(from_here + 1), here, &
-                  plan, layout, reached)
+    i = from_here + 1
+    call add_step(mechanism, step_type(parent=here, coordinate=coordinates(i), link=links(i), chain=chain), plan, layout)
     layout%closures = layout%closures + 1
-    call make_closure(plan, layout, reached, there, plan%closures(layout%closures))
-    layout%further(:, links(from_here + 1)) = [reached, layout%further(:most_remembered - 1, links(from_here + 1))]
+    call make_closure(plan, layout, layout%steps, there, plan%closures(layout%closures))
+    layout%further(:, links(i)) = [layout%steps, layout%further(:most_remembered - 1, links(i))]
   end subroutine lay_out_loop
 
   !> A frame of each of two links, chosen so that there are few steps from one to the other.
@@ -206,58 +207,35 @@ contains
     end do
   end subroutine nearest_frames
 
-  !> Make a frame the first one of a link, which gives the link's position.
-  pure subroutine make_first(link, frame, plan, layout)
-    integer, intent(in) :: link   !< number of the link
-    integer, intent(in) :: frame   !< its frame, made last
+  !> Make a frame the first one of its link, which gives the link's position.
+  pure subroutine make_first(frame, plan, layout)
+    integer, intent(in) :: frame   !< number of the frame
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(layout_type), intent(in) :: layout   !< the frames that are laid out so far
 
-    plan%frame_of(link) = frame
-    plan%link_in_frame(link) = layout%link_in(frame)
+    plan%frame_of(plan%steps(frame)%link) = frame
+    plan%link_in_frame(plan%steps(frame)%link) = layout%link_in(frame)
   end subroutine make_first
 
-  !> Add a step from a frame of one link through a pair to a new frame of another.
-  subroutine add_step(mechanism, partition, chain, from, to, coordinate, parent, plan, layout, reached)
+  !> Add a step through a pair to a new frame, whose number is layout%steps then.
+  subroutine add_step(mechanism, step, plan, layout)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates
-    integer, intent(in) :: chain   !< number of the chain
-    integer, intent(in) :: from   !< number of the link where the step starts
-    integer, intent(in) :: to   !< number of the link that it reaches
-    integer, intent(in) :: coordinate   !< number of the pair's coordinate
-    integer, intent(in) :: parent   !< number of the frame of link `from` where the step starts
+    type(step_type), intent(in) :: step   !< the step, with its parent, coordinate, link and chain
     type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
     type(layout_type), intent(inout) :: layout   !< the frames that are laid out so far
-    integer, intent(out) :: reached   !< number of the new frame
+    integer :: from
 
+    from = 1
+    if (step%parent > 0) from = plan%steps(step%parent)%link
     layout%steps = layout%steps + 1
-    reached = layout%steps
-    plan%step_of(coordinate) = reached
-    layout%depth(reached) = layout%depth(parent) + 1
-    call make_step(mechanism, partition, from, to, coordinate, layout%link_in(parent), plan, plan%steps(reached), &
-                   layout%link_in(reached))
-    plan%steps(reached)%parent = parent
-    plan%steps(reached)%chain = chain
+    layout%depth(layout%steps) = layout%depth(step%parent) + 1
+    plan%step_of(step%coordinate) = layout%steps
+    associate (new => plan%steps(layout%steps))
+      new = step
+      new%reversed = mechanism%pairs(step%coordinate)%pair%reference /= from
+      call set_numbers(mechanism, layout%link_in(step%parent), plan%pairs(step%coordinate), new, layout%link_in(layout%steps))
+    end associate
   end subroutine add_step
-
-  !> The step from link `from` to link `to` through the pair of a coordinate.
-  subroutine make_step(mechanism, partition, from, to, coordinate, link_in_frame, plan, step, after)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(partition_type), intent(in) :: partition   !< driven, free and dependent coordinates
-    integer, intent(in) :: from   !< number of the link where the step starts
-    integer, intent(in) :: to   !< number of the link that it reaches
-    integer, intent(in) :: coordinate   !< number of the pair's coordinate
-    type(pose_type), intent(in) :: link_in_frame   !< system of link `from` in the frame where the step starts
-    type(plan_type), intent(inout) :: plan   !< the plan of the mechanism
-    type(step_type), intent(out) :: step   !< the step
-    type(pose_type), intent(out) :: after   !< the reached link's system in the new frame
-
-    step%coordinate = coordinate
-    step%link = to
-    step%reversed = mechanism%pairs(coordinate)%pair%reference /= from
-    step%dependent = .not. partition%is_independent(coordinate)
-    call set_numbers(mechanism, link_in_frame, plan%pairs(coordinate), step, after)
-  end subroutine make_step
 
   !> The numbers of a step.
   subroutine set_numbers(mechanism, link_in_frame, slot, step, after)

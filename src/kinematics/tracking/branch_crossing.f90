@@ -34,6 +34,8 @@ module mech9_branch_crossing
 
   !> Number of distances from the crossing that are tried.
   integer, parameter :: most_trials = 4
+  !> Outcome of closing all blocks: the position is certain, or it is not, or a drive has no value there.
+  integer, parameter :: is_certain = 1, is_uncertain = 2, has_no_drive = 3
 
 contains
 
@@ -72,10 +74,9 @@ contains
     real(wp), intent(in) :: half   !< half of the time that the polynomial is to cover, negative backwards [s]
     type(branch_crossing_type), intent(inout) :: crossing   !< the crossing and the motion through it
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(error_type), allocatable :: no_drive
     real(wp), dimension(plan%n_coordinates, 4) :: q, dq, ddq
     real(wp) :: times(4)
-    logical :: ok
+    integer :: outcome
 
     times = t + half*[-1.0_wp, -0.5_wp, 0.5_wp, 1.0_wp]
     call take(1)
@@ -86,18 +87,22 @@ contains
     crossing%to = times(4)
     crossing%ends = .false.
     call build_hermite(times(:2), q(:, :2), dq(:, :2), ddq(:, :2), crossing%polynomial)
-    call close_all_blocks(drives, plan, crossing%polynomial, times(3), 1.0_wp, probe, ok, err, no_drive)
-    crossing%exists = ok
-    if (allocated(no_drive)) then
+    probe%state%t = times(3)
+    call close_all_blocks(drives, plan, crossing%polynomial, 1.0_wp, probe, outcome, err)
+    crossing%exists = outcome == is_certain
+    if (outcome == has_no_drive) then
+      deallocate (err)
       call end_at_crossing()
       return
     end if
-    if (allocated(err) .or. .not. ok) return
+    if (.not. crossing%exists) return
     call take(3)
     call build_hermite(times(:3), q(:, :3), dq(:, :3), ddq(:, :3), crossing%polynomial)
-    call close_all_blocks(drives, plan, crossing%polynomial, times(4), 1.0_wp, probe, ok, err, no_drive)
-    crossing%exists = ok
-    if (allocated(err) .or. .not. ok) return
+    probe%state%t = times(4)
+    call close_all_blocks(drives, plan, crossing%polynomial, 1.0_wp, probe, outcome, err)
+    crossing%exists = outcome == is_certain
+    if (outcome == has_no_drive) deallocate (err)
+    if (.not. crossing%exists) return
     call take(4)
     call build_hermite(times, q, dq, ddq, crossing%polynomial)
     if (.not. allocated(crossing%stepper_beyond)) allocate (crossing%stepper_beyond)
@@ -152,40 +157,39 @@ contains
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
     logical, intent(out) :: ok   !< the position was closed and is certain
     type(error_type), allocatable, intent(out) :: err        !< a pair has no pose, or a drive no value
-    type(error_type), allocatable :: no_drive
     type(hermite_type) :: polynomial
     real(wp), dimension(plan%n_coordinates, 1) :: q, dq, ddq
+    integer :: outcome
 
     q(:, 1) = stepper%state%q
     dq(:, 1) = stepper%state%dq
     ddq = 0.0_wp
     call build_hermite([stepper%state%t], q, dq, ddq, polynomial)
-    call close_all_blocks(drives, plan, polynomial, t, 10.0_wp, stepper, ok, err, no_drive)
-    if (allocated(no_drive)) call move_alloc(no_drive, err)
+    stepper%state%t = t
+    call close_all_blocks(drives, plan, polynomial, 10.0_wp, stepper, outcome, err)
+    ok = outcome == is_certain
   end subroutine close_from_rates
 
-  !> Close all blocks at time t, predicted by a polynomial. The result is certain (`ok`) if its corrections and the differences
-  !> of its rates from those of the polynomial are small.
-  subroutine close_all_blocks(drives, plan, polynomial, t, slack, stepper, ok, err, no_drive)
+  !> Close all blocks at the time in the state, predicted by a polynomial. The result is certain if its corrections and the
+  !> differences of its rates from those of the polynomial are small.
+  subroutine close_all_blocks(drives, plan, polynomial, slack, stepper, outcome, err)
     type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(hermite_type), intent(in) :: polynomial   !< all coordinates over time
-    real(wp), intent(in) :: t   !< time of the position to close [s]
     real(wp), intent(in) :: slack   !< factor on the distances from the prediction that are trusted
-    type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
-    logical, intent(out) :: ok   !< the position was closed and is certain
-    type(error_type), allocatable, intent(out) :: err        !< a pair has no pose
-    type(error_type), allocatable, intent(out) :: no_drive   !< a drive has no value
+    type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper, with the time in its state
+    integer, intent(out) :: outcome   !< is_certain, is_uncertain or has_no_drive
+    type(error_type), allocatable, intent(out) :: err   !< a pair has no pose, or a drive no value
     real(wp), dimension(plan%n_coordinates) :: q, dq, ddq
     type(newton_outcome_type) :: newton
     integer :: b
 
-    ok = .false.
-    call polynomial%evaluate(t, q, dq, ddq)
-    stepper%state%t = t
+    outcome = is_uncertain
+    call polynomial%evaluate(stepper%state%t, q, dq, ddq)
     stepper%state%q = q
-    call set_inputs(drives, t, stepper%state%q, stepper%state%dq, stepper%state%ddq, no_drive)
-    if (allocated(no_drive)) then
+    call set_inputs(drives, stepper%state%t, stepper%state%q, stepper%state%dq, stepper%state%ddq, err)
+    if (allocated(err)) then
+      outcome = has_no_drive
       stepper%state%q = stepper%predictor%q
       return
     end if
@@ -200,49 +204,49 @@ contains
         call solve_accelerations(plan, block, stepper%state, work)
       end associate
     end do
-    ok = maxval(abs(stepper%state%dq - dq)/plan%unit_of) <= slack*trusted_crossing_rates*maxval(abs(dq)/plan%unit_of)
-    if (.not. ok) return
+    if (.not. maxval(abs(stepper%state%dq - dq)/plan%unit_of) <= slack*trusted_crossing_rates*maxval(abs(dq)/plan%unit_of)) return
+    outcome = is_certain
     stepper%steps = stepper%steps + 1
     call accept_start(stepper)
   end subroutine close_all_blocks
 
   !> Position, rates and accelerations at a time within the crossing.
-  subroutine position_within(drives, plan, crossing, t, state, work, monitors, err)
+  subroutine position_within(drives, plan, crossing, t, stepper, err)
     type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_crossing_type), intent(in) :: crossing   !< the crossing and the motion through it
     real(wp), intent(in) :: t   !< time, within the crossing [s]
-    type(state_type), intent(inout) :: state   !< position and motion of the mechanism
-    type(block_work_type), intent(inout) :: work(:)   !< scratch of all blocks
-    type(singularity_monitor_type), intent(inout) :: monitors(:)   !< the monitors of all blocks
+    type(branch_stepper_type), intent(inout) :: stepper   !< its state gets the position and motion; the accepted position stays
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(newton_outcome_type) :: newton
     real(wp), dimension(plan%n_coordinates) :: dq, ddq
     integer :: b
 
-    state%t = t
-    call crossing%polynomial%evaluate(t, state%q, dq, ddq)
-    state%dq = dq
-    state%ddq = ddq
-    call set_inputs(drives, t, state%q, state%dq, state%ddq, err)
+    associate (state => stepper%state)
+      state%t = t
+      call crossing%polynomial%evaluate(t, state%q, dq, ddq)
+      state%dq = dq
+      state%ddq = ddq
+      call set_inputs(drives, t, state%q, state%dq, state%ddq, err)
+    end associate
     if (allocated(err)) return
     do b = 1, size(plan%blocks)
-      associate (block => plan%blocks(b))
+      associate (block => plan%blocks(b), state => stepper%state, work => stepper%work(b), monitor => stepper%monitors(b))
         call place_frames(plan, block, state, err)
         if (allocated(err)) return
-        call factorize_trial(plan, block, state, work(b), monitors(b))
-        if (size(block%unknowns) > 0 .and. monitors(b)%trial_pivot < near_singular*monitors(b)%largest_pivot) then
-          call close_where_determined(plan, block, state, work(b), monitors(b), err)
+        call factorize_trial(plan, block, state, work, monitor)
+        if (size(block%unknowns) > 0 .and. monitor%trial_pivot < near_singular*monitor%largest_pivot) then
+          call close_where_determined(plan, block, state, work, monitor, err)
           if (allocated(err)) return
           state%dq(block%coordinates) = dq(block%coordinates)
           state%ddq(block%coordinates) = ddq(block%coordinates)
-          call move_where_determined(plan, block, state, work(b), monitors(b))
+          call move_where_determined(plan, block, state, work, monitor)
         else
-          call close_block(plan, block, state, work(b), newton, err)
+          call close_block(plan, block, state, work, newton, err)
           if (allocated(err)) return
-          call factorize_trial(plan, block, state, work(b), monitors(b))
-          call solve_rates(plan, block, state, work(b))
-          call solve_accelerations(plan, block, state, work(b))
+          call factorize_trial(plan, block, state, work, monitor)
+          call solve_rates(plan, block, state, work)
+          call solve_accelerations(plan, block, state, work)
         end if
       end associate
     end do

@@ -141,7 +141,7 @@ contains
     integer, intent(out) :: refused_by   !< number of the block that refused the last step, 0 if none
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     real(wp) :: remaining, h, worst
-    logical :: no_drive, driven, complete
+    logical :: driven, complete
 
     stuck = .false.
     if (abs(t - stepper%goal) > 0.0_wp) stepper%stagnant_steps = 0
@@ -157,8 +157,10 @@ contains
       if (h >= abs(remaining)) stepper%state%t = t
       h = abs(stepper%state%t - stepper%predictor%t)
       complete = stepper%derivatives > 1 .or. any(is_near(stepper%monitors))
-      call try_step(drives, plan, stepper, complete, worst, refused_by, no_drive, err)
-      if (no_drive) return
+      refused_by = 0
+      call set_inputs(drives, stepper%state%t, stepper%state%q, stepper%state%dq, stepper%state%ddq, err)
+      if (allocated(err)) return
+      call try_step(plan, stepper, complete, worst, refused_by, err)
       if (worst <= 1.0_wp) then
         stepper%reach = min(2.0_wp*min(max(stepper%reach, h), 1.0e100_wp), 0.8_wp*h/max(worst, 1.0e-6_wp))
         if (h < stagnant_step*abs(remaining) .and. .not. driven) &
@@ -220,16 +222,15 @@ contains
     end do
   end subroutine limit_by_drives
 
-  !> Predict, correct and judge one step of all blocks, from the last accepted position to the time in the state.
-  subroutine try_step(drives, plan, stepper, complete, worst, refused_by, no_drive, err)
-    type(drive_slot_type), intent(in) :: drives(:)   !< the drives of the independent coordinates
+  !> Predict, correct and judge one step of all blocks, from the last accepted position to the time in the state, for which the
+  !> independent coordinates are set.
+  subroutine try_step(plan, stepper, complete, worst, refused_by, err)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(branch_stepper_type), intent(inout) :: stepper   !< the branch stepper
     logical, intent(in) :: complete             !< find accelerations too
     real(wp), intent(out) :: worst              !< measure of the step: accepted up to 1, else about the factor it is too long
     integer, intent(out) :: refused_by          !< number of the block judged last, which refused the step if worst > 1
-    logical, intent(out) :: no_drive            !< the step failed because a drive has no value
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a pair has no pose
     type(newton_outcome_type) :: newton
     real(wp) :: unchanged
     integer :: b
@@ -239,9 +240,6 @@ contains
     unchanged = unchanged_factors
     ! only the prediction of the next position depends on these rates
     if (.not. complete .and. stepper%derivatives == 0) unchanged = unchanged_prediction
-    call set_inputs(drives, stepper%state%t, stepper%state%q, stepper%state%dq, stepper%state%ddq, err)
-    no_drive = allocated(err)
-    if (no_drive) return
     stepper%correction = 0.0_wp
     call prepare_prediction(stepper%state%t, stepper%predictor)
     do b = 1, min(size(plan%blocks), stepper%last_block)
@@ -249,14 +247,14 @@ contains
       associate (block => plan%blocks(b), work => stepper%work(b))
         call predict(block, stepper%predictor, stepper%state)
         ! Newton's method goes on to round-off, because beside a singular position a small residual means a large error
-        call close_block(plan, block, stepper%state, work, newton, err, 1, unchanged)
+        call close_block(plan, block, stepper%state, work, newton, err, 1)
         stepper%iterations = stepper%iterations + newton%iterations
         stepper%correction = max(stepper%correction, newton%correction)
         ! a pair may have no pose at the end of a step that is too long
         if (allocated(err) .or. .not. newton%converged) worst = 4.0_wp
         if (worst > 1.0_wp) return
         if (size(block%unknowns) > 0) &
-          call monitor_step(plan, block, stepper%state, newton%factorized, work, stepper%monitors(b), worst)
+          call monitor_step(plan, block, stepper%state, newton%last <= unchanged, work, stepper%monitors(b), worst)
         if (worst > 1.0_wp) return
         if (complete) then
           call solve_motion(plan, block, stepper%state, work)
@@ -280,40 +278,38 @@ contains
     real(wp), intent(in) :: pivot   !< least pivot of the block's Jacobian at the end of the step
     real(wp), intent(inout) :: worst   !< raised to at least the measure of this step: at most 1 where it can be accepted
     real(wp) :: move, rate_change
+    integer :: m
 
     if (size(block%unknowns) == 0 .or. block%is_linear) return
     worst = max(worst, newton%correction/(trusted_correction*pivot))
     if (newton%correction > small_correction*pivot) worst = max(worst, newton%contraction/trusted_contraction)
-    call find_changes(size(block%coordinates), block%coordinates, size(per_unit), per_unit, state%q, predictor%q, state%dq, &
-                      predictor%dq, move, rate_change)
+    m = size(per_unit)
+    call find_changes(state%q, predictor%q, state%dq, predictor%dq, move, rate_change)
     rate_change = rate_change*abs(state%t - predictor%t)
     worst = max(worst, move/longest_move, rate_change/(trusted_rate_change*max(move, trusted_correction*pivot)))
+
+  contains
+
+    !> Largest differences of the block's coordinates and of their rates over the step, in their units. Arrays have explicit shapes,
+    !> so that the compiler keeps their addresses in registers.
+    pure subroutine find_changes(q, q_before, dq, dq_before, move, rate_change)
+      real(wp), intent(in) :: q(m)              !< coordinates at the end of the step [rad, m]
+      real(wp), intent(in) :: q_before(m)       !< coordinates at its start
+      real(wp), intent(in) :: dq(m)             !< rates at the end of the step
+      real(wp), intent(in) :: dq_before(m)      !< rates at its start
+      real(wp), intent(out) :: move             !< largest difference of the coordinates
+      real(wp), intent(out) :: rate_change      !< largest difference of the rates [per s]
+      integer :: i, k
+
+      move = 0.0_wp
+      rate_change = 0.0_wp
+      do i = 1, size(block%coordinates)
+        k = block%coordinates(i)
+        move = max(move, abs(q(k) - q_before(k))*per_unit(k))
+        rate_change = max(rate_change, abs(dq(k) - dq_before(k))*per_unit(k))
+      end do
+    end subroutine find_changes
   end subroutine judge_step
-
-  ! Arrays of explicit shape: the compiler keeps their addresses in registers.
-
-  !> Largest differences of some coordinates and of their rates over a step, in their units.
-  pure subroutine find_changes(n, coordinates, m, per_unit, q, q_before, dq, dq_before, move, rate_change)
-    integer, intent(in) :: n                    !< number of coordinates to compare
-    integer, intent(in) :: coordinates(n)       !< their numbers
-    integer, intent(in) :: m                    !< number of all coordinates
-    real(wp), intent(in) :: per_unit(m)         !< (M) reciprocals of the coordinates' units
-    real(wp), intent(in) :: q(m)                !< (M) coordinates at the end of the step [rad, m]
-    real(wp), intent(in) :: q_before(m)         !< (M) coordinates at its start
-    real(wp), intent(in) :: dq(m)               !< (M) rates at the end of the step
-    real(wp), intent(in) :: dq_before(m)        !< (M) rates at its start
-    real(wp), intent(out) :: move               !< largest difference of the coordinates
-    real(wp), intent(out) :: rate_change        !< largest difference of the rates [per s]
-    integer :: i, k
-
-    move = 0.0_wp
-    rate_change = 0.0_wp
-    do i = 1, n
-      k = coordinates(i)
-      move = max(move, abs(q(k) - q_before(k))*per_unit(k))
-      rate_change = max(rate_change, abs(dq(k) - dq_before(k))*per_unit(k))
-    end do
-  end subroutine find_changes
 
   !> The trial position becomes the accepted one.
   pure subroutine accept_step(plan, stepper, complete)

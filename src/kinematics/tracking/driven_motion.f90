@@ -157,8 +157,7 @@ contains
       return
     end if
     driven%monitors = driven%crossing%stepper_beyond%monitors
-    call position_within(drives, plan, driven%crossing, driven%predictor%t, driven%state, driven%work, &
-                         driven%monitors, err)
+    call position_within(drives, plan, driven%crossing, driven%predictor%t, driven%branch_stepper_type, err)
   end subroutine begin_crossing
 
   !> Go on to a time on the same branch; the state then has position, rates and accelerations there. Fails with exit_singular
@@ -184,7 +183,7 @@ contains
       direction = sign(1.0_wp, t - driven%predictor%t)
       if (driven%crossing%exists) then
         if (.not. (t - driven%crossing%to)*direction > 0.0_wp .or. driven%crossing%ends) then
-          call position_within(drives, plan, driven%crossing, t, driven%state, driven%work, driven%monitors, err)
+          call position_within(drives, plan, driven%crossing, t, driven%branch_stepper_type, err)
           exit
         end if
         call leave_crossing(driven)

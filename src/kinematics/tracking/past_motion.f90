@@ -231,61 +231,42 @@ contains
     type(past_motion_type), intent(in) :: past   !< positions and rates at the last times
     integer, intent(in), contiguous :: coordinates(:)   !< numbers of the coordinates to predict
     real(wp), intent(inout) :: q(:)   !< (M) gets the predicted coordinates [rad, m]
-    integer :: a, b, c, d
 
-    a = slot(past, 1)
-    b = slot(past, 2)
-    c = slot(past, 3)
-    d = slot(past, 4)
-    call add_rates(size(coordinates), coordinates, size(q), past%h, past%of_rates, past%q(:, past%latest), &
-                   past%dq(:, past%latest), past%dq(:, a), past%dq(:, b), past%dq(:, c), past%dq(:, d), q)
-    if (past%with_positions) &
-      call add_positions(size(coordinates), coordinates, size(q), past%of_positions, past%q(:, past%latest), past%q(:, a), &
-                         past%q(:, b), past%q(:, c), q)
+    call sum_weighed(past, size(past%q, 1), past%q, past%dq, size(coordinates), coordinates, q)
   end subroutine predict_from_past
 
-  ! The sums below are written out, over arrays of explicit shape, whose addresses the compiler keeps in registers.
+  !> The latest position and the contributions of rates and positions. The sums are written out, over arrays of explicit shape,
+  !> whose addresses the compiler keeps in registers.
+  pure subroutine sum_weighed(past, m, positions, rates, n, coordinates, q)
+    type(past_motion_type), intent(in) :: past      !< with the weights
+    integer, intent(in) :: m                        !< number of all coordinates
+    real(wp), intent(in) :: positions(m, 0:most)    !< coordinates at the last times [rad, m]
+    real(wp), intent(in) :: rates(m, 0:most)        !< rates at these times
+    integer, intent(in) :: n                        !< number of coordinates to predict
+    integer, intent(in) :: coordinates(n)           !< their numbers
+    real(wp), intent(inout) :: q(m)                 !< gets the predicted coordinates [rad, m]
+    real(wp) :: w(0:most), h
+    integer :: a, b, c, d, e, i, k
 
-  !> The latest position and the contributions of the rates.
-  pure subroutine add_rates(n, coordinates, m, h, w, latest, a, b, c, d, e, q)
-    integer, intent(in) :: n   !< number of coordinates to predict
-    integer, intent(in) :: coordinates(n)   !< their numbers
-    integer, intent(in) :: m   !< number of all coordinates
-    real(wp), intent(in) :: h                                  !< the step [s]
-    real(wp), intent(in) :: w(0:most)                          !< weights
-    real(wp), dimension(m), intent(in) :: latest               !< position
-    real(wp), dimension(m), intent(in) :: a   !< rates at the latest time
-    real(wp), dimension(m), intent(in) :: b   !< rates one time before
-    real(wp), dimension(m), intent(in) :: c   !< rates two times before
-    real(wp), dimension(m), intent(in) :: d   !< rates three times before
-    real(wp), dimension(m), intent(in) :: e   !< rates four times before
-    real(wp), intent(inout) :: q(m)   !< (M) gets the predicted coordinates [rad, m]
-    integer :: i, k
-
+    a = past%latest
+    b = slot(past, 1)
+    c = slot(past, 2)
+    d = slot(past, 3)
+    e = slot(past, 4)
+    h = past%h
+    w = past%of_rates
     do i = 1, n
       k = coordinates(i)
-      q(k) = latest(k) + h*(w(0)*a(k) + w(1)*b(k) + w(2)*c(k) + w(3)*d(k) + w(4)*e(k))
+      q(k) = positions(k, a) + h*(w(0)*rates(k, a) + w(1)*rates(k, b) + w(2)*rates(k, c) + w(3)*rates(k, d) + w(4)*rates(k, e))
     end do
-  end subroutine add_rates
-
-  !> Add the contributions of the positions before the latest.
-  pure subroutine add_positions(n, coordinates, m, w, latest, a, b, c, q)
-    integer, intent(in) :: n   !< number of coordinates to predict
-    integer, intent(in) :: coordinates(n)   !< their numbers
-    integer, intent(in) :: m   !< number of all coordinates
-    real(wp), intent(in) :: w(most)                            !< weights
-    real(wp), dimension(m), intent(in) :: latest   !< latest position
-    real(wp), dimension(m), intent(in) :: a   !< position one time before
-    real(wp), dimension(m), intent(in) :: b   !< position two times before
-    real(wp), dimension(m), intent(in) :: c   !< position three times before
-    real(wp), intent(inout) :: q(m)   !< (M) the prediction from rates, gets the part of the positions [rad, m]
-    integer :: i, k
-
+    if (.not. past%with_positions) return
+    w(1:) = past%of_positions
     do i = 1, n
       k = coordinates(i)
-      q(k) = q(k) + (w(1)*(a(k) - latest(k)) + w(2)*(b(k) - latest(k)) + w(3)*(c(k) - latest(k)))
+      q(k) = q(k) + (w(1)*(positions(k, b) - positions(k, a)) + w(2)*(positions(k, c) - positions(k, a)) &
+                     + w(3)*(positions(k, d) - positions(k, a)))
     end do
-  end subroutine add_positions
+  end subroutine sum_weighed
 
   !> Acceleration of a coordinate at the latest time, by the polynomial through its rates; 0 where only that time is known.
   pure real(wp) function acceleration_from_past(past, k) result(ddq)

@@ -56,14 +56,15 @@ contains
   !> Take the position at the end of an accepted step.
   pure subroutine add_position(state, unit_of, complete, correction, predictor)
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
-    real(wp), intent(in) :: unit_of(:)          !< (M)
+    real(wp), intent(in), contiguous :: unit_of(:)   !< (M) units of the coordinates
     logical, intent(in) :: complete             !< its accelerations are known
     real(wp), intent(in) :: correction          !< largest correction of the prediction, in units of the coordinates
     type(predictor_type), intent(inout) :: predictor   !< the predictor
     real(wp) :: h
-    integer :: k
+    integer :: k, m
 
     h = state%t - predictor%t
+    m = size(state%q)
     if (complete) then
       if (.not. predictor%complete) then
         do k = 1, size(predictor%q)
@@ -71,18 +72,74 @@ contains
         end do
       end if
       call clear_past(predictor%past)
-      call fit_polynomial(size(state%q), h, unit_of, state%q, state%dq, state%ddq, predictor%q, predictor%dq, predictor%ddq, &
-                          predictor%higher)
+      call fit_polynomial(state%q, state%dq, state%ddq, predictor%q, predictor%dq, predictor%ddq, predictor%higher)
     else
       if (predictor%past%count == 0) call add_to_past(predictor%past, predictor%t, predictor%q, predictor%dq)
       call add_to_past(predictor%past, state%t, state%q, state%dq)
       if (predictor%uses_past) call choose_formula(predictor%past, abs(h), correction)
-      call copy_motion(size(state%q), state%q, state%dq, predictor%q, predictor%dq)
+      call copy_motion(state%q, state%dq, predictor%q, predictor%dq)
     end if
     predictor%t = state%t
     predictor%complete = complete
     predictor%uses_past = .not. complete
     predictor%before = abs(h)
+
+    ! the procedures below work on arrays of explicit shape, whose addresses the compiler keeps in registers
+
+  contains
+
+    !> Copy positions and rates.
+    pure subroutine copy_motion(q, dq, place_q, place_dq)
+      real(wp), dimension(m), intent(in) :: q           !< coordinates [rad, m]
+      real(wp), dimension(m), intent(in) :: dq          !< their rates
+      real(wp), dimension(m), intent(out) :: place_q    !< copy of the coordinates
+      real(wp), dimension(m), intent(out) :: place_dq   !< copy of their rates
+      integer :: i
+
+      do i = 1, m
+        place_q(i) = q(i)
+        place_dq(i) = dq(i)
+      end do
+    end subroutine copy_motion
+
+    !> The polynomial through two positions at distance h, about the later one: its terms of third to fifth
+    !> order. The later position replaces the earlier one.
+    pure subroutine fit_polynomial(q, dq, ddq, last_q, last_dq, last_ddq, higher)
+      real(wp), dimension(m), intent(in) :: q             !< coordinates at the later position [rad, m]
+      real(wp), dimension(m), intent(in) :: dq            !< rates there
+      real(wp), dimension(m), intent(in) :: ddq           !< accelerations there
+      real(wp), dimension(m), intent(inout) :: last_q     !< coordinates at the earlier position, then at the later one
+      real(wp), dimension(m), intent(inout) :: last_dq    !< rates at the earlier position, then at the later one
+      real(wp), dimension(m), intent(inout) :: last_ddq   !< accelerations at the earlier position, then at the later one
+      real(wp), intent(out) :: higher(m, 3)               !< factors of h^3, h^4, h^5 about the later position
+      real(wp) :: d0, d1, d2, x, y, z, x_without, y_without, part, per_h, per_cube
+      integer :: i
+
+      per_h = 1.0_wp/h
+      per_cube = per_h**3
+      ! without a branch, so that the compiler can compute several at once
+      do i = 1, m
+        ! the terms at h
+        d0 = last_q(i) - (q(i) - h*(dq(i) - 0.5_wp*h*ddq(i)))
+        d1 = h*(last_dq(i) - dq(i) + h*ddq(i))
+        d2 = h**2*(last_ddq(i) - ddq(i))
+        x = -(10.0_wp*d0 + 4.0_wp*d1 + 0.5_wp*d2)
+        z = x + d1 + 4.0_wp*d0
+        y = d0 + x + z
+        ! the polynomial goes without the positions where its last term is only their round-off: `part` is 0 there, and 1 elsewhere
+        part = 0.5_wp + sign(0.5_wp, abs(z) - round_off_term*max(unit_of(i), abs(q(i))))
+        x_without = d1 + (1.0_wp/3.0_wp)*d2
+        y_without = 0.25_wp*d2 + 0.5_wp*d1
+        higher(i, 1) = (x_without + part*(x - x_without))*per_cube
+        higher(i, 2) = (y_without + part*(y - y_without))*per_cube*per_h
+        higher(i, 3) = part*z*per_cube*per_h**2
+      end do
+      do i = 1, m
+        last_q(i) = q(i)
+        last_dq(i) = dq(i)
+        last_ddq(i) = ddq(i)
+      end do
+    end subroutine fit_polynomial
   end subroutine add_position
 
   !> Prepare predictions for a time other than that of the last position.
@@ -99,6 +156,7 @@ contains
     type(predictor_type), intent(in) :: predictor   !< the predictor
     type(state_type), intent(inout) :: state   !< position and motion of the mechanism
     real(wp) :: h, near
+    integer :: m
 
     if (predictor%uses_past) then
       call predict_from_past(predictor%past, block%coordinates, state%q)
@@ -108,8 +166,25 @@ contains
     ! far beyond two positions that are close together the higher terms would be only the round-off of these positions
     near = 0.0_wp
     if (abs(h) <= longest_prediction*predictor%before) near = h
-    call evaluate_polynomial(size(block%coordinates), block%coordinates, size(state%q), h, near, predictor%q, predictor%dq, &
-                             predictor%ddq, predictor%higher, state%q)
+    m = size(state%q)
+    call evaluate_polynomial(predictor%q, predictor%dq, predictor%ddq, predictor%higher, state%q)
+
+  contains
+
+    !> The polynomial at time h, with its higher terms at time `near`. Arrays have explicit shapes, as above.
+    pure subroutine evaluate_polynomial(q, dq, ddq, higher, q_then)
+      real(wp), intent(in) :: q(m)              !< coordinates at the last position [rad, m]
+      real(wp), intent(in) :: dq(m)             !< rates there
+      real(wp), intent(in) :: ddq(m)            !< accelerations there
+      real(wp), intent(in) :: higher(m, 3)      !< factors of h^3, h^4, h^5
+      real(wp), intent(inout) :: q_then(m)      !< gets the predicted coordinates [rad, m]
+      integer :: i, k
+
+      do i = 1, size(block%coordinates)
+        k = block%coordinates(i)
+        q_then(k) = q(k) + h*(dq(k) + h*(0.5_wp*ddq(k) + near*(higher(k, 1) + near*(higher(k, 2) + near*higher(k, 3)))))
+      end do
+    end subroutine evaluate_polynomial
   end subroutine predict
 
   !> Take the accelerations at the last position, which have been found after it was accepted.
@@ -132,83 +207,4 @@ contains
       ddq = acceleration_from_past(predictor%past, k)
     end if
   end function acceleration_of
-
-  ! The procedures below work on arrays of explicit shape, whose addresses the compiler keeps in registers.
-
-  !> Copy positions and rates.
-  pure subroutine copy_motion(m, q, dq, place_q, place_dq)
-    integer, intent(in) :: m   !< number of coordinates
-    real(wp), intent(in) :: q(m)   !< (M) coordinates [rad, m]
-    real(wp), intent(in) :: dq(m)   !< (M) their rates
-    real(wp), intent(out) :: place_q(m)   !< (M) copy of the coordinates
-    real(wp), intent(out) :: place_dq(m)   !< (M) copy of their rates
-    integer :: k
-
-    do k = 1, m
-      place_q(k) = q(k)
-      place_dq(k) = dq(k)
-    end do
-  end subroutine copy_motion
-
-  !> The polynomial of some coordinates at time h, with its higher terms at time `near`.
-  pure subroutine evaluate_polynomial(n, coordinates, m, h, near, q, dq, ddq, higher, q_then)
-    integer, intent(in) :: n   !< number of coordinates to predict
-    integer, intent(in) :: coordinates(n)   !< their numbers
-    integer, intent(in) :: m   !< number of all coordinates
-    real(wp), intent(in) :: h   !< time from the last position [s]
-    real(wp), intent(in) :: near   !< the same time for the terms above the second order; 0 leaves them out [s]
-    real(wp), intent(in) :: q(m)   !< (M) coordinates at the last position [rad, m]
-    real(wp), intent(in) :: dq(m)   !< (M) rates there
-    real(wp), intent(in) :: ddq(m)   !< (M) accelerations there
-    real(wp), intent(in) :: higher(m, 3)   !< (M,3) factors of h^3, h^4, h^5
-    real(wp), intent(inout) :: q_then(m)   !< (M) gets the predicted coordinates [rad, m]
-    integer :: i, k
-
-    do i = 1, n
-      k = coordinates(i)
-      q_then(k) = q(k) + h*(dq(k) + h*(0.5_wp*ddq(k) + near*(higher(k, 1) + near*(higher(k, 2) + near*higher(k, 3)))))
-    end do
-  end subroutine evaluate_polynomial
-
-  !> The polynomial through two positions at distance h, about the later one: its terms of third to fifth
-  !> order. The later position replaces the earlier one.
-  pure subroutine fit_polynomial(m, h, unit_of, q, dq, ddq, last_q, last_dq, last_ddq, higher)
-    integer, intent(in) :: m   !< number of coordinates
-    real(wp), intent(in) :: h   !< time from the earlier position to the later one, negative backwards [s]
-    real(wp), dimension(m), intent(in) :: unit_of   !< (M) units of the coordinates
-    real(wp), dimension(m), intent(in) :: q   !< (M) coordinates at the later position [rad, m]
-    real(wp), dimension(m), intent(in) :: dq   !< (M) rates there
-    real(wp), dimension(m), intent(in) :: ddq   !< (M) accelerations there
-    real(wp), dimension(m), intent(inout) :: last_q   !< (M) coordinates at the earlier position, then at the later one
-    real(wp), dimension(m), intent(inout) :: last_dq   !< (M) rates at the earlier position, then at the later one
-    real(wp), dimension(m), intent(inout) :: last_ddq   !< (M) accelerations at the earlier position, then at the later one
-    real(wp), intent(out) :: higher(m, 3)   !< (M,3) factors of h^3, h^4, h^5 about the later position
-    real(wp) :: d0, d1, d2, x, y, z, x_without, y_without, part, per_h, per_cube
-    integer :: k
-
-    per_h = 1.0_wp/h
-    per_cube = per_h**3
-    ! without a branch, so that the compiler can compute several at once
-    do k = 1, m
-      ! the terms at h
-      d0 = last_q(k) - (q(k) - h*(dq(k) - 0.5_wp*h*ddq(k)))
-      d1 = h*(last_dq(k) - dq(k) + h*ddq(k))
-      d2 = h**2*(last_ddq(k) - ddq(k))
-      x = -(10.0_wp*d0 + 4.0_wp*d1 + 0.5_wp*d2)
-      z = x + d1 + 4.0_wp*d0
-      y = d0 + x + z
-      ! the polynomial goes without the positions where its last term is only their round-off: `part` is 0 there, and 1 elsewhere
-      part = 0.5_wp + sign(0.5_wp, abs(z) - round_off_term*max(unit_of(k), abs(q(k))))
-      x_without = d1 + (1.0_wp/3.0_wp)*d2
-      y_without = 0.25_wp*d2 + 0.5_wp*d1
-      higher(k, 1) = (x_without + part*(x - x_without))*per_cube
-      higher(k, 2) = (y_without + part*(y - y_without))*per_cube*per_h
-      higher(k, 3) = part*z*per_cube*per_h**2
-    end do
-    do k = 1, m
-      last_q(k) = q(k)
-      last_dq(k) = dq(k)
-      last_ddq(k) = ddq(k)
-    end do
-  end subroutine fit_polynomial
 end module mech9_predictor

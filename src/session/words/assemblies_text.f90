@@ -33,7 +33,7 @@ contains
     call find_assemblies(mechanism, plan, start, n_starts, list)
     write (unit, '(a)') '! '//counted(size(list%found), 'assembly')//' found from '//counted(list%starts, 'start')// &
       ', of which '//to_text(list%closed)//' could be closed'
-    if (size(list%unseen) > 0) call print_unseen(unit, shown_of(mechanism%structure, list%unseen))
+    if (size(list%posture%unseen) > 0) call print_unseen(unit, shown_of(mechanism%structure, list%posture%unseen))
     do i = 1, size(list%found)
       words = ''
       if (i == 1) words = '; that of the data file'

@@ -10,7 +10,7 @@ module test_equilibrium_rows
   use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
-  use mech9_planning, only: make_plan
+  use mech9_planning, only: planning_settings_type, make_plan
   use mech9_state, only: state_type
   use mech9_small_models, only: eol
   use mech9_text_models, only: model_from_text
@@ -51,7 +51,7 @@ contains
     call model_from_text(tester, data, dynamics, model)
     call assemble_model(model, own_plan, own_start, err)
     call tester%no_error(err, 'the start')
-    call make_plan(model%mechanism, model%problem%partition, own_start%q, plan, start, err, in_space=.true.)
+    call make_plan(model%mechanism, model%problem%partition, own_start%q, plan, start, err, planning_settings_type(in_space=.true.))
     call tester%no_error(err, 'the plan in space')
     call find_equilibrium(model%mechanism, model%problem%partition, plan, start, found, err)
     call tester%no_error(err, 'the equilibrium')
