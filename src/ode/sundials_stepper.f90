@@ -37,10 +37,10 @@ module mech9_sundials_stepper
     real(wp) :: t = 0.0_wp                            !< end of the last step [s]
     real(wp) :: last_step = 0.0_wp                    !< its length with its sign; 0 before the first one [s]
   contains
-    procedure, non_overridable :: start
-    procedure, non_overridable :: advance
-    procedure, non_overridable :: restart
-    procedure, non_overridable :: close => close_steps
+    procedure :: start
+    procedure :: advance
+    procedure :: restart
+    procedure :: close => close_steps
     procedure :: finish_step
     procedure(open_interface), deferred :: open_method
     procedure(set_up_interface), deferred :: set_up
