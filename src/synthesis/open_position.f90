@@ -10,7 +10,7 @@ module mech9_open_position
   use mech9_state, only: state_type
   use mech9_branch_stepping, only: set_inputs
   use mech9_frame_motion, only: place_all, point_motion
-  use mech9_twists, only: frame_twists_type, shift_at
+  use mech9_twists, only: shift_at
   use mech9_pair_changes, only: find_pair_change
   use mech9_design_space, only: design_type
   implicit none
@@ -111,8 +111,7 @@ contains
   subroutine find_twists(design, position)
     type(design_type), intent(in) :: design                 !< placed, with its tangents
     type(open_position_type), intent(inout) :: position     !< with its frames in place; gets the twists
-    type(frame_twists_type) :: at_rest
-    real(wp) :: about(6), along(6), series(6, 0:2)
+    real(wp) :: about(6), along(6), by_coordinate(6, 0:2)
     integer :: s, p, k
 
     position%frames(:, :, 0) = 0.0_wp
@@ -133,8 +132,8 @@ contains
               twist = twist + carried(state, step%parent, along)
             end if
             if (tangent%pairs(k)%varies) then
-              call find_pair_change(design%in_space, state, at_rest, tangent, s, 0, series)
-              twist = twist + series(:, 0)
+              call find_pair_change(design%in_space, state, tangent, s, by_coordinate)
+              twist = twist + by_coordinate(:, 0)
             end if
           end associate
         end do

@@ -11,7 +11,7 @@ module mech9_regularity
   use mech9_reflections, only: triangulate, solve_upper
   use mech9_coupling, only: curve_order
   use mech9_coupling_constraint, only: curve_of
-  use mech9_twists, only: frame_twists_type, bracket, shift_at
+  use mech9_twists, only: bracket, shift_at
   use mech9_pair_changes, only: find_pair_change
   use mech9_design_space, only: design_type
   use mech9_open_position, only: open_position_type, place_at, find_derivatives
@@ -221,8 +221,7 @@ contains
     real(wp), intent(in) :: change(:)                        !< (M) of the coordinates, in their units
     real(wp), intent(in) :: twists(:, 0:)                    !< (6,0:M) of the frames
     integer, intent(in) :: parameter                         !< number of the varied parameter; 0: none changes
-    type(frame_twists_type) :: at_rest
-    real(wp) :: varied(6), series(6, 0:2), slope(6), along
+    real(wp) :: varied(6), by_coordinate(6, 0:2), along
     integer :: k
 
     associate (plan => design%in_space, state => position%state)
@@ -236,8 +235,8 @@ contains
           varied(4:6) = varied(4:6) + tangent%slide(k)*state%r(:, 3, s)
           if (tangent%pairs(k)%varies) then
             ! second derivatives of a pose do not depend on their order
-            call find_pair_change(plan, state, at_rest, tangent, s, 0, series, slope)
-            varied = varied + slope
+            call find_pair_change(plan, state, tangent, s, by_coordinate)
+            varied = varied + by_coordinate(:, 1)
           end if
         end associate
       end if

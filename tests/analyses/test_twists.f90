@@ -12,7 +12,7 @@ module test_twists
   use mech9_planning, only: make_plan
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_twists, only: frame_twists_type, new_frame_twists, bracket, shift_at, find_frame_twists, carried
-  use mech9_batch_products, only: batch_size, sum_three, add_three_to, add_to
+  use mech9_batch_products, only: batch_size, set_three, sum_three, add_three_to, add_to
   use mech9_sample_mechanisms, only: general_loop, drive
   use mech9_testing, only: tester_type
   implicit none
@@ -160,8 +160,11 @@ contains
       do j = 1, 3
         expected(:n, :) = expected(:n, :) + factors(:n, :, j)*spread(numbers(:n, j), 2, 3)
       end do
-      call sum_three(n, anew, factors(:, :, 1), factors(:, :, 2), factors(:, :, 3), numbers(:, 1), numbers(:, 2), numbers(:, 3), &
-                     sums(:, 1), sums(:, 2), sums(:, 3))
+      if (anew) then
+        call set_three(n, 3, factors, numbers, sums(:, 1), sums(:, 2), sums(:, 3))
+      else
+        call sum_three(n, 3, factors, numbers, sums(:, 1), sums(:, 2), sums(:, 3))
+      end if
       call tester%near(maxval(abs(sums - expected)), 0.0_wp, 1.0e-15_wp, 'three sums of three products')
       expected = sums
     end do

@@ -6,41 +6,47 @@ module mech9_batch_products
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: batch_size, sum_three, add_three_to, add_to
+  public :: batch_size, set_three, sum_three, add_three_to, add_to
 
   !> Most positions that are treated at once.
   integer, parameter :: batch_size = 32
 
 contains
 
-  !> Three sums of three products each, or three more products in each of them.
-  pure subroutine sum_three(n, anew, f, g, h, a, b, c, x, y, z)
-    integer, intent(in) :: n                       !< number of positions
-    logical, intent(in) :: anew                    !< the sums begin with these products
-    real(wp), intent(in) :: f(batch_size, 3)       !< factors of `a` in the sums
-    real(wp), intent(in) :: g(batch_size, 3)       !< factors of `b`
-    real(wp), intent(in) :: h(batch_size, 3)       !< factors of `c`
-    real(wp), intent(in) :: a(batch_size)          !< first numbers
-    real(wp), intent(in) :: b(batch_size)          !< second numbers
-    real(wp), intent(in) :: c(batch_size)          !< third numbers
-    real(wp), intent(inout) :: x(batch_size)       !< first sum
-    real(wp), intent(inout) :: y(batch_size)       !< second sum
-    real(wp), intent(inout) :: z(batch_size)       !< third sum
+  !> Three sums of three products each.
+  pure subroutine set_three(n, width, factors, numbers, x, y, z)
+    integer, intent(in) :: n                                  !< number of positions
+    integer, intent(in) :: width                              !< number of all sums to which the factors belong
+    real(wp), intent(in) :: factors(batch_size, width, 3)     !< of each number, in these three sums and those that follow
+    real(wp), intent(in) :: numbers(batch_size, 3)            !< the numbers
+    real(wp), intent(inout) :: x(batch_size)                  !< first sum
+    real(wp), intent(inout) :: y(batch_size)                  !< second sum
+    real(wp), intent(inout) :: z(batch_size)                  !< third sum
     integer :: i
 
-    if (anew) then
-      do i = 1, n
-        x(i) = f(i, 1)*a(i) + g(i, 1)*b(i) + h(i, 1)*c(i)
-        y(i) = f(i, 2)*a(i) + g(i, 2)*b(i) + h(i, 2)*c(i)
-        z(i) = f(i, 3)*a(i) + g(i, 3)*b(i) + h(i, 3)*c(i)
-      end do
-    else
-      do i = 1, n
-        x(i) = x(i) + f(i, 1)*a(i) + g(i, 1)*b(i) + h(i, 1)*c(i)
-        y(i) = y(i) + f(i, 2)*a(i) + g(i, 2)*b(i) + h(i, 2)*c(i)
-        z(i) = z(i) + f(i, 3)*a(i) + g(i, 3)*b(i) + h(i, 3)*c(i)
-      end do
-    end if
+    do i = 1, n
+      x(i) = factors(i, 1, 1)*numbers(i, 1) + factors(i, 1, 2)*numbers(i, 2) + factors(i, 1, 3)*numbers(i, 3)
+      y(i) = factors(i, 2, 1)*numbers(i, 1) + factors(i, 2, 2)*numbers(i, 2) + factors(i, 2, 3)*numbers(i, 3)
+      z(i) = factors(i, 3, 1)*numbers(i, 1) + factors(i, 3, 2)*numbers(i, 2) + factors(i, 3, 3)*numbers(i, 3)
+    end do
+  end subroutine set_three
+
+  !> Three more products in each of three sums.
+  pure subroutine sum_three(n, width, factors, numbers, x, y, z)
+    integer, intent(in) :: n                                  !< number of positions
+    integer, intent(in) :: width                              !< number of all sums to which the factors belong
+    real(wp), intent(in) :: factors(batch_size, width, 3)     !< of each number, in these three sums and those that follow
+    real(wp), intent(in) :: numbers(batch_size, 3)            !< the numbers
+    real(wp), intent(inout) :: x(batch_size)                  !< first sum
+    real(wp), intent(inout) :: y(batch_size)                  !< second sum
+    real(wp), intent(inout) :: z(batch_size)                  !< third sum
+    integer :: i
+
+    do i = 1, n
+      x(i) = x(i) + factors(i, 1, 1)*numbers(i, 1) + factors(i, 1, 2)*numbers(i, 2) + factors(i, 1, 3)*numbers(i, 3)
+      y(i) = y(i) + factors(i, 2, 1)*numbers(i, 1) + factors(i, 2, 2)*numbers(i, 2) + factors(i, 2, 3)*numbers(i, 3)
+      z(i) = z(i) + factors(i, 3, 1)*numbers(i, 1) + factors(i, 3, 2)*numbers(i, 2) + factors(i, 3, 3)*numbers(i, 3)
+    end do
   end subroutine sum_three
 
   !> Add three products to each of some sums that follow each other.

@@ -12,27 +12,26 @@ module mech9_pair_changes
   use mech9_tangent, only: tangent_type
   implicit none
   private
-  public :: find_pair_change
+  public :: find_pair_change, carry_pair_change
 
 contains
 
-  !> The twist of the step of a pair by a parameter, with its derivatives in time.
-  subroutine find_pair_change(plan, state, motion, tangent, s, highest, series, slope)
+  !> The twist of the step of a pair by a parameter in frame 0, and its derivatives in the coordinate while the frame before is at
+  !> rest.
+  subroutine find_pair_change(plan, state, tangent, s, change)
     type(plan_type), intent(in) :: plan              !< the plan of the mechanism, in space
-    type(state_type), intent(in) :: state            !< the motion
-    type(frame_twists_type), intent(in) :: motion    !< its twists
+    type(state_type), intent(in) :: state            !< with the poses of the frames
     type(tangent_type), intent(in) :: tangent        !< derivatives of the constants by the parameter
     integer, intent(in) :: s                         !< the step
-    integer, intent(in) :: highest                   !< order of the highest derivative in time
-    real(wp), intent(inout) :: series(6, 0:2)        !< gets the twist in frame 0, up to this derivative
-    real(wp), intent(out), optional :: slope(6)      !< its derivative in the coordinate, with the frame before at rest
+    real(wp), intent(out) :: change(6, 0:2)          !< the twist and two derivatives
     real(wp) :: twist(6, 0:2)
-    integer :: k
+    integer :: j, k
 
     k = plan%steps(s)%coordinate
     call find_twist(plan%pairs(k)%pair, tangent%pairs(k)%change, state%q(k), plan%steps(s)%reversed, twist)
-    call find_series(plan, state, motion, s, twist, highest, series)
-    if (present(slope)) slope = in_frame_0(plan, state, s, twist(:, 1))
+    do j = 0, 2
+      change(:, j) = in_frame_0(plan, state, s, twist(:, j))
+    end do
   end subroutine find_pair_change
 
   !> The twist of a pair by a parameter in its frame in the link that the step departs from, and its derivatives in the coordinate.
@@ -73,31 +72,27 @@ contains
     end do
   end function reversed_twist
 
-  !> A twist in the frame of a pair, seen in frame 0, with its first two derivatives in time.
-  pure subroutine find_series(plan, state, motion, s, twist, highest, series)
+  !> The derivatives in time of the twist of a step by a parameter.
+  pure subroutine carry_pair_change(plan, state, motion, s, change, highest, series)
     type(plan_type), intent(in) :: plan              !< the plan of the mechanism, in space
     type(state_type), intent(in) :: state            !< the motion
     type(frame_twists_type), intent(in) :: motion    !< its twists
     integer, intent(in) :: s                         !< step of the pair
-    real(wp), intent(in) :: twist(6, 0:2)            !< the twist and two derivatives in the coordinate, in the frame of the pair
+    real(wp), intent(in) :: change(6, 0:2)           !< the twist in frame 0 and two derivatives in the coordinate
     integer, intent(in) :: highest                   !< order of the highest derivative in time
-    real(wp), intent(inout) :: series(6, 0:2)        !< the twist and its derivatives in time
-    real(wp) :: seen(6, 0:2)
-    integer :: i, j
+    real(wp), intent(inout) :: series(6, 0:2)        !< gets the twist up to this derivative
+    integer :: i
 
-    associate (step => plan%steps(s), dq => state%dq(plan%steps(s)%coordinate), ddq => state%ddq(plan%steps(s)%coordinate))
-      i = step%parent
-      do j = 0, 2
-        seen(:, j) = in_frame_0(plan, state, s, twist(:, j))
-      end do
-      series(:, 0) = seen(:, 0)
+    i = plan%steps(s)%parent
+    associate (dq => state%dq(plan%steps(s)%coordinate), ddq => state%ddq(plan%steps(s)%coordinate))
+      series(:, 0) = change(:, 0)
       if (highest < 1) return
-      series(:, 1) = bracket(motion%velocity(:, i), series(:, 0)) + dq*seen(:, 1)
+      series(:, 1) = bracket(motion%velocity(:, i), series(:, 0)) + dq*change(:, 1)
       if (highest < 2) return
       series(:, 2) = bracket(motion%acceleration(:, i), series(:, 0)) + bracket(motion%velocity(:, i), series(:, 1)) &
-                     + dq*bracket(motion%velocity(:, i), seen(:, 1)) + ddq*seen(:, 1) + dq**2*seen(:, 2)
+                     + dq*bracket(motion%velocity(:, i), change(:, 1)) + ddq*change(:, 1) + dq**2*change(:, 2)
     end associate
-  end subroutine find_series
+  end subroutine carry_pair_change
 
   !> A twist in the frame from which a step departs as a twist in frame 0.
   pure function in_frame_0(plan, state, s, twist) result(seen)

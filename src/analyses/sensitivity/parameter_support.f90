@@ -6,10 +6,11 @@ module mech9_parameter_support
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type, block_type
   use mech9_tangent, only: tangent_type
-  use mech9_linear_form, only: linear_form_type, new_linear_form
+  use mech9_linear_form, only: linear_form_type, form_steps_type, form_constants_type, new_linear_form
   implicit none
   private
-  public :: support_type, varied_constant_type, find_support, closure_form, point_form, keep_static
+  public :: support_type, varied_constant_type, carried_constants_type, place_in_frame_type, find_support, closure_form, &
+    point_form, keep_static
 
   !> A twist by which a constant of the mechanism changes with one parameter.
   type :: varied_constant_type
@@ -23,6 +24,18 @@ module mech9_parameter_support
     real(wp) :: twist(6) = 0.0_wp       !< rotation, and shift of the point at the frame's origin, in its axes [rad, m]
     real(wp) :: size = 0.0_wp           !< its largest number [rad, lengths of the mechanism]
   end type varied_constant_type
+
+  !> Twists of constants, seen from frame 0 at several positions.
+  type :: carried_constants_type
+    type(varied_constant_type), allocatable :: list(:)      !< the constants
+    real(wp), allocatable :: series(:, :, :, :)             !< (batch,3 or 6,0:2,constants) their twists with derivatives in time
+  end type carried_constants_type
+
+  !> A point of a frame.
+  type :: place_in_frame_type
+    integer :: frame = 0                !< the frame
+    real(wp) :: place(3) = 0.0_wp       !< in this frame, in its plane the first two numbers [m]
+  end type place_in_frame_type
 
   !> All that the parameters of a mechanism change.
   type :: support_type
@@ -179,7 +192,7 @@ contains
     integer, intent(in) :: rows                    !< number of equations
     type(linear_form_type) :: form
     integer, allocatable :: order(:), coordinates(:), used(:)
-    real(wp), allocatable :: signs(:)
+    type(form_constants_type) :: constants
     logical, allocatable :: unknown(:), given(:), takes(:)
     logical :: varies(size(tangents))
     integer :: i
@@ -201,14 +214,15 @@ contains
       order = [(i, i=1, size(coordinates))]
       order = [pack(order, given), pack(order, unknown)]
       used = pack([(i, i=1, support%count)], takes)
-      allocate (signs(size(used)))
+      constants%numbers = used
+      constants%parameters = support%constants(used)%parameter
+      allocate (constants%signs(size(used)), source=-1.0_wp)
       do i = 1, size(used)
-        signs(i) = -1.0_wp
         if (support%constants(used(i))%step > 0) &
-          signs(i) = loop%signs(findloc(loop%steps, support%constants(used(i))%step, dim=1))
+          constants%signs(i) = loop%signs(findloc(loop%steps, support%constants(used(i))%step, dim=1))
       end do
-      form = new_linear_form(rows, loop%steps(order), coordinates(order), loop%signs(order), used, signs, &
-                             support%constants(used)%parameter, support%touched, varies)
+      form = new_linear_form(rows, form_steps_type(loop%steps(order), coordinates(order), loop%signs(order)), constants, &
+                             support%touched, varies)
       form%n_given = count(given)
       do i = 1, size(used)
         associate (constant => support%constants(used(i)))
@@ -247,8 +261,9 @@ contains
     used = pack([(i, i=1, support%count)], takes)
     path = pack(path, any(support%touched(plan%steps(path)%coordinate, :), dim=2))
     none = .false.
-    form = new_linear_form(rows, path, plan%steps(path)%coordinate, [(1.0_wp, i=1, size(path))], used, &
-                           [(1.0_wp, i=1, size(used))], support%constants(used)%parameter, support%touched, none)
+    form = new_linear_form(rows, form_steps_type(path, plan%steps(path)%coordinate, [(1.0_wp, i=1, size(path))]), &
+                           form_constants_type(used, [(1.0_wp, i=1, size(used))], support%constants(used)%parameter), &
+                           support%touched, none)
     form%n_given = size(path)
   end function point_form
 

@@ -9,11 +9,10 @@ module mech9_planar_batch
 
   !> The motion of frames in the plane, in its axes from the origin of frame 0. Frame 0 is at rest.
   type :: planar_batch_type
-    real(wp), allocatable :: pose(:, :, :)           !< (batch,4,0:M) cosine, sine, x, y [m]
-    real(wp), allocatable :: velocity(:, :, :)       !< (batch,3,0:M) of each frame [rad/s, m/s]
-    real(wp), allocatable :: acceleration(:, :, :)   !< (batch,3,0:M) of each frame [rad/s^2, m/s^2]
-    real(wp), allocatable :: slide(:, :, :)          !< (batch,2,M) velocity of each frame's origin per unit rate
-    real(wp), allocatable :: spin(:, :, :, :)        !< (batch,2,0:2,0:M) cosine and sine with their derivatives in time
+    real(wp), allocatable :: place(:, :, :, :)    !< (batch,2,0:2,0:M) origin of each frame with its derivatives in time [m]
+    real(wp), allocatable :: spin(:, :, :, :)     !< (batch,2,0:2,0:M) cosine and sine of each frame with their derivatives in time
+    real(wp), allocatable :: turning(:, :, :)     !< (batch,2,0:M) angular velocity and acceleration of each frame [rad/s, rad/s^2]
+    real(wp), allocatable :: slide(:, :, :)       !< (batch,2,M) velocity of each frame's origin per unit rate
   end type planar_batch_type
 
 contains
@@ -23,9 +22,8 @@ contains
     integer, intent(in) :: m   !< number of steps
     type(planar_batch_type) :: batch
 
-    allocate (batch%pose(batch_size, 4, 0:m), batch%velocity(batch_size, 3, 0:m), batch%acceleration(batch_size, 3, 0:m), &
-              batch%slide(batch_size, 2, m), batch%spin(batch_size, 2, 0:2, 0:m), source=0.0_wp)
-    batch%pose(:, 1, :) = 1.0_wp
+    allocate (batch%place(batch_size, 2, 0:2, 0:m), batch%spin(batch_size, 2, 0:2, 0:m), batch%turning(batch_size, 2, 0:m), &
+              batch%slide(batch_size, 2, m), source=0.0_wp)
     batch%spin(:, 1, 0, :) = 1.0_wp
   end function new_planar_batch
 
@@ -39,8 +37,8 @@ contains
     type(planar_batch_type), intent(inout) :: batch    !< gets the motion
     integer :: i
 
-    call take_plane(size(frames), frames, ubound(motion%pose, 2), motion%pose, motion%velocity, motion%acceleration, position, &
-                    highest, batch%pose, batch%velocity, batch%acceleration)
+    call take_poses(position, frames, motion%pose, batch%spin, batch%place)
+    if (highest > 0) call take_rates(position, frames, motion%velocity, motion%acceleration, batch%place, batch%turning)
     do i = 1, size(slides)
       batch%slide(position, :, slides(i)) = motion%slide(:, slides(i))
     end do
@@ -48,39 +46,46 @@ contains
 
   ! The next procedures take arrays of known shape, so that the compiler keeps their addresses in registers.
 
-  !> Take the motion of the frames at one position, from plain arrays.
-  pure subroutine take_plane(n, frames, m, pose, velocity, acceleration, position, highest, poses, velocities, accelerations)
-    integer, intent(in) :: n                                            !< number of frames that matter
-    integer, intent(in) :: frames(n)                                    !< these frames, without frame 0
-    integer, intent(in) :: m                                            !< number of steps
-    real(wp), intent(in) :: pose(4, 0:m)                                !< of each frame [m]
-    real(wp), intent(in) :: velocity(3, 0:m)                            !< of each frame [rad/s, m/s]
-    real(wp), intent(in) :: acceleration(3, 0:m)                        !< of each frame [rad/s^2, m/s^2]
-    integer, intent(in) :: position                                     !< number of the position in the batch
-    integer, intent(in) :: highest                                      !< order of the highest derivative
-    real(wp), intent(inout) :: poses(batch_size, 4, 0:m)                !< gets the poses
-    real(wp), intent(inout) :: velocities(batch_size, 3, 0:m)           !< gets the velocities
-    real(wp), intent(inout) :: accelerations(batch_size, 3, 0:m)        !< gets the accelerations
+  !> Take the poses of the frames at one position.
+  pure subroutine take_poses(position, frames, poses, spins, places)
+    integer, intent(in) :: position                            !< number of the position in the batch
+    integer, intent(in) :: frames(:)                           !< the frames
+    real(wp), intent(in) :: poses(4, 0:*)                      !< (4,0:M) cosine, sine, origin of each frame [m]
+    real(wp), intent(inout) :: spins(batch_size, 2, 0:2, 0:*)  !< get cosine and sine
+    real(wp), intent(inout) :: places(batch_size, 2, 0:2, 0:*) !< get the origins [m]
     integer :: i, k
 
-    do i = 1, n
+    do i = 1, size(frames)
       k = frames(i)
-      poses(position, 1, k) = pose(1, k)
-      poses(position, 2, k) = pose(2, k)
-      poses(position, 3, k) = pose(3, k)
-      poses(position, 4, k) = pose(4, k)
-      if (highest == 0) cycle
-      velocities(position, 1, k) = velocity(1, k)
-      velocities(position, 2, k) = velocity(2, k)
-      velocities(position, 3, k) = velocity(3, k)
-      if (highest == 1) cycle
-      accelerations(position, 1, k) = acceleration(1, k)
-      accelerations(position, 2, k) = acceleration(2, k)
-      accelerations(position, 3, k) = acceleration(3, k)
+      spins(position, 1, 0, k) = poses(1, k)
+      spins(position, 2, 0, k) = poses(2, k)
+      places(position, 1, 0, k) = poses(3, k)
+      places(position, 2, 0, k) = poses(4, k)
     end do
-  end subroutine take_plane
+  end subroutine take_poses
 
-  !> Cosine and sine of some frames with their derivatives in time.
+  !> Take the velocities and accelerations of the frames at one position. Accelerations that are not found are without meaning.
+  pure subroutine take_rates(position, frames, velocities, accelerations, places, turning)
+    integer, intent(in) :: position                            !< number of the position in the batch
+    integer, intent(in) :: frames(:)                           !< the frames
+    real(wp), intent(in) :: velocities(3, 0:*)                 !< (3,0:M) of each frame [rad/s, m/s]
+    real(wp), intent(in) :: accelerations(3, 0:*)              !< (3,0:M) of each frame [rad/s^2, m/s^2]
+    real(wp), intent(inout) :: places(batch_size, 2, 0:2, 0:*) !< get the derivatives of the origins [m/s, m/s^2]
+    real(wp), intent(inout) :: turning(batch_size, 2, 0:*)     !< gets angular velocities and accelerations [rad/s, rad/s^2]
+    integer :: i, k
+
+    do i = 1, size(frames)
+      k = frames(i)
+      turning(position, 1, k) = velocities(1, k)
+      places(position, 1, 1, k) = velocities(2, k)
+      places(position, 2, 1, k) = velocities(3, k)
+      turning(position, 2, k) = accelerations(1, k)
+      places(position, 1, 2, k) = accelerations(2, k)
+      places(position, 2, 2, k) = accelerations(3, k)
+    end do
+  end subroutine take_rates
+
+  !> The derivatives in time of cosine and sine of some frames.
   pure subroutine find_spins(n, frames, highest, batch)
     integer, intent(in) :: n                           !< number of positions
     integer, intent(in) :: frames(:)                   !< the frames, without frame 0
@@ -88,37 +93,28 @@ contains
     type(planar_batch_type), intent(inout) :: batch    !< with the motion of the frames
     integer :: j
 
+    if (highest == 0) return
     do j = 1, size(frames)
-      associate (k => frames(j))
-        call find_spin(n, batch%pose(:, :, k), batch%velocity(:, :, k), batch%acceleration(:, :, k), highest, &
-                       batch%spin(:, :, :, k))
-      end associate
+      call find_spin(n, batch%turning(1, 1, frames(j)), highest, batch%spin(1, 1, 0, frames(j)))
     end do
   end subroutine find_spins
 
-  !> Cosine and sine of a frame with their derivatives in time.
-  pure subroutine find_spin(n, pose, velocity, acceleration, highest, spin)
+  !> The derivatives in time of cosine and sine of a frame.
+  pure subroutine find_spin(n, turning, highest, spin)
     integer, intent(in) :: n                                !< number of positions
-    real(wp), intent(in) :: pose(batch_size, 4)             !< of the frame [m]
-    real(wp), intent(in) :: velocity(batch_size, 3)         !< of the frame [rad/s, m/s]
-    real(wp), intent(in) :: acceleration(batch_size, 3)     !< of the frame [rad/s^2, m/s^2]
+    real(wp), intent(in) :: turning(batch_size, 2)          !< angular velocity and acceleration [rad/s, rad/s^2]
     integer, intent(in) :: highest                          !< order of the highest derivative
-    real(wp), intent(inout) :: spin(batch_size, 2, 0:2)     !< the result
+    real(wp), intent(inout) :: spin(batch_size, 2, 0:2)     !< with cosine and sine; gets their derivatives
     integer :: i
 
     do i = 1, n
-      spin(i, 1, 0) = pose(i, 1)
-      spin(i, 2, 0) = pose(i, 2)
-    end do
-    if (highest == 0) return
-    do i = 1, n
-      spin(i, 1, 1) = -velocity(i, 1)*pose(i, 2)
-      spin(i, 2, 1) = velocity(i, 1)*pose(i, 1)
+      spin(i, 1, 1) = -turning(i, 1)*spin(i, 2, 0)
+      spin(i, 2, 1) = turning(i, 1)*spin(i, 1, 0)
     end do
     if (highest == 1) return
     do i = 1, n
-      spin(i, 1, 2) = -acceleration(i, 1)*pose(i, 2) - velocity(i, 1)**2*pose(i, 1)
-      spin(i, 2, 2) = acceleration(i, 1)*pose(i, 1) - velocity(i, 1)**2*pose(i, 2)
+      spin(i, 1, 2) = -turning(i, 2)*spin(i, 2, 0) - turning(i, 1)**2*spin(i, 1, 0)
+      spin(i, 2, 2) = turning(i, 2)*spin(i, 1, 0) - turning(i, 1)**2*spin(i, 2, 0)
     end do
   end subroutine find_spin
 end module mech9_planar_batch

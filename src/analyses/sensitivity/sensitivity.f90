@@ -24,11 +24,12 @@ module mech9_sensitivity
   use mech9_planar_batch, only: planar_batch_type, take_planar, find_spins
   use mech9_spatial_batch, only: spatial_batch_type, take_spatial, find_turning, find_twists
   use mech9_motion_changes, only: motion_changes_type, new_motion_changes, place_of_coordinate, place_of_point
-  use mech9_parameter_support, only: support_type, find_support
+  use mech9_parameter_support, only: support_type, carried_constants_type, place_in_frame_type, find_support
   use mech9_linear_form, only: linear_form_type, find_values
   use mech9_planar_forms, only: carry_in_plane, fill_planar_closure, fill_planar_point
   use mech9_spatial_forms, only: carry_in_space, fill_spatial_closure, fill_spatial_point
-  use mech9_forms_at_position, only: find_twist, fill_reduced_closure, fill_coupling
+  use mech9_forms_at_position, only: find_twist, fill_reduced_columns, put_reduced_shares, fill_coupling_columns, &
+    put_coupling_shares
   use mech9_varied_block, only: varied_block_type, solve_block
   implicit none
   private
@@ -54,10 +55,10 @@ module mech9_sensitivity
     type(varied_drive_type), allocatable, private :: drives(:) !< drives that they change
     type(varied_block_type), allocatable, private :: blocks(:) !< chains that they change
     type(linear_form_type), allocatable, private :: points_shift(:)   !< of all points
-    real(wp), allocatable, private :: places(:, :)             !< (3,points) of the points in the first frames of their links [m]
+    type(place_in_frame_type), allocatable, private :: places(:)   !< of the points, in the first frames of their links
     logical, allocatable, private :: apart(:)                  !< (constants) found at each position by itself
-    real(wp), allocatable, private :: series(:, :, :, :)       !< (batch,3 or 6,0:2,constants) twists of constants
-    logical, private :: is_carried = .false.                   !< twists of the ground are in `series`
+    type(carried_constants_type), private :: constants         !< twists of constants, seen from frame 0
+    logical, private :: is_carried = .false.                   !< twists of the ground were carried
     integer, allocatable, private :: steps(:)                  !< steps whose twists are found
     integer, allocatable, private :: slides(:)                 !< those of them that slide, in the plane
     integer, allocatable, private :: screws(:)                 !< those of them with axes that are fixed in their parent frames
@@ -210,7 +211,7 @@ contains
       if (.not. self%apart(i)) cycle
       associate (constant => self%support%constants(i))
         call find_twist(self%plan, constant, self%tangents(constant%parameter), state, self%motion, self%highest, &
-                        self%series(position, :, :, i))
+                        self%constants%series(position, :, :, i))
       end associate
     end do
     do b = 1, size(self%blocks)
@@ -219,11 +220,13 @@ contains
           c = block%first_closure + i - 1
           number = self%plan%closures(c)%coupling
           if (number > 0) then
-            call fill_coupling(model, self%plan, c, state, self%tangents, self%third%couplings(number), position, self%highest, &
-                               block%forms(i))
+            call fill_coupling_columns(self%plan, c, state, self%third%couplings(number), position, block%forms(i))
+            call put_coupling_shares(model%mechanism%couplings(number)%coupling, self%plan%closures(c), state, self%tangents, &
+                                     position, self%highest, block%forms(i))
           else if (block%forms(i)%rows < 6) then
-            call fill_reduced_closure(self%plan, c, state, self%motion, position, self%highest, self%series(position, :, :, :), &
-                                      block%forms(i))
+            call fill_reduced_columns(self%plan, c, state, self%motion, position, self%highest, block%forms(i))
+            call put_reduced_shares(self%plan, c, state, self%constants%series(position, :, :, :), position, self%highest, &
+                                    block%forms(i))
           end if
         end do
       end associate
@@ -254,10 +257,7 @@ contains
     call find_series(n, self)
     do b = 1, size(self%blocks)
       call fill_block(n, self%blocks(b), self)
-      associate (changes => self%changes)
-        call solve_block(n, self%plan, self%highest, changes%n_parameters, changes%n_coordinates, size(changes%values, 2), &
-                         self%support%touched, self%blocks(b), changes%values, good, parameter)
-      end associate
+      call solve_block(n, self%plan, self%highest, self%blocks(b), self%changes, good, parameter)
       if (good == n) cycle
       ! an earlier position that fails in another block replaces this one
       n = good
@@ -265,7 +265,7 @@ contains
       call fail_with(model, parameter, self%plan%blocks(self%blocks(b)%number), self%times(n + 1), err)
     end do
     do i = 1, size(self%points_shift)
-      call vary_point(model, i, n, self)
+      call vary_point(i, n, self)
     end do
   end subroutine find_in_batch
 
@@ -274,16 +274,14 @@ contains
     integer, intent(in) :: n                              !< number of positions
     type(sensitivity_type), intent(inout) :: self         !< with the motion of the frames; gets the twists
 
-    associate (constants => self%support%constants(:self%support%count))
-      if (self%in_plane) then
-        call find_spins(n, self%turned, self%highest, self%plane)
-        call carry_in_plane(n, self%support%count, constants, self%plane, self%highest, self%is_carried, self%series)
-      else
-        call find_turning(n, self%turned, self%highest, self%space)
-        call find_twists(n, self%plan, self%parents, self%screws, self%highest, self%space)
-        call carry_in_space(n, self%support%count, constants, self%apart, self%space, self%highest, self%is_carried, self%series)
-      end if
-    end associate
+    if (self%in_plane) then
+      call find_spins(n, self%turned, self%highest, self%plane)
+      call carry_in_plane(n, self%plane, self%highest, self%is_carried, self%constants)
+    else
+      call find_turning(n, self%turned, self%highest, self%space)
+      call find_twists(n, self%plan, self%parents, self%screws, self%highest, self%space)
+      call carry_in_space(n, self%apart, self%space, self%highest, self%is_carried, self%constants)
+    end if
     self%is_carried = .true.
   end subroutine find_series
 
@@ -315,45 +313,38 @@ contains
     type(sensitivity_type), intent(in) :: self         !< with the twists of steps and constants
     integer :: i, c
 
-    associate (constants => self%support%constants)
-      do i = 1, size(block%forms)
-        c = block%first_closure + i - 1
-        if (self%in_plane) then
-          call fill_planar_closure(n, self%plan%planar, c, self%plane, self%highest, constants, self%series, block%forms(i))
-        else if (self%plan%closures(c)%coupling == 0) then
-          if (block%forms(i)%rows == 6) &
-            call fill_spatial_closure(n, self%plan, c, self%space, self%highest, constants, self%series, block%forms(i))
-          if (block%has_whole) call fill_spatial_closure(n, self%plan, c, self%space, 0, constants, self%series, block%whole(i))
-        end if
-      end do
-    end associate
+    do i = 1, size(block%forms)
+      c = block%first_closure + i - 1
+      if (self%in_plane) then
+        call fill_planar_closure(n, self%plan%planar, c, self%plane, self%highest, self%constants, block%forms(i))
+      else if (self%plan%closures(c)%coupling == 0) then
+        if (block%forms(i)%rows == 6) &
+          call fill_spatial_closure(n, self%plan, c, self%space, self%highest, self%constants, block%forms(i))
+        if (block%has_whole) call fill_spatial_closure(n, self%plan, c, self%space, 0, self%constants, block%whole(i))
+      end if
+    end do
   end subroutine fill_block
 
   !> The derivatives of a point.
-  subroutine vary_point(model, number, n, self)
-    type(model_type), intent(in) :: model           !< the present model
+  subroutine vary_point(number, n, self)
     integer, intent(in) :: number                   !< of the point
     integer, intent(in) :: n                        !< number of positions
     type(sensitivity_type), intent(inout) :: self   !< with the coordinates; gets the derivatives
-    integer :: frame, order, p
+    integer :: order, p
     logical :: again
 
-    frame = self%plan%frame_of(model%mechanism%points(number)%link)
     associate (form => self%points_shift(number), values => self%changes%values)
       again = form%is_filled
       if (all(form%is_still .or. .not. form%is_changed) .and. again) return
       if (self%in_plane) then
-        call fill_planar_point(n, self%plan%planar, frame, self%places(1:2, number), self%plane, self%highest, &
-                               self%support%constants, self%series, form)
+        call fill_planar_point(n, self%plan%planar, self%places(number), self%plane, self%highest, self%constants, form)
       else
-        call fill_spatial_point(n, frame, self%places(:, number), self%space, self%highest, self%support%constants, &
-                                self%series, form)
+        call fill_spatial_point(n, self%places(number), self%space, self%highest, self%constants, form)
       end if
       do p = 1, self%changes%n_parameters
         if (.not. form%is_changed(p) .or. form%is_still(p) .and. again) cycle
         do order = 0, self%highest
-          call find_values(form, merge(batch_size, n, form%is_still(p)), p, self%plan%n_coordinates, order, .true., &
-                           self%support%touched(:, p), values(1, 1, p), &
+          call find_values(form, merge(batch_size, n, form%is_still(p)), p, order, .true., values(1, 1, p), &
                            values(1, place_of_point(self%plan%n_coordinates, number, order, 1), p))
         end do
       end do

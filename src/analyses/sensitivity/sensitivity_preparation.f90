@@ -44,7 +44,8 @@ contains
       self%space = new_spatial_batch(plan%n_coordinates)
     end if
     if (self%places_frames) allocate (self%state, source=new_state(self%plan))
-    allocate (self%series(batch_size, merge(3, 6, self%in_plane), 0:2, self%support%count), source=0.0_wp)
+    self%constants%list = self%support%constants(:self%support%count)
+    allocate (self%constants%series(batch_size, merge(3, 6, self%in_plane), 0:2, self%support%count), source=0.0_wp)
   end subroutine choose_arithmetic
 
   !> Make the forms of chains and points, and decide how many positions are treated at once.
@@ -79,7 +80,7 @@ contains
         if (self%tangents(p)%drives(i)%varies) self%drives = [self%drives, varied_drive_type(p, i)]
       end do
     end do
-    allocate (self%places(3, size(model%mechanism%points)))
+    allocate (self%places(size(model%mechanism%points)))
     do i = 1, size(model%mechanism%points)
       call make_point(model, i, self)
     end do
@@ -97,11 +98,12 @@ contains
     associate (point => model%mechanism%points(number), form => self%points_shift(number), planar => self%plan%planar)
       form = point_form(self%plan, self%support, number, self%plan%frame_of(point%link), rows)
       call keep_static(self%support, merge(1, 3, self%in_plane), .false., form)
+      self%places(number)%frame = self%plan%frame_of(point%link)
       if (.not. self%in_plane) then
-        self%places(:, number) = transformed(self%plan%link_in_frame(point%link), point%position)
+        self%places(number)%place = transformed(self%plan%link_in_frame(point%link), point%position)
         return
       end if
-      self%places(:, number) = transformed(planar%link_in_frame(point%link), point%position)
+      self%places(number)%place = transformed(planar%link_in_frame(point%link), point%position)
       ! beside a plane of the first two axes, the third row of the shift never changes
       do i = 1, self%support%count
         associate (constant => self%support%constants(i))

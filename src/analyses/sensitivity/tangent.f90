@@ -72,6 +72,13 @@ module mech9_tangent
   !> Constants that are smaller than this part of the largest one are zero but for round-off.
   real(wp), parameter :: zero_beside = 1.0e-12_wp
 
+  !> Derivatives from differences at one step.
+  type :: difference_type
+    real(wp), allocatable :: change(:)      !< the derivatives
+    real(wp) :: error = huge(1.0_wp)        !< estimated; huge where a model beside the present one does not exist
+    real(wp) :: of_poses = 0.0_wp           !< error of the derivatives of poses [rad, parts of the mechanism's size]
+  end type difference_type
+
 contains
 
   !> The tangent of a model for one of its parameters. Fails where no model exists beside the present one, and where the parameter
@@ -144,8 +151,9 @@ contains
     real(wp), intent(out) :: round_off                      !< of those of poses [rad, parts of the mechanism's size]
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(plan_type) :: renewed
-    real(wp), allocatable :: present(:), trial(:)
-    real(wp) :: lengths(2), error, best, of_poses
+    type(difference_type) :: trial
+    real(wp), allocatable :: present(:)
+    real(wp) :: lengths(2), best
     integer :: i, j
 
     renewed = plan
@@ -157,12 +165,11 @@ contains
     do j = 1, 2
       if (.not. lengths(j) > 0.0_wp .or. best <= agreement) exit
       do i = 1, size(factors)
-        call try_step(variable, model, number, step_part*2.0_wp**exponent(lengths(j))*factors(i), present, renewed, trial, error, &
-                      of_poses)
-        if (error < best) then
-          best = error
-          round_off = of_poses
-          change = trial
+        call try_step(variable, model, number, step_part*2.0_wp**exponent(lengths(j))*factors(i), present, renewed, trial)
+        if (trial%error < best) then
+          best = trial%error
+          round_off = trial%of_poses
+          change = trial%change
         end if
         if (best <= agreement) exit
       end do
@@ -181,43 +188,42 @@ contains
 
   !> The derivatives from differences at one step, and an estimate of their error: what two orders or two steps differ by, and the
   !> round-off of the constants, as a part of the largest derivative.
-  subroutine try_step(variable, model, number, h, present, plan, change, error, of_poses)
+  subroutine try_step(variable, model, number, h, present, plan, found)
     class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the present model
     integer, intent(in) :: number                           !< of the parameter
     real(wp), intent(in) :: h                               !< the step, in the unit of the parameter
     real(wp), intent(in) :: present(:)                      !< the present constants
     type(plan_type), intent(inout) :: plan                  !< scratch: the plan of the present model, with other numbers
-    real(wp), allocatable, intent(out) :: change(:)         !< the derivatives
-    real(wp), intent(out) :: error                          !< estimated; huge where a model beside the present one does not exist
-    real(wp), intent(out) :: of_poses                       !< error of the derivatives of poses [rad, parts of the mechanism's size]
+    type(difference_type), intent(out) :: found             !< the derivatives
     real(wp) :: difference(size(present), half_width), round_off(size(present)), lower(size(present))
     integer, parameter :: order(half_width) = [1, half_width, 2, 3]
     integer :: i
     logical :: exists
 
-    error = huge(error)
-    of_poses = 0.0_wp
-    change = 0.0_wp*present
+    found%change = 0.0_wp*present
     do i = 1, half_width
       call find_difference(variable, model, number, order(i)*h, plan, difference(:, order(i)), exists)
       if (.not. exists) return
       if (i /= 2) cycle
-      change = difference(:, half_width)/(2*half_width*h)
+      found%change = difference(:, half_width)/(2*half_width*h)
       lower = difference(:, 1)/(2.0_wp*h)
-      if (all(abs(change - lower) <= linear_round_off*max(abs(present), min(1.0_wp, plan%length))/h)) exit
+      if (all(abs(found%change - lower) <= linear_round_off*max(abs(present), min(1.0_wp, plan%length))/h)) exit
     end do
     if (i > half_width) then
-      change = matmul(difference, eighth)/h
+      found%change = matmul(difference, eighth)/h
       lower = matmul(difference, sixth)/h
     else
       difference(:, 2:3) = 0.0_wp
     end if
-    if (.not. all(ieee_is_finite(change))) return
+    if (.not. all(ieee_is_finite(found%change))) return
     round_off = merge(2.0_wp*epsilon(h)*abs(present), 0.0_wp, any(abs(difference) > 0.0_wp, dim=2))
-    error = maxval(abs(change - lower) + round_off/h)
-    if (error > 0.0_wp) error = error/max(maxval(abs(change)), tiny(error))
-    of_poses = maxval(abs(change - lower), mask=is_of_pose(plan, size(change)))/min(1.0_wp, plan%length) + linear_round_off/h
+    associate (change => found%change)
+      found%error = maxval(abs(change - lower) + round_off/h)
+      if (found%error > 0.0_wp) found%error = found%error/max(maxval(abs(change)), tiny(h))
+      found%of_poses = maxval(abs(change - lower), mask=is_of_pose(plan, size(change)))/min(1.0_wp, plan%length) &
+                       + linear_round_off/h
+    end associate
   end subroutine try_step
 
   !> Mark the constants that belong to poses of pairs and links: those before all others.

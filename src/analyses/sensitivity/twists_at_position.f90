@@ -2,7 +2,7 @@
 module mech9_twists_at_position
   use mech9_kinds, only: wp
   use mech9_plan, only: plan_type
-  use mech9_planar_plan, only: planar_plan_type, planar_step_type
+  use mech9_planar_plan, only: planar_plan_type
   use mech9_state, only: state_type, planar_motion_type
   use mech9_twists, only: frame_twists_type, carried
   use mech9_parameter_support, only: varied_constant_type
@@ -20,42 +20,29 @@ contains
     integer, intent(in) :: highest                          !< order of the highest derivative
     logical, intent(in) :: again                            !< twists of the ground are in `series` already
     real(wp), intent(inout) :: series(3, 0:2, n)            !< gets the twists up to this derivative
-
-    call carry(n, constants, ubound(motion%pose, 2), motion%pose, motion%velocity, motion%acceleration, highest, again, series)
-  end subroutine carry_in_plane
-
-  !> Twists of constants, seen from frame 0, from plain arrays.
-  pure subroutine carry(n, constants, m, f, v, a, highest, again, series)
-    integer, intent(in) :: n                                !< number of twists
-    type(varied_constant_type), intent(in) :: constants(n)  !< rotation and shifts in twist(1:3), in the axes of the planar frames
-    integer, intent(in) :: m                                !< number of steps of the plan
-    real(wp), intent(in) :: f(4, 0:m)                       !< poses of the frames [m]
-    real(wp), intent(in) :: v(3, 0:m)                       !< velocities of the frames [rad/s, m/s]
-    real(wp), intent(in) :: a(3, 0:m)                       !< accelerations of the frames [rad/s^2, m/s^2]
-    integer, intent(in) :: highest                          !< order of the highest derivative
-    logical, intent(in) :: again                            !< twists of the ground are in `series` already
-    real(wp), intent(inout) :: series(3, 0:2, n)            !< gets the twists up to this derivative
     real(wp) :: x, y, w, square, turning
     integer :: i, k
 
-    do i = 1, n
-      k = constants(i)%frame
-      if (again .and. k == 0) cycle
-      turning = constants(i)%twist(1)
-      x = f(1, k)*constants(i)%twist(2) - f(2, k)*constants(i)%twist(3)
-      y = f(2, k)*constants(i)%twist(2) + f(1, k)*constants(i)%twist(3)
-      series(1, 0, i) = turning
-      series(2, 0, i) = x + turning*f(4, k)
-      series(3, 0, i) = y - turning*f(3, k)
-      if (highest == 0) cycle
-      w = v(1, k)
-      square = w**2
-      series(2, 1, i) = turning*v(3, k) - w*y
-      series(3, 1, i) = w*x - turning*v(2, k)
-      series(2, 2, i) = turning*a(3, k) - a(1, k)*y - square*x
-      series(3, 2, i) = a(1, k)*x - square*y - turning*a(2, k)
-    end do
-  end subroutine carry
+    associate (f => motion%pose, v => motion%velocity, a => motion%acceleration)
+      do i = 1, n
+        k = constants(i)%frame
+        if (again .and. k == 0) cycle
+        turning = constants(i)%twist(1)
+        x = f(1, k)*constants(i)%twist(2) - f(2, k)*constants(i)%twist(3)
+        y = f(2, k)*constants(i)%twist(2) + f(1, k)*constants(i)%twist(3)
+        series(1, 0, i) = turning
+        series(2, 0, i) = x + turning*f(4, k)
+        series(3, 0, i) = y - turning*f(3, k)
+        if (highest == 0) cycle
+        w = v(1, k)
+        square = w**2
+        series(2, 1, i) = turning*v(3, k) - w*y
+        series(3, 1, i) = w*x - turning*v(2, k)
+        series(2, 2, i) = turning*a(3, k) - a(1, k)*y - square*x
+        series(3, 2, i) = a(1, k)*x - square*y - turning*a(2, k)
+      end do
+    end associate
+  end subroutine carry_in_plane
 
   !> The twist of a step per unit rate and its derivatives in time.
   pure subroutine planar_step_series(planar, s, motion, highest, series)
@@ -66,49 +53,21 @@ contains
     real(wp), intent(out) :: series(3, 0:2)              !< rotation, and shift at the origin of frame 0
 
     series = 0.0_wp
-    call fill_columns(1, [s], [1.0_wp], size(planar%steps), planar%steps, 1.0_wp, [0.0_wp, 0.0_wp], motion%pose, motion%slide, &
-                      motion%velocity, motion%acceleration, highest, series)
-  end subroutine planar_step_series
-
-  !> The columns of steps in the opening of a chain.
-  pure subroutine fill_columns(n, numbers, signs, m, steps, per_length, base, f, slide, v, a, highest, columns)
-    integer, intent(in) :: n                             !< number of these steps
-    integer, intent(in) :: numbers(n)                    !< numbers of the steps
-    real(wp), intent(in) :: signs(n)                     !< of the steps in the loop
-    integer, intent(in) :: m                             !< number of steps of the plan
-    type(planar_step_type), intent(in) :: steps(m)       !< steps of the plan
-    real(wp), intent(in) :: per_length                   !< one over the length of the mechanism [1/m]
-    real(wp), intent(in) :: base(2)                      !< origin of the frame at which the opening is written [m]
-    real(wp), intent(in) :: f(4, 0:m)                    !< poses of the frames [m]
-    real(wp), intent(in) :: slide(2, m)                  !< velocity of each frame's origin per unit rate
-    real(wp), intent(in) :: v(3, 0:m)                    !< velocities of the frames [rad/s, m/s]
-    real(wp), intent(in) :: a(3, 0:m)                    !< accelerations of the frames [rad/s^2, m/s^2]
-    integer, intent(in) :: highest                       !< order of the highest derivative
-    real(wp), intent(inout) :: columns(3, 0:2, n)        !< gets the columns
-    real(wp) :: w, turning
-    integer :: i, k
-
-    do i = 1, n
-      k = numbers(i)
-      if (steps(k)%turns) then
-        turning = signs(i)*steps(k)%turn
-        w = turning*per_length
-        columns(1, 0, i) = turning
-        columns(2, 0, i) = w*(f(4, k) - base(2))
-        columns(3, 0, i) = w*(base(1) - f(3, k))
-        if (highest == 0) cycle
-        columns(2, 1, i) = w*v(3, k)
-        columns(3, 1, i) = -w*v(2, k)
-        columns(2, 2, i) = w*a(3, k)
-        columns(3, 2, i) = -w*a(2, k)
+    associate (f => motion%pose, v => motion%velocity, a => motion%acceleration, step => planar%steps(s))
+      if (step%turns) then
+        series(1, 0) = step%turn
+        series(2, 0) = step%turn*f(4, s)
+        series(3, 0) = -step%turn*f(3, s)
+        if (highest == 0) return
+        series(2, 1) = step%turn*v(3, s)
+        series(3, 1) = -step%turn*v(2, s)
+        series(2, 2) = step%turn*a(3, s)
+        series(3, 2) = -step%turn*a(2, s)
       else
-        w = signs(i)*per_length
-        call slide_series(slide(:, k), v(1, steps(k)%parent), a(1, steps(k)%parent), columns(2:3, 0, i), columns(2:3, 1, i), &
-                          columns(2:3, 2, i))
-        columns(2:3, :, i) = w*columns(2:3, :, i)
+        call slide_series(motion%slide(:, s), v(1, step%parent), a(1, step%parent), series(2:3, 0), series(2:3, 1), series(2:3, 2))
       end if
-    end do
-  end subroutine fill_columns
+    end associate
+  end subroutine planar_step_series
 
   !> The direction in which a step slides, and its derivatives in time.
   pure subroutine slide_series(slide, w, alpha, shift, first, second)
@@ -127,19 +86,18 @@ contains
   end subroutine slide_series
 
   !> Twists of constants, seen from frame 0, and their derivatives in time.
-  pure subroutine carry_in_space(plan, n, constants, state, twists, highest, again, series)
+  pure subroutine carry_in_space(plan, constants, state, twists, highest, again, series)
     type(plan_type), intent(in) :: plan                     !< the plan, in space
-    integer, intent(in) :: n                                !< number of twists
-    type(varied_constant_type), intent(in) :: constants(n)  !< the twists
+    type(varied_constant_type), intent(in) :: constants(:)  !< the twists
     type(state_type), intent(in) :: state                   !< the motion
     type(frame_twists_type), intent(in) :: twists           !< of its frames
     integer, intent(in) :: highest                          !< order of the highest derivative
     logical, intent(in) :: again                            !< twists of the ground are in `series` already
-    real(wp), intent(inout) :: series(6, 0:2, n)            !< gets the twists up to this derivative
+    real(wp), intent(inout), contiguous :: series(:, 0:, :) !< (6,0:2,constants) gets the twists up to this derivative
     real(wp) :: length(0:2)
     integer :: i
 
-    do i = 1, n
+    do i = 1, size(constants)
       associate (constant => constants(i))
         if (again .and. constant%frame == 0 .and. constant%stretched_by == 0) cycle
         call carried(state, twists, constant%frame, constant%twist, highest, series(:, :, i))

@@ -11,6 +11,7 @@ module mech9_varied_block
   use mech9_tangent, only: tangent_type
   use mech9_parameter_support, only: support_type, closure_form, keep_static
   use mech9_linear_form, only: linear_form_type, find_values, find_sizes, solve_for
+  use mech9_motion_changes, only: motion_changes_type
   implicit none
   private
   public :: varied_block_type, new_varied_block, solve_block
@@ -117,16 +118,12 @@ contains
   end function most_at_once
 
   !> Find the derivatives of the unknowns of a block, in all orders.
-  subroutine solve_block(n, plan, highest, n_parameters, m, numbers, touched, block, q, good, opened_by)
+  subroutine solve_block(n, plan, highest, block, changes, good, opened_by)
     integer, intent(in) :: n                                   !< number of positions
     type(plan_type), intent(in) :: plan                        !< the plan
     integer, intent(in) :: highest                             !< order of the highest derivative
-    integer, intent(in) :: n_parameters                        !< number of parameters
-    integer, intent(in) :: m                                   !< number of coordinates
-    integer, intent(in) :: numbers                             !< number of all derivatives by a parameter
-    logical, intent(in) :: touched(m, n_parameters)            !< coordinates that change with each parameter
     type(varied_block_type), intent(inout) :: block            !< with its forms filled
-    real(wp), intent(inout) :: q(batch_size, numbers, n_parameters)   !< derivatives of the coordinates, then others; gets the unknowns
+    type(motion_changes_type), intent(inout) :: changes        !< derivatives of the coordinates; gets those of the unknowns
     integer, intent(out) :: good                               !< positions before the first one without derivatives, or n
     integer, intent(out) :: opened_by                          !< parameter that opens a chain there; 0: the position is singular
     integer :: i, j, order, row
@@ -138,23 +135,22 @@ contains
       call factorize(n, block, good)
     end if
     do j = 1, size(block%parameters)
-      associate (p => block%parameters(j))
+      associate (p => block%parameters(j), q => changes%values)
         do order = 0, highest
           row = 1
           do i = 1, size(block%forms)
-            call find_values(block%forms(i), good, p, m, order, .false., touched(:, p), q(1, 1, p), block%openings(1, row))
+            call find_values(block%forms(i), good, p, order, .false., q(1, 1, p), block%openings(1, row))
             row = row + block%forms(i)%rows
           end do
           if (block%by_solver) then
-            call solve_for(good, size(block%units), size(block%solver, 3), block%solver, block%openings, order, m, &
-                           block%coordinates, q(1, 1, p))
+            call solve_for(good, size(block%solver, 3), block%solver, block%openings, order, block%coordinates, q(1, 1, p))
           else
-            call solve_one_by_one(good, block, order, m, q(1, 1, p))
+            call solve_one_by_one(good, block, order, q(1, 1, p))
           end if
         end do
       end associate
     end do
-    if (block%is_checked) call find_opened(plan, n_parameters, m, numbers, touched, block, q, good, opened_by)
+    if (block%is_checked) call find_opened(plan, block, changes, good, opened_by)
   end subroutine solve_block
 
   !> Factorize the equations of a block at one position after the other, as far as they are regular.
@@ -299,31 +295,28 @@ contains
   end subroutine find_solver
 
   !> Solve for one position after the other, where there are fewer right-hand sides than equations.
-  subroutine solve_one_by_one(n, block, order, m, q)
+  subroutine solve_one_by_one(n, block, order, q)
     integer, intent(in) :: n                                !< number of positions
     type(varied_block_type), intent(inout) :: block         !< with its factors and openings
     integer, intent(in) :: order                            !< of the derivative in time
-    integer, intent(in) :: m                                !< number of coordinates
-    real(wp), intent(inout) :: q(batch_size, 0:2, m)        !< derivatives of the coordinates; gets the unknowns
-    integer :: i
+    real(wp), intent(inout) :: q(batch_size, 0:2, *)        !< (batch,0:2,M) of the coordinates; gets the unknowns
+    integer :: i, u
 
     do i = 1, n
       block%right = -block%openings(i, :size(block%right))
       call block%equations(i)%solve(block%right, block%change)
-      q(i, order, block%coordinates) = block%units*block%change
+      do u = 1, size(block%coordinates)
+        q(i, order, block%coordinates(u)) = block%units(u)*block%change(u)
+      end do
     end do
   end subroutine solve_one_by_one
 
   !> Find the first position at which no change of the unknowns keeps a chain closed for some parameter: the equations of the block left
   !> out what does not change in any motion of the mechanism, but changes with the parameter.
-  subroutine find_opened(plan, n_parameters, m, numbers, touched, block, q, good, opened_by)
+  subroutine find_opened(plan, block, changes, good, opened_by)
     type(plan_type), intent(in) :: plan                        !< the plan
-    integer, intent(in) :: n_parameters                        !< number of parameters
-    integer, intent(in) :: m                                   !< number of coordinates
-    integer, intent(in) :: numbers                             !< number of all derivatives by a parameter
-    logical, intent(in) :: touched(m, n_parameters)            !< coordinates that change with each parameter
     type(varied_block_type), intent(in) :: block               !< with its forms
-    real(wp), intent(in) :: q(batch_size, numbers, n_parameters)   !< derivatives of the coordinates, then others
+    type(motion_changes_type), intent(in) :: changes           !< derivatives of the coordinates
     integer, intent(inout) :: good                             !< positions that are judged; gets those before the first that is open
     integer, intent(inout) :: opened_by                        !< gets the parameter that opens it
     integer :: i, j
@@ -348,8 +341,8 @@ contains
       real(wp) :: parts(batch_size, form%rows), sizes(batch_size)
       integer :: k
 
-      call find_values(form, good, p, m, 0, .true., touched(:, p), q(1, 1, p), parts)
-      call find_sizes(form, good, p, m, q(1, 1, p), sizes)
+      call find_values(form, good, p, 0, .true., changes%values(1, 1, p), parts)
+      call find_sizes(form, good, p, changes%values(1, 1, p), sizes)
       ! the numbers of a coupling are not among the constants whose sizes are known
       if (is_coupling) sizes(:good) = max(sizes(:good), abs(parts(:good, 1)))
       do k = 1, good

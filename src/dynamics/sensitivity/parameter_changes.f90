@@ -8,7 +8,7 @@ module mech9_parameter_changes
   use mech9_parameter_support, only: support_type, varied_constant_type, find_support
   use mech9_planar_support, only: put_in_plane
   use mech9_twists, only: frame_twists_type, carried
-  use mech9_pair_changes, only: find_pair_change
+  use mech9_pair_changes, only: find_pair_change, carry_pair_change
   use mech9_gradient_arithmetic, only: gradient_arithmetic_type
   use mech9_gradient_rows, only: gradient_rows_type, row_of_coordinate, pairing
   implicit none
@@ -124,7 +124,7 @@ contains
     type(tangent_type), intent(in) :: tangents(:)                !< derivatives of the constants by each parameter
     class(gradient_arithmetic_type), intent(in) :: arithmetic    !< the arithmetic
     type(parameter_changes_type), intent(inout) :: self          !< gets the twists and wrenches
-    real(wp) :: along(6, 0:2)
+    real(wp) :: along(6, 0:2), change(6, 0:2)
     integer :: i
 
     do i = 1, size(self%bodies)
@@ -138,8 +138,9 @@ contains
     do i = 1, size(self%constants)
       associate (constant => self%constants(i))
         if (constant%by_pair) then
-          call find_pair_change(plan, state, twists, tangents(constant%parameter), constant%step, 2, self%series(:, :, i), &
-                                self%bends(:, i))
+          call find_pair_change(plan, state, tangents(constant%parameter), constant%step, change)
+          call carry_pair_change(plan, state, twists, constant%step, change, 2, self%series(:, :, i))
+          self%bends(:, i) = change(:, 1)
         else if (constant%stretched_by > 0) then
           call carried(state, twists, constant%frame, constant%twist, 0, along)
           self%bends(:, i) = along(:, 0)

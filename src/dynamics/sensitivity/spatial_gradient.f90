@@ -231,7 +231,7 @@ contains
     logical, intent(in) :: again                              !< twists of the ground are in `series` already
     real(wp), intent(inout), contiguous :: series(:, 0:, :)   !< (6,0:2,constants) gets the twists
 
-    call carry_in_space(plan, size(constants), constants, state, twists, 2, again, series)
+    call carry_in_space(plan, constants, state, twists, 2, again, series)
   end subroutine carry
 
   !> A twist in space: itself.

@@ -20,7 +20,7 @@ module mech9_varied_motion
   use mech9_frame_variation, only: third_derivatives_type, new_third_derivatives, find_third_derivatives
   use mech9_twists, only: frame_twists_type, new_frame_twists, find_frame_twists, find_step_twists, carried, shift_at
   use mech9_tangent, only: tangent_type, find_tangent
-  use mech9_pair_changes, only: find_pair_change
+  use mech9_pair_changes, only: find_pair_change, carry_pair_change
   implicit none
   private
   public :: varied_motion_type, new_varied_motion, find_varied_motion, find_varied_points, link_twists, vary_drives
@@ -149,6 +149,7 @@ contains
     type(state_type), intent(in) :: present               !< the present motion
     type(varied_motion_type), intent(inout) :: self       !< gets its frames
     type(error_type), allocatable, intent(out) :: err     !< allocated if a pair has no pose
+    real(wp) :: change(6, 0:2)
     integer :: i
 
     call place_motion(present, self%plan, self%state, err)
@@ -159,8 +160,9 @@ contains
     call find_step_twists(self%plan, self%state, self%third, self%numbers(2:), 2, self%motion)
     do i = 1, size(self%pairs)
       associate (pair => self%pairs(i))
-        call find_pair_change(self%plan, self%state, self%motion, self%tangents(pair%parameter), pair%step, 2, pair%twists, &
-                              pair%slope)
+        call find_pair_change(self%plan, self%state, self%tangents(pair%parameter), pair%step, change)
+        call carry_pair_change(self%plan, self%state, self%motion, pair%step, change, 2, pair%twists)
+        pair%slope = change(:, 1)
       end associate
     end do
   end subroutine find_twists
