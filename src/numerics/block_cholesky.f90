@@ -175,49 +175,38 @@ contains
 
     select case (self%d)
     case (3)
-      call factorize_blocks(3, self%n, size(self%row), self%first, self%row, self%target, self%diagonal, self%blocks, &
-                            self%whole, self%least_part)
+      call factorize_blocks(3, self)
     case (6)
-      call factorize_blocks(6, self%n, size(self%row), self%first, self%row, self%target, self%diagonal, self%blocks, &
-                            self%whole, self%least_part)
+      call factorize_blocks(6, self)
     case default
-      call factorize_blocks(self%d, self%n, size(self%row), self%first, self%row, self%target, self%diagonal, self%blocks, &
-                            self%whole, self%least_part)
+      call factorize_blocks(self%d, self)
     end select
   end subroutine factorize
 
-  !> Factorize a matrix from plain arrays.
-  pure subroutine factorize_blocks(d, n, n_blocks, first, row, target, diagonal, blocks, whole, least_part)
+  !> Factorize a matrix of blocks of a size that the compiler may know.
+  pure subroutine factorize_blocks(d, self)
     integer, intent(in) :: d                            !< rows of a block
-    integer, intent(in) :: n                            !< number of nodes
-    integer, intent(in) :: n_blocks                     !< number of blocks below the diagonal
-    integer, intent(in) :: first(n + 1)                 !< first block of each column
-    integer, intent(in) :: row(n_blocks)                !< row of each block
-    integer, intent(in) :: target(*)                    !< blocks that products change
-    real(wp), intent(inout) :: diagonal(d, d, n)        !< blocks of the diagonal
-    real(wp), intent(inout) :: blocks(d, d, n_blocks)   !< blocks below it
-    real(wp), intent(inout) :: whole(d, n)              !< scratch: the diagonal before elimination
-    real(wp), intent(out) :: least_part                 !< least pivot, as a part of the number on the diagonal
+    type(block_cholesky_type), intent(inout) :: self    !< the matrix; its factors afterwards
     integer :: p, i, j, k
 
-    least_part = 1.0_wp
-    do p = 1, n
+    self%least_part = 1.0_wp
+    do p = 1, self%n
       do i = 1, d
-        whole(i, p) = diagonal(i, i, p)
+        self%whole(i, p) = self%diagonal(i, i, p)
       end do
     end do
     k = 0
-    do p = 1, n
-      call factor_block(d, diagonal(:, :, p), whole(:, p), least_part)
-      if (.not. least_part > 0.0_wp) return
-      do j = first(p), first(p + 1) - 1
-        call divide_block(d, diagonal(:, :, p), blocks(:, :, j))
+    do p = 1, self%n
+      call factor_block(d, self%diagonal(1, 1, p), self%whole(1, p), self%least_part)
+      if (.not. self%least_part > 0.0_wp) return
+      do j = self%first(p), self%first(p + 1) - 1
+        call divide_block(d, self%diagonal(1, 1, p), self%blocks(1, 1, j))
       end do
-      do j = first(p), first(p + 1) - 1
-        call take_square(d, blocks(:, :, j), diagonal(:, :, row(j)))
-        do i = j + 1, first(p + 1) - 1
+      do j = self%first(p), self%first(p + 1) - 1
+        call take_square(d, self%blocks(1, 1, j), self%diagonal(1, 1, self%row(j)))
+        do i = j + 1, self%first(p + 1) - 1
           k = k + 1
-          call take_product(d, blocks(:, :, i), blocks(:, :, j), blocks(:, :, target(k)))
+          call take_product(d, self%blocks(1, 1, i), self%blocks(1, 1, j), self%blocks(1, 1, self%target(k)))
         end do
       end do
     end do
@@ -312,60 +301,96 @@ contains
     end do
     select case (self%d)
     case (3)
-      call substitute(3, self%n, size(self%row), self%first, self%row, self%diagonal, self%blocks, self%x)
+      call substitute(3, self)
     case (6)
-      call substitute(6, self%n, size(self%row), self%first, self%row, self%diagonal, self%blocks, self%x)
+      call substitute(6, self)
     case default
-      call substitute(self%d, self%n, size(self%row), self%first, self%row, self%diagonal, self%blocks, self%x)
+      call substitute(self%d, self)
     end select
     do i = 1, self%n
       b(:, i) = self%x(:, self%position(i))
     end do
   end subroutine solve
 
-  !> Solve with factors in plain arrays.
-  pure subroutine substitute(d, n, n_blocks, first, row, diagonal, blocks, x)
-    integer, intent(in) :: d                         !< rows of a block
-    integer, intent(in) :: n                         !< number of nodes
-    integer, intent(in) :: n_blocks                  !< number of blocks below the diagonal
-    integer, intent(in) :: first(n + 1)              !< first block of each column
-    integer, intent(in) :: row(n_blocks)             !< row of each block
-    real(wp), intent(in) :: diagonal(d, d, n)        !< factors of the blocks of the diagonal
-    real(wp), intent(in) :: blocks(d, d, n_blocks)   !< factors of the blocks below it
-    real(wp), intent(inout) :: x(d, n)               !< right-hand side; the solution
-    integer :: p, e, j, i
+  !> Solve with factors whose blocks have a size that the compiler may know.
+  pure subroutine substitute(d, self)
+    integer, intent(in) :: d                            !< rows of a block
+    type(block_cholesky_type), intent(inout) :: self    !< the factors, and in `x` the right-hand side; there the solution
+    integer :: p, e
 
-    do p = 1, n
-      do j = 1, d
-        x(j, p) = x(j, p)*diagonal(j, j, p)
-        do i = j + 1, d
-          x(i, p) = x(i, p) - diagonal(i, j, p)*x(j, p)
-        end do
-      end do
-      do e = first(p), first(p + 1) - 1
-        do j = 1, d
-          do i = 1, d
-            x(i, row(e)) = x(i, row(e)) - blocks(i, j, e)*x(j, p)
-          end do
-        end do
+    do p = 1, self%n
+      call solve_lower(d, self%diagonal(1, 1, p), self%x(1, p))
+      do e = self%first(p), self%first(p + 1) - 1
+        call take_forward(d, self%blocks(1, 1, e), self%x(1, p), self%x(1, self%row(e)))
       end do
     end do
-    do p = n, 1, -1
-      do e = first(p), first(p + 1) - 1
-        do j = 1, d
-          do i = 1, d
-            x(j, p) = x(j, p) - blocks(i, j, e)*x(i, row(e))
-          end do
-        end do
+    do p = self%n, 1, -1
+      do e = self%first(p), self%first(p + 1) - 1
+        call take_backward(d, self%blocks(1, 1, e), self%x(1, self%row(e)), self%x(1, p))
       end do
-      do j = d, 1, -1
-        do i = j + 1, d
-          x(j, p) = x(j, p) - diagonal(i, j, p)*x(i, p)
-        end do
-        x(j, p) = x(j, p)*diagonal(j, j, p)
-      end do
+      call solve_upper(d, self%diagonal(1, 1, p), self%x(1, p))
     end do
   end subroutine substitute
+
+  !> Divide a part of a right-hand side by the factor of a block of the diagonal.
+  pure subroutine solve_lower(d, c, x)
+    integer, intent(in) :: d           !< rows of the block
+    real(wp), intent(in) :: c(d, d)    !< the factor
+    real(wp), intent(inout) :: x(d)    !< the part
+    integer :: i, j
+
+    do j = 1, d
+      x(j) = x(j)*c(j, j)
+      do i = j + 1, d
+        x(i) = x(i) - c(i, j)*x(j)
+      end do
+    end do
+  end subroutine solve_lower
+
+  !> Divide a part of a right-hand side by the transposed factor of a block of the diagonal.
+  pure subroutine solve_upper(d, c, x)
+    integer, intent(in) :: d           !< rows of the block
+    real(wp), intent(in) :: c(d, d)    !< the factor
+    real(wp), intent(inout) :: x(d)    !< the part
+    integer :: i, j
+
+    do j = d, 1, -1
+      do i = j + 1, d
+        x(j) = x(j) - c(i, j)*x(i)
+      end do
+      x(j) = x(j)*c(j, j)
+    end do
+  end subroutine solve_upper
+
+  !> Subtract the product of a block and a part of the solution from another part of the right-hand side.
+  pure subroutine take_forward(d, b, x, y)
+    integer, intent(in) :: d           !< rows of the block
+    real(wp), intent(in) :: b(d, d)    !< the block
+    real(wp), intent(in) :: x(d)       !< the part of the solution
+    real(wp), intent(inout) :: y(d)    !< the part of the right-hand side
+    integer :: i, j
+
+    do j = 1, d
+      do i = 1, d
+        y(i) = y(i) - b(i, j)*x(j)
+      end do
+    end do
+  end subroutine take_forward
+
+  !> Subtract the product of a transposed block and a part of the solution from another part of the right-hand side.
+  pure subroutine take_backward(d, b, x, y)
+    integer, intent(in) :: d           !< rows of the block
+    real(wp), intent(in) :: b(d, d)    !< the block
+    real(wp), intent(in) :: x(d)       !< the part of the solution
+    real(wp), intent(inout) :: y(d)    !< the part of the right-hand side
+    integer :: i, j
+
+    do j = 1, d
+      do i = 1, d
+        y(j) = y(j) - b(i, j)*x(i)
+      end do
+    end do
+  end subroutine take_backward
 
   !> A set of numbers with more of them.
   pure function with(numbers, more) result(union)

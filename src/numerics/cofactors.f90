@@ -64,9 +64,9 @@ contains
     real(wp) :: area
     integer :: i, j, k
 
-    call cofactor_column(n, lead, a(1, 1, 2), a(1, 1, 3), inverse(1, 1, 1), inverse(1, 1, 2), inverse(1, 1, 3), s1)
-    call cofactor_column(n, lead, a(1, 1, 3), a(1, 1, 1), inverse(1, 2, 1), inverse(1, 2, 2), inverse(1, 2, 3), s2)
-    call cofactor_column(n, lead, a(1, 1, 1), a(1, 1, 2), inverse(1, 3, 1), inverse(1, 3, 2), inverse(1, 3, 3), s3)
+    call cofactor_row(n, lead, a(1, 1, 2), a(1, 1, 3), inverse(1, 1, 1), s1)
+    call cofactor_row(n, lead, a(1, 1, 3), a(1, 1, 1), inverse(1, 2, 1), s2)
+    call cofactor_row(n, lead, a(1, 1, 1), a(1, 1, 2), inverse(1, 3, 1), s3)
     do i = 1, n
       l1(i) = a(i, 1, 1)**2 + a(i, 2, 1)**2 + a(i, 3, 1)**2
       l2(i) = a(i, 1, 2)**2 + a(i, 2, 2)**2 + a(i, 3, 2)**2
@@ -91,25 +91,27 @@ contains
     end do
   end subroutine invert_several
 
-  !> Vector products of two columns each of several matrices, and the squares of their lengths.
-  pure subroutine cofactor_column(n, lead, u, v, x, y, z, square_of)
+  !> Vector products of two columns each of several matrices, as rows of others, and the squares of their lengths.
+  pure subroutine cofactor_row(n, lead, u, v, row, square_of)
     integer, intent(in) :: n                       !< number of matrices
     integer, intent(in) :: lead                    !< room for so many matrices
     real(wp), intent(in) :: u(lead, 3)             !< left factors
     real(wp), intent(in) :: v(lead, 3)             !< right factors
-    real(wp), intent(inout) :: x(lead)             !< first components of the products
-    real(wp), intent(inout) :: y(lead)             !< second components
-    real(wp), intent(inout) :: z(lead)             !< third components
+    real(wp), intent(inout) :: row(3*lead, *)      !< (:lead,3) gets the products, one row of each of the other matrices
     real(wp), intent(inout) :: square_of(lead)     !< squares of the lengths
+    real(wp) :: x, y, z
     integer :: i
 
     do i = 1, n
-      x(i) = u(i, 2)*v(i, 3) - u(i, 3)*v(i, 2)
-      y(i) = u(i, 3)*v(i, 1) - u(i, 1)*v(i, 3)
-      z(i) = u(i, 1)*v(i, 2) - u(i, 2)*v(i, 1)
-      square_of(i) = x(i)**2 + y(i)**2 + z(i)**2
+      x = u(i, 2)*v(i, 3) - u(i, 3)*v(i, 2)
+      y = u(i, 3)*v(i, 1) - u(i, 1)*v(i, 3)
+      z = u(i, 1)*v(i, 2) - u(i, 2)*v(i, 1)
+      row(i, 1) = x
+      row(i, 2) = y
+      row(i, 3) = z
+      square_of(i) = x**2 + y**2 + z**2
     end do
-  end subroutine cofactor_column
+  end subroutine cofactor_row
 
   !> Vector product u x v. (The floor of rotations, which has one too, lies above this one.)
   pure function product_of(u, v) result(w)

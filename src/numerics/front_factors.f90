@@ -31,9 +31,8 @@ module mech9_front_factors
     real(wp), allocatable :: squares(:)         !< (n) scratch: squares of the lengths of columns
     real(wp), allocatable :: variances(:)       !< (n) diagonal of (R^T R)^-1, in the order in which columns are eliminated
     real(wp), allocatable :: covariances(:)     !< (R^T R)^-1 for the columns of each front that has children
-    real(wp), allocatable :: inverse(:)         !< scratch: R^-1 among the pivots of one front
-    real(wp), allocatable :: coupling(:)        !< scratch: R^-1 times the part of R in the other columns of one front
-    real(wp), allocatable :: product(:)         !< scratch: product of the coupling and the covariance of these columns
+    real(wp), allocatable :: inverse(:)         !< scratch: R^-1 among the pivots of one front, then its product with R
+    real(wp), allocatable :: product(:)         !< scratch: product of the latter and the covariance of the other columns
     real(wp), allocatable :: of_others(:)       !< scratch: the covariance of the other columns of one front
   contains
     procedure :: factorize
@@ -61,7 +60,7 @@ contains
       allocate (self%covariances(sum(fronts%columns**2, fronts%has_children)), source=0.0_wp)
     end associate
     allocate (self%scales(plan%n), self%reciprocals(plan%n), self%squares(plan%n), self%variances(plan%n), source=0.0_wp)
-    allocate (self%inverse(p*p), self%coupling(max(1, p*r)), self%product(max(1, p*r)), self%of_others(max(1, r*r)), source=0.0_wp)
+    allocate (self%inverse(p*(p + r)), self%product(max(1, p*r)), self%of_others(max(1, r*r)), source=0.0_wp)
   end function new_front_factors
 
   !> Factorize a matrix.
@@ -74,15 +73,14 @@ contains
     self%sign_of_det = self%plan%sign
     do f = 1, size(self%plan%fronts)
       associate (front => self%plan%fronts(f), plan => self%plan)
-        call gather(front%original, plan%rows(front%row + 1:), front%columns, plan%columns(front%column + 1:), plan%m, plan%n, &
-                    matrix, front%rows, self%values(front%value + 1:))
+        call gather(front, plan%rows(front%row + 1:), plan%columns(front%column + 1:), plan%m, matrix, &
+                    self%values(front%value + 1:))
         call eliminate(front%rows, front%pivots, front%columns, self%values(front%value + 1:), &
                        self%scales(front%pivot + 1:), self%reciprocals(front%pivot + 1:), self%sign_of_det)
         if (front%parent == 0) cycle
         ! the values of a parent stand behind those of its fronts
         associate (parent => plan%fronts(front%parent), last => front%value + front%rows*front%columns)
-          call pass_rows(front%rows, front%pivots, front%columns, self%values(front%value + 1:last), &
-                         plan%places(front%column + 1:), parent%rows, parent%columns, front%parent_row, &
+          call pass_rows(front, self%values(front%value + 1:last), plan%places(front%column + 1:), parent, &
                          self%values(parent%value + 1:))
         end associate
       end associate
@@ -127,8 +125,8 @@ contains
       associate (front => self%plan%fronts(f), plan => self%plan)
         r = front%columns - front%pivots
         if (front%shares_parent) then
-          call invert(front%rows, front%pivots, r, self%values(front%value + 1:), self%reciprocals(front%pivot + 1:), &
-                      self%covariances(plan%fronts(front%parent)%square + 1:), self%inverse, self%coupling, self%product, &
+          call invert(front, self%values(front%value + 1:), self%reciprocals(front%pivot + 1:), &
+                      self%covariances(plan%fronts(front%parent)%square + 1:), self%inverse, self%product, &
                       self%variances(front%pivot + 1:))
           cycle
         end if
@@ -138,10 +136,10 @@ contains
                                  self%covariances(parent%square + 1:), self%of_others)
           end associate
         end if
-        call invert(front%rows, front%pivots, r, self%values(front%value + 1:), self%reciprocals(front%pivot + 1:), &
-                    self%of_others, self%inverse, self%coupling, self%product, self%variances(front%pivot + 1:))
-        if (front%has_children) call fill_covariance(front%pivots, r, self%inverse, self%coupling, self%product, &
-                                                     self%of_others, self%covariances(front%square + 1:))
+        call invert(front, self%values(front%value + 1:), self%reciprocals(front%pivot + 1:), self%of_others, self%inverse, &
+                    self%product, self%variances(front%pivot + 1:))
+        if (front%has_children) call fill_covariance(front, self%inverse, self%product, self%of_others, &
+                                                     self%covariances(front%square + 1:))
       end associate
     end do
     i = maxloc(self%variances, 1)
@@ -164,8 +162,8 @@ contains
     total = 0.0_wp
     do f = 1, size(self%plan%fronts)
       associate (front => self%plan%fronts(f), plan => self%plan)
-        if (front%original > 0) call add_differences(front%original, plan%rows(front%row + 1:), front%columns, &
-                                                     plan%columns(front%column + 1:), plan%m, plan%n, a, b, total)
+        if (front%original > 0) &
+          call add_differences(front, plan%rows(front%row + 1:), plan%columns(front%column + 1:), plan%m, a, b, total)
       end associate
     end do
     distance = sqrt(total)
@@ -210,9 +208,8 @@ contains
 
     do f = size(self%plan%fronts), 1, -1
       associate (front => self%plan%fronts(f), plan => self%plan)
-        call substitute(front%rows, front%pivots, front%columns, self%values(front%value + 1:), &
-                        self%reciprocals(front%pivot + 1:), plan%columns(front%column + 1:), plan%n, &
-                        self%sides(front%row + 1:), x)
+        call substitute(front, self%values(front%value + 1:), self%reciprocals(front%pivot + 1:), &
+                        plan%columns(front%column + 1:), self%sides(front%row + 1:), x)
       end associate
     end do
   end subroutine substitute_fronts

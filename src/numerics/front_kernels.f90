@@ -3,6 +3,7 @@
 !> Arrays are of explicit shape, so that the compiler keeps their addresses in registers.
 module mech9_front_kernels
   use mech9_kinds, only: wp
+  use mech9_front_plan, only: front_type
   implicit none
   private
   public :: gather, take_rows, eliminate, add_squares, add_differences, pass_rows, reflect, substitute, take_covariance, invert, &
@@ -11,28 +12,25 @@ module mech9_front_kernels
 contains
 
   !> Take a front's original rows out of the matrix.
-  pure subroutine gather(original, rows, n, columns, m_matrix, n_matrix, matrix, m, a)
-    integer, intent(in) :: original                      !< number of original rows
-    integer, intent(in) :: rows(original)                !< their numbers in the matrix
-    integer, intent(in) :: n                             !< columns of the front
-    integer, intent(in) :: columns(n)                    !< their numbers in the matrix
-    integer, intent(in) :: m_matrix                      !< rows of the matrix
-    integer, intent(in) :: n_matrix                      !< columns of the matrix
-    real(wp), intent(in) :: matrix(m_matrix, n_matrix)   !< the matrix
-    integer, intent(in) :: m                             !< rows of the front
-    real(wp), intent(inout) :: a(m, n)                   !< gets the first rows of the front
+  pure subroutine gather(front, rows, columns, m_matrix, matrix, a)
+    type(front_type), intent(in) :: front                       !< the front
+    integer, intent(in) :: rows(front%original)                      !< numbers of its original rows in the matrix
+    integer, intent(in) :: columns(front%columns)               !< numbers of its columns in the matrix
+    integer, intent(in) :: m_matrix                             !< rows of the matrix
+    real(wp), intent(in) :: matrix(m_matrix, *)                 !< the matrix
+    real(wp), intent(inout) :: a(front%rows, front%columns)     !< gets the first rows of the front
     integer :: i, j
 
-    if (is_spatial_closure(original, rows)) then
-      do j = 1, n
+    if (is_spatial_closure(front%original, rows)) then
+      do j = 1, front%columns
         do i = 1, 6
           a(i, j) = matrix(rows(1) + i - 1, columns(j))
         end do
       end do
       return
     end if
-    do j = 1, n
-      do i = 1, original
+    do j = 1, front%columns
+      do i = 1, front%original
         a(i, j) = matrix(rows(i), columns(j))
       end do
     end do
@@ -155,23 +153,21 @@ contains
   end subroutine add_squares
 
   !> Add the squares of the differences between two matrices in the original rows of a front.
-  pure subroutine add_differences(original, rows, n, columns, m_matrix, n_matrix, a, b, total)
-    integer, intent(in) :: original                 !< number of original rows
-    integer, intent(in) :: rows(original)           !< their numbers in the matrix
-    integer, intent(in) :: n                        !< columns of the front
-    integer, intent(in) :: columns(n)               !< their numbers in the matrix
+  pure subroutine add_differences(front, rows, columns, m_matrix, a, b, total)
+    type(front_type), intent(in) :: front           !< the front
+    integer, intent(in) :: rows(front%original)          !< numbers of its original rows in the matrix
+    integer, intent(in) :: columns(front%columns)   !< numbers of its columns in the matrix
     integer, intent(in) :: m_matrix                 !< rows of the matrix
-    integer, intent(in) :: n_matrix                 !< columns of the matrix
-    real(wp), intent(in) :: a(m_matrix, n_matrix)   !< the first matrix
-    real(wp), intent(in) :: b(m_matrix, n_matrix)   !< the second one
+    real(wp), intent(in) :: a(m_matrix, *)          !< the first matrix
+    real(wp), intent(in) :: b(m_matrix, *)          !< the second one
     real(wp), intent(inout) :: total                !< the sum of squares
     real(wp) :: sums(6)
     integer :: i, j, k, before
 
-    if (is_spatial_closure(original, rows)) then
+    if (is_spatial_closure(front%original, rows)) then
       before = rows(1) - 1
       sums = 0.0_wp
-      do j = 1, n
+      do j = 1, front%columns
         k = columns(j)
         ! unrolled, the loop would be compiled number by number and not for vectors
 !GCC$ unroll 1
@@ -182,39 +178,37 @@ contains
       total = total + (((sums(1) + sums(2)) + (sums(3) + sums(4))) + (sums(5) + sums(6)))
       return
     end if
-    do j = 1, n
+    do j = 1, front%columns
       k = columns(j)
-      do i = 1, original
+      do i = 1, front%original
         total = total + (a(rows(i), k) - b(rows(i), k))**2
       end do
     end do
   end subroutine add_differences
 
   !> Pass the rows that remain on to the parent, where they are zero in the columns that the front does not have.
-  pure subroutine pass_rows(m, p, n, a, places, m_parent, n_parent, before, parent)
-    integer, intent(in) :: m                               !< rows of the front
-    integer, intent(in) :: p                               !< pivots of the front
-    integer, intent(in) :: n                               !< columns of the front
-    real(wp), intent(in) :: a(m, n)                        !< the front after elimination
-    integer, intent(in) :: places(n)                       !< place of each column among the columns of the parent
-    integer, intent(in) :: m_parent                        !< rows of the parent
-    integer, intent(in) :: n_parent                        !< columns of the parent
-    integer, intent(in) :: before                          !< rows of the parent before those that it gets
-    real(wp), intent(inout) :: parent(m_parent, n_parent)  !< gets the rows
+  pure subroutine pass_rows(front, a, places, parent, values)
+    type(front_type), intent(in) :: front                                !< the front
+    real(wp), intent(in) :: a(front%rows, front%columns)                 !< its values after elimination
+    integer, intent(in) :: places(front%columns)                         !< place of each column among the columns of the parent
+    type(front_type), intent(in) :: parent                               !< its parent
+    real(wp), intent(inout) :: values(parent%rows, parent%columns)       !< of the parent, which gets the rows
     integer :: i, j
 
-    if (n - p < n_parent) then
-      do j = 1, n_parent
-        do i = before + 1, before + m - p
-          parent(i, j) = 0.0_wp
+    associate (m => front%rows, p => front%pivots, n => front%columns, before => front%parent_row)
+      if (n - p < parent%columns) then
+        do j = 1, parent%columns
+          do i = before + 1, before + m - p
+            values(i, j) = 0.0_wp
+          end do
+        end do
+      end if
+      do i = p + 1, m
+        do j = p + 1, n
+          values(before + i - p, places(j)) = a(i, j)
         end do
       end do
-    end if
-    do i = p + 1, m
-      do j = p + 1, n
-        parent(before + i - p, places(j)) = a(i, j)
-      end do
-    end do
+    end associate
   end subroutine pass_rows
 
   !> b becomes Q^T b, with the p reflections of a front.
@@ -246,32 +240,29 @@ contains
   end subroutine reflect_6_5
 
   !> The solution of a front for its pivots, from the solution for its other columns.
-  pure subroutine substitute(m, p, n, a, reciprocals, columns, n_matrix, b, x)
-    integer, intent(in) :: m                  !< rows of the front
-    integer, intent(in) :: p                  !< pivots of the front
-    integer, intent(in) :: n                  !< columns of the front
-    real(wp), intent(in) :: a(m, n)           !< the front after elimination
-    real(wp), intent(in) :: reciprocals(p)    !< of the diagonal of R
-    integer, intent(in) :: columns(n)         !< numbers of the columns in the matrix
-    integer, intent(in) :: n_matrix           !< columns of the matrix
-    real(wp), intent(in) :: b(p)              !< right-hand side
-    real(wp), intent(inout) :: x(n_matrix)    !< with the solution for the other columns; gets that for the pivots
+  pure subroutine substitute(front, a, reciprocals, columns, b, x)
+    type(front_type), intent(in) :: front                   !< the front
+    real(wp), intent(in) :: a(front%rows, front%columns)    !< its values after elimination
+    real(wp), intent(in) :: reciprocals(front%pivots)       !< of the diagonal of R
+    integer, intent(in) :: columns(front%columns)           !< numbers of the columns in the matrix
+    real(wp), intent(in) :: b(front%pivots)                 !< right-hand side
+    real(wp), intent(inout) :: x(*)                         !< with the solution for the other columns; gets that for the pivots
 
-    if (p == 5) then
-      call substitute_5(m, n, a, reciprocals, columns, n_matrix, b, x)
+    if (front%pivots == 5) then
+      call substitute_5(front, a, reciprocals, columns, b, x)
     else
-      call substitute_any(p, m, n, a, reciprocals, columns, n_matrix, b, x)
+      call substitute_any(front%pivots, front, a, reciprocals, columns, b, x)
     end if
   end subroutine substitute
 
   !> `substitute` for any number of pivots.
-  pure subroutine substitute_any(p, m, n, a, reciprocals, columns, n_matrix, b, x)
+  pure subroutine substitute_any(p, front, a, reciprocals, columns, b, x)
     integer, intent(in) :: p   !< number of pivots
     include 'front_substitution.inc'
   end subroutine substitute_any
 
   !> `substitute` for five pivots.
-  pure subroutine substitute_5(m, n, a, reciprocals, columns, n_matrix, b, x)
+  pure subroutine substitute_5(front, a, reciprocals, columns, b, x)
     integer, parameter :: p = 5
     include 'front_substitution.inc'
   end subroutine substitute_5
@@ -293,71 +284,88 @@ contains
   end subroutine take_covariance
 
   !> The inverse among the pivots of a front, and its products with the other columns.
-  pure subroutine invert(m, p, r, a, reciprocals, of_others, inverse, coupling, product, variances)
-    integer, intent(in) :: m                  !< rows of the front
-    integer, intent(in) :: p                  !< pivots of the front
-    integer, intent(in) :: r                  !< number of its other columns
-    real(wp), intent(in) :: a(m, p + r)       !< the front after elimination
-    real(wp), intent(in) :: reciprocals(p)    !< of the diagonal of R
-    real(wp), intent(in) :: of_others(r, r)   !< covariance of the other columns
-    real(wp), intent(out) :: inverse(p, p)    !< R^-1 among the pivots, an upper triangle
-    real(wp), intent(out) :: coupling(p, r)   !< product of that inverse and R in the other columns
-    real(wp), intent(out) :: product(p, r)    !< product of the coupling and the covariance
-    real(wp), intent(out) :: variances(p)     !< diagonal of the covariance for the pivots
+  pure subroutine invert(front, a, reciprocals, of_others, inverse, product, variances)
+    type(front_type), intent(in) :: front                           !< the front
+    real(wp), intent(in) :: a(front%rows, front%columns)            !< its values after elimination
+    real(wp), intent(in) :: reciprocals(front%pivots)               !< of the diagonal of R
+    real(wp), intent(in) :: of_others(*)                            !< covariance of the other columns
+    real(wp), intent(out) :: inverse(front%pivots, front%columns)   !< R^-1 among the pivots, then its product with R in the others
+    real(wp), intent(out) :: product(front%pivots, *)               !< product of the latter and the covariance
+    real(wp), intent(out) :: variances(front%pivots)                !< diagonal of the covariance for the pivots
 
-    if (p == 5) then
-      call invert_5(m, r, a, reciprocals, of_others, inverse, coupling, product, variances)
+    if (front%pivots == 5) then
+      call invert_5(front, a, reciprocals, of_others, inverse, product, variances)
     else
-      call invert_any(m, p, r, a, reciprocals, of_others, inverse, coupling, product, variances)
+      call invert_any(front, a, reciprocals, of_others, inverse, product, variances)
     end if
   end subroutine invert
 
   !> `invert` for any number of pivots.
-  pure subroutine invert_any(m, p, r, a, reciprocals, of_others, inverse, coupling, product, variances)
-    integer, intent(in) :: p   !< number of pivots
+  pure subroutine invert_any(front, a, reciprocals, of_others, inverse, product, variances)
+    type(front_type), intent(in) :: front                           !< the front
+    real(wp), intent(in) :: a(front%rows, front%columns)            !< its values after elimination
+    real(wp), intent(in) :: reciprocals(front%pivots)               !< of the diagonal of R
+    real(wp), intent(in) :: of_others(front%columns - front%pivots, *)   !< covariance of the other columns
+    real(wp), intent(out) :: inverse(front%pivots, front%columns)   !< R^-1 among the pivots, then its product with R in the others
+    real(wp), intent(out) :: product(front%pivots, *)               !< product of the latter and the covariance
+    real(wp), intent(out) :: variances(front%pivots)                !< diagonal of the covariance for the pivots
+    real(wp) :: x(front%pivots)
+    integer :: p, i, j, k
+
+    p = front%pivots
     include 'inversion.inc'
   end subroutine invert_any
 
   !> `invert` for five pivots.
-  pure subroutine invert_5(m, r, a, reciprocals, of_others, inverse, coupling, product, variances)
+  pure subroutine invert_5(front, a, reciprocals, of_others, inverse, product, variances)
     integer, parameter :: p = 5
+    type(front_type), intent(in) :: front                           !< the front
+    real(wp), intent(in) :: a(front%rows, front%columns)            !< its values after elimination
+    real(wp), intent(in) :: reciprocals(p)                          !< of the diagonal of R
+    real(wp), intent(in) :: of_others(front%columns - p, *)         !< covariance of the other columns
+    real(wp), intent(out) :: inverse(p, front%columns)              !< R^-1 among the pivots, then its product with R in the others
+    real(wp), intent(out) :: product(p, *)                          !< product of the latter and the covariance
+    real(wp), intent(out) :: variances(p)                           !< diagonal of the covariance for the pivots
+    real(wp) :: x(p)
+    integer :: i, j, k
+
     include 'inversion.inc'
   end subroutine invert_5
 
   !> The covariance of all columns of a front.
-  pure subroutine fill_covariance(p, r, inverse, coupling, product, of_others, covariance)
-    integer, intent(in) :: p                              !< pivots of the front
-    integer, intent(in) :: r                              !< number of its other columns
-    real(wp), intent(in) :: inverse(p, p)                 !< R^-1 among the pivots
-    real(wp), intent(in) :: coupling(p, r)                !< product of that inverse and R in the other columns
-    real(wp), intent(in) :: product(p, r)                 !< product of the coupling and the covariance of these columns
-    real(wp), intent(in) :: of_others(r, r)               !< covariance of the other columns
-    real(wp), intent(out) :: covariance(p + r, p + r)     !< covariance of all columns
+  pure subroutine fill_covariance(front, inverse, product, of_others, covariance)
+    type(front_type), intent(in) :: front                                 !< the front
+    real(wp), intent(in) :: inverse(front%pivots, front%columns)          !< R^-1 among the pivots; then its product with R
+    real(wp), intent(in) :: product(front%pivots, *)                      !< product of the latter and the covariance of the others
+    real(wp), intent(in) :: of_others(front%columns - front%pivots, *)    !< covariance of the other columns
+    real(wp), intent(out) :: covariance(front%columns, front%columns)     !< covariance of all columns
     integer :: i, j, k
 
-    do j = 1, p
-      do i = 1, p
-        covariance(i, j) = 0.0_wp
-      end do
-      do k = j, p
-        do i = 1, k
-          covariance(i, j) = covariance(i, j) + inverse(i, k)*inverse(j, k)
-        end do
-      end do
-      do k = 1, r
+    associate (p => front%pivots, r => front%columns - front%pivots)
+      do j = 1, p
         do i = 1, p
-          covariance(i, j) = covariance(i, j) + product(i, k)*coupling(j, k)
+          covariance(i, j) = 0.0_wp
+        end do
+        do k = j, p
+          do i = 1, k
+            covariance(i, j) = covariance(i, j) + inverse(i, k)*inverse(j, k)
+          end do
+        end do
+        do k = 1, r
+          do i = 1, p
+            covariance(i, j) = covariance(i, j) + product(i, k)*inverse(j, p + k)
+          end do
         end do
       end do
-    end do
-    do j = 1, r
-      do i = 1, p
-        covariance(i, p + j) = -product(i, j)
-        covariance(p + j, i) = -product(i, j)
+      do j = 1, r
+        do i = 1, p
+          covariance(i, p + j) = -product(i, j)
+          covariance(p + j, i) = -product(i, j)
+        end do
+        do i = 1, r
+          covariance(p + i, p + j) = of_others(i, j)
+        end do
       end do
-      do i = 1, r
-        covariance(p + i, p + j) = of_others(i, j)
-      end do
-    end do
+    end associate
   end subroutine fill_covariance
 end module mech9_front_kernels

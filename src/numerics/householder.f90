@@ -7,7 +7,10 @@ module mech9_householder
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: householder, reflect, reflect_back, back_substitute, substitute_above_round_off, solve_by_transposed
+  public :: nearly_dependent, householder, reflect, reflect_back, back_substitute, substitute_above_round_off, solve_by_transposed
+
+  !> Columns with a pivot below this part of the largest are nearly dependent: round-off may determine their unknowns.
+  real(wp), parameter :: nearly_dependent = 0.05_wp
 
 contains
 
@@ -88,21 +91,17 @@ contains
   end subroutine reflect_back
 
   !> The shortest y for which a^T y = b, in the first `rank` equations in the order of the pivots.
-  pure subroutine solve_by_transposed(m, n, rank, a, pivot, tau, reciprocal, b, y)
+  pure subroutine solve_by_transposed(m, n, rank, a, tau, reciprocal, y)
     integer, intent(in) :: m                !< number of rows
     integer, intent(in) :: n                !< number of columns
     integer, intent(in) :: rank             !< columns used
     real(wp), intent(in) :: a(m, n)         !< factors, as `householder` or LAPACK leaves them
-    integer, intent(in) :: pivot(n)         !< column of the matrix at each place
     real(wp), intent(in) :: tau(n)          !< scales of the reflections
     real(wp), intent(in) :: reciprocal(n)   !< of the diagonal of R
-    real(wp), intent(in) :: b(n)            !< right-hand side
-    real(wp), intent(out) :: y(m)           !< the solution
+    real(wp), intent(inout) :: y(m)         !< b in the order of the pivots, behind its first `rank` numbers zero; the solution
     integer :: i, j
 
-    y = 0.0_wp
     do j = 1, rank
-      y(j) = b(pivot(j))
       do i = 1, j - 1
         y(j) = y(j) - a(i, j)*y(i)
       end do
@@ -112,13 +111,12 @@ contains
   end subroutine solve_by_transposed
 
   !> R^-1 b in the first `rank` columns, with zeros for the unknowns of nearly dependent columns that round-off alone can explain.
-  pure subroutine substitute_above_round_off(m, rank, a, reciprocal, lengths, nearly_dependent, round_off, b)
+  pure subroutine substitute_above_round_off(m, rank, a, reciprocal, lengths, round_off, b)
     integer, intent(in) :: m                   !< number of rows
     integer, intent(in) :: rank                !< columns that are used
     real(wp), intent(in) :: a(m, rank)         !< factors, as `householder` leaves them
     real(wp), intent(in) :: reciprocal(rank)   !< of the diagonal of R
     real(wp), intent(in) :: lengths(rank)      !< of the pivots
-    real(wp), intent(in) :: nearly_dependent   !< a pivot below this part of the largest is that of a nearly dependent column
     real(wp), intent(in) :: round_off          !< error of x by round-off in a well determined column, in the unit of x
     real(wp), intent(inout) :: b(m)            !< Q^T b; the solution in its first `rank` numbers afterwards
     real(wp) :: s

@@ -8,7 +8,8 @@
 module mech9_least_squares
   use mech9_kinds, only: wp
   use mech9_lapack, only: dgeqp3, dormqr
-  use mech9_householder, only: householder, reflect, back_substitute, substitute_above_round_off, solve_by_transposed
+  use mech9_householder, only: nearly_dependent, householder, reflect, back_substitute, substitute_above_round_off, &
+    solve_by_transposed
   use mech9_cofactors, only: invert_by_cofactors
   use mech9_matrix_norms, only: distance_in_full
   use mech9_front_plan, only: front_plan_type
@@ -19,8 +20,6 @@ module mech9_least_squares
 
   !> From this number of columns on LAPACK is called.
   integer, parameter :: lapack_from = 24
-  !> Columns with a pivot below this part of the largest are nearly dependent: round-off may determine their unknowns.
-  real(wp), parameter :: nearly_dependent = 0.05_wp
 
   !> A sparse matrix whose least pivot is above this part of the largest is regular, and may be factorized by fronts. Below, all
   !> pivots are found as for full matrices, so that ranks and singular positions are judged by the same numbers.
@@ -177,7 +176,7 @@ contains
     conditioning = 1.0_wp
     if (present(round_off)) conditioning = self%conditioning()
     if (conditioning < nearly_dependent) then
-      call substitute_above_round_off(self%m, rank, self%a, self%reciprocal, self%lengths, nearly_dependent, round_off, b)
+      call substitute_above_round_off(self%m, rank, self%a, self%reciprocal, self%lengths, round_off, b)
     else
       call back_substitute(self%m, rank, self%a, self%reciprocal, b)
     end if
@@ -193,6 +192,7 @@ contains
     real(wp), intent(inout), contiguous :: b(:)        !< (n) right-hand side; overwritten
     real(wp), intent(out), contiguous :: y(:)          !< (m) the solution
     real(wp), intent(out), optional :: regularity      !< least number on the diagonal of R over the largest one
+    integer :: j
 
     if (present(regularity)) regularity = self%lengths(self%n)/max(self%lengths(1), tiny(regularity))
     if (self%by_fronts) then
@@ -201,7 +201,11 @@ contains
     else if (self%by_cofactors) then
       y = matmul(b, self%inverse)
     else
-      call solve_by_transposed(self%m, self%n, self%safe_rank, self%a, self%pivot, self%tau, self%reciprocal, b, y)
+      y = 0.0_wp
+      do j = 1, self%safe_rank
+        y(j) = b(self%pivot(j))
+      end do
+      call solve_by_transposed(self%m, self%n, self%safe_rank, self%a, self%tau, self%reciprocal, y)
     end if
   end subroutine solve_transposed
 

@@ -70,7 +70,8 @@ contains
     spline%x = x
     allocate (spline%c(0:5, 3, n - 1))
     do i = 1, n - 1
-      call find_piece(h(i), y(:, i), y(:, i + 1), slope(:, i), slope(:, i + 1), bend(:, i), bend(:, i + 1), spline%c(:, :, i))
+      call find_piece(h(i), reshape([y(:, i), slope(:, i), bend(:, i)], [3, 3]), &
+                      reshape([y(:, i + 1), slope(:, i + 1), bend(:, i + 1)], [3, 3]), spline%c(:, :, i))
     end do
   end subroutine build_quintic
 
@@ -212,23 +213,19 @@ contains
   end subroutine fix_end
 
   !> Coefficients of a piece from its ends (Hermite's form).
-  pure subroutine find_piece(h, y0, y1, slope0, slope1, bend0, bend1, c)
-    real(wp), intent(in) :: h           !< length of the piece
-    real(wp), intent(in) :: y0(3)       !< its beginning
-    real(wp), intent(in) :: y1(3)       !< its end
-    real(wp), intent(in) :: slope0(3)   !< first derivative at its beginning
-    real(wp), intent(in) :: slope1(3)   !< first derivative at its end
-    real(wp), intent(in) :: bend0(3)    !< second derivative at its beginning
-    real(wp), intent(in) :: bend1(3)    !< second derivative at its end
-    real(wp), intent(out) :: c(0:5, 3)  !< (0:5,3) coefficients of the powers of the part of h
+  pure subroutine find_piece(h, first, last, c)
+    real(wp), intent(in) :: h               !< length of the piece
+    real(wp), intent(in) :: first(3, 0:2)   !< its beginning, with two derivatives
+    real(wp), intent(in) :: last(3, 0:2)    !< its end, with two derivatives
+    real(wp), intent(out) :: c(0:5, 3)      !< (0:5,3) coefficients of the powers of the part of h
     real(wp), dimension(3) :: rise, first0, first1, second0, second1
 
-    first0 = h*slope0
-    first1 = h*slope1
-    second0 = h**2*bend0
-    second1 = h**2*bend1
-    rise = y1 - y0
-    c(0, :) = y0
+    first0 = h*first(:, 1)
+    first1 = h*last(:, 1)
+    second0 = h**2*first(:, 2)
+    second1 = h**2*last(:, 2)
+    rise = last(:, 0) - first(:, 0)
+    c(0, :) = first(:, 0)
     c(1, :) = first0
     c(2, :) = 0.5_wp*second0
     c(3, :) = 10.0_wp*rise - 6.0_wp*first0 - 4.0_wp*first1 - 1.5_wp*second0 + 0.5_wp*second1

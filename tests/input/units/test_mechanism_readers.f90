@@ -17,7 +17,6 @@ module test_mechanism_readers
   use mech9_joint_reader, only: read_joints
   use mech9_law, only: drive_slot_type
   use mech9_limit_reader, only: read_limits
-  use mech9_load, only: load_slot_type
   use mech9_motor, only: motor_slot_type
   use mech9_load_reader, only: read_loads
   use mech9_model, only: model_type
