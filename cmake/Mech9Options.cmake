@@ -39,8 +39,8 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
     "-g -Og -Wno-maybe-uninitialized -fcheck=all,no-array-temps -finit-real=snan -finit-derived -ffpe-trap=invalid,zero,overflow")
   set(mech9_sanitizers "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer")
   foreach(language C Fortran)
-    # twice as quick to compile as with -g -O1
-    set(CMAKE_${language}_FLAGS_SANITIZE "-g1 -Og ${mech9_sanitizers} ${mech9_no_false_warnings}")
+    # With -Og the bounds of arrays that are about to be allocated would be taken for overflows of integers.
+    set(CMAKE_${language}_FLAGS_SANITIZE "-g1 -O1 ${mech9_sanitizers} ${mech9_no_false_warnings}")
     set(CMAKE_${language}_FLAGS_THREADS "-g1 -Og -fsanitize=thread ${mech9_no_false_warnings}")
     set(CMAKE_${language}_FLAGS_COVERAGE "-g -O0 --coverage")
   endforeach()
