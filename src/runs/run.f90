@@ -6,6 +6,8 @@ module mech9_run
   use mech9_variable_model, only: variable_model_type
   use mech9_simulation, only: interruption_type
   use mech9_model_motion, only: model_motion_type
+  use mech9_film, only: new_film
+  use mech9_masks, only: numbers_of
   use mech9_row_source, only: row_source_type, new_row_source
   implicit none
   private
@@ -17,6 +19,7 @@ module mech9_run
     type(row_source_type), allocatable :: source    !< computes the rows
   contains
     procedure :: prepare
+    procedure :: record_film
     procedure :: make
     procedure :: close => close_run
   end type run_type
@@ -44,6 +47,24 @@ contains
     if (model%request%output%with_derivatives()) call self%source%add_sensitivities(variable, err)
     if (.not. allocated(err)) call self%source%begin_quantities(err)
   end subroutine prepare
+
+  !> Let a film take the position of each row, and the forces where they are drawn.
+  subroutine record_film(self, model)
+    class(run_type), intent(inout) :: self    !< the run, prepared for pictures
+    type(model_type), intent(in) :: model     !< its model
+    integer :: outputs
+
+    outputs = model%request%time%intervals + 1
+    associate (source => self%source, independent => model%problem%partition%independent())
+      if (model%request%output%force_arrows) then
+        source%film = new_film(model%mechanism, independent, outputs, source%columns, &
+                               numbers_of(model%request%output%drawn_forces(size(model%mechanism%pairs)) .and. &
+                                          model%mechanism%structure%stands_alone()))
+      else
+        source%film = new_film(model%mechanism, independent, outputs, source%columns)
+      end if
+    end associate
+  end subroutine record_film
 
   !> Go through all outputs, without any files, and finish the quantities.
   subroutine make(self, err, rows, interruption)

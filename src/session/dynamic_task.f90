@@ -10,7 +10,8 @@ module mech9_dynamic_task
   use mech9_kept_rows, only: kept_rows_type
   use mech9_equilibrium_task, only: asks_for_equilibrium, find_rest
   use mech9_law_times, only: check_times_of_laws
-  use mech9_task, only: task_type, answers_only, print_check, print_given, check_motion
+  use mech9_task, only: task_type, answers_only, print_check, check_motion
+  use mech9_check_text, only: print_given
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_free_simulation, only: free_simulation_type
   use mech9_run, only: run_type
@@ -71,7 +72,7 @@ contains
       call run%prepare(used, err, variable, pictures%any_wanted())
     end if
     if (allocated(err)) then
-      if (options%has('check')) call print_given(model, .true.)
+      if (options%has('check')) call print_given(output_unit, model, .true.)
       call diagnostics%add_error(err)
     else if (answers_only(options)) then
       simulation => run%motion%free()

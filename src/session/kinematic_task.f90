@@ -11,7 +11,8 @@ module mech9_kinematic_task
   use mech9_requested, only: requested_by_results
   use mech9_run, only: run_type
   use mech9_law_times, only: check_times_of_laws
-  use mech9_task, only: task_type, answers_only, print_check, print_given, check_motion
+  use mech9_task, only: task_type, answers_only, print_check, check_motion
+  use mech9_check_text, only: print_given
   use mech9_range_text, only: print_ranges
   use mech9_cam_task, only: work_on_cams
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
@@ -70,7 +71,7 @@ contains
     call read_picture_requests(options, model, pictures, err)
     if (.not. allocated(err)) call run%motion%assemble(used, err)
     if (allocated(err)) then
-      if (options%has('check')) call print_given(model, model%program == dynamics)
+      if (options%has('check')) call print_given(output_unit, model, model%program == dynamics)
       call diagnostics%add_error(err)
       return
     end if

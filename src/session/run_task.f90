@@ -2,7 +2,6 @@
 module mech9_run_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type
-  use mech9_masks, only: numbers_of
   use mech9_system, only: asked_to_end
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
@@ -14,7 +13,7 @@ module mech9_run_task
   use mech9_run, only: run_type
   use mech9_row_source, only: row_source_type
   use mech9_force_record, only: reacting_pairs
-  use mech9_film, only: film_type, new_film
+  use mech9_film, only: film_type
   use mech9_json, only: json_type
   use mech9_facts, only: facts_type
   use mech9_kept_rows, only: kept_rows_type
@@ -58,7 +57,8 @@ contains
 
     associate (motion => run%motion, source => run%source)
       call source%forces%judge(model, motion%plan, motion%start)
-      call begin_run(options, pictures, model, motion%plan, motion%simulation%requested, source, results, diagnostics, ready)
+      if (pictures%any_wanted()) call run%record_film(model)
+      call begin_run(options, model, motion%plan, motion%simulation%requested, source, results, diagnostics, ready)
       if (.not. options%has('quiet')) call print_start_way(error_unit, model%mechanism, motion%way)
       reported = ready .and. options%has('report')
       if (.not. ready) return
@@ -128,13 +128,12 @@ contains
   end subroutine save_report
 
   !> Print the title of the run and open its results. `ready` is false after an error.
-  subroutine begin_run(options, pictures, model, plan, requested, source, results, diagnostics, ready)
+  subroutine begin_run(options, model, plan, requested, source, results, diagnostics, ready)
     type(command_line_type), intent(in) :: options         !< the command line
-    type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
     type(model_type), intent(in) :: model              !< the model
     type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
     type(requested_type), intent(in) :: requested          !< the requested part of the motion
-    type(row_source_type), intent(inout) :: source         !< computes the rows; gets a film where pictures are wanted
+    type(row_source_type), intent(in) :: source            !< computes the rows
     type(results_type), intent(out), target :: results     !< opened
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
     logical, intent(out) :: ready                          !< the run can begin
@@ -144,14 +143,6 @@ contains
     ready = .false.
     call announce(options, model, plan, requested)
     if (model%request%output%with_forces() .and. .not. options%has('quiet')) call print_forceless(error_unit, model%mechanism)
-    if (pictures%any_wanted() .and. model%request%output%force_arrows) then
-      source%film = new_film(model%mechanism, model%problem%partition%independent(), model%request%time%intervals + 1, &
-                             source%columns, numbers_of(model%request%output%drawn_forces(size(model%mechanism%pairs)) .and. &
-                                        model%mechanism%structure%stands_alone()))
-    else if (pictures%any_wanted()) then
-      source%film = new_film(model%mechanism, model%problem%partition%independent(), model%request%time%intervals + 1, &
-                             source%columns)
-    end if
     call results%open(options, model, diagnostics%sources(1)%text, source%columns, err)
     ready = .not. allocated(err)
     if (.not. ready) call diagnostics%add_error(err)

@@ -8,7 +8,6 @@ module mech9_task
   use mech9_kept_rows, only: kept_rows_type
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
-  use mech9_result_units, only: unit_of
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_requested, only: requested_type
@@ -20,18 +19,12 @@ module mech9_task
   use mech9_assemblies_text, only: print_assemblies
   use mech9_structure_graph, only: save_structure_graph
   use mech9_structure_text, only: print_mobility, print_mobility_report
-  use mech9_geometry_text, only: print_dimensions
-  use mech9_held_text, only: print_held
-  use mech9_parameter_text, only: print_parameters, print_parameter_notes
-  use mech9_check_notes, only: print_notes
   use mech9_start_path, only: start_way_type
-  use mech9_start_way_text, only: print_start_way
+  use mech9_check_text, only: print_given, print_start
   use mech9_plan_text, only: print_plan
-  use mech9_force_text, only: print_uniqueness, print_forceless
-  use mech9_force_record, only: force_record_type, reacting_pairs
   implicit none
   private
-  public :: task_type, answers_only, print_check, print_given, check_motion
+  public :: task_type, answers_only, print_check, check_motion
 
   type, abstract :: task_type
     integer :: program = kinematics   !< or dynamics
@@ -86,55 +79,12 @@ contains
     if (options%has('branches')) call print_assemblies(output_unit, model%mechanism, plan, start, options%number('starts', 100))
     if (options%has('graph')) call draw_graph(options, model, plan, diagnostics)
     if (options%has('check')) then
-      call print_given(model, pictures%with_masses)
-      call print_start_way(output_unit, model%mechanism, way)
-      call print_start(model, start)
-      call print_forces(model, plan, start)
+      call print_given(output_unit, model, pictures%with_masses)
+      call print_start(output_unit, model, plan, start, way)
     end if
     if (options%has('sketch')) call pictures%save_start(model, plan, start, err)
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine print_check
-
-  !> Print the results of a check that need no assembly of the mechanism.
-  subroutine print_given(model, with_masses)
-    type(model_type), intent(in) :: model       !< the model
-    logical, intent(in) :: with_masses              !< bodies count in this program
-
-    call print_held(output_unit, model)
-    call print_parameter_notes(output_unit, model)
-    call print_parameters(output_unit, model)
-    call print_dimensions(output_unit, model%mechanism)
-    call print_notes(output_unit, model, with_masses)
-  end subroutine print_given
-
-  !> Print the coordinates at the start.
-  subroutine print_start(model, start)
-    type(model_type), intent(in) :: model       !< the model
-    type(state_type), intent(in) :: start           !< assembled position
-    character(len=16) :: name
-    integer :: k
-
-    write (output_unit, '(a)') 'assembled at the start:'
-    do k = 1, size(model%mechanism%pairs)
-      write (name, '(a,i0)') 'q', k
-      write (output_unit, '(2x,a8,es24.16)') name, &
-        start%q(k)/unit_of(model%mechanism, k)
-    end do
-  end subroutine print_start
-
-  !> Print what is known about the forces that the model requests.
-  subroutine print_forces(model, plan, start)
-    type(model_type), intent(in) :: model   !< the model
-    type(plan_type), intent(in) :: plan     !< its plan
-    type(state_type), intent(in) :: start   !< assembled position
-    type(force_record_type) :: forces
-
-    if (.not. model%request%output%with_forces()) return
-    call print_forceless(output_unit, model%mechanism)
-    call forces%judge(model, plan, start)
-    if (allocated(forces%unique)) &
-      call print_uniqueness(output_unit, reacting_pairs(model), forces%unique)
-  end subroutine print_forces
 
   !> Carry out --graph.
   subroutine draw_graph(options, model, plan, diagnostics)

@@ -1,0 +1,139 @@
+!> Pictures of a mechanism in files: a sketch, and a moving picture.
+module mech9_mechanism_pictures
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_path, only: ending_of
+  use mech9_model, only: model_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_force_arrows, only: find_tips, take_arrows, add_force_arrows
+  use mech9_film, only: film_type, new_film
+  use mech9_view, only: view_type
+  use mech9_skeleton, only: skeleton_type, make_skeleton
+  use mech9_slide_places, only: place_slides
+  use mech9_wheel_figures, only: find_figures
+  use mech9_cam_figures, only: find_cam_figures
+  use mech9_view_choice, only: choose_view
+  use mech9_projection, only: projection_type, fit_projection
+  use mech9_scene, only: scene_type
+  use mech9_scene_making, only: make_scene
+  use mech9_svg_picture, only: save_sketch
+  use mech9_html_film, only: save_html_film
+  use mech9_svg_film, only: save_svg_film
+  use mech9_gif_film, only: save_gif_film
+  implicit none
+  private
+  public :: mechanism_pictures_type, kind_of_picture
+
+  !> The pictures to make. An empty path means no picture.
+  type :: mechanism_pictures_type
+    character(len=:), allocatable :: sketch
+    character(len=:), allocatable :: animation
+    type(view_type), allocatable :: view      !< unless the best one is to be found
+    logical :: with_masses = .false.          !< bodies count in this program
+  contains
+    procedure :: any_wanted
+    procedure :: save => save_pictures
+    procedure :: save_start
+  end type mechanism_pictures_type
+
+contains
+
+  !> Whether any picture is wanted.
+  pure logical function any_wanted(self)
+    class(mechanism_pictures_type), intent(in) :: self   !< the pictures
+
+    any_wanted = self%sketch /= '' .or. self%animation /= ''
+  end function any_wanted
+
+  !> Make the sketch of an assembled position, without a run. Errors are exit_file.
+  subroutine save_start(self, model, plan, start, err)
+    class(mechanism_pictures_type), intent(in) :: self  !< the pictures
+    type(model_type), intent(in) :: model               !< the model
+    type(plan_type), intent(in) :: plan                 !< the plan of the mechanism
+    type(state_type), intent(in) :: start               !< assembled position
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(mechanism_pictures_type) :: sketch_only
+    type(film_type) :: film
+
+    film = new_film(model%mechanism, model%problem%partition%independent(), 1)
+    call film%take(model%mechanism, plan, start, [start%t])
+    sketch_only%sketch = self%sketch
+    sketch_only%animation = ''
+    if (allocated(self%view)) allocate (sketch_only%view, source=self%view)
+    sketch_only%with_masses = self%with_masses
+    call sketch_only%save(model, film, err)
+  end subroutine save_start
+
+  !> Make the pictures of a film; a film without frames gives none. Errors are exit_file.
+  subroutine save_pictures(self, model, film, err)
+    class(mechanism_pictures_type), intent(in) :: self  !< the pictures
+    type(model_type), intent(in) :: model               !< the model
+    type(film_type), intent(in) :: film                 !< poses and columns at some outputs
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(skeleton_type) :: skeleton
+    type(view_type) :: view
+    logical :: planar
+
+    if (film%n_frames == 0) return
+    call make_skeleton(model%mechanism, film, skeleton)
+    call place_slides(model%mechanism, film, skeleton)
+    call find_figures(model%mechanism, film, skeleton)
+    if (allocated(model%request%cams)) call find_cam_figures(model%request%cams, film, skeleton)
+    call choose_view(model%mechanism, film, skeleton, view, planar)
+    if (allocated(self%view)) then
+      ! whether the view is along the normal of the plane
+      planar = planar .and. abs(dot_product(self%view%toward, view%toward)) > 1.0_wp - 1.0e-6_wp
+      view = self%view
+    end if
+    if (self%sketch /= '') call save_one(self, model, film, skeleton, view, planar, self%sketch, .false., err)
+    if (self%animation /= '' .and. .not. allocated(err)) &
+      call save_one(self, model, film, skeleton, view, planar, self%animation, .true., err)
+  end subroutine save_pictures
+
+  !> Make one picture. The mechanism on a page can be turned unless it is planar; its projection leaves room for that.
+  subroutine save_one(self, model, film, skeleton, view, planar, path, moving, err)
+    class(mechanism_pictures_type), intent(in) :: self  !< the pictures
+    type(model_type), intent(in) :: model               !< the model
+    type(film_type), intent(in) :: film                 !< poses and columns at some outputs
+    type(skeleton_type), intent(in) :: skeleton         !< places of the pairs on their axes
+    type(view_type), intent(in) :: view                 !< direction of the view
+    logical, intent(in) :: planar                       !< the motion keeps to one plane
+    character(len=*), intent(in) :: path                !< of the picture
+    logical, intent(in) :: moving                       !< the picture moves
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(projection_type) :: projection
+    type(scene_type) :: scene
+    type(film_type) :: shown
+    real(wp), allocatable :: tips(:, :, :)
+    logical :: page
+
+    page = moving .and. kind_of_picture(path) == 'html'
+    call find_tips(model%mechanism, film, skeleton%size, tips)
+    call fit_projection(model%mechanism, film, skeleton, view, page .and. .not. planar, tips, projection)
+    call make_scene(model%mechanism, film, skeleton, projection, planar, self%with_masses, scene)
+    shown = film
+    if (allocated(film%forces)) then
+      call take_arrows(model%mechanism, film, tips, projection, shown)
+      call add_force_arrows(model%mechanism, shown, scene)
+    end if
+    if (.not. moving) then
+      call save_sketch(path, model%mechanism%title, scene, shown, projection, 1, err)
+    else if (page) then
+      call save_html_film(path, model%mechanism%title, scene, shown, projection, planar, err)
+    else if (kind_of_picture(path) == 'gif') then
+      call save_gif_film(path, model%mechanism%title, scene, shown, projection, err)
+    else
+      call save_svg_film(path, model%mechanism%title, scene, shown, projection, err)
+    end if
+  end subroutine save_one
+
+  !> The kind of picture by the name of its file: the ending in lower case; htm counts as html.
+  pure function kind_of_picture(path) result(kind)
+    character(len=*), intent(in) :: path   !< name of the file
+    character(len=len(ending_of(path)) + 1) :: kind
+
+    kind = ending_of(path)
+    if (kind == 'htm') kind = 'html'
+  end function kind_of_picture
+end module mech9_mechanism_pictures
