@@ -1,5 +1,5 @@
 !> The data file of a design: the text of the data file with other values of the parameters, and with the assembly of its start.
-module mech9_design_file
+module mech9_design_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_document, only: document_type, group_type
@@ -70,4 +70,4 @@ contains
       call set_number(group, 'phase', coupling%constant/unit_of(model%mechanism, coupling%coordinates(2)), text)
     end select
   end subroutine keep_phase
-end module mech9_design_file
+end module mech9_design_text

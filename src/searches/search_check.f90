@@ -1,5 +1,5 @@
 !> The judgement before a search whether it can be made: by its methods, its quantities, its limits.
-module mech9_optimum_check
+module mech9_search_check
   use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -17,7 +17,7 @@ module mech9_optimum_check
   use mech9_synthesis, only: synthesis_type
   use mech9_closed_search, only: is_least_squares
   use mech9_transmission, only: has_transmission_angle
-  use mech9_signal_interruption, only: signal_interruption_type
+  use mech9_simulation, only: interruption_type
   use mech9_run_evaluator, only: new_run_evaluator, used_quantities
   implicit none
   private
@@ -26,15 +26,14 @@ module mech9_optimum_check
 contains
 
   !> Report what no search can find, and prepare the runs for quantities.
-  subroutine check_synthesis(variable, model, start, quiet, synthesis, err)
+  subroutine check_synthesis(variable, model, start, interruption, synthesis, err)
     class(variable_model_type), intent(in) :: variable      !< the model as a function of its parameters
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(state_type), intent(in) :: start                   !< its assembled position
-    logical, intent(in) :: quiet                            !< nothing is said of a run that takes long
+    class(interruption_type), intent(in) :: interruption    !< is asked whether a run for quantities shall stop
     type(synthesis_type), intent(inout) :: synthesis        !< gets the runs
     type(error_type), allocatable, intent(out) :: err       !< allocated if no search can be made
     type(quantity_record_type) :: quantities
-    type(signal_interruption_type) :: interruption
     type(model_type) :: asked
 
     if (model%program == dynamics) call check_forced(model, err)
@@ -47,7 +46,6 @@ contains
     asked%request%quantities = model%request%quantities(used_quantities(model))
     call find_quantities(asked, quantities, err)
     if (allocated(err)) return
-    call interruption%words%start(model%program, 'no result of a run of the search', 'it', quiet, with_progress=.false.)
     allocate (synthesis%space%evaluator)
     call new_run_evaluator(variable, model, interruption, synthesis%space%evaluator)
   end subroutine check_synthesis
@@ -146,4 +144,4 @@ contains
       end associate
     end do
   end subroutine check_transmissions
-end module mech9_optimum_check
+end module mech9_search_check

@@ -8,7 +8,7 @@ module mech9_start_threads
   use mech9_design_search, only: found_design_type
   use mech9_synthesis, only: synthesis_type
   use mech9_design_space, only: design_space_type
-  use mech9_starts, only: starts_type, all_handed_out
+  use mech9_search_starts, only: search_starts_type, all_handed_out
   implicit none
   private
   public :: make_in_threads
@@ -27,7 +27,7 @@ contains
     type(synthesis_type), intent(in) :: synthesis          !< prepared
     integer, intent(in) :: seed                            !< of the starts
     integer, intent(in) :: threads                         !< how many
-    type(starts_type), intent(inout) :: starts             !< about to be made
+    class(search_starts_type), intent(inout) :: starts     !< about to be made
     type(searcher_type), allocatable, target :: searchers(:)
     integer :: i
 
@@ -49,7 +49,7 @@ contains
     type(searcher_type), intent(inout), target :: searcher !< of this thread
     type(synthesis_type), intent(in) :: synthesis          !< of all threads
     integer, intent(in) :: seed                            !< of the starts
-    type(starts_type), intent(inout) :: starts             !< of all threads
+    class(search_starts_type), intent(inout) :: starts     !< of all threads
     type(found_design_type), allocatable :: found(:)
     integer :: number
 

@@ -20,7 +20,8 @@ module many_runs
   use mech9_held_start, only: held_start_type, hold_start
   use mech9_synthesis, only: synthesis_type, new_synthesis
   use mech9_closed_search, only: found_design_type
-  use mech9_optimum_check, only: check_synthesis
+  use mech9_search_check, only: check_synthesis
+  use mech9_signal_interruption, only: signal_interruption_type
   implicit none
   private
   public :: run_type, list_runs, carry_out, same
@@ -142,7 +143,7 @@ contains
     end if
     call assemble_driven(present, plan, start, err)
     if (.not. allocated(err)) call new_synthesis(searched, present, plan, synthesis, err)
-    if (.not. allocated(err)) call check_synthesis(varied, model, start, .true., synthesis, err)
+    if (.not. allocated(err)) call check_synthesis(varied, model, start, signal_interruption_type(), synthesis, err)
     if (allocated(err)) return
     allocate (rows(1 + size(synthesis%space%varied), model%request%optimum%starts), source=0.0_wp)
     do i = 1, size(rows, 2)

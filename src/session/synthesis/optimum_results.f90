@@ -21,7 +21,7 @@ module mech9_optimum_results
   use mech9_starts, only: starts_type
   use mech9_starts_file, only: read_starts
   use mech9_optimum_group, only: write_optima
-  use mech9_design_file, only: text_of_design
+  use mech9_design_text, only: text_of_design
   use mech9_optimum_words, only: history_of_design
   implicit none
   private

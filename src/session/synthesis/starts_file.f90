@@ -16,14 +16,10 @@ module mech9_starts_file
   use mech9_study_definition, only: digest_of, tell_difference
   use mech9_design_search, only: found_design_type, most_assemblies
   use mech9_synthesis, only: synthesis_type
+  use mech9_search_starts, only: start_type
   implicit none
   private
-  public :: starts_file_type, start_type, read_starts
-
-  !> The designs to which a start led; none are allocated before it is made.
-  type :: start_type
-    type(found_design_type), allocatable :: found(:)
-  end type start_type
+  public :: starts_file_type, read_starts
 
   !> Extents of the designs of one start, and their places in its row. The row has for each design its value,
   !> parameters, coordinates and times, one design behind the other, and their number at the end.

@@ -4,7 +4,7 @@ module test_design_file
   use mech9_kinds, only: wp
   use mech9_document, only: document_type
   use mech9_model, only: model_type
-  use mech9_design_file, only: text_of_design
+  use mech9_design_text, only: text_of_design
   use mech9_small_models, only: slider_crank, eol
   use mech9_text_models, only: document_from_text, model_from_text
   use mech9_testing, only: tester_type

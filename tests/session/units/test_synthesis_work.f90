@@ -19,8 +19,10 @@ module test_synthesis_work
   use mech9_optimum_words, only: print_optimum, history_of_design
   use mech9_plan, only: plan_type
   use mech9_start_threads, only: make_in_threads
-  use mech9_starts, only: starts_type, all_handed_out
-  use mech9_starts_file, only: start_type, read_starts
+  use mech9_search_starts, only: all_handed_out
+  use mech9_starts, only: starts_type
+  use mech9_search_starts, only: start_type
+  use mech9_starts_file, only: read_starts
   use mech9_state, only: state_type
   use mech9_synthesis, only: synthesis_type, new_synthesis
   use mech9_varied_document, only: varied_document_type, new_varied_document
@@ -97,7 +99,7 @@ contains
     call starts%file%create(stem//'.h5', model, synthesis, 'a search', .false., err)
     call tester%no_error(err, 'a file for starts')
     call starts%file%publish(err)
-    call starts%begin(kinematics, .true.)
+    call starts%begin_shown(kinematics, .true.)
     call make_in_threads(varied, synthesis, 5, 2, starts)
     call tester%is_true(starts%hand_out() == all_handed_out, 'no start is left')
     call starts%finish(synthesis)
