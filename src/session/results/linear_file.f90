@@ -1,13 +1,12 @@
 !> The HDF5 file of --linear: the linearised equations of motion in both forms.
 module mech9_linear_file
   use mech9_kinds, only: wp
-  use mech9_text, only: string_type, to_text
-  use mech9_mechanism, only: mechanism_type
+  use mech9_text, only: string_type
   use mech9_model, only: model_type
-  use mech9_result_units, only: unit_name
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_linearised_equilibrium, only: equilibrium_type
+  use mech9_linear_names, only: name_linear_system
   use mech9_state_space, only: state_space_type, find_state_space
   implicit none
   private
@@ -75,26 +74,8 @@ contains
     type(equilibrium_type), intent(in) :: equilibrium    !< linearised
     type(columns_type), intent(in) :: columns            !< recorded ones, the time first
     type(columns_type) :: states, inputs
-    integer :: i
 
-    allocate (states%names(0), states%units(0), states%long_names(0), inputs%names(0), inputs%units(0), inputs%long_names(0))
-    associate (free => equilibrium%resting%free, mechanism => model%mechanism)
-      do i = 1, size(free)
-        call states%append('q'//to_text(free(i)), trim(unit_name(mechanism, free(i))))
-        call inputs%append('Q'//to_text(free(i)), trim(merge('N m', 'N  ', mechanism%pairs(free(i))%pair%angular)))
-      end do
-      do i = 1, size(free)
-        call states%append('dq'//to_text(free(i)), trim(unit_name(mechanism, free(i)))//'/s')
-      end do
-      if (size(mechanism%motors) > 0) then
-        do i = 1, size(equilibrium%motors%states)
-          call append_motor_state(mechanism, equilibrium%motors%states(i), states)
-        end do
-        do i = 1, size(equilibrium%motors%inputs)
-          call inputs%append('M'//to_text(equilibrium%motors%inputs(i))//'.voltage', 'V')
-        end do
-      end if
-    end associate
+    call name_linear_system(model%mechanism, equilibrium, states, inputs)
     call put_scale(file, 'state', states%names(:states%count), states%units(:states%count), &
                    'deviations from equilibrium: coordinates, their rates, states of motors')
     call put_scale(file, 'input', inputs%names(:inputs%count), inputs%units(:inputs%count), &
@@ -102,20 +83,6 @@ contains
     call put_scale(file, 'output', columns%names(2:columns%motion), columns%units(2:columns%motion), &
                    'deviations of the recorded columns')
   end subroutine put_names
-
-  !> Append the name of a motor's state, in SI units.
-  subroutine append_motor_state(mechanism, i, states)
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    integer, intent(in) :: i                        !< number of the motor
-    type(columns_type), intent(inout) :: states     !< gets the name and the unit
-    character(len=:), allocatable :: unit
-
-    associate (k => mechanism%motors(i)%motor%coordinate, state => mechanism%motors(i)%motor%kind_of_state())
-      unit = state%unit
-      if (state%by_coordinate) unit = trim(merge('rad', 'm  ', mechanism%pairs(k)%pair%angular))//' '//state%unit
-      call states%append('M'//to_text(i)//'.'//trim(state%name), unit)
-    end associate
-  end subroutine append_motor_state
 
   !> Put one scale of the state space and its units.
   subroutine put_scale(file, name, texts, units, long_name)
