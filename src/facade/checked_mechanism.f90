@@ -1,17 +1,22 @@
-!> A mechanism as the library's users hold it: read from a data file or a text of the same form, and checked.
+!> A mechanism as the library's users hold it: groups of a data file, which are read, added and changed in memory.
+!>
+!> Each group is held against the grammar when it comes. Its sense beside the other groups is judged by read_file, read_text and
+!> set; a mechanism of parse_file or parse_text is judged by its first answer, so that groups can be added to it until then.
 module mech9_checked_mechanism
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_usage
-  use mech9_text, only: to_text
+  use mech9_error, only: error_type, place_type, raise, exit_usage
+  use mech9_text, only: string_type, to_text
   use mech9_model, only: model_type
   use mech9_explanation, only: explain
   use mech9_source, only: source_type, span_type, source_from_text
   use mech9_document, only: document_type
   use mech9_document_text, only: text_of_document
+  use mech9_design_text, only: text_of_design
+  use mech9_setting, only: apply_setting
   use mech9_named_number, only: number_place_type, find_number, set_number
-  use mech9_lookup, only: has_name, groups_named
+  use mech9_lookup, only: has_name, groups_named, get_integers, get_text
   use mech9_checker, only: check_document
   use mech9_parameter, only: parameter_type
   use mech9_parameter_reader, only: read_parameters
@@ -21,21 +26,39 @@ module mech9_checked_mechanism
   use mech9_reader, only: read_model
   implicit none
   private
-  public :: checked_mechanism_type, read_file, read_text
+  public :: checked_mechanism_type, finding_type, read_file, read_text, parse_file, parse_text
 
   type :: checked_mechanism_type
     private
     type(document_type) :: document
-    logical :: is_read = .false.      !< the document is without errors
+    type(source_type), allocatable :: sources(:)   !< the texts that its places point into; the first one is the data file
+    logical :: is_read = .false.                   !< the document is without errors
+    logical :: is_whole = .false.                  !< its groups make sense together
   contains
+    procedure :: add
+    procedure :: apply
     procedure :: set
     procedure :: number
     procedure :: text
+    procedure :: list_findings
+    procedure :: find_error_place
+    procedure :: order_as_given
+    procedure :: list_parameters
+    procedure :: take_design
+    procedure :: judge_drives
     procedure :: take
     procedure :: take_request
     procedure :: take_variable
     procedure :: point_at
   end type checked_mechanism_type
+
+  !> One of the errors of a mechanism.
+  type :: finding_type
+    character(len=:), allocatable :: message   !< the error in words, without its place
+    character(len=:), allocatable :: file      !< path of the data file; empty: the error is in no file
+    integer :: line = 0                        !< in the file; 0: no place is known
+    integer :: column = 0                      !< in the line
+  end type finding_type
 
   !> Errors that are told together.
   integer, parameter :: most_told = 20
@@ -50,7 +73,7 @@ contains
     type(diagnostics_type) :: diagnostics
 
     call read_document(path, mechanism%document, diagnostics)
-    call check(mechanism, diagnostics, err)
+    call take_whole(mechanism, diagnostics, err)
   end subroutine read_file
 
   !> Read a text that has the form of a data file. Fails as read_file does.
@@ -59,24 +82,157 @@ contains
     type(checked_mechanism_type), intent(out) :: mechanism      !< of use only where nothing failed
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
     type(diagnostics_type) :: diagnostics
-    type(source_type) :: source
 
-    source = source_from_text('text', text)
-    call parse_document(source, mechanism%document, diagnostics)
-    call check(mechanism, diagnostics, err)
+    call parse_document(source_from_text('text', text), mechanism%document, diagnostics)
+    call take_whole(mechanism, diagnostics, err)
   end subroutine read_text
 
-  !> Hold a document against everything that the reader checks.
-  subroutine check(mechanism, diagnostics, err)
+  !> Read a data file, and hold each group against the grammar alone. Fails with exit_file or exit_data.
+  subroutine parse_file(path, mechanism, err, findings)
+    character(len=*), intent(in) :: path                                           !< of the data file
+    type(checked_mechanism_type), intent(out) :: mechanism                         !< of use only where nothing failed
+    type(error_type), allocatable, intent(out) :: err                              !< allocated if it failed
+    type(finding_type), allocatable, intent(out), optional :: findings(:)          !< all errors, by place
+    type(diagnostics_type) :: diagnostics
+
+    call read_document(path, mechanism%document, diagnostics)
+    call take_parsed(mechanism, diagnostics, err, findings)
+  end subroutine parse_file
+
+  !> Read a text that has the form of a data file, and hold each group against the grammar alone. An empty text is a mechanism
+  !> without groups. Fails with exit_data.
+  subroutine parse_text(text, mechanism, err, findings)
+    character(len=*), intent(in) :: text                                           !< groups of the data file
+    type(checked_mechanism_type), intent(out) :: mechanism                         !< of use only where nothing failed
+    type(error_type), allocatable, intent(out) :: err                              !< allocated if it failed
+    type(finding_type), allocatable, intent(out), optional :: findings(:)          !< all errors, by place
+    type(diagnostics_type) :: diagnostics
+
+    if (len_trim(text) > 0) then
+      call parse_document(source_from_text('text', text), mechanism%document, diagnostics)
+    else
+      mechanism%document%source = source_from_text('text', '', is_file=.false.)
+      diagnostics%sources = [mechanism%document%source]
+      allocate (mechanism%document%groups(0))
+    end if
+    call take_parsed(mechanism, diagnostics, err, findings)
+  end subroutine parse_text
+
+  !> Take a document whose groups must make sense together.
+  subroutine take_whole(mechanism, diagnostics, err)
     type(checked_mechanism_type), intent(inout) :: mechanism    !< with its document
     type(diagnostics_type), intent(inout) :: diagnostics        !< errors of reading the document
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
-    type(model_type) :: unused
 
-    call read_model(mechanism%document, dynamics, unused, diagnostics)
-    call fail_as(diagnostics, err)
+    mechanism%is_whole = .true.
+    mechanism%sources = diagnostics%sources
+    call check(mechanism, diagnostics, err)
+  end subroutine take_whole
+
+  !> Take a document whose groups need not make sense together yet.
+  subroutine take_parsed(mechanism, diagnostics, err, findings)
+    type(checked_mechanism_type), intent(inout) :: mechanism                       !< with its document
+    type(diagnostics_type), intent(inout) :: diagnostics                           !< errors of reading the document
+    type(error_type), allocatable, intent(out) :: err                              !< allocated if it failed
+    type(finding_type), allocatable, intent(out), optional :: findings(:)          !< all errors, by place
+
+    mechanism%sources = diagnostics%sources
+    call check(mechanism, diagnostics, err, findings)
+  end subroutine take_parsed
+
+  !> Hold a document against the grammar, and against everything else that the reader checks where it shall make sense.
+  subroutine check(mechanism, diagnostics, err, findings)
+    type(checked_mechanism_type), intent(inout) :: mechanism                       !< with its document
+    type(diagnostics_type), intent(inout) :: diagnostics                           !< errors of reading the document
+    type(error_type), allocatable, intent(out) :: err                              !< allocated if it failed
+    type(finding_type), allocatable, intent(out), optional :: findings(:)          !< all errors, by place
+    type(model_type) :: unused
+    type(document_type) :: checked
+
+    if (mechanism%is_whole) then
+      call read_groups(mechanism, dynamics, unused, diagnostics)
+    else
+      checked = mechanism%document
+      call check_document(checked, diagnostics)
+    end if
+    call fail_as(diagnostics, err, findings)
     mechanism%is_read = .not. allocated(err)
   end subroutine check
+
+  !> Read the model of a mechanism. All errors are collected in the diagnostics.
+  subroutine read_groups(mechanism, program, model, diagnostics)
+    class(checked_mechanism_type), intent(in) :: mechanism   !< with its document
+    integer, intent(in) :: program                           !< kinematics or dynamics
+    type(model_type), intent(out) :: model                   !< of use only without errors
+    type(diagnostics_type), intent(inout) :: diagnostics     !< gets the errors
+
+    if (size(mechanism%document%groups) == 0 .and. .not. diagnostics%failed()) &
+      call diagnostics%add(span_type(), 'this mechanism has no groups; add &structure and a &pair for each pair')
+    call read_model(mechanism%document, program, model, diagnostics)
+  end subroutine read_groups
+
+  !> Add groups, as a text that has the form of a data file. Each is held against the grammar; the mechanism stays as it was where
+  !> this fails. Fails with exit_data.
+  subroutine add(self, text, err, findings)
+    class(checked_mechanism_type), intent(inout) :: self                           !< the mechanism
+    character(len=*), intent(in) :: text                                           !< groups of the data file
+    type(error_type), allocatable, intent(out) :: err                              !< allocated if it failed
+    type(finding_type), allocatable, intent(out), optional :: findings(:)          !< all errors, by place
+    type(document_type) :: added, checked
+    type(diagnostics_type) :: diagnostics
+
+    call require(self, err)
+    if (allocated(err)) return
+    diagnostics%sources = self%sources
+    call parse_document(source_from_text('added groups', text, is_file=.false.), added, diagnostics)
+    checked = added
+    call check_document(checked, diagnostics)
+    call fail_as(diagnostics, err, findings)
+    if (allocated(err)) return
+    self%document%groups = [self%document%groups, added%groups]
+    self%sources = diagnostics%sources
+    self%is_whole = .false.
+  end subroutine add
+
+  !> Give names other values, as an option --set does: time.intervals=200, pair(3).axis=1,0,0. A group or a name that is missing is
+  !> added. The mechanism stays as it was where this fails. Fails with exit_data.
+  subroutine apply(self, setting, err, findings)
+    class(checked_mechanism_type), intent(inout) :: self                           !< the mechanism
+    character(len=*), intent(in) :: setting                                        !< group.name=value
+    type(error_type), allocatable, intent(out) :: err                              !< allocated if it failed
+    type(finding_type), allocatable, intent(out), optional :: findings(:)          !< all errors, by place
+    type(checked_mechanism_type) :: candidate
+    type(diagnostics_type) :: diagnostics
+
+    call require(self, err)
+    if (allocated(err)) return
+    candidate%document = self%document
+    candidate%is_whole = self%is_whole
+    diagnostics%sources = self%sources
+    call apply_setting(candidate%document, setting, diagnostics)
+    call check(candidate, diagnostics, err, findings)
+    if (allocated(err)) return
+    self%document = candidate%document
+    self%sources = diagnostics%sources
+  end subroutine apply
+
+  !> List the errors that keep a mechanism from its answers, by place. There are none where its groups make sense together.
+  subroutine list_findings(self, program, findings)
+    class(checked_mechanism_type), intent(in) :: self                    !< the mechanism
+    integer, intent(in) :: program                                       !< kinematics or dynamics
+    type(finding_type), allocatable, intent(out) :: findings(:)          !< the errors
+    type(diagnostics_type) :: diagnostics
+    type(model_type) :: unused
+    type(error_type), allocatable :: err
+
+    if (self%is_read) then
+      diagnostics%sources = self%sources
+      call read_groups(self, program, unused, diagnostics)
+      call fail_as(diagnostics, err, findings)
+    else
+      allocate (findings(0))
+    end if
+  end subroutine list_findings
 
   !> Give a number another value, by the name that --set has for it, such as pair(2).point(1). The mechanism stays as it was where
   !> this fails: with exit_data for a name that is not known or a value out of its range, with exit_usage where a parameter sets the
@@ -91,9 +247,10 @@ contains
     type(diagnostics_type) :: diagnostics
 
     call find_named(self, name, .true., candidate%document, place, diagnostics, err)
-    if (.not. allocated(err)) call refuse_set_by_parameter(candidate%document, name, place, err)
+    if (.not. allocated(err)) call refuse_set_by_parameter(candidate%document, self%sources, name, place, err)
     if (allocated(err)) return
     call set_number(candidate%document, place, value)
+    candidate%is_whole = self%is_whole
     call check(candidate, diagnostics, err)
     if (.not. allocated(err)) self%document = candidate%document
   end subroutine set
@@ -132,7 +289,7 @@ contains
     call require(self, err)
     if (allocated(err)) return
     document = self%document
-    call diagnostics%add_source(document%source, source)
+    diagnostics%sources = self%sources
     call diagnostics%add_source(source_from_text('the name', name, is_file=.false.), source)
     call check_document(document, diagnostics)
     call find_number(document, name, span_type(source, 1, max(1, len_trim(name))), alone, place, diagnostics, any_number=.true.)
@@ -140,8 +297,9 @@ contains
   end subroutine find_named
 
   !> Refuse to set a number that follows the value of a parameter.
-  subroutine refuse_set_by_parameter(document, name, place, err)
+  subroutine refuse_set_by_parameter(document, sources, name, place, err)
     type(document_type), intent(in) :: document            !< checked, with the number
+    type(source_type), intent(in) :: sources(:)            !< the texts that it comes from
     character(len=*), intent(in) :: name                   !< of the number
     type(number_place_type), intent(in) :: place           !< of the number
     type(error_type), allocatable, intent(out) :: err      !< allocated if a parameter with a value sets it
@@ -149,10 +307,10 @@ contains
     type(parameter_type), allocatable :: parameters(:)
     type(diagnostics_type) :: diagnostics
     integer, allocatable :: groups(:)
-    integer :: i, source
+    integer :: i
 
     placed = document
-    call diagnostics%add_source(placed%source, source)
+    diagnostics%sources = sources
     call read_parameters(placed, parameters, diagnostics)
     groups = groups_named(placed, 'parameter')
     do i = 1, size(parameters)
@@ -206,12 +364,11 @@ contains
     type(model_type), intent(out) :: model                 !< in m, rad, kg, s
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(diagnostics_type) :: diagnostics
-    integer :: source
 
     call require(self, err)
     if (allocated(err)) return
-    call diagnostics%add_source(self%document%source, source)
-    call read_model(self%document, program, model, diagnostics)
+    diagnostics%sources = self%sources
+    call read_groups(self, program, model, diagnostics)
     call fail_as(diagnostics, err)
   end subroutine take_request
 
@@ -220,11 +377,8 @@ contains
     class(checked_mechanism_type), intent(in) :: self      !< the mechanism
     integer, intent(in) :: program                         !< kinematics or dynamics
     type(varied_document_type), intent(out) :: variable    !< the function
-    type(diagnostics_type) :: diagnostics
-    integer :: source
 
-    call diagnostics%add_source(self%document%source, source)
-    call new_varied_document(self%document, diagnostics%sources, program, variable)
+    call new_varied_document(self%document, self%sources, program, variable)
   end subroutine take_variable
 
   !> Complete the message of an error, with the line of the data file where it knows its place.
@@ -232,23 +386,136 @@ contains
     class(checked_mechanism_type), intent(in) :: self             !< the mechanism
     type(error_type), allocatable, intent(inout) :: err           !< nothing happens where it is not allocated
     type(diagnostics_type) :: diagnostics
-    integer :: source
 
     if (.not. allocated(err)) return
     call explain(err)
-    if (err%place%line == 0) return
-    call diagnostics%add_source(self%document%source, source)
+    if (err%place%line == 0 .or. .not. allocated(self%sources)) return
+    diagnostics%sources = self%sources
     call diagnostics%add_error(err)
     call diagnostics%render(1, err%message)
   end subroutine point_at
 
-  !> All errors of reading as one failure; none where there are none.
-  subroutine fail_as(diagnostics, err)
-    type(diagnostics_type), intent(in) :: diagnostics   !< the errors, and the texts that they stand in
-    type(error_type), allocatable, intent(out) :: err   !< allocated if there is an error
-    character(len=:), allocatable :: text, message
+  !> Find the file, line and column of a failure of an answer; the file is empty and the line is 0 where it has no place.
+  subroutine find_error_place(self, err, file, line, column)
+    class(checked_mechanism_type), intent(in) :: self      !< the mechanism
+    type(error_type), intent(in) :: err                    !< the failure
+    character(len=:), allocatable, intent(out) :: file     !< path of the data file
+    integer, intent(out) :: line                           !< in the file
+    integer, intent(out) :: column                         !< in the line
+
+    file = ''
+    line = 0
+    column = 0
+    if (err%place%line == 0 .or. .not. allocated(self%sources)) return
+    if (.not. self%sources(err%place%source)%is_file) return
+    file = self%sources(err%place%source)%name
+    line = err%place%line
+    column = err%place%column
+  end subroutine find_error_place
+
+  !> The groups of a mechanism with their rows in the grammar; none where there is no mechanism.
+  pure subroutine check_again(self, checked)
+    class(checked_mechanism_type), intent(in) :: self    !< the mechanism
+    type(document_type), intent(out) :: checked          !< its groups, checked
+    type(diagnostics_type) :: none_found
+
+    if (.not. self%is_read) then
+      allocate (checked%groups(0))
+      return
+    end if
+    checked = self%document
+    none_found%sources = self%sources
+    call check_document(checked, none_found)
+  end subroutine check_again
+
+  !> List the names of the parameters, in the order of their groups.
+  subroutine list_parameters(self, names)
+    class(checked_mechanism_type), intent(in) :: self        !< the mechanism
+    type(string_type), allocatable, intent(out) :: names(:)  !< (P) the names; empty where a group has none
+    type(document_type) :: checked
+    integer, allocatable :: groups(:)
     integer :: i
 
+    call check_again(self, checked)
+    groups = groups_named(checked, 'parameter')
+    allocate (names(size(groups)))
+    do i = 1, size(groups)
+      names(i)%text = trim(get_text(checked%groups(groups(i)), 'name'))
+    end do
+  end subroutine list_parameters
+
+  !> The mechanism with other values of its parameters, and with the coordinates of an assembly at its start.
+  subroutine take_design(self, program, values, q, design, err)
+    class(checked_mechanism_type), intent(in) :: self          !< the mechanism
+    integer, intent(in) :: program                             !< kinematics or dynamics
+    real(wp), intent(in) :: values(:)                          !< of all parameters, in the units of the data file
+    real(wp), intent(in) :: q(:)                               !< (M) coordinates at the start [rad, m]
+    type(checked_mechanism_type), intent(out) :: design        !< the mechanism of the design
+    type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
+    type(varied_document_type) :: variable
+    type(document_type) :: written
+    type(diagnostics_type) :: diagnostics
+    type(model_type) :: model
+    character(len=:), allocatable :: text, changed
+
+    call self%take_variable(program, variable)
+    call variable%at(values, model, err)
+    if (allocated(err)) return
+    call self%text(text)
+    call parse_document(source_from_text('text', text), written, diagnostics)
+    call text_of_design(written, model, values, q, '', changed)
+    ! the files that it names are found beside the data file
+    diagnostics%sources = diagnostics%sources(:0)
+    call parse_document(source_from_text(self%sources(1)%name, changed, is_file=.false.), design%document, diagnostics)
+    call take_parsed(design, diagnostics, err)
+  end subroutine take_design
+
+  !> Judge whether drives move all independent coordinates. Fails with exit_data or exit_structure.
+  subroutine judge_drives(self, all_driven, err)
+    class(checked_mechanism_type), intent(in) :: self      !< the mechanism
+    logical, intent(out) :: all_driven                     !< nothing moves by forces
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(model_type) :: model
+
+    all_driven = .false.
+    call self%take_request(dynamics, model, err)
+    if (.not. allocated(err)) all_driven = model%is_driven()
+  end subroutine judge_drives
+
+  !> Put independent coordinates into the order in which cq names them, where the data file has it.
+  pure subroutine order_as_given(self, coordinates)
+    class(checked_mechanism_type), intent(in) :: self   !< the mechanism
+    integer, intent(inout) :: coordinates(:)            !< their numbers
+    type(document_type) :: checked
+    integer, allocatable :: groups(:), cq(:)
+    integer :: i
+
+    call check_again(self, checked)
+    groups = groups_named(checked, 'structure')
+    if (size(groups) == 0) return
+    associate (group => checked%groups(groups(1)))
+      if (.not. has_name(group, 'cq')) return
+      cq = get_integers(group, 'cq')
+    end associate
+    coordinates = pack(cq, [(any(coordinates == cq(i)), i=1, size(cq))])
+  end subroutine order_as_given
+
+  !> All errors of reading as one failure; none where there are none.
+  subroutine fail_as(diagnostics, err, findings)
+    type(diagnostics_type), intent(in) :: diagnostics                              !< the errors, and the texts that they stand in
+    type(error_type), allocatable, intent(out) :: err                              !< allocated if there is an error
+    type(finding_type), allocatable, intent(out), optional :: findings(:)          !< all errors, by place
+    character(len=:), allocatable :: text, message
+    integer, allocatable :: order(:)
+    integer :: i
+
+    if (present(findings)) then
+      order = diagnostics%sorted()
+      allocate (findings(size(order)))
+      do i = 1, size(order)
+        call find_place(diagnostics, order(i), findings(i))
+      end do
+    end if
     if (.not. diagnostics%failed()) return
     message = ''
     do i = 1, min(diagnostics%known(), most_told)
@@ -258,4 +525,22 @@ contains
     end do
     call raise(err, diagnostics%code(), message)
   end subroutine fail_as
+
+  !> One error with its file, line and column.
+  subroutine find_place(diagnostics, number, finding)
+    type(diagnostics_type), intent(in) :: diagnostics   !< the errors, and the texts that they stand in
+    integer, intent(in) :: number                       !< of the error
+    type(finding_type), intent(out) :: finding          !< the error
+    type(place_type) :: place
+    type(span_type) :: span
+
+    call diagnostics%get(number, finding%message, span)
+    finding%file = ''
+    if (span%source == 0) return
+    if (.not. diagnostics%sources(span%source)%is_file) return
+    place = diagnostics%place(span)
+    finding%file = diagnostics%sources(span%source)%name
+    finding%line = place%line
+    finding%column = place%column
+  end subroutine find_place
 end module mech9_checked_mechanism

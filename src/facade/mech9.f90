@@ -6,22 +6,30 @@
 !> of their own at the same time.
 module mech9
   use mech9_kinds, only: wp
+  use mech9_program_kind, only: kinematics, dynamics
+  use mech9_text, only: string_type
   use mech9_error, only: error_type, exit_usage, exit_data, exit_structure, exit_assembly, exit_singular, exit_integrator, &
     exit_file, exit_interrupted
   use mech9_simulation, only: interruption_type, simulation_statistics_type, coordinate_change_type
-  use mech9_checked_mechanism, only: mechanism_type => checked_mechanism_type, read_file, read_text
+  use mech9_checked_mechanism, only: mechanism_type => checked_mechanism_type, finding_type, &
+    read_file, read_text, parse_file, parse_text
   use mech9_design, only: design_type
   use mech9_motion, only: motion_type
   use mech9_recorded_run, only: run_type => recorded_run_type
   use mech9_recorded_study, only: study_type => recorded_study_type
   use mech9_recorded_rest, only: rest_type => recorded_rest_type
-  use mech9_structure_answers, only: judge_mobility, list_assemblies, list_ranges
+  use mech9_recorded_linear, only: linear_system_type, find_linear_system
+  use mech9_recorded_optimum, only: optimum_type => recorded_optimum_type
+  use mech9_followed_positions, only: positions_type => followed_positions_type
+  use mech9_drawn_mechanism, only: draw_sketch, draw_film
+  use mech9_structure_answers, only: judge_mobility, list_assemblies, list_ranges, name_coordinates
   implicit none
   private
-  public :: wp
-  public :: mechanism_type, read_file, read_text, design_type
-  public :: motion_type, run_type, study_type, rest_type, interruption_type, simulation_statistics_type, coordinate_change_type
-  public :: judge_mobility, list_assemblies, list_ranges
+  public :: wp, kinematics, dynamics, string_type
+  public :: mechanism_type, finding_type, read_file, read_text, parse_file, parse_text, design_type
+  public :: motion_type, run_type, study_type, rest_type, optimum_type, positions_type, linear_system_type
+  public :: interruption_type, simulation_statistics_type, coordinate_change_type
+  public :: judge_mobility, list_assemblies, list_ranges, name_coordinates, find_linear_system, draw_sketch, draw_film
   public :: error_type, exit_usage, exit_data, exit_structure, exit_assembly, exit_singular, exit_integrator, exit_file, &
     exit_interrupted
 end module mech9

@@ -38,6 +38,8 @@ module mech9_motion
     procedure :: q
     procedure :: dq
     procedure :: ddq
+    procedure :: take_coordinates
+    procedure :: unit
     procedure :: point
     procedure :: coupling_force
     procedure :: energies
@@ -202,6 +204,38 @@ contains
       derivative = state%ddq(k)
     end select
   end function derivative
+
+  !> Take all coordinates and their derivatives; not numbers where no motion is started.
+  subroutine take_coordinates(self, q, dq, ddq)
+    class(motion_type), intent(in), target :: self   !< the motion
+    real(wp), intent(out) :: q(:)                    !< (M) [rad, m]
+    real(wp), intent(out), optional :: dq(:)         !< (M) rates [rad/s, m/s]
+    real(wp), intent(out), optional :: ddq(:)        !< (M) second time derivatives [rad/s^2, m/s^2]
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    q = ieee_value(1.0_wp, ieee_quiet_nan)
+    if (present(dq)) dq = ieee_value(1.0_wp, ieee_quiet_nan)
+    if (present(ddq)) ddq = ieee_value(1.0_wp, ieee_quiet_nan)
+    if (.not. allocated(self%simulation)) return
+    call self%simulation%present(plan, state)
+    q = state%q
+    if (present(dq)) dq = state%dq
+    if (present(ddq)) ddq = state%ddq
+  end subroutine take_coordinates
+
+  !> Size of the unit that coordinate k has in the data file [rad, m]; not a number where there is none.
+  real(wp) function unit(self, k)
+    class(motion_type), intent(in), target :: self   !< the motion
+    integer, intent(in) :: k                         !< number of the coordinate
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    unit = ieee_value(unit, ieee_quiet_nan)
+    if (.not. allocated(self%simulation)) return
+    call self%simulation%present(plan, state)
+    if (k >= 1 .and. k <= plan%n_coordinates) unit = plan%result_unit(k)
+  end function unit
 
   !> Motion of a named point, in the system of link 1. Fails with exit_usage for a name that is not known.
   subroutine point(self, name, err, position, velocity, acceleration)

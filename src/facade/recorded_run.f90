@@ -9,6 +9,7 @@ module mech9_recorded_run
   use mech9_simulation, only: interruption_type
   use mech9_explanation, only: explain
   use mech9_run, only: run_type
+  use mech9_mechanism_pictures, only: mechanism_pictures_type
   use mech9_varied_document, only: varied_document_type
   use mech9_checked_mechanism, only: checked_mechanism_type
   implicit none
@@ -27,6 +28,8 @@ module mech9_recorded_run
   contains
     procedure :: begin_kinematics
     procedure :: begin_dynamics
+    procedure :: begin_film
+    procedure :: draw
     procedure :: outputs
     procedure :: columns
     procedure :: take_rows
@@ -58,13 +61,36 @@ contains
     call begin(self, mechanism, dynamics, err, interruption)
   end subroutine begin_dynamics
 
-  !> Begin a run of a program.
-  subroutine begin(self, mechanism, program, err, interruption)
+  !> Begin a run that will be drawn. Fails as begin_kinematics does.
+  subroutine begin_film(self, mechanism, program, err, interruption)
     class(recorded_run_type), intent(inout) :: self                  !< the run; one that it held is closed
     type(checked_mechanism_type), intent(in) :: mechanism            !< the mechanism
     integer, intent(in) :: program                                   !< kinematics or dynamics
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the run shall stop
+
+    call begin(self, mechanism, program, err, interruption, pictures=.true.)
+    if (.not. allocated(err)) call self%run%record_film(self%model)
+  end subroutine begin_film
+
+  !> Draw the positions that were taken so far. Fails with exit_file.
+  subroutine draw(self, pictures, err)
+    class(recorded_run_type), intent(in) :: self             !< the run, begun by begin_film
+    type(mechanism_pictures_type), intent(in) :: pictures    !< the pictures that are wanted
+    type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
+
+    if (.not. associated(self%run)) return
+    if (allocated(self%run%source%film)) call pictures%save(self%model, self%run%source%film, err)
+  end subroutine draw
+
+  !> Begin a run of a program.
+  subroutine begin(self, mechanism, program, err, interruption, pictures)
+    class(recorded_run_type), intent(inout) :: self                  !< the run; one that it held is closed
+    type(checked_mechanism_type), intent(in) :: mechanism            !< the mechanism
+    integer, intent(in) :: program                                   !< kinematics or dynamics
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the run shall stop
+    logical, intent(in), optional :: pictures                        !< the run is drawn; not unless given
 
     call self%close()
     allocate (self%model, self%variable, self%run)
@@ -74,22 +100,23 @@ contains
       if (self%model%request%output%with_derivatives()) call mechanism%take_variable(program, self%variable)
       call self%run%motion%assemble(self%model, err)
     end if
-    if (.not. allocated(err)) call self%run%prepare(self%model, err, self%variable)
-    if (.not. allocated(err)) call find_tolerances(self, err)
+    if (.not. allocated(err)) call self%run%prepare(self%model, err, self%variable, pictures)
+    if (.not. allocated(err)) call find_tolerances(self, err, pictures)
     call mechanism%point_at(err)
     if (allocated(err)) call self%close()
   end subroutine begin
 
   !> Find the tolerances for an accuracy, if one is asked for.
-  subroutine find_tolerances(self, err)
+  subroutine find_tolerances(self, err, pictures)
     type(recorded_run_type), intent(inout) :: self         !< the run, prepared
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    logical, intent(in), optional :: pictures              !< the run is drawn; not unless given
 
     if (associated(self%interruption)) then
-      call self%run%motion%find_tolerances(self%model, err, interruption=self%interruption)
+      call self%run%motion%find_tolerances(self%model, err, pictures, self%interruption)
       self%run%source%interruption => self%interruption
     else
-      call self%run%motion%find_tolerances(self%model, err)
+      call self%run%motion%find_tolerances(self%model, err, pictures)
     end if
   end subroutine find_tolerances
 

@@ -4,39 +4,55 @@ module mech9_structure_answers
   use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_text, only: string_type, texts_of_one_length, to_text
   use mech9_model, only: model_type
+  use mech9_result_units, only: unit_of, unit_name
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_explained_assembly, only: assemble_model
+  use mech9_start_path, only: start_way_type
+  use mech9_structure_text, only: print_mobility_report
+  use mech9_check_text, only: print_given, print_start
+  use mech9_printed_text, only: begin_text, end_text
   use mech9_mobility_report, only: mobility_report_type, report_mobility
   use mech9_assemblies, only: assembly_list_type, find_assemblies
   use mech9_motion_range, only: motion_range_type, end_type, find_range, ends_never, ends_round
   use mech9_checked_mechanism, only: checked_mechanism_type
   implicit none
   private
-  public :: judge_mobility, list_assemblies, list_ranges
+  public :: judge_mobility, list_assemblies, list_ranges, name_coordinates
 
 contains
 
   !> Find the mobility of a mechanism and its redundant equations. Fails with exit_structure or exit_assembly where the mechanism
-  !> cannot be put together.
-  subroutine judge_mobility(mechanism, mobility, redundant, err)
-    type(checked_mechanism_type), intent(in) :: mechanism      !< the mechanism
-    integer, intent(out) :: mobility                           !< coordinates less rank, in a general position; 0 after a failure
-    integer, intent(out) :: redundant                          !< equations of all chains that follow from others
-    type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
+  !> cannot be put together, and, where the text is asked for, with exit_file.
+  subroutine judge_mobility(mechanism, mobility, redundant, err, text)
+    type(checked_mechanism_type), intent(in) :: mechanism                !< the mechanism
+    integer, intent(out) :: mobility                                     !< coordinates less rank, in a general position; 0 after a failure
+    integer, intent(out) :: redundant                                    !< equations of all chains that follow from others
+    type(error_type), allocatable, intent(out) :: err                    !< allocated if it failed
+    character(len=:), allocatable, intent(out), optional :: text         !< the text of mech9d --check
     type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: start
+    type(start_way_type) :: way
     type(mobility_report_type) :: report
+    integer :: unit
 
     mobility = 0
     redundant = 0
-    call assemble(mechanism, model, plan, start, err)
+    call assemble(mechanism, model, plan, start, err, way)
     if (allocated(err)) return
     call report_mobility(model%mechanism, plan, start, report)
     mobility = report%by_rank
     redundant = sum(report%redundant)
+    if (.not. present(text)) return
+    call begin_text(unit, err)
+    if (allocated(err)) return
+    call print_mobility_report(unit, model%mechanism%structure, plan, report)
+    call print_given(unit, model, .true.)
+    call print_start(unit, model, plan, start, way)
+    call end_text(unit, text)
   end subroutine judge_mobility
 
   !> Find the assemblies with the independent coordinates of the start, from random starts. The first one is that of the mechanism.
@@ -87,6 +103,30 @@ contains
     end do
   end subroutine list_ranges
 
+  !> Find the names of the coordinates and their units in the data file. Fails with exit_data or exit_structure.
+  subroutine name_coordinates(mechanism, names, units, sizes, err)
+    type(checked_mechanism_type), intent(in) :: mechanism               !< the mechanism
+    character(len=:), allocatable, intent(out) :: names(:)              !< (M) q1, q2
+    character(len=:), allocatable, intent(out) :: units(:)              !< (M) rad, deg or m
+    real(wp), allocatable, intent(out) :: sizes(:)                      !< (M) of these units [rad, m]
+    type(error_type), allocatable, intent(out) :: err                   !< allocated if it failed
+    type(model_type) :: model
+    type(string_type), allocatable :: texts(:), of_units(:)
+    integer :: k, n
+
+    call mechanism%take_request(dynamics, model, err)
+    n = 0
+    if (.not. allocated(err)) n = size(model%mechanism%pairs)
+    allocate (texts(n), of_units(n), sizes(n))
+    do k = 1, n
+      texts(k)%text = 'q'//to_text(k)
+      of_units(k)%text = trim(unit_name(model%mechanism, k))
+      sizes(k) = unit_of(model%mechanism, k)
+    end do
+    call texts_of_one_length(texts, names)
+    call texts_of_one_length(of_units, units)
+  end subroutine name_coordinates
+
   !> The value of an end; infinite where there is none.
   pure real(wp) function end_of(found, direction)
     type(end_type), intent(in) :: found       !< one end of a range
@@ -97,15 +137,16 @@ contains
   end function end_of
 
   !> Find the plan and the closed position of a mechanism at its start. Drives need not be there.
-  subroutine assemble(mechanism, model, plan, start, err)
+  subroutine assemble(mechanism, model, plan, start, err, way)
     type(checked_mechanism_type), intent(in) :: mechanism      !< the mechanism
     type(model_type), intent(out) :: model                     !< of the mechanism
     type(plan_type), intent(out) :: plan                       !< its plan
     type(state_type), intent(out) :: start                     !< the closed position
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
+    type(start_way_type), intent(out), optional :: way         !< how the start was reached from the drawn position
 
     call mechanism%take_request(dynamics, model, err)
-    if (.not. allocated(err)) call assemble_model(model, plan, start, err)
+    if (.not. allocated(err)) call assemble_model(model, plan, start, err, way)
     call mechanism%point_at(err)
   end subroutine assemble
 end module mech9_structure_answers

@@ -35,6 +35,7 @@ module mech9_diagnostics
     procedure :: place
     procedure :: text_of
     procedure :: known
+    procedure :: sorted
     procedure :: get
     procedure :: render
     procedure :: report
@@ -217,7 +218,7 @@ contains
     type(place_type) :: position
     integer, allocatable :: order(:)
 
-    order = sorted(self)
+    order = self%sorted()
     this = self%kept(order(i))
     if (this%span%source == 0) then
       text = this%message
@@ -252,7 +253,7 @@ contains
 
   !> Positions of the kept errors by source, then by place; those without a place come last.
   pure function sorted(self) result(order)
-    type(diagnostics_type), intent(in) :: self  !< the diagnostics
+    class(diagnostics_type), intent(in) :: self  !< the diagnostics
     integer, allocatable :: order(:)
     integer :: i, j, new
 

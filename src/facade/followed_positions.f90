@@ -1,0 +1,320 @@
+!> Positions of a mechanism for given values of its independent coordinates. Each position is the one to which the mechanism moves
+!> from its assembled start when its independent coordinates move to their values along a straight line, so that no position depends
+!> on others that are asked for.
+module mech9_followed_positions
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_finite
+  use mech9_program_kind, only: kinematics, dynamics
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_interrupted
+  use mech9_text, only: to_text
+  use mech9_counted, only: counted
+  use mech9_model, only: model_type
+  use mech9_partition, only: driven_coordinate
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type, copy_state
+  use mech9_block_solver, only: block_work_type, new_block_work, factorize_block, solve_motion
+  use mech9_straight_drives, only: straight_drives
+  use mech9_simulation, only: interruption_type
+  use mech9_model_motion, only: model_motion_type
+  use mech9_checked_mechanism, only: checked_mechanism_type
+  implicit none
+  private
+  public :: followed_positions_type
+
+  !> It must not be copied.
+  type :: followed_positions_type
+    private
+    type(model_type), pointer :: model => null()       !< owned; its drives move the independent coordinates along a line
+    type(model_motion_type) :: motion                  !< from the assembled start
+    integer, allocatable :: moved(:)                   !< (I) the independent coordinates that the user moves, in the order of cq
+    integer, allocatable :: driven(:)                  !< (D) these, and the angles that the program holds
+  contains
+    procedure :: begin
+    procedure :: coordinates
+    procedure :: independent
+    procedure :: find
+    procedure :: close => close_positions
+  end type followed_positions_type
+
+contains
+
+  !> Assemble the mechanism at its start. Drives need not be there. Fails with exit_data, exit_structure or exit_assembly where the
+  !> mechanism cannot be put together.
+  subroutine begin(self, mechanism, err)
+    class(followed_positions_type), intent(inout) :: self            !< the positions
+    type(checked_mechanism_type), intent(in) :: mechanism            !< the mechanism
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    integer :: k
+
+    call self%close()
+    allocate (self%model)
+    call mechanism%take(dynamics, self%model, err)
+    if (.not. allocated(err)) call self%motion%assemble(self%model, err)
+    call mechanism%point_at(err)
+    if (allocated(err)) then
+      call self%close()
+      return
+    end if
+    associate (model => self%model, kind => self%model%problem%partition%kind)
+      self%driven = pack([(k, k=1, size(kind))], model%problem%partition%independent())
+      self%moved = pack(self%driven, [(.not. is_held(model, self%driven(k)), k=1, size(self%driven))])
+      call mechanism%order_as_given(self%moved)
+      where (model%problem%partition%independent()) kind = driven_coordinate
+      model%program = kinematics
+      model%request%time%start = 0.0_wp
+      model%request%time%end = 1.0_wp
+    end associate
+  end subroutine begin
+
+  !> Whether the program itself holds an independent coordinate, as the idle angle of a rod.
+  pure logical function is_held(model, coordinate)
+    type(model_type), intent(in) :: model    !< the model
+    integer, intent(in) :: coordinate        !< number of the coordinate
+    integer :: i
+
+    is_held = .false.
+    do i = 1, size(model%problem%drives)
+      associate (drive => model%problem%drives(i)%drive)
+        is_held = is_held .or. (drive%coordinate == coordinate .and. drive%place%line == 0)
+      end associate
+    end do
+  end function is_held
+
+  !> Number of coordinates; 0 where no mechanism is assembled.
+  pure integer function coordinates(self)
+    class(followed_positions_type), intent(in) :: self   !< the positions
+
+    coordinates = 0
+    if (associated(self%model)) coordinates = size(self%model%mechanism%pairs)
+  end function coordinates
+
+  !> The independent coordinates, in the order in which their values are given: that of cq in the data file.
+  pure subroutine independent(self, numbers)
+    class(followed_positions_type), intent(in) :: self   !< the positions
+    integer, allocatable, intent(out) :: numbers(:)      !< (I) their numbers
+
+    if (allocated(self%moved)) then
+      numbers = self%moved
+    else
+      allocate (numbers(0))
+    end if
+  end subroutine independent
+
+  !> Find positions, and rates and accelerations in them. A position that is not reached has the exit code of its failure, and is not
+  !> a number; so has one with a value that is not finite, with exit_data. Fails with exit_usage where no mechanism is assembled or the arrays have other shapes, with exit_interrupted where the
+  !> search is stopped.
+  subroutine find(self, values, q, codes, err, interruption, rates, dq, accelerations, ddq)
+    class(followed_positions_type), intent(inout) :: self           !< the positions
+    real(wp), intent(in) :: values(:, :)                            !< (I,n) of the independent coordinates [unit of the data file]
+    real(wp), intent(out) :: q(:, :)                                !< (M,n) all coordinates [unit of the data file]
+    integer, intent(out) :: codes(:)                                !< (n) 0, or the exit code of the failure
+    type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption  !< is asked whether the search shall stop
+    real(wp), intent(in), optional :: rates(:, :)                   !< (I,n) of the independent coordinates [unit/s]
+    real(wp), intent(out), optional :: dq(:, :)                     !< (M,n) rates of all coordinates [unit/s]
+    real(wp), intent(in), optional :: accelerations(:, :)           !< (I,n) of the independent coordinates [unit/s^2]
+    real(wp), intent(out), optional :: ddq(:, :)                    !< (M,n) second derivatives of all coordinates [unit/s^2]
+    integer, allocatable :: places(:), order(:)
+    integer :: i, below
+
+    q = ieee_value(1.0_wp, ieee_quiet_nan)
+    codes = 0
+    if (present(dq)) dq = ieee_value(1.0_wp, ieee_quiet_nan)
+    if (present(ddq)) ddq = ieee_value(1.0_wp, ieee_quiet_nan)
+    if (.not. associated(self%model)) then
+      call raise(err, exit_usage, 'a mechanism must be assembled before its positions are asked for')
+    else if (size(values, 1) /= size(self%moved)) then
+      call raise(err, exit_usage, 'the mechanism has '//counted(size(self%moved), 'independent coordinate')// &
+                 '; each position needs that many values, not '//to_text(size(values, 1)))
+    end if
+    if (allocated(err)) return
+    codes = merge(0, exit_data, all(ieee_is_finite(values), dim=1))
+    places = pack([(i, i=1, size(codes))], codes == 0)
+    if (size(self%moved) == 1) then
+      ! on a line all positions on one side of the start lie on one path
+      call sort_from(values(1, places), self%motion%start%q(self%moved(1))/unit(self, 1), order, below)
+      call follow_path(self, places(order(below + 1:)), 1.0_wp)
+      call follow_path(self, places(order(below:1:-1)), -1.0_wp)
+    else
+      do i = 1, size(places)
+        call follow_line(self, places(i))
+        if (allocated(err)) return
+      end do
+    end if
+
+  contains
+
+    !> Find positions of one independent coordinate that follow each other on one side of the start.
+    subroutine follow_path(self, places, direction)
+      class(followed_positions_type), intent(inout) :: self   !< the positions
+      integer, intent(in) :: places(:)                        !< of the positions among all, in the order of the path
+      real(wp), intent(in) :: direction                       !< 1 upwards, -1 downwards
+      type(error_type), allocatable :: failure
+      real(wp) :: start
+      integer :: k
+
+      if (allocated(err) .or. size(places) == 0) return
+      start = self%motion%start%q(self%moved(1))
+      call start_line(self, merge(direction, 0.0_wp, self%driven == self%moved(1)), failure, interruption)
+      do k = 1, size(places)
+        if (.not. allocated(failure)) &
+          call self%motion%simulation%advance(abs(values(1, places(k))*unit(self, 1) - start), failure)
+        call take_position(self, places(k), failure)
+        if (allocated(err)) return
+      end do
+    end subroutine follow_path
+
+    !> Find the position at the end of a line from the start.
+    subroutine follow_line(self, place)
+      class(followed_positions_type), intent(inout) :: self   !< the positions
+      integer, intent(in) :: place                            !< of the position among all
+      type(error_type), allocatable :: failure
+      real(wp) :: distances(size(self%driven))
+      integer :: k
+
+      distances = 0.0_wp
+      do k = 1, size(self%moved)
+        where (self%driven == self%moved(k)) &
+          distances = values(k, place)*unit(self, k) - self%motion%start%q(self%moved(k))
+      end do
+      call start_line(self, distances, failure, interruption)
+      if (.not. allocated(failure)) call self%motion%simulation%advance(1.0_wp, failure)
+      call take_position(self, place, failure)
+    end subroutine follow_line
+
+    !> Take the present position, with rates and accelerations, or the code of a failure.
+    subroutine take_position(self, place, failure)
+      class(followed_positions_type), intent(inout) :: self           !< the positions
+      integer, intent(in) :: place                                    !< of the position among all
+      type(error_type), allocatable, intent(inout) :: failure         !< the failure of this position, or of one before it
+      type(plan_type), pointer :: plan
+      type(state_type), pointer :: state
+      type(state_type), allocatable :: moving
+
+      if (allocated(failure)) then
+        codes(place) = failure%code
+        if (failure%code == exit_interrupted) call move_alloc(failure, err)
+        return
+      end if
+      call self%motion%simulation%present(plan, state)
+      q(:, place) = state%q/plan%result_unit
+      if (.not. present(dq)) return
+      allocate (moving)
+      call copy_state(state, moving)
+      if (present(ddq)) then
+        call move(self, plan, rates(:, place), moving, accelerations(:, place))
+        ddq(:, place) = moving%ddq/plan%result_unit
+      else
+        call move(self, plan, rates(:, place), moving)
+      end if
+      dq(:, place) = moving%dq/plan%result_unit
+    end subroutine take_position
+  end subroutine find
+
+  !> Start a motion from the assembled start in which the independent coordinates move by given distances within 1 s.
+  subroutine start_line(self, distances, err, interruption)
+    type(followed_positions_type), intent(inout) :: self             !< the positions
+    real(wp), intent(in) :: distances(:)                             !< (D) of the driven coordinates [rad, m]
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
+
+    call straight_drives(self%driven, self%motion%start%q(self%driven), distances, self%model%problem%drives)
+    call self%motion%prepare(self%model, err)
+    if (.not. allocated(err)) call self%motion%simulation%start(err, interruption)
+  end subroutine start_line
+
+  !> Find rates and accelerations in a position, from those of the independent coordinates.
+  subroutine move(self, plan, rates, state, accelerations)
+    type(followed_positions_type), intent(in) :: self           !< the positions
+    type(plan_type), intent(in) :: plan                         !< the plan of the position
+    real(wp), intent(in) :: rates(:)                            !< (I) [unit of the data file/s]
+    type(state_type), intent(inout) :: state                    !< the position; gets rates and accelerations
+    real(wp), intent(in), optional :: accelerations(:)          !< (I) [unit of the data file/s^2]; 0 unless given
+    type(block_work_type) :: work
+    integer :: b
+
+    state%dq(self%driven) = 0.0_wp
+    state%ddq(self%driven) = 0.0_wp
+    state%dq(self%moved) = rates*plan%result_unit(self%moved)
+    if (present(accelerations)) state%ddq(self%moved) = accelerations*plan%result_unit(self%moved)
+    do b = 1, size(plan%blocks)
+      work = new_block_work(plan%blocks(b))
+      call factorize_block(plan, plan%blocks(b), state, work)
+      call solve_motion(plan, plan%blocks(b), state, work)
+    end do
+  end subroutine move
+
+  !> Unit of the values of an independent coordinate in rad or m.
+  pure real(wp) function unit(self, i)
+    type(followed_positions_type), intent(in) :: self   !< the positions
+    integer, intent(in) :: i                            !< number of the coordinate among those that the user moves
+
+    unit = self%motion%plan%result_unit(self%moved(i))
+  end function unit
+
+  !> Sort values, and find how many of them lie below one.
+  pure subroutine sort_from(values, start, order, below)
+    real(wp), intent(in) :: values(:)                 !< (n) the values, finite
+    real(wp), intent(in) :: start                     !< the value that divides them
+    integer, allocatable, intent(out) :: order(:)     !< (n) their places, ascending
+    integer, intent(out) :: below                     !< number of values below start
+    integer, allocatable :: other(:)
+    integer :: i, width, first, middle, last, left, right
+
+    ! merge sort from the bottom up (Knuth, The Art of Computer Programming, vol. 3, section 5.2.4)
+    order = [(i, i=1, size(values))]
+    allocate (other(size(order)))
+    width = 1
+    do while (width < size(order))
+      do first = 1, size(order), 2*width
+        middle = min(first + width, size(order) + 1)
+        last = min(first + 2*width, size(order) + 1)
+        left = first
+        right = middle
+        do i = first, last - 1
+          if (left < middle .and. (right >= last .or. .not. is_after(left, right))) then
+            other(i) = order(left)
+            left = left + 1
+          else
+            other(i) = order(right)
+            right = right + 1
+          end if
+        end do
+      end do
+      call exchange(order, other)
+      width = 2*width
+    end do
+    below = count(values < start)
+
+  contains
+
+    !> Whether the value at one place of the order comes after that at another one.
+    pure logical function is_after(a, b)
+      integer, intent(in) :: a   !< place in the order
+      integer, intent(in) :: b   !< place in the order; it may be beyond the end
+
+      is_after = .false.
+      if (b <= size(order)) is_after = values(order(a)) > values(order(b))
+    end function is_after
+  end subroutine sort_from
+
+  !> Exchange two arrays.
+  pure subroutine exchange(a, b)
+    integer, allocatable, intent(inout) :: a(:)   !< one
+    integer, allocatable, intent(inout) :: b(:)   !< the other
+    integer, allocatable :: kept(:)
+
+    call move_alloc(a, kept)
+    call move_alloc(b, a)
+    call move_alloc(kept, b)
+  end subroutine exchange
+
+  !> Free all memory. Another mechanism can then be assembled.
+  subroutine close_positions(self)
+    class(followed_positions_type), intent(inout) :: self   !< the positions
+
+    call self%motion%close()
+    if (associated(self%model)) deallocate (self%model)
+    if (allocated(self%moved)) deallocate (self%moved, self%driven)
+  end subroutine close_positions
+end module mech9_followed_positions
