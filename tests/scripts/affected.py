@@ -26,7 +26,8 @@ REQUESTS = {
     'analyses/planar_runs': ['synthesis/', 'threads/'], 'session/study': ['study/', 'synthesis/', 'analyses/', 'input/', 'threads/'],
     'sampling': ['study/', 'synthesis/', 'threads/'], 'numerics/minima': ['synthesis/', 'threads/'],
     'analyses/equilibrium': ['analyses/', 'model/', 'simulation/'],
-    'facade': ['facade/', 'user/'],
+    'facade': ['facade/', 'user/', 'api/', 'python/'], 'api': ['api/', 'python/'],
+    'searches': ['synthesis/', 'threads/', 'python/'],
 }
 
 

@@ -1,0 +1,139 @@
+/* MECH9: kinematic and dynamic analysis of spatial mechanisms with closed chains, for C and C++.
+ *
+ * A mechanism is read from a data file or a text of the same form. Numbers are in the units of the data file.
+ *
+ * Functions that can fail return 0, or the exit code of the programs: 2 usage, 3 data, 4 structure, 5 assembly,
+ * 6 singular position, 7 integration, 8 file, 130 stopped by the caller. They tell the failure to the error handle,
+ * which may be null. Nothing is printed, and the process is never ended.
+ *
+ * Texts that a handle returns hold until the next call with this handle. Texts are UTF-8. Positions in lists begin with 0.
+ * Threads may use different handles at the same time.
+ */
+#ifndef MECH9_H
+#define MECH9_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct mech9_error mech9_error;
+typedef struct mech9_mechanism mech9_mechanism;
+typedef struct mech9_results mech9_results;
+typedef struct mech9_positions mech9_positions;
+typedef struct mech9_simulation mech9_simulation;
+
+/* The version as one number: 10000 times the major number, 100 times the minor number, and the patch. */
+int mech9_version(void);
+
+/* Errors. A handle holds the failure of the last call that took it. */
+mech9_error *mech9_error_create(void);
+void mech9_error_destroy(mech9_error *error);
+int mech9_error_code(const mech9_error *error);              /* 0: the call was successful */
+const char *mech9_error_message(const mech9_error *error);   /* as the programs print it, with places and remedies */
+int mech9_error_findings(const mech9_error *error);          /* how many errors were found together */
+const char *mech9_error_finding_message(const mech9_error *error, int i);
+const char *mech9_error_finding_file(const mech9_error *error, int i);   /* empty: it is in no file */
+int mech9_error_finding_line(const mech9_error *error, int i);           /* from 1; 0: no place is known */
+int mech9_error_finding_column(const mech9_error *error, int i);         /* from 1; 0: no place is known */
+
+/* Mechanisms. Each group is held against the grammar when it comes; its sense beside the others is judged by an analysis. */
+int mech9_read_file(const char *path, mech9_mechanism **mechanism, mech9_error *error);
+int mech9_read_text(const char *groups, mech9_mechanism **mechanism, mech9_error *error);   /* "" makes an empty one */
+int mech9_mechanism_copy(const mech9_mechanism *mechanism, mech9_mechanism **copy, mech9_error *error);
+void mech9_mechanism_destroy(mech9_mechanism *mechanism);
+/* Add groups, written as in a data file. */
+int mech9_mechanism_add(mech9_mechanism *mechanism, const char *groups, mech9_error *error);
+/* Give names other values, as the option --set does: "time.end=2", "pair(3).axis=1,0,0". */
+int mech9_mechanism_apply(mech9_mechanism *mechanism, const char *setting, mech9_error *error);
+/* A number by its name: "pair(2).point(1)". */
+int mech9_mechanism_set(mech9_mechanism *mechanism, const char *name, double value, mech9_error *error);
+int mech9_mechanism_number(const mech9_mechanism *mechanism, const char *name, double *value, mech9_error *error);
+/* The text of a data file that makes the same mechanism. */
+const char *mech9_mechanism_text(mech9_mechanism *mechanism);
+/* Names of the parameters. */
+int mech9_mechanism_parameters(const mech9_mechanism *mechanism);
+const char *mech9_mechanism_parameter(mech9_mechanism *mechanism, int i);
+/* Whether drives move all independent coordinates. */
+int mech9_mechanism_is_driven(const mech9_mechanism *mechanism, int *driven, mech9_error *error);
+
+/* Results: a table with named columns, and numbers with names of their own. */
+void mech9_results_destroy(mech9_results *results);
+int mech9_results_columns(const mech9_results *results);
+int mech9_results_rows(const mech9_results *results);
+const double *mech9_results_data(const mech9_results *results);   /* row after row */
+const char *mech9_results_name(const mech9_results *results, int column);
+const char *mech9_results_unit(const mech9_results *results, int column);
+int mech9_results_numbers(const mech9_results *results);
+const char *mech9_results_number_name(const mech9_results *results, int i);
+const char *mech9_results_number_unit(const mech9_results *results, int i);
+double mech9_results_number(const mech9_results *results, int i);
+int mech9_results_parameters(const mech9_results *results);       /* 0: the numbers have no derivatives */
+double mech9_results_derivative(const mech9_results *results, int i, int parameter);
+const char *mech9_results_text(const mech9_results *results);     /* null: the analysis writes no report */
+/* Matrices, with names and units for their rows and columns. */
+int mech9_results_matrices(const mech9_results *results);
+const char *mech9_results_matrix_name(const mech9_results *results, int i);
+int mech9_results_matrix_rows(const mech9_results *results, int i);
+int mech9_results_matrix_columns(const mech9_results *results, int i);
+const double *mech9_results_matrix_data(const mech9_results *results, int i);   /* row after row */
+const char *mech9_results_matrix_row_name(const mech9_results *results, int i, int row);
+const char *mech9_results_matrix_row_unit(const mech9_results *results, int i, int row);
+const char *mech9_results_matrix_column_name(const mech9_results *results, int i, int column);
+const char *mech9_results_matrix_column_unit(const mech9_results *results, int i, int column);
+
+/* Analyses. `stop` is null, or the address of a number that stops the call soon after another thread or a signal handler
+ * makes it other than 0. Results may be there after a failure: what was computed before it. */
+int mech9_check(const mech9_mechanism *mechanism, mech9_results **results, mech9_error *error);   /* mobility, redundant, text */
+int mech9_kinematics(const mech9_mechanism *mechanism, const volatile int *stop, mech9_results **results, mech9_error *error);
+int mech9_dynamics(const mech9_mechanism *mechanism, const volatile int *stop, mech9_results **results, mech9_error *error);
+int mech9_equilibrium(const mech9_mechanism *mechanism, int starts, const volatile int *stop, mech9_results **results,
+                      mech9_error *error);
+int mech9_modes(const mech9_mechanism *mechanism, mech9_results **results, mech9_error *error);
+int mech9_assemblies(const mech9_mechanism *mechanism, int starts, mech9_results **results, mech9_error *error);
+int mech9_range(const mech9_mechanism *mechanism, mech9_results **results, mech9_error *error);
+int mech9_study(const mech9_mechanism *mechanism, int with_forces, int threads, const volatile int *stop,
+                mech9_results **results, mech9_error *error);
+/* Matrices second_order/M, C, K and state_space/A, B, C, D; a row with the coordinates in equilibrium. */
+int mech9_linear(const mech9_mechanism *mechanism, mech9_results **results, mech9_error *error);
+/* A row for each distinct design, best first: value, parameters, coordinates at the start, starts that led to it. */
+int mech9_optimize(const mech9_mechanism *mechanism, int with_forces, int threads, const volatile int *stop,
+                   mech9_results **results, mech9_error *error);
+/* The mechanism of a design: parameters and coordinates as in its row. */
+int mech9_mechanism_design(const mech9_mechanism *mechanism, int with_forces, const double *parameters, const double *q,
+                           mech9_mechanism **design, mech9_error *error);
+/* Pictures in files. The view is that of the option --view; null: the best one. */
+int mech9_sketch(const mech9_mechanism *mechanism, const char *path, const char *view, mech9_error *error);
+int mech9_animate(const mech9_mechanism *mechanism, int with_forces, const char *path, const char *view, const volatile int *stop,
+                  mech9_error *error);
+
+/* Positions for given values of the independent coordinates. Each is reached from the assembled start on a straight line, so
+ * that none depends on the others. Arrays have a row for each position: I independent coordinates, or all M. */
+int mech9_positions_create(const mech9_mechanism *mechanism, mech9_positions **positions, mech9_error *error);
+void mech9_positions_destroy(mech9_positions *positions);
+int mech9_positions_coordinates(const mech9_positions *positions);                /* M */
+int mech9_positions_independent(const mech9_positions *positions);                /* I */
+int mech9_positions_independent_at(const mech9_positions *positions, int i);      /* number of the coordinate, from 1 */
+/* Rates and accelerations are found where their arrays are given. codes[n]: 0, or why a position was not reached. */
+int mech9_positions_find(mech9_positions *positions, int n, const double *values, const double *rates,
+                         const double *accelerations, const volatile int *stop, double *q, double *dq, double *ddq, int *codes,
+                         mech9_error *error);
+
+/* A motion that the caller advances. with_forces 0: driven, as by mech9k; else under forces, as by mech9d. */
+int mech9_simulation_create(const mech9_mechanism *mechanism, int with_forces, const volatile int *stop,
+                            mech9_simulation **simulation, mech9_error *error);
+void mech9_simulation_destroy(mech9_simulation *simulation);
+int mech9_simulation_advance(mech9_simulation *simulation, double t, mech9_error *error);
+double mech9_simulation_time(const mech9_simulation *simulation);
+int mech9_simulation_coordinates(const mech9_simulation *simulation);
+/* Coordinates, rates and second derivatives; null leaves one out. */
+int mech9_simulation_take(const mech9_simulation *simulation, double *q, double *dq, double *ddq, mech9_error *error);
+/* Motion of a named point in the system of link 1 [m, m/s, m/s2]. */
+int mech9_simulation_point(const mech9_simulation *simulation, const char *name, double *position, double *velocity,
+                           double *acceleration, mech9_error *error);
+int mech9_simulation_energies(mech9_simulation *simulation, double *kinetic, double *potential, mech9_error *error);
+double mech9_simulation_closure(const mech9_simulation *simulation);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,455 @@
+!> Analyses for C: each takes a mechanism and gives results (include/mech9.h).
+module mech9_api_analyses
+  use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr
+  use mech9, only: wp, error_type, finding_type, mechanism_type, run_type, rest_type, study_type, optimum_type, &
+    linear_system_type, judge_mobility, list_assemblies, list_ranges, name_coordinates, find_linear_system, draw_sketch, &
+    draw_film, exit_data, exit_structure, exit_interrupted, kinematics, dynamics
+  use mech9_api_text, only: c_text_type, read_c_text
+  use mech9_api_error, only: begin_call, end_call
+  use mech9_api_interruption, only: flag_interruption_type, new_interruption
+  use mech9_api_mechanism, only: find_mechanism
+  use mech9_api_results, only: results_type, show_results, put_texts, put_matrix
+  implicit none
+  private
+  public :: end_analysis
+
+contains
+
+  !> Judge structure and assembly: the numbers mobility and redundant, and a report.
+  integer(c_int) function check(mechanism, results, error) bind(c, name='mech9_check') result(code)
+    type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
+    type(c_ptr), intent(out) :: results           !< the results; null after a failure
+    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
+    type(mechanism_type), pointer :: judged
+    type(results_type), pointer :: found
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: text
+    integer :: mobility, redundant
+
+    call begin_call(error)
+    results = c_null_ptr
+    call find_mechanism(mechanism, judged, err)
+    if (.not. allocated(err)) call judge_mobility(judged, mobility, redundant, err, text)
+    if (.not. allocated(err)) then
+      allocate (found)
+      call put_texts([character(len=9) :: 'mobility', 'redundant'], found%number_names)
+      call put_texts(['1', '1'], found%number_units)
+      found%numbers = real([mobility, redundant], wp)
+      call found%text%put(text)
+      results = show_results(found)
+    end if
+    code = end_analysis(error, err, judged, dynamics)
+  end function check
+
+  !> Make a driven run over the outputs of &time.
+  integer(c_int) function run_kinematics(mechanism, stop, results, error) bind(c, name='mech9_kinematics') result(code)
+    type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
+    type(c_ptr), value, intent(in) :: stop        !< address of a number that stops the run once it is not 0, or null
+    type(c_ptr), intent(out) :: results           !< rows and quantities, also those before a failure; null if there are none
+    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
+
+    code = make_run(mechanism, kinematics, stop, results, error)
+  end function run_kinematics
+
+  !> Make a run under forces over the outputs of &time.
+  integer(c_int) function run_dynamics(mechanism, stop, results, error) bind(c, name='mech9_dynamics') result(code)
+    type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
+    type(c_ptr), value, intent(in) :: stop        !< address of a number that stops the run once it is not 0, or null
+    type(c_ptr), intent(out) :: results           !< rows and quantities, also those before a failure; null if there are none
+    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
+
+    code = make_run(mechanism, dynamics, stop, results, error)
+  end function run_dynamics
+
+  !> Make a run of a program.
+  integer(c_int) function make_run(mechanism, program, stop, results, error) result(code)
+    type(c_ptr), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: program         !< kinematics or dynamics
+    type(c_ptr), intent(in) :: stop        !< address of a number that stops the run once it is not 0, or null
+    type(c_ptr), intent(out) :: results    !< rows and quantities; null if there are none
+    type(c_ptr), intent(in) :: error       !< handle of errors, or null
+    type(mechanism_type), pointer :: moved
+    type(results_type), pointer :: found
+    type(run_type) :: run
+    type(flag_interruption_type) :: interruption
+    type(error_type), allocatable :: err
+
+    call begin_call(error)
+    results = c_null_ptr
+    call new_interruption(stop, interruption)
+    call find_mechanism(mechanism, moved, err)
+    if (.not. allocated(err)) then
+      if (program == kinematics) then
+        call run%begin_kinematics(moved, err, interruption)
+      else
+        call run%begin_dynamics(moved, err, interruption)
+      end if
+    end if
+    if (.not. allocated(err)) then
+      allocate (found)
+      call take_run(run, found, err)
+      results = show_results(found)
+    end if
+    call run%close()
+    code = end_analysis(error, err, moved, program)
+  end function make_run
+
+  !> Take the rows and quantities of a run.
+  subroutine take_run(run, found, err)
+    type(run_type), intent(inout) :: run                   !< the run, begun
+    type(results_type), intent(inout) :: found             !< gets them
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    character(len=:), allocatable :: names(:), units(:)
+
+    call run%columns(names, units)
+    call put_texts(names, found%names)
+    call put_texts(units, found%units)
+    allocate (found%rows(size(names), run%outputs()))
+    call run%take_rows(found%rows, found%count, err)
+    call run%quantities(names, found%numbers, units)
+    call put_texts(names, found%number_names)
+    call put_texts(units, found%number_units)
+    call run%gradients(found%derivatives)
+  end subroutine take_run
+
+  !> Find the equilibrium to which the start leads, or those of many random starts.
+  integer(c_int) function find_equilibria(mechanism, starts, stop, results, error) bind(c, name='mech9_equilibrium') result(code)
+    type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
+    integer(c_int), value, intent(in) :: starts   !< number of random starts; 0: the start of the mechanism alone
+    type(c_ptr), value, intent(in) :: stop        !< address of a number that stops the search once it is not 0, or null
+    type(c_ptr), intent(out) :: results           !< a row for each equilibrium; null if there are none
+    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
+    type(mechanism_type), pointer :: resting
+    type(rest_type) :: rest
+    type(flag_interruption_type) :: interruption
+    type(error_type), allocatable :: err
+
+    call begin_call(error)
+    results = c_null_ptr
+    call new_interruption(stop, interruption)
+    call find_mechanism(mechanism, resting, err)
+    if (.not. allocated(err)) call rest%find_equilibria(resting, starts, err, interruption)
+    if (has_rows(err)) results = table_of(rest)
+    code = end_analysis(error, err, resting, dynamics)
+  end function find_equilibria
+
+  !> Whether an answer has rows: it was found, or the search was stopped.
+  pure logical function has_rows(err)
+    type(error_type), allocatable, intent(in) :: err   !< the failure, if there is one
+
+    has_rows = .not. allocated(err)
+    if (allocated(err)) has_rows = err%code == exit_interrupted
+  end function has_rows
+
+  !> Find the modes of vibration about the equilibrium to which the start leads.
+  integer(c_int) function find_modes(mechanism, results, error) bind(c, name='mech9_modes') result(code)
+    type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
+    type(c_ptr), intent(out) :: results           !< a row for each mode; null after a failure
+    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
+    type(mechanism_type), pointer :: vibrating
+    type(rest_type) :: rest
+    type(error_type), allocatable :: err
+
+    call begin_call(error)
+    results = c_null_ptr
+    call find_mechanism(mechanism, vibrating, err)
+    if (.not. allocated(err)) call rest%find_modes(vibrating, err)
+    if (.not. allocated(err)) results = table_of(rest)
+    code = end_analysis(error, err, vibrating, dynamics)
+  end function find_modes
+
+  !> Results with the rows of equilibria or modes.
+  type(c_ptr) function table_of(rest)
+    type(rest_type), intent(in) :: rest   !< with its rows
+    type(results_type), pointer :: found
+
+    allocate (found)
+    call put_texts(rest%names, found%names)
+    call put_texts(rest%units, found%units)
+    allocate (found%rows, source=rest%rows)
+    found%count = size(rest%rows, 2)
+    table_of = show_results(found)
+  end function table_of
+
+  !> Find the assemblies with the independent coordinates of the start: a row of coordinates for each.
+  integer(c_int) function find_assemblies(mechanism, starts, results, error) bind(c, name='mech9_assemblies') result(code)
+    type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
+    integer(c_int), value, intent(in) :: starts   !< number of random starts
+    type(c_ptr), intent(out) :: results           !< the assemblies, that of the mechanism first; null after a failure
+    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
+    type(mechanism_type), pointer :: assembled
+    type(results_type), pointer :: found
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: names(:), units(:)
+    real(wp), allocatable :: q(:, :), sizes(:)
+    integer :: i
+
+    call begin_call(error)
+    results = c_null_ptr
+    call find_mechanism(mechanism, assembled, err)
+    if (.not. allocated(err)) call list_assemblies(assembled, starts, q, err)
+    if (.not. allocated(err)) call name_coordinates(assembled, names, units, sizes, err)
+    if (.not. allocated(err)) then
+      allocate (found)
+      call put_texts(names, found%names)
+      call put_texts(units, found%units)
+      allocate (found%rows(size(q, 1), size(q, 2)))
+      do i = 1, size(q, 2)
+        found%rows(:, i) = q(:, i)/sizes
+      end do
+      found%count = size(q, 2)
+      results = show_results(found)
+    end if
+    code = end_analysis(error, err, assembled, dynamics)
+  end function find_assemblies
+
+  !> Find how far each independent coordinate can go from the start while the others are held there: a row for each, with its number,
+  !> its least and its greatest value in the unit of the data file.
+  integer(c_int) function find_ranges(mechanism, results, error) bind(c, name='mech9_range') result(code)
+    type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
+    type(c_ptr), intent(out) :: results           !< the ranges; null after a failure
+    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
+    type(mechanism_type), pointer :: assembled
+    type(results_type), pointer :: found
+    type(error_type), allocatable :: err
+    integer, allocatable :: coordinates(:)
+    character(len=:), allocatable :: names(:), units(:)
+    real(wp), allocatable :: lower(:), upper(:), sizes(:)
+
+    call begin_call(error)
+    results = c_null_ptr
+    call find_mechanism(mechanism, assembled, err)
+    if (.not. allocated(err)) call list_ranges(assembled, coordinates, lower, upper, err)
+    if (.not. allocated(err)) call name_coordinates(assembled, names, units, sizes, err)
+    if (.not. allocated(err)) then
+      allocate (found)
+      call put_texts([character(len=10) :: 'coordinate', 'lower', 'upper'], found%names)
+      call put_texts(['1', '1', '1'], found%units)
+      allocate (found%rows(3, size(coordinates)))
+      found%rows(1, :) = coordinates
+      found%rows(2, :) = lower/sizes(coordinates)
+      found%rows(3, :) = upper/sizes(coordinates)
+      found%count = size(coordinates)
+      results = show_results(found)
+    end if
+    code = end_analysis(error, err, assembled, dynamics)
+  end function find_ranges
+
+  !> Make all runs of &study: a row for each, with its number, the values of its parameters, its quantities and its exit code.
+  integer(c_int) function make_study(mechanism, with_forces, threads, stop, results, error) bind(c, name='mech9_study') &
+    result(code)
+    type(c_ptr), value, intent(in) :: mechanism        !< the mechanism
+    integer(c_int), value, intent(in) :: with_forces   !< 0: runs of driven motions; else of motions under forces
+    integer(c_int), value, intent(in) :: threads       !< how many make the runs
+    type(c_ptr), value, intent(in) :: stop             !< address of a number that stops the study once it is not 0, or null
+    type(c_ptr), intent(out) :: results                !< the runs, also those before a stop; null after other failures
+    type(c_ptr), value, intent(in) :: error            !< handle of errors, or null
+    type(mechanism_type), pointer :: varied
+    type(study_type), allocatable, target :: study
+    type(flag_interruption_type) :: interruption
+    type(error_type), allocatable :: err
+
+    call begin_call(error)
+    results = c_null_ptr
+    call new_interruption(stop, interruption)
+    call find_mechanism(mechanism, varied, err)
+    if (.not. allocated(err)) then
+      allocate (study)
+      if (with_forces == 0) then
+        call study%make_kinematics(varied, threads, err, interruption)
+      else
+        call study%make_dynamics(varied, threads, err, interruption)
+      end if
+      if (has_rows(err)) results = runs_of(study)
+    end if
+    code = end_analysis(error, err, varied, merge(kinematics, dynamics, with_forces == 0))
+  end function make_study
+
+  !> Results with the runs of a study.
+  type(c_ptr) function runs_of(study)
+    type(study_type), intent(in) :: study   !< the study
+    type(results_type), pointer :: found
+    type(c_text_type), allocatable :: parameters(:), quantities(:), ends(:)
+    integer :: i, n, m
+
+    n = size(study%parameters, 1)
+    m = size(study%quantities, 1)
+    allocate (found)
+    call put_texts(study%parameter_names, parameters)
+    call put_texts(study%quantity_names, quantities)
+    call put_texts([character(len=9) :: 'run', 'exit_code'], ends)
+    found%names = [ends(1), parameters, quantities, ends(2)]
+    call put_texts(spread(' ', 1, n + m + 2), found%units)
+    found%count = size(study%exit_codes)
+    allocate (found%rows(n + m + 2, found%count))
+    do i = 1, found%count
+      found%rows(:, i) = [real(i, wp), study%parameters(:, i), study%quantities(:, i), real(study%exit_codes(i), wp)]
+    end do
+    runs_of = show_results(found)
+  end function runs_of
+
+  !> Linearise the equations of motion about the equilibrium to which the start leads: the matrices second_order/M, C, K and
+  !> state_space/A, B, C, D, and a row with the coordinates in equilibrium.
+  integer(c_int) function find_linear(mechanism, results, error) bind(c, name='mech9_linear') result(code)
+    type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
+    type(c_ptr), intent(out) :: results           !< the matrices; null after a failure
+    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
+    type(mechanism_type), pointer :: resting
+    type(linear_system_type) :: system
+    type(results_type), pointer :: found
+    character(len=:), allocatable :: names(:), units(:)
+    real(wp), allocatable :: sizes(:)
+    type(error_type), allocatable :: err
+    integer :: n
+
+    call begin_call(error)
+    results = c_null_ptr
+    call find_mechanism(mechanism, resting, err)
+    if (.not. allocated(err)) call find_linear_system(resting, system, err)
+    if (.not. allocated(err)) call name_coordinates(resting, names, units, sizes, err)
+    if (.not. allocated(err)) then
+      allocate (found)
+      call put_texts(names, found%names)
+      call put_texts(units, found%units)
+      allocate (found%rows(size(names), 1))
+      found%rows(:, 1) = system%q/sizes
+      found%count = 1
+      allocate (found%matrices(7))
+      n = size(system%free)
+      associate (m => found%matrices, s => system, free => system%states(:n), units_of_free => system%state_units(:n))
+        call put_matrix('second_order/M', s%inertia, free, units_of_free, free, units_of_free, m(1))
+        call put_matrix('second_order/C', s%damping, free, units_of_free, free, units_of_free, m(2))
+        call put_matrix('second_order/K', s%stiffness, free, units_of_free, free, units_of_free, m(3))
+        call put_matrix('state_space/A', s%space%a, s%states, s%state_units, s%states, s%state_units, m(4))
+        call put_matrix('state_space/B', s%space%b, s%states, s%state_units, s%inputs, s%input_units, m(5))
+        call put_matrix('state_space/C', s%space%c, s%outputs, s%output_units, s%states, s%state_units, m(6))
+        call put_matrix('state_space/D', s%space%d, s%outputs, s%output_units, s%inputs, s%input_units, m(7))
+      end associate
+      results = show_results(found)
+    end if
+    code = end_analysis(error, err, resting, dynamics)
+  end function find_linear
+
+  !> Search for the best design: a row for each distinct design, best first, with its value, its parameters, its coordinates at the
+  !> start, and the number of starts that led to it. The number made tells how many starts were made.
+  integer(c_int) function optimize(mechanism, with_forces, threads, stop, results, error) bind(c, name='mech9_optimize') &
+    result(code)
+    type(c_ptr), value, intent(in) :: mechanism        !< the mechanism
+    integer(c_int), value, intent(in) :: with_forces   !< 0: designs of driven motions; else of motions under forces
+    integer(c_int), value, intent(in) :: threads       !< how many make the starts
+    type(c_ptr), value, intent(in) :: stop             !< address of a number that stops the search once it is not 0, or null
+    type(c_ptr), intent(out) :: results                !< the designs, also those before a stop; null if there are none
+    type(c_ptr), value, intent(in) :: error            !< handle of errors, or null
+    type(mechanism_type), pointer :: searched
+    type(optimum_type) :: optimum
+    type(flag_interruption_type) :: interruption
+    type(error_type), allocatable :: err, unnamed
+    character(len=:), allocatable :: names(:), units(:)
+    real(wp), allocatable :: sizes(:)
+    integer :: program
+
+    call begin_call(error)
+    results = c_null_ptr
+    program = merge(kinematics, dynamics, with_forces == 0)
+    call new_interruption(stop, interruption)
+    call find_mechanism(mechanism, searched, err)
+    if (.not. allocated(err)) then
+      call optimum%make(searched, program, threads, interruption, err)
+      if (size(optimum%values) > 0) then
+        call name_coordinates(searched, names, units, sizes, unnamed)
+        results = designs_of(optimum, names, units, sizes)
+      end if
+    end if
+    code = end_analysis(error, err, searched, program)
+  end function optimize
+
+  !> Results with the designs of a search.
+  type(c_ptr) function designs_of(optimum, names, units, sizes)
+    type(optimum_type), intent(in) :: optimum       !< the designs
+    character(len=*), intent(in) :: names(:)        !< (M) of the coordinates
+    character(len=*), intent(in) :: units(:)        !< (M) of the coordinates
+    real(wp), intent(in) :: sizes(:)                !< (M) of these units [rad, m]
+    type(results_type), pointer :: found
+    type(c_text_type), allocatable :: parameters(:), coordinates(:), others(:), coordinate_units(:), no_units(:)
+    integer :: i
+
+    allocate (found)
+    call put_texts(optimum%parameter_names, parameters)
+    call put_texts(names, coordinates)
+    call put_texts(units, coordinate_units)
+    call put_texts([character(len=6) :: 'value', 'starts'], others)
+    call put_texts(spread(' ', 1, size(parameters) + 2), no_units)
+    found%names = [others(1), parameters, coordinates, others(2)]
+    found%units = [no_units(:size(parameters) + 1), coordinate_units, no_units(size(no_units))]
+    found%count = size(optimum%values)
+    allocate (found%rows(size(found%names), found%count))
+    do i = 1, found%count
+      found%rows(:, i) = [optimum%values(i), optimum%parameters(:, i), optimum%q(:, i)/sizes, real(optimum%starts(i), wp)]
+    end do
+    call put_texts(['made'], found%number_names)
+    call put_texts(['1'], found%number_units)
+    found%numbers = [real(optimum%made, wp)]
+    designs_of = show_results(found)
+  end function designs_of
+
+  !> Draw the assembled start in a file that ends with .svg.
+  integer(c_int) function sketch(mechanism, path, view, error) bind(c, name='mech9_sketch') result(code)
+    type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
+    type(c_ptr), value, intent(in) :: path        !< of the picture
+    type(c_ptr), value, intent(in) :: view        !< as for --view; null or empty: the best one
+    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
+    type(mechanism_type), pointer :: drawn
+    character(len=:), allocatable :: file, direction
+    type(error_type), allocatable :: err
+
+    call begin_call(error)
+    call read_c_text(path, file)
+    call read_c_text(view, direction)
+    call find_mechanism(mechanism, drawn, err)
+    if (.not. allocated(err)) call draw_sketch(drawn, file, direction, err)
+    code = end_analysis(error, err, drawn, dynamics)
+  end function sketch
+
+  !> Make a run over the outputs of &time, and draw it in a file that ends with .html, .svg or .gif.
+  integer(c_int) function animate(mechanism, with_forces, path, view, stop, error) bind(c, name='mech9_animate') result(code)
+    type(c_ptr), value, intent(in) :: mechanism        !< the mechanism
+    integer(c_int), value, intent(in) :: with_forces   !< 0: a driven motion; else a motion under forces
+    type(c_ptr), value, intent(in) :: path             !< of the picture
+    type(c_ptr), value, intent(in) :: view             !< as for --view; null or empty: the best one
+    type(c_ptr), value, intent(in) :: stop             !< address of a number that stops the run once it is not 0, or null
+    type(c_ptr), value, intent(in) :: error            !< handle of errors, or null
+    type(mechanism_type), pointer :: drawn
+    type(flag_interruption_type) :: interruption
+    character(len=:), allocatable :: file, direction
+    type(error_type), allocatable :: err
+
+    call begin_call(error)
+    call read_c_text(path, file)
+    call read_c_text(view, direction)
+    call new_interruption(stop, interruption)
+    call find_mechanism(mechanism, drawn, err)
+    if (.not. allocated(err)) &
+      call draw_film(drawn, merge(kinematics, dynamics, with_forces == 0), file, direction, err, interruption)
+    code = end_analysis(error, err, drawn, merge(kinematics, dynamics, with_forces == 0))
+  end function animate
+
+  !> End an analysis: tell its failure with all errors of the mechanism.
+  integer(c_int) function end_analysis(error, err, mechanism, program) result(code)
+    type(c_ptr), intent(in) :: error                        !< address of the caller's error handle, or null
+    type(error_type), allocatable, intent(inout) :: err     !< the failure, if there is one
+    type(mechanism_type), pointer, intent(in) :: mechanism  !< the mechanism; null where there is none
+    integer, intent(in) :: program                          !< kinematics or dynamics
+    type(finding_type), allocatable :: findings(:)
+
+    if (allocated(err) .and. associated(mechanism)) then
+      if (err%code == exit_data .or. err%code == exit_structure) then
+        call mechanism%list_findings(program, findings)
+        code = end_call(error, err, mechanism, findings)
+      else
+        code = end_call(error, err, mechanism)
+      end if
+    else
+      code = end_call(error, err)
+    end if
+  end function end_analysis
+end module mech9_api_analyses

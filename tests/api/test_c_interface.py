@@ -1,0 +1,132 @@
+"""The library for C and C++: what it shows, its header, and the programs of examples/c."""
+import os
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from mech9_cases import TREE, run, text_of
+
+HEADER = os.path.join(TREE, 'include', 'mech9.h')
+FOLDER = os.path.join(TREE, 'examples', 'c')
+
+
+@pytest.fixture(name='library')
+def shared_library(build):
+    path = os.path.join(build.folder, 'lib', 'libmech9.so.0')
+    if not os.path.exists(path):
+        pytest.skip('this build has no libmech9.so')
+    return path
+
+
+def declared_names():
+    return set(re.findall(r'\b(mech9_\w+)\(', text_of(HEADER)))
+
+
+def compiled(build, library, source, tmp_path, compiler, *options):
+    """The program of a source, linked with the library of the build."""
+    if not shutil.which(compiler):
+        pytest.skip(f'there is no {compiler}')
+    program = tmp_path / os.path.basename(source).split('.')[0]
+    sanitizers = ['-fsanitize=address,undefined'] if build.kind == 'Sanitize' else []
+    folder = os.path.dirname(library)
+    done = subprocess.run([compiler, '-Wall', '-Wextra', '-Wpedantic', '-Werror', *options, *sanitizers, '-I', os.path.dirname(HEADER),
+                           source, '-o', str(program), library, f'-Wl,-rpath,{folder}'], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return str(program)
+
+
+def test_shown_names(checks, library):
+    listed = subprocess.run(['nm', '-D', '--defined-only', library], capture_output=True, text=True, check=True).stdout
+    shown = {line.split()[-1] for line in listed.splitlines()}
+    checks.equal(sorted(shown), sorted(declared_names()), 'the library shows what its header declares, and nothing else')
+
+
+def test_name_of_the_library(checks, library):
+    described = subprocess.run(['objdump', '-p', library], capture_output=True, text=True, check=True).stdout
+    checks.true('SONAME               libmech9.so.0\n' in described, 'the library bears its name and the number of its interface')
+    needed = re.findall(r'NEEDED +(\S+)', described)
+    checks.true(not any(name.startswith(('libhdf5', 'libedit', 'libsundials')) for name in needed), f'it needs little: {needed}')
+
+
+def test_program_in_c(checks, build, library, tmp_path):
+    program = compiled(build, library, os.path.join(FOLDER, 'four_bar.c'), tmp_path, 'gcc', '-std=c99')
+    done = run(program, folder=FOLDER)
+    checks.equal(done.returncode, 0, f'it runs; {done.stderr}')
+    lines = done.stdout.splitlines()
+    checks.equal(len(lines), 14, 'a line for each output, and one for the motion')
+    checks.true(lines[0].startswith('t = 0.00 s, q2 = '), f'names and units: {lines[0]}')
+    failed = run(program, 'missing.nml', folder=FOLDER)
+    checks.equal(failed.returncode, 8, 'a file that is not there is told by its exit code')
+    checks.true('missing.nml: cannot be read: there is no such file' in failed.stderr, f'and in words: {failed.stderr}')
+
+
+def test_program_in_cpp(checks, build, library, tmp_path):
+    if build.kind == 'Debug':
+        pytest.skip('the debug build checks recursion, which takes two threads in one procedure for one')
+    program = compiled(build, library, os.path.join(FOLDER, 'many_positions.cpp'), tmp_path, 'g++', '-std=c++17', '-pthread')
+    done = run(program, folder=FOLDER)
+    checks.equal(done.returncode, 0, f'eight threads give the same bits; {done.stderr}')
+
+
+MISUSE = r'''
+#include <mech9.h>
+#include <stdio.h>
+#include <string.h>
+static int failures = 0;
+static void expect(int holds, const char *what) { if (!holds) { failures++; printf("%s\n", what); } }
+int main(void)
+{
+  mech9_error *error = mech9_error_create();
+  mech9_mechanism *mechanism = NULL, *copy = NULL;
+  mech9_results *results = NULL;
+  mech9_positions *positions = NULL;
+  double value = 0, q[4];
+  int stop = 1, codes[1];
+  expect(mech9_kinematics(NULL, NULL, &results, error) == 2 && results == NULL, "no mechanism");
+  expect(strstr(mech9_error_message(error), "this is no mechanism") != NULL, "no mechanism is told");
+  expect(mech9_simulation_advance(NULL, 1.0, error) == 2, "no simulation");
+  expect(mech9_results_rows(NULL) == 0 && mech9_results_data(NULL) == NULL && mech9_results_name(NULL, 0) == NULL, "no results");
+  expect(mech9_read_text("&pair coordinate=1, links=1,2, kind='revolut' /\n&nothing /", &mechanism, error) == 3, "two errors");
+  expect(mechanism == NULL && mech9_error_findings(error) == 2, "two errors are found");
+  expect(mech9_error_finding_line(error, 0) == 1 && mech9_error_finding_column(error, 0) == 37, "the place of the first");
+  expect(mech9_error_finding_line(error, 1) == 2 && mech9_error_finding_line(error, 2) == 0, "the place of the second");
+  expect(mech9_error_finding_message(error, -1) == NULL && mech9_error_finding_file(error, 7) == NULL, "no other error");
+  expect(mech9_read_text("", &mechanism, error) == 0 && mech9_error_code(error) == 0, "an empty mechanism");
+  expect(mech9_check(mechanism, &results, error) != 0 && results == NULL, "has no structure");
+  mech9_mechanism_destroy(mechanism);
+  expect(mech9_read_file("four_bar.nml", &mechanism, NULL) == 0, "no handle of errors is needed");
+  expect(mech9_mechanism_number(mechanism, "pair(2).point(1)", &value, error) == 0 && value == 0.3, "a number");
+  expect(mech9_mechanism_number(mechanism, "pair(2).nothing", &value, error) == 3 && value != value, "no number");
+  expect(mech9_mechanism_copy(mechanism, &copy, error) == 0, "a copy");
+  expect(mech9_mechanism_set(copy, "pair(2).point(1)", 0.2, error) == 0, "is changed");
+  expect(mech9_mechanism_number(mechanism, "pair(2).point(1)", &value, error) == 0 && value == 0.3, "without its original");
+  expect(mech9_mechanism_apply(copy, "time.intervals=-1", error) == 3, "a setting out of its range is refused");
+  expect(mech9_mechanism_add(copy, "&point name='Q', link=3 /", error) == 0, "a point is added");
+  expect(strstr(mech9_mechanism_text(copy), "'Q'") != NULL, "and written");
+  expect(mech9_kinematics(copy, &stop, &results, error) == 130, "a run that is to stop stops");
+  mech9_results_destroy(results);
+  expect(mech9_positions_create(mechanism, &positions, error) == 0, "positions");
+  expect(mech9_positions_find(positions, 1, NULL, NULL, NULL, NULL, q, NULL, NULL, codes, error) == 2, "need values");
+  expect(mech9_positions_find(positions, 0, &value, NULL, NULL, NULL, q, NULL, NULL, codes, error) == 0, "there may be none");
+  mech9_positions_destroy(positions);
+  mech9_mechanism_destroy(copy);
+  mech9_mechanism_destroy(mechanism);
+  mech9_mechanism_destroy(NULL);
+  mech9_results_destroy(NULL);
+  mech9_positions_destroy(NULL);
+  mech9_simulation_destroy(NULL);
+  mech9_error_destroy(error);
+  mech9_error_destroy(NULL);
+  return failures;
+}
+'''
+
+
+def test_wrong_use(checks, build, library, tmp_path):
+    source = tmp_path / 'misuse.c'
+    source.write_text(MISUSE)
+    program = compiled(build, library, str(source), tmp_path, 'gcc', '-std=c99')
+    done = run(program, folder=FOLDER)
+    checks.equal((done.returncode, done.stdout), (0, ''), f'wrong calls are told, and nothing else is printed; {done.stderr}')
