@@ -1,0 +1,24 @@
+"""Kinematic and dynamic analysis of spatial mechanisms with closed chains.
+
+A mechanism is read from a data file, or built from nothing by its groups::
+
+    import mech9
+    m = mech9.read('four_bar.nml')
+    r = m.kinematics(end=2, intervals=500)
+    r.t, r['q1'], r['P.x']
+
+Numbers are in the units of the data file. Names of groups, words and numbers are those of the data file and of the option --set.
+"""
+from ._errors import (AssemblyError, DataError, Error, FileError, Finding, IntegrationError, SingularError, StructureError,
+                      UsageError)
+from ._function import Function
+from ._library import version as _version
+from ._mechanism import Check, Linear, Mechanism, Optimum, Positions, read, read_text
+from ._pictures import Picture
+from ._results import Gradients, Matrix, Results
+from ._simulation import Simulation
+
+__all__ = ['read', 'read_text', 'Mechanism', 'Results', 'Gradients', 'Positions', 'Check', 'Linear', 'Optimum', 'Matrix', 'Picture', 'Function',
+           'Simulation', 'Error', 'Finding',
+           'UsageError', 'DataError', 'StructureError', 'AssemblyError', 'SingularError', 'IntegrationError', 'FileError']
+__version__ = _version()

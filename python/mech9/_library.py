@@ -1,0 +1,187 @@
+"""The functions of libmech9.so, as include/mech9.h declares them."""
+from __future__ import annotations
+
+import ctypes
+import os
+import threading
+from ctypes import POINTER, c_char_p, c_double, c_int, c_void_p
+from typing import Any, Callable
+
+from ._errors import CODES, INTERRUPTED, Error, Finding
+
+_NAME = 'libmech9.so.0'
+_STATUS = 'status'   # a function that can fail: its last argument is the error handle
+
+_FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
+    'version': (c_int, []),
+    'error_create': (c_void_p, []),
+    'error_destroy': (None, [c_void_p]),
+    'error_message': (c_char_p, [c_void_p]),
+    'error_findings': (c_int, [c_void_p]),
+    'error_finding_message': (c_char_p, [c_void_p, c_int]),
+    'error_finding_file': (c_char_p, [c_void_p, c_int]),
+    'error_finding_line': (c_int, [c_void_p, c_int]),
+    'error_finding_column': (c_int, [c_void_p, c_int]),
+    'read_file': (_STATUS, [c_char_p, POINTER(c_void_p)]),
+    'read_text': (_STATUS, [c_char_p, POINTER(c_void_p)]),
+    'mechanism_copy': (_STATUS, [c_void_p, POINTER(c_void_p)]),
+    'mechanism_destroy': (None, [c_void_p]),
+    'mechanism_add': (_STATUS, [c_void_p, c_char_p]),
+    'mechanism_apply': (_STATUS, [c_void_p, c_char_p]),
+    'mechanism_set': (_STATUS, [c_void_p, c_char_p, c_double]),
+    'mechanism_number': (_STATUS, [c_void_p, c_char_p, POINTER(c_double)]),
+    'mechanism_text': (c_char_p, [c_void_p]),
+    'mechanism_parameters': (c_int, [c_void_p]),
+    'mechanism_parameter': (c_char_p, [c_void_p, c_int]),
+    'mechanism_is_driven': (_STATUS, [c_void_p, POINTER(c_int)]),
+    'results_destroy': (None, [c_void_p]),
+    'results_columns': (c_int, [c_void_p]),
+    'results_rows': (c_int, [c_void_p]),
+    'results_data': (c_void_p, [c_void_p]),
+    'results_name': (c_char_p, [c_void_p, c_int]),
+    'results_unit': (c_char_p, [c_void_p, c_int]),
+    'results_numbers': (c_int, [c_void_p]),
+    'results_number_name': (c_char_p, [c_void_p, c_int]),
+    'results_number_unit': (c_char_p, [c_void_p, c_int]),
+    'results_number': (c_double, [c_void_p, c_int]),
+    'results_parameters': (c_int, [c_void_p]),
+    'results_derivative': (c_double, [c_void_p, c_int, c_int]),
+    'results_text': (c_char_p, [c_void_p]),
+    'results_matrices': (c_int, [c_void_p]),
+    'results_matrix_name': (c_char_p, [c_void_p, c_int]),
+    'results_matrix_rows': (c_int, [c_void_p, c_int]),
+    'results_matrix_columns': (c_int, [c_void_p, c_int]),
+    'results_matrix_data': (c_void_p, [c_void_p, c_int]),
+    'results_matrix_row_name': (c_char_p, [c_void_p, c_int, c_int]),
+    'results_matrix_row_unit': (c_char_p, [c_void_p, c_int, c_int]),
+    'results_matrix_column_name': (c_char_p, [c_void_p, c_int, c_int]),
+    'results_matrix_column_unit': (c_char_p, [c_void_p, c_int, c_int]),
+    'check': (_STATUS, [c_void_p, POINTER(c_void_p)]),
+    'sketch': (_STATUS, [c_void_p, c_char_p, c_char_p]),
+    'animate': (_STATUS, [c_void_p, c_int, c_char_p, c_char_p, c_void_p]),
+    'kinematics': (_STATUS, [c_void_p, c_void_p, POINTER(c_void_p)]),
+    'dynamics': (_STATUS, [c_void_p, c_void_p, POINTER(c_void_p)]),
+    'equilibrium': (_STATUS, [c_void_p, c_int, c_void_p, POINTER(c_void_p)]),
+    'modes': (_STATUS, [c_void_p, POINTER(c_void_p)]),
+    'assemblies': (_STATUS, [c_void_p, c_int, POINTER(c_void_p)]),
+    'range': (_STATUS, [c_void_p, POINTER(c_void_p)]),
+    'study': (_STATUS, [c_void_p, c_int, c_int, c_void_p, POINTER(c_void_p)]),
+    'linear': (_STATUS, [c_void_p, POINTER(c_void_p)]),
+    'optimize': (_STATUS, [c_void_p, c_int, c_int, c_void_p, POINTER(c_void_p)]),
+    'mechanism_design': (_STATUS, [c_void_p, c_int, c_void_p, c_void_p, POINTER(c_void_p)]),
+    'positions_create': (_STATUS, [c_void_p, POINTER(c_void_p)]),
+    'positions_destroy': (None, [c_void_p]),
+    'positions_coordinates': (c_int, [c_void_p]),
+    'positions_independent': (c_int, [c_void_p]),
+    'positions_independent_at': (c_int, [c_void_p, c_int]),
+    'positions_find': (_STATUS, [c_void_p, c_int] + 8*[c_void_p]),
+    'simulation_create': (_STATUS, [c_void_p, c_int, c_void_p, POINTER(c_void_p)]),
+    'simulation_destroy': (None, [c_void_p]),
+    'simulation_advance': (_STATUS, [c_void_p, c_double]),
+    'simulation_time': (c_double, [c_void_p]),
+    'simulation_coordinates': (c_int, [c_void_p]),
+    'simulation_take': (_STATUS, [c_void_p, c_void_p, c_void_p, c_void_p]),
+    'simulation_point': (_STATUS, [c_void_p, c_char_p, c_void_p, c_void_p, c_void_p]),
+    'simulation_energies': (_STATUS, [c_void_p, POINTER(c_double), POINTER(c_double)]),
+    'simulation_closure': (c_double, [c_void_p]),
+}
+
+
+class Library:
+    """The functions of the shared library, by their names without mech9_."""
+
+    def __init__(self, path: str):
+        loaded = ctypes.CDLL(path)
+        for name, (result, arguments) in _FUNCTIONS.items():
+            function = getattr(loaded, 'mech9_' + name)
+            function.restype = c_int if result is _STATUS else result
+            function.argtypes = arguments + [c_void_p] if result is _STATUS else arguments
+            setattr(self, name, function)
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        raise AttributeError(name)
+
+
+def _load() -> Library:
+    """The library beside this package, or one that the system has; the variable MECH9_LIBRARY names another one."""
+    beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), _NAME)
+    return Library(os.environ.get('MECH9_LIBRARY') or (beside if os.path.exists(beside) else _NAME))
+
+
+lib = _load()
+
+
+def version() -> str:
+    """The version of the library, as '0.9.0'."""
+    number = lib.version()
+    return f'{number//10000}.{number//100 % 100}.{number % 100}'
+
+
+class _ErrorHandle(threading.local):
+    """The error handle of a thread."""
+
+    def __init__(self) -> None:
+        self.address = lib.error_create()
+
+    def __del__(self, destroy: Callable[[int], None] = lib.error_destroy) -> None:
+        destroy(self.address)
+
+
+_handle = _ErrorHandle()
+
+
+def _text(value: bytes | None) -> str:
+    return '' if value is None else value.decode('utf-8', 'replace')
+
+
+def _failure(code: int) -> Error:
+    """The failure of the last call in this thread."""
+    handle = _handle.address
+    found = []
+    for i in range(lib.error_findings(handle)):
+        line = lib.error_finding_line(handle, i)
+        found.append(Finding(_text(lib.error_finding_message(handle, i)), _text(lib.error_finding_file(handle, i)) or None,
+                             line or None, lib.error_finding_column(handle, i) or None if line else None))
+    return CODES.get(code, Error)(_text(lib.error_message(handle)), code, tuple(found))
+
+
+def call(function: Callable[..., int], *arguments: Any) -> None:
+    """Call a function that can fail, and raise its failure."""
+    code = function(*arguments, _handle.address)
+    if code:
+        raise _failure(code)
+
+
+def call_stoppable(function: Callable[..., int], arguments: Callable[[Any], tuple[Any, ...]]) -> Error | None:
+    """Call a function that may take long, and return its failure. `arguments` makes its arguments from the address of the number that
+    stops it. Ctrl-C stops it and raises KeyboardInterrupt: Python handles signals in the main thread alone, so that the function
+    runs in another one.
+    """
+    stop = c_int(0)
+    failures: list[Error | None] = []
+
+    done = threading.Event()
+
+    def work() -> None:
+        try:
+            code = function(*arguments(ctypes.addressof(stop)), _handle.address)
+            failures.append(_failure(code) if code else None)
+        finally:
+            done.set()
+
+    if threading.current_thread() is not threading.main_thread():
+        work()
+        return failures[0]
+    threading.Thread(target=work, daemon=True).start()
+    try:
+        # a signal that does not come from the system, as in a notebook, does not end a wait
+        while not done.wait(0.05):
+            pass
+    except BaseException:
+        stop.value = 1
+        done.wait()
+        raise
+    failure = failures[0]
+    if failure is not None and failure.code == INTERRUPTED:
+        raise KeyboardInterrupt(failure.message)
+    return failure

@@ -1,0 +1,440 @@
+"""Mechanisms: read, built, changed, and analysed."""
+from __future__ import annotations
+
+import ctypes
+import html
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Sequence
+
+import numpy as np
+
+from ._errors import DataError, Error, UsageError
+from ._library import call, call_stoppable, lib
+from ._pictures import Picture, drawn
+from ._results import Results
+from ._words import group, run_setting, written
+
+if TYPE_CHECKING:
+    from ._function import Function
+    from ._simulation import Simulation
+
+
+def read(path: str | os.PathLike[str]) -> Mechanism:
+    """Read a data file. Grammar is judged here; the structure is judged by `check` or a run."""
+    handle = ctypes.c_void_p()
+    call(lib.read_file, os.fsencode(path), ctypes.byref(handle))
+    return Mechanism(_handle=handle)
+
+
+def read_text(text: str) -> Mechanism:
+    """Read a text that has the form of a data file."""
+    handle = ctypes.c_void_p()
+    call(lib.read_text, _bytes(text), ctypes.byref(handle))
+    return Mechanism(_handle=handle)
+
+
+def _bytes(text: str) -> bytes:
+    encoded = text.encode('utf-8')
+    if b'\0' in encoded:
+        raise UsageError('a text must not have zero bytes', 2)
+    return encoded
+
+
+@dataclass(frozen=True)
+class Check:
+    """What `Mechanism.check` found: the mobility, the number of redundant equations, and a report in words."""
+    mobility: int
+    redundant: int
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True)
+class SecondOrder:
+    """M x'' + C x' + K x = u over the free coordinates, in SI units."""
+    M: np.ndarray
+    C: np.ndarray
+    K: np.ndarray
+
+
+@dataclass(frozen=True)
+class StateSpace:
+    """x' = A x + B u, y = C x + D u; states, inputs and outputs are names, with units."""
+    A: np.ndarray
+    B: np.ndarray
+    C: np.ndarray
+    D: np.ndarray
+    states: tuple[str, ...]
+    state_units: tuple[str, ...]
+    inputs: tuple[str, ...]
+    input_units: tuple[str, ...]
+    outputs: tuple[str, ...]
+    output_units: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Linear:
+    """The linearised equations of motion about an equilibrium q, where `free` names the free coordinates."""
+    q: np.ndarray
+    free: tuple[str, ...]
+    second_order: SecondOrder
+    state_space: StateSpace
+
+
+class Optimum:
+    """What `Mechanism.optimize` found: the best design (value, parameters, mechanism), and all distinct ones, best first (optima)."""
+
+    def __init__(self, searched: Mechanism, with_forces: bool, optima: Results):
+        self.optima = optima
+        self.made = int(optima.quantities['made'])
+        self._searched, self._with_forces = searched.copy(), with_forces
+
+    @property
+    def value(self) -> float:
+        """The value of the best design: the less the better."""
+        return float(self.optima['value'][0])
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The parameters of the best design."""
+        return {name: float(self.optima[name][0]) for name in self._searched.parameters}
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism of the best design."""
+        return self.design(0)
+
+    def design(self, i: int) -> Mechanism:
+        """The mechanism of one of the designs, from 0 on."""
+        row = self.optima.table[i]
+        n = len(self._searched.parameters)
+        parameters, q = np.array(row[1:1 + n]), np.array(row[1 + n:-1])
+        handle = ctypes.c_void_p()
+        call(lib.mechanism_design, self._searched._handle, int(self._with_forces), parameters.ctypes.data, q.ctypes.data,
+             ctypes.byref(handle))
+        return Mechanism(_handle=handle)
+
+    def __repr__(self) -> str:
+        return f'<mech9.Optimum: {len(self.optima.table)} designs, the best one with value {self.value:.6g}>'
+
+
+class Positions(np.ndarray):
+    """Positions (n, M), one column for each coordinate; `code` (n,) is 0, or the exit code of a position that was not reached."""
+    code: np.ndarray
+
+    def __array_finalize__(self, made_from: Any) -> None:
+        if made_from is not None and not hasattr(self, 'code'):
+            self.code = getattr(made_from, 'code', None)   # type: ignore[assignment]
+
+
+class Mechanism:
+    """A mechanism: groups of a data file in memory.
+
+    Mechanism(title='four-bar') makes an empty one, to which `add` brings groups.
+    """
+
+    def __init__(self, title: str | None = None, *, _handle: ctypes.c_void_p | None = None):
+        if _handle is None:
+            _handle = ctypes.c_void_p()
+            call(lib.read_text, b'', ctypes.byref(_handle))
+        self._handle = _handle
+        if title is not None:
+            self.add('mechanism', title=title)
+
+    def __del__(self) -> None:
+        if getattr(self, '_handle', None):
+            lib.mechanism_destroy(self._handle)
+
+    # groups and numbers
+
+    def add(self, name: str, /, **words: Any) -> Mechanism:
+        """Add a group of the data file: add('pair', coordinate=1, links=(1, 2), kind='revolute')."""
+        call(lib.mechanism_add, self._handle, _bytes(group(name, words)))
+        return self
+
+    def __getitem__(self, name: str) -> float:
+        """A number by the name that --set has for it, or the value of a parameter."""
+        value = ctypes.c_double()
+        call(lib.mechanism_number, self._handle, _bytes(self._full_name(name)), ctypes.byref(value))
+        return value.value
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        """Set a number, or a name of a group to a text, a truth value or a list."""
+        if isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool):
+            call(lib.mechanism_set, self._handle, _bytes(self._full_name(name)), float(value))
+        else:
+            call(lib.mechanism_apply, self._handle, _bytes(f'{name}={written(value)}'))
+
+    def _full_name(self, name: str) -> str:
+        if '.' in name:
+            return name
+        try:
+            return f'parameter({self.parameters.index(name) + 1}).value'
+        except ValueError:
+            raise DataError(f'there is no parameter {name!r}; a number has a name such as pair(2).point(1)', 3) from None
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of the parameters."""
+        return tuple(lib.mechanism_parameter(self._handle, i).decode() for i in range(lib.mechanism_parameters(self._handle)))
+
+    def copy(self) -> Mechanism:
+        """A mechanism of its own with the same groups."""
+        handle = ctypes.c_void_p()
+        call(lib.mechanism_copy, self._handle, ctypes.byref(handle))
+        return Mechanism(_handle=handle)
+
+    __copy__ = copy
+
+    def __deepcopy__(self, memo: Any) -> Mechanism:
+        return self.copy()
+
+    def with_(self, **values: Any) -> Mechanism:
+        """A copy with other numbers: with_(crank=0.36), or with_(**{'pair(2).point(1)': 0.36})."""
+        changed = self.copy()
+        for name, value in values.items():
+            changed[name] = value
+        return changed
+
+    def text(self) -> str:
+        """The text of a data file that makes this mechanism."""
+        return lib.mechanism_text(self._handle).decode('utf-8')
+
+    def __getstate__(self) -> str:
+        return self.text()
+
+    def __setstate__(self, text: str) -> None:
+        handle = ctypes.c_void_p()
+        call(lib.read_text, text.encode('utf-8'), ctypes.byref(handle))
+        self._handle = handle
+
+    def __repr__(self) -> str:
+        return f'<mech9.Mechanism: {self.text().count(chr(10) + "&") + 1} groups>'
+
+    # analyses
+
+    def check(self) -> Check:
+        """Judge structure and assembly."""
+        handle = ctypes.c_void_p()
+        call(lib.check, self._handle, ctypes.byref(handle))
+        text = (lib.results_text(handle) or b'').decode('utf-8')
+        found = Results(handle.value)   # type: ignore[arg-type]
+        return Check(int(found.quantities['mobility']), int(found.quantities['redundant']), text)
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether drives move all independent coordinates."""
+        driven = ctypes.c_int()
+        call(lib.mechanism_is_driven, self._handle, ctypes.byref(driven))
+        return bool(driven.value)
+
+    def kinematics(self, **words: Any) -> Results:
+        """A driven run, as mech9k makes it. It takes the words of &time, &output and &solver; they hold for this run alone."""
+        return self._run(lib.kinematics, words)
+
+    def dynamics(self, **words: Any) -> Results:
+        """A run under forces, as mech9d makes it. It takes the words of &time, &output and &solver; they hold for this run alone."""
+        return self._run(lib.dynamics, words)
+
+    def _run(self, function: Any, words: dict[str, Any]) -> Results:
+        run = self._with_words(words)
+        results = run._results(function, lambda stop, out: (run._handle, stop, out))
+        results._of_run(run if run is not self else self.copy(), function is lib.dynamics)
+        return results
+
+    def _with_words(self, words: dict[str, Any]) -> Mechanism:
+        """This mechanism, or a copy with the words of a run."""
+        if not words:
+            return self
+        changed = self.copy()
+        for word, value in words.items():
+            call(lib.mechanism_apply, changed._handle, _bytes(run_setting(word, value)))
+        return changed
+
+    def _results(self, function: Any, arguments: Any) -> Results:
+        """Call an analysis that may take long; a failure keeps what was computed before it."""
+        handle = ctypes.c_void_p()
+        parameters = self.parameters
+        try:
+            failure = call_stoppable(function, lambda stop: arguments(stop, ctypes.byref(handle)))
+        except KeyboardInterrupt as interrupt:
+            interrupt.results = Results(handle.value, parameters) if handle else None   # type: ignore[attr-defined]
+            raise
+        results = Results(handle.value, parameters) if handle else None   # type: ignore[arg-type]
+        if failure is not None:
+            failure.results = results
+            raise failure
+        assert results is not None
+        return results
+
+    def equilibrium(self, starts: int = 0) -> Results:
+        """The equilibrium to which the start leads, or those of many random starts: a row for each."""
+        return self._results(lib.equilibrium, lambda stop, out: (self._handle, int(starts), stop, out))
+
+    def modes(self) -> Results:
+        """The modes of vibration about the equilibrium to which the start leads: a row for each."""
+        return self._results(lib.modes, lambda stop, out: (self._handle, out))
+
+    def assemblies(self, starts: int = 100) -> Results:
+        """The assemblies with the independent coordinates of the start: a row of coordinates for each."""
+        return self._results(lib.assemblies, lambda stop, out: (self._handle, int(starts), out))
+
+    def range(self) -> Results:
+        """How far each independent coordinate can go while the others are held: coordinate, lower, upper."""
+        return self._results(lib.range, lambda stop, out: (self._handle, out))
+
+    def study(self, threads: int = 1, dynamics: bool | None = None) -> Any:
+        """Make all runs of &study: an xarray.Dataset over `run`, with parameters, quantities and exit codes.
+
+        dynamics: whether forces move the mechanism; by default where a coordinate has no drive.
+        """
+        with_forces = not self.is_driven if dynamics is None else dynamics
+        runs = self._results(lib.study, lambda stop, out: (self._handle, int(with_forces), int(threads), stop, out))
+        try:
+            import xarray
+        except ImportError:
+            return runs
+        data = {name: ('run', runs[name].astype(int) if name == 'exit_code' else runs[name]) for name in runs.names if name != 'run'}
+        return xarray.Dataset(data, coords={'run': runs['run'].astype(int)})
+
+    def linear(self) -> Linear:
+        """The equations of motion linearised about the equilibrium to which the start leads."""
+        found = self._results(lib.linear, lambda stop, out: (self._handle, out))
+        second = {name[-1]: matrix.values for name, matrix in found.matrices.items() if name.startswith('second_order/')}
+        space = {name[-1]: matrix for name, matrix in found.matrices.items() if name.startswith('state_space/')}
+        return Linear(found.table[0], found.matrices['second_order/M'].rows, SecondOrder(**second), StateSpace(
+            **{name: matrix.values for name, matrix in space.items()},
+            states=space['A'].rows, state_units=space['A'].row_units, inputs=space['B'].columns, input_units=space['B'].column_units,
+            outputs=space['C'].rows, output_units=space['C'].row_units))
+
+    def optimize(self, *, threads: int = 1, dynamics: bool | None = None, **words: Any) -> Optimum:
+        """Search for the best design. It takes the words of &optimum, as seed=1 and starts=100; they hold for this search alone."""
+        with_forces = not self.is_driven if dynamics is None else dynamics
+        searched = self
+        if words:
+            searched = self.copy()
+            for word, value in words.items():
+                call(lib.mechanism_apply, searched._handle, _bytes(f'optimum.{word}={written(value)}'))
+        found = searched._results(lib.optimize, lambda stop, out: (searched._handle, int(with_forces), int(threads), stop, out))
+        return Optimum(searched, with_forces, found)
+
+    # pictures
+
+    def sketch(self, view: str | None = None) -> Picture:
+        """The assembled start as a drawing; view as for the option --view."""
+        return drawn(lambda path: call(lib.sketch, self._handle, path, _bytes(view or '')), 'svg')
+
+    def animate(self, *, kind: str = 'html', view: str | None = None, dynamics: bool | None = None, **words: Any) -> Picture:
+        """A run as a moving picture of a kind: 'html', 'svg' or 'gif'. It takes the words of a run."""
+        run = self._with_words(words)
+        with_forces = not run.is_driven if dynamics is None else dynamics
+
+        def draw(path: bytes) -> None:
+            failure = call_stoppable(lib.animate, lambda stop: (run._handle, int(with_forces), path, _bytes(view or ''), stop))
+            if failure is not None:
+                raise failure
+        return drawn(draw, kind)
+
+    def _repr_html_(self) -> str:
+        """The drawing of the start, or the text where it cannot be drawn."""
+        try:
+            return self.sketch()._repr_html_()
+        except Error as failure:
+            return f'<pre>{html.escape(str(failure))}</pre><pre>{html.escape(self.text())}</pre>'
+
+    # many positions
+
+    def positions(self, q: Any, *, threads: int = 1) -> Positions:
+        """Positions for values of the independent coordinates, (n, I) in the order of cq; for one such coordinate also (n,).
+
+        Each is reached from the assembled start on a straight line, so that none depends on the others. The result is (n, M), with
+        `code` (n,). A position that is not reached is NaN.
+        """
+        return self._positions(threads, q)[0]
+
+    def rates(self, q: Any, dq: Any, *, threads: int = 1) -> Positions:
+        """Rates of all coordinates (n, M) in positions q (n, I), from the rates dq (n, I) of the independent ones."""
+        return self._positions(threads, q, dq)[1]
+
+    def accelerations(self, q: Any, dq: Any, ddq: Any, *, threads: int = 1) -> Positions:
+        """Second derivatives of all coordinates (n, M), from those of the independent ones (n, I)."""
+        return self._positions(threads, q, dq, ddq)[2]
+
+    def _positions(self, threads: int, *given: Any) -> list[Positions]:
+        first = _PositionFinder(self)
+        arrays = [first.rows(values) for values in given]
+        if any(array.shape != arrays[0].shape for array in arrays):
+            raise UsageError('positions, rates and accelerations must have the same shape', 2)
+        n = len(arrays[0])
+        found = [np.empty((n, first.coordinates)) for _ in arrays]
+        code = np.zeros(n, dtype=np.intc)
+        threads = max(1, min(int(threads), n))
+        bounds = [n*i//threads for i in range(threads + 1)]
+        finders = [first] + [_PositionFinder(self) for _ in range(threads - 1)]
+
+        def work(i: int) -> None:
+            part = slice(bounds[i], bounds[i + 1])
+            finders[i].find([array[part] for array in arrays], [array[part] for array in found], code[part])
+
+        if threads == 1:
+            work(0)
+        else:
+            with ThreadPoolExecutor(threads) as pool:
+                list(pool.map(work, range(threads)))
+        code.flags.writeable = False
+        shown = []
+        for array in found:
+            array.flags.writeable = False
+            positions = array.view(Positions)
+            positions.code = code
+            shown.append(positions)
+        return shown
+
+    # others
+
+    def function(self, inputs: Sequence[str], outputs: Sequence[str]) -> Function:
+        """Quantities as a function of numbers: f(x), f.jacobian(x)."""
+        from ._function import Function
+        return Function(self, inputs, outputs)
+
+    def simulation(self, *, driven: bool = False, **words: Any) -> Simulation:
+        """A motion that is advanced from time to time; it takes the words of &solver and &time."""
+        from ._simulation import Simulation
+        return Simulation(self._with_words(words), driven)
+
+
+class _PositionFinder:
+    """The assembled mechanism whose positions are found."""
+
+    def __init__(self, mechanism: Mechanism):
+        self.handle = ctypes.c_void_p()
+        call(lib.positions_create, mechanism._handle, ctypes.byref(self.handle))
+        self.coordinates: int = lib.positions_coordinates(self.handle)
+        self.independent: int = lib.positions_independent(self.handle)
+
+    def __del__(self) -> None:
+        lib.positions_destroy(self.handle)
+
+    def rows(self, values: Any) -> np.ndarray:
+        """Values as an array (n, I)."""
+        array = np.ascontiguousarray(values, dtype=float)
+        if array.ndim < 2:
+            array = array.reshape(-1, 1) if self.independent == 1 else array.reshape(1, -1)
+        if array.ndim != 2 or array.shape[1] != self.independent:
+            raise UsageError(f'values of the independent coordinates must have the shape (n, {self.independent}), '
+                             f'not {np.shape(values)}', 2)
+        return array
+
+    def find(self, given: list[np.ndarray], found: list[np.ndarray], code: np.ndarray) -> None:
+        """Fill arrays: positions, and rates and accelerations where these are given."""
+        def address(arrays: list[np.ndarray], i: int) -> int | None:
+            return arrays[i].ctypes.data if i < len(arrays) else None
+        failure = call_stoppable(lib.positions_find, lambda stop: (
+            self.handle, len(code), address(given, 0), address(given, 1), address(given, 2), stop,
+            address(found, 0), address(found, 1), address(found, 2), code.ctypes.data))
+        if failure is not None:
+            raise failure

@@ -1,0 +1,172 @@
+"""Tables of results, as NumPy arrays that share the memory of the library."""
+from __future__ import annotations
+
+import ctypes
+import html
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Iterator, Mapping
+
+import numpy as np
+
+from ._errors import UsageError
+from ._library import lib
+
+if TYPE_CHECKING:
+    from ._mechanism import Mechanism
+    from ._pictures import Picture
+
+
+class _Memory:
+    """The table of results of the library, which lives as long as an array refers to it."""
+
+    def __init__(self, handle: int):
+        self.handle = handle
+        rows, columns, address = lib.results_rows(handle), lib.results_columns(handle), lib.results_data(handle)
+        if address:
+            self.__array_interface__ = {'version': 3, 'shape': (rows, columns), 'typestr': '<f8', 'data': (address, True)}
+
+    def __del__(self) -> None:
+        lib.results_destroy(self.handle)
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """A matrix with names and units for its rows and columns."""
+    values: np.ndarray
+    rows: tuple[str, ...]
+    row_units: tuple[str, ...]
+    columns: tuple[str, ...]
+    column_units: tuple[str, ...]
+
+
+def _matrix(handle: int, i: int) -> Matrix:
+    n, m, address = lib.results_matrix_rows(handle, i), lib.results_matrix_columns(handle, i), lib.results_matrix_data(handle, i)
+    values = np.array(np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(ctypes.c_double)), (n, m))) if address \
+        else np.empty((n, m))
+    values.flags.writeable = False
+
+    def texts(function: Any, count: int) -> tuple[str, ...]:
+        return tuple(function(handle, i, k).decode() for k in range(count))
+    return Matrix(values, texts(lib.results_matrix_row_name, n), texts(lib.results_matrix_row_unit, n),
+                  texts(lib.results_matrix_column_name, m), texts(lib.results_matrix_column_unit, m))
+
+
+class Results(Mapping[str, np.ndarray]):
+    """The answer of an analysis: columns by their names, numbers by theirs.
+
+    names, units: of the columns. table: (rows, columns), read-only. quantities: numbers with names, as those of &quantity.
+    gradients: their derivatives by parameters, where &output gradients asks for them.
+    """
+
+    def __init__(self, handle: int, parameters: tuple[str, ...] = ()):
+        memory = _Memory(handle)
+        self.names: tuple[str, ...] = tuple(lib.results_name(handle, i).decode() for i in range(lib.results_columns(handle)))
+        self.units: dict[str, str] = {name: lib.results_unit(handle, i).decode() for i, name in enumerate(self.names)}
+        self.table: np.ndarray = (np.asarray(memory) if hasattr(memory, '__array_interface__')
+                                  else np.empty((0, len(self.names))))
+        self._columns = {name: i for i, name in enumerate(self.names)}
+        numbers = [lib.results_number_name(handle, i).decode() for i in range(lib.results_numbers(handle))]
+        self.quantities: dict[str, float] = {name: lib.results_number(handle, i) for i, name in enumerate(numbers)}
+        self.quantity_units: dict[str, str] = {name: lib.results_number_unit(handle, i).decode() for i, name in enumerate(numbers)}
+        self.matrices: dict[str, Matrix] = {lib.results_matrix_name(handle, i).decode(): _matrix(handle, i)
+                                            for i in range(lib.results_matrices(handle))}
+        self.gradients = Gradients({name: {parameter: lib.results_derivative(handle, i, p) for p, parameter in enumerate(parameters)}
+                                    for i, name in enumerate(numbers)} if lib.results_parameters(handle) else {})
+
+    def _of_run(self, mechanism: Mechanism, with_forces: bool) -> None:
+        """Remember the run, for pictures of it."""
+        self._mechanism, self._with_forces = mechanism, with_forces
+
+    def sketch(self, view: str | None = None) -> Picture:
+        """The assembled start of the run as a drawing."""
+        return self._run_mechanism().sketch(view)
+
+    def animate(self, kind: str = 'html', view: str | None = None) -> Picture:
+        """The run as a moving picture of a kind: 'html', 'svg' or 'gif'. The run is made again."""
+        return self._run_mechanism().animate(kind=kind, view=view, dynamics=self._with_forces)
+
+    def _run_mechanism(self) -> Mechanism:
+        if not hasattr(self, '_mechanism'):
+            raise UsageError('only the results of kinematics and dynamics have pictures', 2)
+        return self._mechanism
+
+    def plot(self, *columns: str) -> Any:
+        """Columns over the time, or, of two columns, the second over the first: a matplotlib Figure."""
+        if not columns:
+            raise UsageError('name the columns to plot', 2)
+        from matplotlib.figure import Figure
+        figure = Figure()
+        axes = figure.add_subplot()
+        if len(columns) == 2 and 't' not in columns:
+            axes.plot(self[columns[0]], self[columns[1]])
+            axes.set_xlabel(f'{columns[0]} [{self.units[columns[0]]}]')
+            axes.set_ylabel(f'{columns[1]} [{self.units[columns[1]]}]')
+        else:
+            for name in columns:
+                axes.plot(self.t, self[name], label=f'{name} [{self.units[name]}]')
+            axes.set_xlabel(f't [{self.units["t"]}]')
+            axes.legend()
+        return figure
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        try:
+            return self.table[:, self._columns[name]]
+        except KeyError:
+            raise KeyError(f'there is no column {name!r}; the columns are {", ".join(self.names)}') from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    @property
+    def t(self) -> np.ndarray:
+        """The times of the rows [s]."""
+        return self['t']
+
+    def to_pandas(self) -> Any:
+        """The table as a pandas.DataFrame, with the time as its index where there is one."""
+        import pandas
+        frame = pandas.DataFrame(self.table, columns=list(self.names))
+        frame.attrs['units'] = dict(self.units)
+        return frame.set_index('t') if 't' in self._columns else frame
+
+    def to_xarray(self) -> Any:
+        """The table as an xarray.Dataset over the time, or over the number of the row; units stand in the attributes."""
+        import xarray
+        along = 't' if 't' in self._columns else 'row'
+        data = {name: (along, self[name], {'units': self.units[name]}) for name in self.names if name != along}
+        over = (along, self[along], {'units': self.units[along]}) if along in self._columns else (along, np.arange(len(self.table)))
+        return xarray.Dataset(data, coords={along: over}, attrs={**self.quantities})
+
+    def _repr_html_(self) -> str:
+        """The first and the last rows, for notebooks."""
+        shown = self.table if len(self.table) <= 10 else np.vstack([self.table[:5], self.table[-5:]])
+        rows = [''.join(f'<td>{number:.6g}</td>' for number in row) for row in shown]
+        if len(self.table) > 10:
+            rows.insert(5, f'<td colspan="{len(self.names)}">{len(self.table) - 10} rows</td>')
+        heads = ''.join(f'<th>{html.escape(name)}<br>{html.escape(self.units[name])}</th>' for name in self.names)
+        return f'<table><thead><tr>{heads}</tr></thead><tbody>' + ''.join(f'<tr>{row}</tr>' for row in rows) + '</tbody></table>'
+
+    def __repr__(self) -> str:
+        return f'<mech9.Results: {len(self.table)} rows of {", ".join(self.names[:8])}{"" if len(self.names) <= 8 else " and others"}>'
+
+
+class Gradients(Mapping[str, Mapping[str, float]]):
+    """Derivatives of quantities: gradients['stroke']['crank']."""
+
+    def __init__(self, values: dict[str, dict[str, float]]):
+        self._values = values
+
+    def __getitem__(self, name: str) -> Mapping[str, float]:
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __repr__(self) -> str:
+        return repr(self._values)

@@ -1,0 +1,91 @@
+"""Motions that are advanced from time to time, as in a loop with a controller."""
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._errors import UsageError
+from ._library import call, lib
+
+if TYPE_CHECKING:
+    from ._mechanism import Mechanism
+
+
+class Simulation:
+    """A motion from its start: t [s], q, dq, ddq (M,) in the units of the data file."""
+
+    def __init__(self, mechanism: Mechanism, driven: bool):
+        handle = ctypes.c_void_p()
+        call(lib.simulation_create, mechanism._handle, 0 if driven else 1, None, ctypes.byref(handle))
+        self._handle: ctypes.c_void_p | None = handle
+        self._n: int = lib.simulation_coordinates(handle)
+
+    def _open(self) -> ctypes.c_void_p:
+        if self._handle is None:
+            raise UsageError('this simulation is closed; start another one', 2)
+        return self._handle
+
+    def close(self) -> None:
+        """End the motion and free its memory."""
+        if getattr(self, '_handle', None) is not None:
+            lib.simulation_destroy(self._handle)
+            self._handle = None
+
+    __del__ = close
+
+    def __enter__(self) -> Simulation:
+        return self
+
+    def __exit__(self, *reason: Any) -> None:
+        self.close()
+
+    def advance(self, t: float) -> None:
+        """Go on to a time [s]. After a failure the motion stays at the last time that it reached."""
+        call(lib.simulation_advance, self._open(), t)
+
+    @property
+    def t(self) -> float:
+        """The present time [s]."""
+        return lib.simulation_time(self._open())
+
+    def _take(self, place: int) -> np.ndarray:
+        found = np.empty(self._n)
+        addresses: list[int | None] = [None, None, None]
+        addresses[place] = found.ctypes.data
+        call(lib.simulation_take, self._open(), *addresses)
+        return found
+
+    @property
+    def q(self) -> np.ndarray:
+        """The coordinates (M,)."""
+        return self._take(0)
+
+    @property
+    def dq(self) -> np.ndarray:
+        """Their rates (M,)."""
+        return self._take(1)
+
+    @property
+    def ddq(self) -> np.ndarray:
+        """Their second derivatives (M,)."""
+        return self._take(2)
+
+    def point(self, name: str) -> np.ndarray:
+        """Position, velocity and acceleration of a named point, (3, 3), in the system of link 1 [m, m/s, m/s2]."""
+        found = np.empty((3, 3))
+        call(lib.simulation_point, self._open(), name.encode('utf-8'), *(row.ctypes.data for row in found))
+        return found
+
+    @property
+    def energies(self) -> tuple[float, float]:
+        """Kinetic and potential energy [J]."""
+        kinetic, potential = ctypes.c_double(), ctypes.c_double()
+        call(lib.simulation_energies, self._open(), ctypes.byref(kinetic), ctypes.byref(potential))
+        return kinetic.value, potential.value
+
+    @property
+    def closure(self) -> float:
+        """Largest gap of a closed chain [m]."""
+        return lib.simulation_closure(self._open())

@@ -1,0 +1,245 @@
+"""Analyses in Python against the programs, and their results as arrays.
+
+Compares the library with the programs, whose numbers other tests judge.
+"""
+import os
+import sys
+import threading
+
+import numpy as np
+import pytest
+
+from mech9_cases import TREE, run, table_of
+
+EXAMPLES = os.path.join(TREE, 'examples')
+
+
+def gallery():
+    """(program, data file) of the examples without user procedures."""
+    with open(os.path.join(EXAMPLES, 'list.txt'), encoding='utf-8') as file:
+        for line in file:
+            if not line.startswith('#') and line.strip():
+                name, program, data, procedures = [field.strip() for field in line.split('|')][:4]
+                if not procedures:
+                    yield pytest.param(program, os.path.join('examples', name, data), id=name)
+
+
+@pytest.mark.parametrize('program, data', gallery())
+def test_runs_are_those_of_the_programs(build, mech9, monkeypatch, tmp_path, program, data):
+    path = os.path.join(TREE, data)
+    monkeypatch.chdir(os.path.dirname(path))
+    m = mech9.read(path)
+    results = m.kinematics(intervals=40) if program == 'mech9k' else m.dynamics(intervals=40)
+    table = table_of(build.program(program), path, '--set', 'time.intervals=40')
+    assert list(results.names) == list(table.dtype.names) if hasattr(table, 'dtype') else list(table)
+    for name in results.names:
+        # the table has 17 digits, which give the same number back
+        assert np.array_equal(results[name], table[name], equal_nan=True), name
+
+
+def test_columns_share_memory(mech9, four_bar):
+    results = four_bar.kinematics()
+    column = results['q2']
+    assert np.shares_memory(column, results.table) and not column.flags.writeable
+    del results   # the column keeps the memory
+    assert np.isfinite(column).all()
+    with pytest.raises(ValueError):
+        column[0] = 1.0
+    with pytest.raises(KeyError, match='there is no column'):
+        four_bar.kinematics()['q9']
+
+
+def test_units_and_degrees(mech9, four_bar):
+    results = four_bar.kinematics()
+    assert results.units['q1'] == 'rad' and results.units['P.vx'] == 'm/s'
+    four_bar['mechanism.angle_unit'] = 'deg'
+    four_bar['initial(1).position'], four_bar['initial(2).position'] = 30, -115
+    four_bar['drive(1).coefficients'] = [np.degrees(0.6), np.degrees(5)]
+    degrees = four_bar.kinematics()
+    assert degrees.units['q1'] == 'deg'
+    assert np.allclose(np.radians(degrees['q2']), results['q2'], rtol=0, atol=1e-12)
+    assert np.allclose(np.radians(four_bar.positions([40.0])), mech9.read(four_bar_path()).positions([np.radians(40)]), atol=1e-12)
+
+
+def four_bar_path():
+    return os.path.join(EXAMPLES, 'library', 'four_bar.nml')
+
+
+def test_tables_of_others(mech9, four_bar):
+    pytest.importorskip('pandas')
+    pytest.importorskip('xarray')
+    results = four_bar.kinematics()
+    frame, data = results.to_pandas(), results.to_xarray()
+    assert frame.index.name == 't' and (frame['q2'].to_numpy() == results['q2']).all()
+    assert data['q2'].attrs['units'] == 'rad' and (data['q2'].to_numpy() == results['q2']).all()
+
+
+def test_quantities_and_gradients(mech9, four_bar):
+    four_bar.add('parameter', name='crank', value=0.3, sets='pair(2).point(1)')
+    four_bar.add('quantity', name='top', of='P.y', take='max')
+    results = four_bar.kinematics(gradients=True)
+    h = 1e-6
+    ends = [four_bar.with_(crank=0.3 + d).kinematics().quantities['top'] for d in (h, -h)]
+    # a central difference errs by h^2 times a third derivative of the order one, and by round-off over h
+    assert abs(results.gradients['top']['crank'] - (ends[0] - ends[1])/(2*h)) < 1e-8
+    f = four_bar.function(['crank', 'pair(4).point(1)'], ['top'])
+    assert abs(f([0.3, 0.9])[0] - results.quantities['top']) < 1e-14
+    assert f.jacobian([0.3, 0.9]).shape == (1, 2)
+    assert abs(f.jacobian([0.3, 0.9])[0, 0] - results.gradients['top']['crank']) < 1e-12
+    with pytest.raises(mech9.UsageError, match='shape'):
+        f([0.3])
+    with pytest.raises(mech9.AssemblyError):
+        f([0.3, 9.0])
+
+
+def test_rest(mech9):
+    path = os.path.join(EXAMPLES, 'pendulum_four_bar', 'pendulum_four_bar.nml')
+    m = mech9.read(path)
+    modes, linear = m.modes(), m.linear()
+    assert linear.second_order.M.shape == (1, 1) and linear.state_space.A.shape == (2, 2)
+    root = np.sqrt(linear.second_order.K[0, 0]/linear.second_order.M[0, 0])
+    assert abs(root - modes['eigenvalue.im'][0]) < 1e-9*root
+    assert linear.state_space.states == ('q4', 'dq4')
+    assert np.allclose(np.linalg.eigvals(linear.state_space.A).imag.max(), root, rtol=1e-9)
+    rest = m.equilibrium()
+    assert np.allclose(linear.q, [rest[f'q{k}'][0] for k in range(1, 5)], atol=1e-12)
+
+
+def test_structure(mech9, four_bar):
+    assemblies = four_bar.assemblies(50)
+    assert len(assemblies['q2']) == 2 and (assemblies['q1'] == 0.6).all()
+    limits = four_bar.range()
+    assert list(limits['coordinate']) == [1] and list(limits['lower']) == [-np.inf] and list(limits['upper']) == [np.inf]
+
+
+def test_positions(mech9, four_bar):
+    results = four_bar.kinematics(intervals=60)
+    n = len(results.t)
+    order = np.random.default_rng(1).permutation(n)
+    q = results['q1'][order]
+    columns = [f'q{k}' for k in range(1, 5)]
+    positions = four_bar.positions(q)
+    assert positions.shape == (n, 4) and (positions.code == 0).all()
+    expected = np.column_stack([results[name] for name in columns])[order]
+    # both are closed to round-off
+    assert np.abs(positions - expected).max() < 1e-12
+    rates = four_bar.rates(q, np.full(n, 5.0))
+    assert np.abs(rates - np.column_stack([results['d' + name] for name in columns])[order]).max() < 1e-10
+    accelerations = four_bar.accelerations(q, np.full(n, 5.0), np.zeros(n))
+    assert np.abs(accelerations - np.column_stack([results['dd' + name] for name in columns])[order]).max() < 1e-9
+
+
+def test_positions_out_of_reach(mech9, four_bar):
+    four_bar['pair(2).point(1)'] = 0.7   # not a crank any more
+    lower, upper = four_bar.range()['lower'][0], four_bar.range()['upper'][0]
+    q = np.array([lower - 0.1, lower + 0.1, 0.6, upper - 0.1, upper + 0.1, np.nan])
+    positions = four_bar.positions(q)
+    assert list(positions.code) == [6, 0, 0, 0, 6, 3]
+    assert np.isnan(positions[[0, 4, 5]]).all() and np.isfinite(positions[1:4]).all()
+    assert four_bar.positions([]).shape == (0, 4)
+    with pytest.raises(mech9.UsageError, match='shape'):
+        four_bar.positions(np.zeros((3, 2)))
+
+
+def test_positions_of_several_coordinates(mech9):
+    m = mech9.read(os.path.join(EXAMPLES, 'stewart_gough', 'stewart_gough.nml'))
+    results = m.kinematics(intervals=4)
+    independent = [name for name in results.names if name.startswith('q') and name[1:].isdigit()]
+    whole = np.column_stack([results[name] for name in independent])
+    listed = [int(text) for text in m.text().split('cq =')[1].split('\n')[0].split(',')]
+    positions = m.positions(whole[:, [k - 1 for k in listed]])
+    assert (positions.code == 0).all() and np.abs(positions - whole).max() < 1e-11
+
+
+def test_study(mech9, four_bar):
+    pytest.importorskip('xarray')
+    four_bar.add('parameter', name='crank', value=0.3, sets='pair(2).point(1)', low=0.2, high=1.2, count=5)
+    four_bar.add('quantity', name='top', of='P.y', take='max')
+    four_bar.add('study', kind='grid')
+    study = four_bar.study(threads=2)
+    assert list(study['run'].values) == [1, 2, 3, 4, 5] and study['exit_code'].dtype.kind == 'i'
+    assert study['exit_code'].values[0] == 0 and study['exit_code'].values[-1] != 0 and np.isnan(study['top'].values[-1])
+    assert study['top'].values[0] == four_bar.with_(crank=0.2).kinematics().quantities['top']
+
+
+def test_optimum(mech9):
+    path = os.path.join(EXAMPLES, 'five_timed_points', 'five_timed_points.nml')
+    if not os.path.exists(path):
+        pytest.skip('the example has gone')
+    m = mech9.read(path)
+    found, again = m.optimize(starts=12, seed=3, threads=2), m.optimize(starts=12, seed=3)
+    assert found.value == again.value and found.parameters == again.parameters and found.made == 12
+    assert (np.diff(found.optima['value']) >= 0).all()
+    assert found.mechanism.check().mobility == 1
+    assert found.mechanism[list(found.parameters)[0]] == list(found.parameters.values())[0]
+    with pytest.raises(mech9.DataError):
+        m.optimize(sedd=1)
+    with pytest.raises(mech9.UsageError):
+        mech9.read(four_bar_path()).optimize()
+
+
+def test_simulation(mech9):
+    m = mech9.read(os.path.join(EXAMPLES, 'heavy_top', 'heavy_top.nml'))
+    results = m.dynamics(intervals=10)
+    with m.simulation() as motion:
+        for i, t in enumerate(results.t):
+            motion.advance(t)
+            assert np.allclose(motion.q, [results[f'q{k + 1}'][i] for k in range(len(motion.q))], rtol=0, atol=1e-9)
+        assert motion.t == results.t[-1] and motion.closure < 1e-9
+        with pytest.raises(mech9.UsageError, match='cannot go back'):
+            motion.advance(0.0)
+        assert motion.t == results.t[-1]
+    with pytest.raises(mech9.UsageError, match='closed'):
+        motion.q
+
+
+def test_pictures(mech9, four_bar):
+    drawing = four_bar.sketch()
+    assert drawing.text.startswith('<?xml') and four_bar._repr_html_().startswith('<svg')
+    results = four_bar.kinematics(intervals=5)
+    assert results.animate().text.lstrip().lower().startswith('<!doctype html')
+    assert results.animate('gif').content[:3] == b'GIF'
+    with pytest.raises(mech9.UsageError, match='must end in'):
+        results.animate('mp3')
+    with pytest.raises(mech9.UsageError):
+        four_bar.sketch(view='upside')
+    four_bar['pair(4).point(1)'] = 9.0
+    assert 'cannot be assembled' in four_bar._repr_html_()
+
+
+def test_interruption(mech9, monkeypatch):
+    import _thread
+    m = mech9.read(os.path.join(EXAMPLES, 'heavy_top', 'heavy_top.nml'))
+    timer = threading.Timer(0.5, _thread.interrupt_main)
+    timer.start()
+    with pytest.raises(KeyboardInterrupt) as caught:
+        m.dynamics(end=1e6, intervals=1000000)
+    timer.join()
+    assert 0 < len(caught.value.results.t) < 1000000
+
+
+def test_failures_keep_results(mech9, four_bar):
+    four_bar['pair(2).point(1)'] = 0.7
+    with pytest.raises(mech9.SingularError) as caught:
+        four_bar.kinematics(end=2, intervals=200)
+    assert caught.value.code == 6 and 0 < len(caught.value.results.t) < 201
+
+
+def test_other_libraries_in_the_process(build, mech9, tmp_path):
+    """h5py, with its own HDF5, works before and after, in both orders."""
+    pytest.importorskip('h5py')
+    package = os.path.join(TREE, 'python')
+    work = f'''
+m = mech9.read({four_bar_path()!r})
+r = m.kinematics()
+with h5py.File('run.h5', 'w') as file:
+    file['table'] = r.table
+with h5py.File('run.h5') as file:
+    assert (file['table'][()] == r.table).all()
+print('done')
+'''
+    for order in ('import mech9, h5py', 'import h5py, mech9'):
+        script = tmp_path / 'both.py'
+        script.write_text(f'import sys\nsys.path.insert(0, {package!r})\n{order}\n{work}')
+        done = run(sys.executable, '-B', script, folder=tmp_path)
+        assert done.stdout == 'done\n', done.stderr
