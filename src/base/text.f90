@@ -7,7 +7,7 @@ module mech9_text
   use mech9_kinds, only: wp, long
   implicit none
   private
-  public :: string_type, to_text, some_of, lower, join, texts_of_one_length, nearest_name, starts_with
+  public :: string_type, to_text, exact_digits, some_of, lower, join, texts_of_one_length, nearest_name, starts_with
 
   integer, parameter :: longest_real = 48     !< characters of a real number
 
@@ -116,6 +116,21 @@ contains
 
     write (text, '(i0)') number
   end function long_to_text
+
+  !> How many significant digits a real number needs as text, so that the same number is read from it: 15 to 17.
+  pure integer function exact_digits(number) result(digits)
+    real(wp), intent(in) :: number   !< the number to be written
+    character(len=longest_real) :: buffer
+    real(wp) :: again
+    integer :: status
+
+    do digits = 15, 16
+      call write_real(number, digits, buffer)
+      read (buffer, *, iostat=status) again
+      if (status == 0 .and. .not. abs(again - number) > 0.0_wp) return
+    end do
+    digits = 17
+  end function exact_digits
 
   !> A real number with six significant digits.
   pure function real_to_text(number) result(text)

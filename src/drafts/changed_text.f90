@@ -1,15 +1,13 @@
 !> The text of a data file with other numbers, as programs change it: all else stays as its author wrote it.
 module mech9_changed_text
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
+  use mech9_text, only: to_text, exact_digits
   use mech9_source, only: span_type
   use mech9_document, only: group_type
   use mech9_lookup, only: find_item
   implicit none
   private
   public :: set_number, full_number
-
-  integer, parameter :: digits = 17   !< of numbers: none is lost
 
 contains
 
@@ -18,7 +16,7 @@ contains
     real(wp), intent(in) :: number   !< the number
     character(len=:), allocatable :: text
 
-    text = to_text(number, digits)
+    text = to_text(number, exact_digits(number))
   end function full_number
 
   !> Set a number of a group: in the place of the one that stands there, or directly behind the name of the group. Groups are changed
@@ -34,9 +32,9 @@ contains
     i = find_item(group, name)
     if (i > 0) then
       span = group%items(i)%values(1)%span
-      text = text(:span%first - 1)//to_text(number, digits)//text(span%last + 1:)
+      text = text(:span%first - 1)//to_text(number, exact_digits(number))//text(span%last + 1:)
     else
-      text = text(:group%span%last)//' '//name//'='//to_text(number, digits)//','//text(group%span%last + 1:)
+      text = text(:group%span%last)//' '//name//'='//to_text(number, exact_digits(number))//','//text(group%span%last + 1:)
     end if
   end subroutine set_number
 end module mech9_changed_text

@@ -1,13 +1,12 @@
 !> A document written as the text of a data file. Reading the text gives the same document, with the same bits of its numbers.
 module mech9_document_text
-  use mech9_text, only: to_text, string_type, join
+  use mech9_text, only: to_text, exact_digits, string_type, join
   use mech9_document, only: document_type, group_type, item_type, value_type, subscript_type, value_integer, value_real, &
     value_logical, value_text, value_word
   implicit none
   private
   public :: text_of_document
 
-  integer, parameter :: digits = 17        !< with so many every number differs from its neighbours
   integer, parameter :: line_width = 100   !< after which the values of an item go on in the next line
 
 contains
@@ -91,7 +90,7 @@ contains
     case (value_integer)
       text = text//to_text(value%whole)
     case (value_real)
-      text = text//to_text(value%number, digits)
+      text = text//to_text(value%number, exact_digits(value%number))
     case (value_logical)
       text = text//trim(merge('.true. ', '.false.', value%truth))
     case (value_word)
