@@ -43,6 +43,8 @@ int mech9_mechanism_copy(const mech9_mechanism *mechanism, mech9_mechanism **cop
 void mech9_mechanism_destroy(mech9_mechanism *mechanism);
 /* Add groups, written as in a data file. */
 int mech9_mechanism_add(mech9_mechanism *mechanism, const char *groups, mech9_error *error);
+/* Remove all groups of a name, as "drive"; there may be none. */
+int mech9_mechanism_remove(mech9_mechanism *mechanism, const char *name, mech9_error *error);
 /* Give names other values, as the option --set does: "time.end=2", "pair(3).axis=1,0,0". */
 int mech9_mechanism_apply(mech9_mechanism *mechanism, const char *setting, mech9_error *error);
 /* A number by its name: "pair(2).point(1)". */
@@ -132,6 +134,16 @@ int mech9_simulation_point(const mech9_simulation *simulation, const char *name,
                            double *acceleration, mech9_error *error);
 int mech9_simulation_energies(mech9_simulation *simulation, double *kinetic, double *potential, mech9_error *error);
 double mech9_simulation_closure(const mech9_simulation *simulation);
+/* A number of a load or a motor, from the present time on: "load(1).force(2)". */
+int mech9_simulation_set(mech9_simulation *simulation, const char *name, double value, mech9_error *error);
+/* Equations of motion of the n free coordinates in SI units: mass_matrix[n][n] ddq[n] + bias[n] = 0; null leaves one out. */
+int mech9_simulation_free(const mech9_simulation *simulation);   /* n */
+int mech9_simulation_equations(const mech9_simulation *simulation, int *numbers, double *mass_matrix, double *bias,
+                               mech9_error *error);
+/* The state as numbers in SI units: time, coordinates, rates, states of motors. */
+int mech9_simulation_state_size(const mech9_simulation *simulation);
+int mech9_simulation_state(const mech9_simulation *simulation, double *state, mech9_error *error);
+int mech9_simulation_set_state(mech9_simulation *simulation, int n, const double *state, mech9_error *error);
 
 #ifdef __cplusplus
 }

@@ -27,6 +27,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     'mechanism_copy': (_STATUS, [c_void_p, POINTER(c_void_p)]),
     'mechanism_destroy': (None, [c_void_p]),
     'mechanism_add': (_STATUS, [c_void_p, c_char_p]),
+    'mechanism_remove': (_STATUS, [c_void_p, c_char_p]),
     'mechanism_apply': (_STATUS, [c_void_p, c_char_p]),
     'mechanism_set': (_STATUS, [c_void_p, c_char_p, c_double]),
     'mechanism_number': (_STATUS, [c_void_p, c_char_p, POINTER(c_double)]),
@@ -83,6 +84,12 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     'simulation_take': (_STATUS, [c_void_p, c_void_p, c_void_p, c_void_p]),
     'simulation_point': (_STATUS, [c_void_p, c_char_p, c_void_p, c_void_p, c_void_p]),
     'simulation_energies': (_STATUS, [c_void_p, POINTER(c_double), POINTER(c_double)]),
+    'simulation_set': (_STATUS, [c_void_p, c_char_p, c_double]),
+    'simulation_free': (c_int, [c_void_p]),
+    'simulation_equations': (_STATUS, [c_void_p, c_void_p, c_void_p, c_void_p]),
+    'simulation_state_size': (c_int, [c_void_p]),
+    'simulation_state': (_STATUS, [c_void_p, c_void_p]),
+    'simulation_set_state': (_STATUS, [c_void_p, c_int, c_void_p]),
     'simulation_closure': (c_double, [c_void_p]),
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 import ctypes
 import html
 import os
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Sequence
@@ -156,6 +157,11 @@ class Mechanism:
         call(lib.mechanism_add, self._handle, _bytes(group(name, words)))
         return self
 
+    def remove(self, name: str) -> Mechanism:
+        """Remove all groups of a name: remove('drive'). There may be none."""
+        call(lib.mechanism_remove, self._handle, _bytes(name))
+        return self
+
     def __getitem__(self, name: str) -> float:
         """A number by the name that --set has for it, or the value of a parameter."""
         value = ctypes.c_double()
@@ -287,18 +293,42 @@ class Mechanism:
         """How far each independent coordinate can go while the others are held: coordinate, lower, upper."""
         return self._results(lib.range, lambda stop, out: (self._handle, out))
 
-    def study(self, threads: int = 1, dynamics: bool | None = None) -> Any:
-        """Make all runs of &study: an xarray.Dataset over `run`, with parameters, quantities and exit codes.
+    def study(self, threads: int = 1, dynamics: bool | None = None, **values: Any) -> Any:
+        """Make all runs of &study, or one for each of the values of parameters or numbers: study(crank=np.linspace(0.2, 0.4, 5)).
 
-        dynamics: whether forces move the mechanism; by default where a coordinate has no drive.
+        Several lists of values have the same length. The answer is an xarray.Dataset over `run`, with parameters, quantities and
+        exit codes; without xarray it is Results. dynamics: whether forces move the mechanism; by default where a coordinate has no drive.
         """
+        if not values:
+            return self._study(threads, dynamics, {})
+        changed = self.copy()
+        names = {}
+        for i, name in enumerate(values):
+            if name in self.parameters:
+                continue
+            names[f'input_{i + 1}'] = name
+            changed.add('parameter', name=f'input_{i + 1}', value=self[name], sets=name)
+        lists = {name: np.atleast_1d(np.asarray(one, dtype=float)) for name, one in values.items()}
+        n = {len(one) for one in lists.values()}
+        if len(n) != 1 or any(one.ndim != 1 for one in lists.values()):
+            raise UsageError('the lists of values must have the same length', 2)
+        columns = [lists[names.get(name, name)] if names.get(name, name) in lists else np.full(max(n), changed[name])
+                   for name in changed.parameters]
+        with tempfile.TemporaryDirectory(prefix='mech9_') as folder:
+            path = os.path.join(folder, 'values.dat')
+            np.savetxt(path, np.column_stack(columns), fmt='%.17g')
+            changed.remove('study').add('study', kind='list', file=path)
+            return changed._study(threads, dynamics, names)
+
+    def _study(self, threads: int, dynamics: bool | None, names: dict[str, str]) -> Any:
         with_forces = not self.is_driven if dynamics is None else dynamics
         runs = self._results(lib.study, lambda stop, out: (self._handle, int(with_forces), int(threads), stop, out))
         try:
             import xarray
         except ImportError:
             return runs
-        data = {name: ('run', runs[name].astype(int) if name == 'exit_code' else runs[name]) for name in runs.names if name != 'run'}
+        data = {names.get(name, name): ('run', runs[name].astype(int) if name == 'exit_code' else runs[name])
+                for name in runs.names if name != 'run'}
         return xarray.Dataset(data, coords={'run': runs['run'].astype(int)})
 
     def linear(self) -> Linear:

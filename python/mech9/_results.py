@@ -109,6 +109,7 @@ class Results(Mapping[str, np.ndarray]):
         return figure
 
     def __getitem__(self, name: str) -> np.ndarray:
+        """A column (rows,), read-only; it shares the memory of the table."""
         try:
             return self.table[:, self._columns[name]]
         except KeyError:

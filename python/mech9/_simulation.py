@@ -45,6 +45,41 @@ class Simulation:
         """Go on to a time [s]. After a failure the motion stays at the last time that it reached."""
         call(lib.simulation_advance, self._open(), t)
 
+    def set(self, name: str, value: float) -> None:
+        """Give a number of a load or a motor another value, from now on: set('load(1).force(2)', 3.5)."""
+        call(lib.simulation_set, self._open(), name.encode('utf-8'), value)
+
+    def mass_matrix(self) -> np.ndarray:
+        """The mass matrix (n, n) of the free coordinates in the order of cq, in SI units: M ddq + bias = 0."""
+        n = lib.simulation_free(self._open())
+        found = np.empty((n, n))
+        call(lib.simulation_equations, self._open(), None, found.ctypes.data, None)
+        return found
+
+    def bias(self) -> np.ndarray:
+        """The bias (n,) of the equations of motion in SI units, with the loads in it: M ddq + bias = 0."""
+        found = np.empty(lib.simulation_free(self._open()))
+        call(lib.simulation_equations, self._open(), None, None, found.ctypes.data)
+        return found
+
+    @property
+    def free(self) -> tuple[int, ...]:
+        """The numbers of the free coordinates in the order of cq."""
+        found = np.empty(lib.simulation_free(self._open()), dtype=np.intc)
+        call(lib.simulation_equations, self._open(), found.ctypes.data, None, None)
+        return tuple(int(number) for number in found)
+
+    def state(self) -> np.ndarray:
+        """The state as numbers in SI units, for set_state: time, coordinates, rates, states of motors."""
+        found = np.empty(lib.simulation_state_size(self._open()))
+        call(lib.simulation_state, self._open(), found.ctypes.data)
+        return found
+
+    def set_state(self, state: Any) -> None:
+        """Go to a state, perhaps of another simulation of the same mechanism; the motion starts there anew."""
+        numbers = np.ascontiguousarray(state, dtype=float).ravel()
+        call(lib.simulation_set_state, self._open(), len(numbers), numbers.ctypes.data)
+
     @property
     def t(self) -> float:
         """The present time [s]."""

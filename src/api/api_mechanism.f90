@@ -118,6 +118,22 @@ contains
     code = end_call(error, err, findings=findings)
   end function add
 
+  !> Remove all groups of a name; there may be none.
+  integer(c_int) function remove(mechanism, name, error) bind(c, name='mech9_mechanism_remove') result(code)
+    type(c_ptr), value, intent(in) :: mechanism   !< the handle
+    type(c_ptr), value, intent(in) :: name        !< of the groups
+    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
+    type(mechanism_handle_type), pointer :: handle
+    character(len=:), allocatable :: text
+    type(error_type), allocatable :: err
+
+    call begin_call(error)
+    call read_c_text(name, text)
+    call find_handle(mechanism, handle, err)
+    if (.not. allocated(err)) call handle%mechanism%remove(text)
+    code = end_call(error, err)
+  end function remove
+
   !> Give names other values, as the option --set does.
   integer(c_int) function apply(mechanism, setting, error) bind(c, name='mech9_mechanism_apply') result(code)
     type(c_ptr), value, intent(in) :: mechanism   !< the handle

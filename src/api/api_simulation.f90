@@ -11,6 +11,7 @@ module mech9_api_simulation
   implicit none
   private
   public :: create, destroy, advance, time, coordinates, take, point, energies, closure
+  public :: set, free_coordinates, take_equations, size_of_state, take_state, set_state
 
   !> Marks the memory of a handle of this type.
   integer(c_int), parameter :: mark = 905
@@ -182,6 +183,114 @@ contains
     call find_handle(simulation, handle, err)
     if (associated(handle)) closure = handle%motion%closure()
   end function closure
+
+  !> Give a number of a load or a motor another value, from the present time on.
+  integer(c_int) function set(simulation, name, value, error) bind(c, name='mech9_simulation_set') result(code)
+    type(c_ptr), value, intent(in) :: simulation   !< the handle
+    type(c_ptr), value, intent(in) :: name         !< of the number, as load(1).force(2)
+    real(c_double), value, intent(in) :: value     !< in the unit of the data file
+    type(c_ptr), value, intent(in) :: error        !< handle of errors, or null
+    type(simulation_handle_type), pointer :: handle
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: text
+
+    call begin_call(error)
+    call read_c_text(name, text)
+    call find_handle(simulation, handle, err)
+    if (.not. allocated(err)) call handle%motion%set(text, value, err)
+    code = end_call(error, err)
+  end function set
+
+  !> Number of free coordinates, whose motion follows from forces.
+  integer(c_int) function free_coordinates(simulation) bind(c, name='mech9_simulation_free')
+    type(c_ptr), value, intent(in) :: simulation   !< the handle
+    type(simulation_handle_type), pointer :: handle
+    type(error_type), allocatable :: err
+
+    free_coordinates = 0
+    call find_handle(simulation, handle, err)
+    if (associated(handle)) free_coordinates = handle%motion%free_coordinates()
+  end function free_coordinates
+
+  !> Take the equations of motion of the free coordinates, mass matrix times accelerations + bias = 0, in SI units.
+  integer(c_int) function take_equations(simulation, numbers, mass_matrix, bias, error) &
+    bind(c, name='mech9_simulation_equations') result(code)
+    type(c_ptr), value, intent(in) :: simulation    !< the handle
+    type(c_ptr), value, intent(in) :: numbers       !< (n) gets the numbers of the free coordinates, from 1, or null
+    type(c_ptr), value, intent(in) :: mass_matrix   !< (n,n) gets the mass matrix, or null
+    type(c_ptr), value, intent(in) :: bias          !< (n) gets the bias, or null
+    type(c_ptr), value, intent(in) :: error         !< handle of errors, or null
+    type(simulation_handle_type), pointer :: handle
+    type(error_type), allocatable :: err
+    integer, allocatable :: coordinates(:)
+    integer(c_int), pointer :: array(:)
+    real(wp), allocatable :: inertia(:, :), forces(:)
+
+    call begin_call(error)
+    call find_handle(simulation, handle, err)
+    if (.not. allocated(err)) call handle%motion%take_equations(coordinates, inertia, forces, err)
+    if (.not. allocated(err)) then
+      if (c_associated(numbers)) then
+        call c_f_pointer(numbers, array, [size(coordinates)])
+        array = coordinates
+      end if
+      call put(reshape(inertia, [size(inertia)]), mass_matrix)
+      call put(forces, bias)
+    end if
+    code = end_call(error, err)
+  end function take_equations
+
+  !> How many numbers a state has.
+  integer(c_int) function size_of_state(simulation) bind(c, name='mech9_simulation_state_size')
+    type(c_ptr), value, intent(in) :: simulation   !< the handle
+    type(simulation_handle_type), pointer :: handle
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: numbers(:)
+
+    size_of_state = 0
+    call find_handle(simulation, handle, err)
+    if (allocated(err)) return
+    call handle%motion%take_state(numbers)
+    size_of_state = size(numbers)
+  end function size_of_state
+
+  !> Take the present state.
+  integer(c_int) function take_state(simulation, state, error) bind(c, name='mech9_simulation_state') result(code)
+    type(c_ptr), value, intent(in) :: simulation   !< the handle
+    type(c_ptr), value, intent(in) :: state        !< gets the numbers of the state
+    type(c_ptr), value, intent(in) :: error        !< handle of errors, or null
+    type(simulation_handle_type), pointer :: handle
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: numbers(:)
+
+    call begin_call(error)
+    call find_handle(simulation, handle, err)
+    if (.not. allocated(err)) then
+      call handle%motion%take_state(numbers)
+      call put(numbers, state)
+    end if
+    code = end_call(error, err)
+  end function take_state
+
+  !> Go to a state, perhaps of another simulation of the same mechanism: the motion starts there anew.
+  integer(c_int) function set_state(simulation, n, state, error) bind(c, name='mech9_simulation_set_state') result(code)
+    type(c_ptr), value, intent(in) :: simulation   !< the handle
+    integer(c_int), value, intent(in) :: n         !< how many numbers the state has
+    type(c_ptr), value, intent(in) :: state        !< the numbers of the state
+    type(c_ptr), value, intent(in) :: error        !< handle of errors, or null
+    type(simulation_handle_type), pointer :: handle
+    type(error_type), allocatable :: err
+    real(c_double), pointer :: numbers(:)
+
+    call begin_call(error)
+    call find_handle(simulation, handle, err)
+    if (.not. allocated(err) .and. (n < 0 .or. .not. c_associated(state))) call refuse('this is no state of this mechanism', err)
+    if (.not. allocated(err)) then
+      call c_f_pointer(state, numbers, [n])
+      call handle%motion%go_to_state(numbers, err)
+    end if
+    code = end_call(error, err)
+  end function set_state
 
   !> Put numbers into an array of C, where it is given.
   subroutine put(numbers, address)

@@ -7,11 +7,11 @@ module mech9_checked_mechanism
   use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_type, raise, exit_usage
-  use mech9_text, only: string_type, to_text
+  use mech9_text, only: string_type, to_text, lower
   use mech9_model, only: model_type
   use mech9_explanation, only: explain
   use mech9_source, only: source_type, span_type, source_from_text
-  use mech9_document, only: document_type
+  use mech9_document, only: document_type, group_type
   use mech9_document_text, only: text_of_document
   use mech9_design_text, only: text_of_design
   use mech9_setting, only: apply_setting
@@ -36,6 +36,7 @@ module mech9_checked_mechanism
     logical :: is_whole = .false.                  !< its groups make sense together
   contains
     procedure :: add
+    procedure :: remove
     procedure :: apply
     procedure :: set
     procedure :: number
@@ -48,6 +49,7 @@ module mech9_checked_mechanism
     procedure :: judge_drives
     procedure :: take
     procedure :: take_request
+    procedure :: take_standing
     procedure :: take_variable
     procedure :: point_at
   end type checked_mechanism_type
@@ -193,6 +195,26 @@ contains
     self%sources = diagnostics%sources
     self%is_whole = .false.
   end subroutine add
+
+  !> Remove all groups of a name; there may be none. What is left need not make sense together.
+  pure subroutine remove(self, name)
+    class(checked_mechanism_type), intent(inout) :: self   !< the mechanism
+    character(len=*), intent(in) :: name                   !< of the groups
+    type(group_type), allocatable :: kept(:)
+    integer :: i, n
+
+    if (.not. self%is_read) return
+    allocate (kept(size(self%document%groups)))
+    n = 0
+    do i = 1, size(kept)
+      if (self%document%groups(i)%name == lower(name)) cycle
+      n = n + 1
+      kept(n) = self%document%groups(i)
+    end do
+    if (n == size(kept)) return
+    self%document%groups = kept(:n)
+    self%is_whole = .false.
+  end subroutine remove
 
   !> Give names other values, as an option --set does: time.intervals=200, pair(3).axis=1,0,0. A group or a name that is missing is
   !> added. The mechanism stays as it was where this fails. Fails with exit_data.
@@ -371,6 +393,16 @@ contains
     call read_groups(self, program, model, diagnostics)
     call fail_as(diagnostics, err)
   end subroutine take_request
+
+  !> The model for answers about positions alone. A free coordinate without an initial position starts at zero. Fails as take does.
+  subroutine take_standing(self, model, err)
+    class(checked_mechanism_type), intent(in) :: self      !< the mechanism
+    type(model_type), intent(out) :: model                 !< in m, rad, kg, s
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    call self%take_request(dynamics, model, err)
+    if (.not. allocated(err)) model%problem%initial%position_given = .true.
+  end subroutine take_standing
 
   !> The model as a function of its parameters.
   subroutine take_variable(self, program, variable)

@@ -34,7 +34,7 @@ contains
     pictures%animation = ''
     if (kind_of_picture(path) /= 'svg') call raise(err, exit_usage, 'the name of a sketch must end in .svg')
     if (.not. allocated(err)) call choose_view(view, pictures, err)
-    if (.not. allocated(err)) call mechanism%take_request(dynamics, model, err)
+    if (.not. allocated(err)) call mechanism%take_standing(model, err)
     if (.not. allocated(err)) call assemble_model(model, plan, start, err)
     if (.not. allocated(err)) call pictures%save_start(model, plan, start, err)
     call mechanism%point_at(err)

@@ -3,7 +3,7 @@
 !> on others that are asked for.
 module mech9_followed_positions
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_finite
-  use mech9_program_kind, only: kinematics, dynamics
+  use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_interrupted
   use mech9_text, only: to_text
@@ -48,7 +48,7 @@ contains
 
     call self%close()
     allocate (self%model)
-    call mechanism%take(dynamics, self%model, err)
+    call mechanism%take_standing(self%model, err)
     if (.not. allocated(err)) call self%motion%assemble(self%model, err)
     call mechanism%point_at(err)
     if (allocated(err)) then
@@ -61,6 +61,8 @@ contains
       call mechanism%order_as_given(self%moved)
       where (model%problem%partition%independent()) kind = driven_coordinate
       model%program = kinematics
+      if (allocated(model%request%output%coordinates)) deallocate (model%request%output%coordinates)
+      model%request%output%derivatives = 2
       model%request%time%start = 0.0_wp
       model%request%time%end = 1.0_wp
     end associate

@@ -3,8 +3,8 @@ module mech9_motion
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_program_kind, only: kinematics, dynamics
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
-  use mech9_error, only: error_type, raise, exit_usage
+  use mech9_text, only: to_text, lower
+  use mech9_error, only: error_type, raise, exit_usage, exit_singular
   use mech9_model, only: model_type
   use mech9_point, only: point_type
   use mech9_plan, only: plan_type
@@ -12,6 +12,8 @@ module mech9_motion
   use mech9_frame_motion, only: point_motion
   use mech9_simulation, only: simulation_type, simulation_statistics_type, interruption_type, &
     coordinate_change_type, judge_error
+  use mech9_free_simulation, only: free_simulation_type
+  use mech9_motion_coefficients, only: find_coefficients
   use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan, is_made_for
   use mech9_reactions, only: reactions_type, new_reactions, find_reactions
   use mech9_explanation, only: explain
@@ -24,8 +26,12 @@ module mech9_motion
   !> It must not be copied.
   type :: motion_type
     private
+    type(checked_mechanism_type) :: mechanism               !< with the numbers that were set since the start
+    integer :: program = kinematics                         !< or dynamics
     type(model_type), pointer :: model => null()            !< owned; the simulation refers to it
     class(simulation_type), allocatable :: simulation
+    integer, allocatable :: independent(:)                  !< the independent coordinates of the mechanism
+    integer :: n_free = 0                                   !< how many of them have no drive
     type(reaction_plan_type) :: reaction_plan               !< of forces, once they are asked for
     class(reactions_type), allocatable :: reactions         !< of the last position whose forces were asked for
     integer :: planned = -1                                 !< changes of coordinates until the plan was made; -1: never
@@ -39,6 +45,11 @@ module mech9_motion
     procedure :: dq
     procedure :: ddq
     procedure :: take_coordinates
+    procedure :: set
+    procedure :: take_equations
+    procedure :: take_state
+    procedure :: go_to_state
+    procedure :: free_coordinates
     procedure :: unit
     procedure :: point
     procedure :: coupling_force
@@ -81,23 +92,49 @@ contains
     integer, intent(in) :: program                                   !< kinematics or dynamics
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
-    type(model_motion_type) :: motion
+    type(model_type), pointer :: model
 
     call self%close()
-    allocate (self%model)
+    allocate (model)
+    self%model => model
+    self%mechanism = mechanism
+    self%program = program
     call mechanism%take(program, self%model, err)
-    if (.not. allocated(err)) call motion%assemble(self%model, err)
+    if (.not. allocated(err)) call start_model(self, err, interruption)
+    call mechanism%point_at(err)
+    if (allocated(err)) call self%close()
+  end subroutine start_motion
+
+  !> Assemble the model and start its motion.
+  subroutine start_model(self, err, interruption, motors)
+    class(motion_type), intent(inout) :: self                        !< the motion, with its model
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
+    real(wp), intent(in), optional :: motors(:)                      !< (2 motors) their states, and their limits
+    type(model_motion_type) :: motion
+    integer :: n
+
+    call motion%assemble(self%model, err)
+    if (present(motors) .and. .not. allocated(err)) then
+      n = size(motors)/2
+      if (n > 0) then
+        motion%start%motor = motors(:n)
+        motion%start%motor_rate = 0.0_wp*motors(:n)
+        motion%start%limited = nint(motors(n + 1:))
+      end if
+    end if
     if (.not. allocated(err)) call motion%prepare(self%model, err, pictures=.true.)
     if (.not. allocated(err)) call take_accuracy(motion, self%model, err, interruption)
     if (.not. allocated(err)) call motion%simulation%start(err, interruption)
-    call mechanism%point_at(err)
     if (allocated(err)) then
       call motion%close()
-      call self%close()
     else
+      self%independent = motion%plan%independent
+      self%n_free = 0
+      if (.not. self%model%is_driven()) self%n_free = size(motion%plan%free)
       call move_alloc(motion%simulation, self%simulation)
     end if
-  end subroutine start_motion
+  end subroutine start_model
 
   !> Find the tolerances for an accuracy, if one is asked for. It holds at the outputs of &time, and times between them have
   !> errors like theirs. Fails where it cannot be had.
@@ -158,6 +195,14 @@ contains
     call self%simulation%present(plan, state)
     coordinates = plan%n_coordinates
   end function coordinates
+
+  !> Number of free coordinates, whose motion follows from forces; 0 where no motion is started.
+  pure integer function free_coordinates(self)
+    class(motion_type), intent(in) :: self   !< the motion
+
+    free_coordinates = 0
+    if (allocated(self%simulation)) free_coordinates = self%n_free
+  end function free_coordinates
 
   !> Coordinate k [rad, m]; not a number where there is none.
   real(wp) function q(self, k)
@@ -236,6 +281,159 @@ contains
     call self%simulation%present(plan, state)
     if (k >= 1 .and. k <= plan%n_coordinates) unit = plan%result_unit(k)
   end function unit
+
+  !> Give a number of a load or a motor another value, from the present time on. The motion stays as it is where this fails: with
+  !> exit_usage where no motion under forces is started, or for a number of another group, with exit_data for a name that is not known
+  !> or a value out of its range.
+  subroutine set(self, name, value, err)
+    class(motion_type), intent(inout) :: self              !< the motion
+    character(len=*), intent(in) :: name                   !< of the number, as load(1).force(2)
+    real(wp), intent(in) :: value                          !< in the unit of the data file
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(checked_mechanism_type) :: changed
+    type(model_type) :: model
+    integer, allocatable :: acting(:)
+    real(wp), allocatable :: present(:)
+
+    if (.not. allocated(self%simulation)) then
+      call raise(err, exit_usage, 'a motion must be started before its forces are changed')
+    else if (self%model%is_driven()) then
+      call raise(err, exit_usage, 'drives determine this motion; no force changes it')
+    else if (all(group_of(name) /= [character(len=5) :: 'load', 'motor'])) then
+      call raise(err, exit_usage, 'numbers of &load and &motor alone can be changed while a motion runs, and not '//name)
+    end if
+    if (allocated(err)) return
+    changed = self%mechanism
+    call changed%set(name, value, err)
+    if (.not. allocated(err)) call changed%take(self%program, model, err)
+    if (allocated(err)) return
+    acting = self%model%mechanism%acting_loads()
+    call move_alloc(model%mechanism%loads, self%model%mechanism%loads)
+    call move_alloc(model%mechanism%motors, self%model%mechanism%motors)
+    self%mechanism = changed
+    if (.not. have_same(acting, self%model%mechanism%acting_loads())) then
+      ! the plan of the motion leaves idle loads out
+      call self%take_state(present)
+      call self%go_to_state(present, err)
+      return
+    end if
+    select type (simulation => self%simulation)
+    type is (free_simulation_type)
+      call simulation%take_changes(err)
+    end select
+    if (allocated(err)) call explain(err)
+  end subroutine set
+
+  !> Whether two lists have the same numbers.
+  pure logical function have_same(a, b)
+    integer, intent(in) :: a(:)   !< one list
+    integer, intent(in) :: b(:)   !< the other
+
+    have_same = size(a) == size(b)
+    if (have_same) have_same = all(a == b)
+  end function have_same
+
+  !> The group of the name of a number, in lower case.
+  pure function group_of(name)
+    character(len=*), intent(in) :: name   !< as load(1).force
+    character(len=5) :: group_of
+
+    group_of = lower(name(:scan(name//'.', '(.') - 1))
+  end function group_of
+
+  !> Take the equations of motion of the free coordinates in the present position, inertia ddq + bias = 0, in SI units. Fails with
+  !> exit_usage where no motion is started, and with exit_singular while other coordinates are integrated near a singular position.
+  subroutine take_equations(self, coordinates, inertia, bias, err)
+    class(motion_type), intent(in), target :: self             !< the motion
+    integer, allocatable, intent(out) :: coordinates(:)        !< (n) the free coordinates, in the order of cq
+    real(wp), allocatable, intent(out) :: inertia(:, :)        !< (n,n) mass matrix [kg m^2, kg m, kg]
+    real(wp), allocatable, intent(out) :: bias(:)              !< (n) forces of inertia at rest of the accelerations, less loads [N m, N]
+    type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+    real(wp), allocatable :: found(:, :)
+    integer, allocatable :: order(:)
+    integer :: i, k, n
+
+    allocate (coordinates(0), inertia(0, 0), bias(0))
+    if (.not. allocated(self%simulation)) then
+      call raise(err, exit_usage, 'a motion must be started before its equations are known')
+      return
+    end if
+    call self%simulation%present(plan, state)
+    if (size(plan%independent) /= size(self%independent)) then
+      call raise(err, exit_singular, 'other coordinates are integrated in this position')
+    else if (any(plan%independent /= self%independent)) then
+      call raise(err, exit_singular, 'other coordinates than those of cq are integrated near a singular position')
+    end if
+    if (.not. allocated(err)) call find_coefficients(self%model%mechanism, plan, state, found, err)
+    if (allocated(err)) then
+      call explain(err)
+      return
+    end if
+    coordinates = plan%free
+    call self%mechanism%order_as_given(coordinates)
+    n = size(coordinates)
+    order = [(findloc(plan%independent, coordinates(i), dim=1), i=1, n)]
+    deallocate (inertia, bias)
+    allocate (inertia(n, n), bias(n))
+    do k = 1, n
+      do i = 1, n
+        inertia(i, k) = found(max(order(i), order(k)), min(order(i), order(k)))
+      end do
+    end do
+    bias = -matmul(inertia, state%ddq(coordinates))
+  end subroutine take_equations
+
+  !> Take the present state: the time, coordinates and rates of all pairs, and states of motors, in SI units. It is empty where no
+  !> motion is started.
+  subroutine take_state(self, numbers)
+    class(motion_type), intent(in), target :: self             !< the motion
+    real(wp), allocatable, intent(out) :: numbers(:)           !< (1 + 2M + 2 motors) the state
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    allocate (numbers(0))
+    if (.not. allocated(self%simulation)) return
+    call self%simulation%present(plan, state)
+    numbers = [self%simulation%t, state%q, state%dq]
+    if (allocated(state%motor)) numbers = [numbers, state%motor, real(state%limited, wp)]
+  end subroutine take_state
+
+  !> Go to a state that take_state gave, perhaps of another motion of the same mechanism: the motion starts there anew. Fails with
+  !> exit_usage where it is no such state, else as start_dynamics does; the motion is then closed.
+  subroutine go_to_state(self, numbers, err)
+    class(motion_type), intent(inout) :: self              !< the motion, started
+    real(wp), intent(in) :: numbers(:)                     !< (1 + 2M + 2 motors) the state
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    real(wp), allocatable :: present(:)
+    real(wp) :: span
+    integer :: m
+
+    call self%take_state(present)
+    if (size(present) == 0) then
+      call raise(err, exit_usage, 'a motion must be started before it can go to another state')
+    else if (size(numbers) /= size(present) .or. .not. all(abs(numbers) <= huge(1.0_wp))) then
+      call raise(err, exit_usage, 'this is no state of this mechanism')
+    end if
+    if (allocated(err)) return
+    m = self%coordinates()
+    call self%simulation%close()
+    deallocate (self%simulation)
+    self%planned = -1
+    associate (initial => self%model%problem%initial, time => self%model%request%time)
+      initial%position = numbers(2:m + 1)
+      initial%velocity = numbers(m + 2:2*m + 1)
+      initial%position_given = .true.
+      initial%velocity_given = .true.
+      span = time%end - time%start
+      time%start = numbers(1)
+      time%end = numbers(1) + span
+    end associate
+    call start_model(self, err, motors=numbers(2*m + 2:))
+    call self%mechanism%point_at(err)
+    if (allocated(err)) call self%close()
+  end subroutine go_to_state
 
   !> Motion of a named point, in the system of link 1. Fails with exit_usage for a name that is not known.
   subroutine point(self, name, err, position, velocity, acceleration)

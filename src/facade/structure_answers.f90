@@ -145,7 +145,7 @@ contains
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     type(start_way_type), intent(out), optional :: way         !< how the start was reached from the drawn position
 
-    call mechanism%take_request(dynamics, model, err)
+    call mechanism%take_standing(model, err)
     if (.not. allocated(err)) call assemble_model(model, plan, start, err, way)
     call mechanism%point_at(err)
   end subroutine assemble

@@ -41,6 +41,7 @@ module mech9_free_simulation
   contains
     procedure :: begin
     procedure :: go_to
+    procedure :: take_changes
     procedure :: present
     procedure :: present_for_forces
     procedure :: begin_sensitivity
@@ -198,6 +199,17 @@ contains
       if (.not. allocated(err)) call motion%show_angles(err)
     end associate
   end subroutine go_to
+
+  !> Go on from the present time with numbers of loads or motors of the model that were changed. Steps no longer go beyond the times
+  !> that are asked for, since more changes may come.
+  subroutine take_changes(self, err)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation, started
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+
+    self%end = self%t
+    call self%motion%restart(self%t, self%motion%system%vector(), err)
+    if (.not. allocated(err)) call self%motion%show_angles(err)
+  end subroutine take_changes
 
   !> Continue the angles of the data file to a time within the last step, over ways that are short enough, if others are
   !> integrated. The system stands at this time before and after.

@@ -52,6 +52,7 @@ module mech9_integrated_motion
     procedure :: look_between
     procedure :: step_back
     procedure :: pass_joint
+    procedure :: restart
     procedure :: statistics
     procedure :: work_done
     procedure :: iterations
@@ -391,10 +392,21 @@ contains
   subroutine pass_joint(self, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    type(expectation_type) :: nothing
 
     call pass_law_joint(self%system, self%t, self%y, err)
-    if (allocated(err)) return
+    if (.not. allocated(err)) call self%restart((self%t), (self%y), err)
+  end subroutine pass_joint
+
+  !> Go on from a state as if nothing had been before it.
+  subroutine restart(self, t, y, err)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion
+    real(wp), intent(in) :: t                              !< time [s]
+    real(wp), intent(in) :: y(:)                           !< projected values
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(expectation_type) :: nothing
+
+    self%t = t
+    self%y = y
     call self%system%resume(nothing)
     call self%system%move_to(self%t, self%y, err)
     if (.not. allocated(err)) call self%system%pass_limits(err)
@@ -404,7 +416,7 @@ contains
     call self%dense_output%begin()
     call self%dense_output%add(self%system, self%t, self%y)
     call self%limits%note(self%system, err)
-  end subroutine pass_joint
+  end subroutine restart
 
   !> Counts of all integrators of the motion together.
   function statistics(self) result(all)

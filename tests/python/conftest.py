@@ -13,7 +13,7 @@ def mech9(build):
     library = os.path.join(build.folder, 'lib', 'libmech9.so.0')
     if not os.path.exists(library):
         pytest.skip('this build has no libmech9.so')
-    os.environ['MECH9_LIBRARY'] = library
+    os.environ.setdefault('MECH9_LIBRARY', library)
     sys.path.insert(0, os.path.join(TREE, 'python'))
     import mech9 as package
     return package

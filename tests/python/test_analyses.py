@@ -162,6 +162,21 @@ def test_study(mech9, four_bar):
     assert study['top'].values[0] == four_bar.with_(crank=0.2).kinematics().quantities['top']
 
 
+def test_study_of_lists(mech9, four_bar):
+    pytest.importorskip('xarray')
+    four_bar.add('parameter', name='crank', value=0.3, sets='pair(2).point(1)')
+    four_bar.add('quantity', name='top', of='P.y', take='max')
+    study = four_bar.study(crank=[0.2, 0.25, 0.3])
+    assert study['crank'].values.tolist() == [0.2, 0.25, 0.3]
+    assert study['top'].values[2] == four_bar.kinematics().quantities['top']
+    both = four_bar.study(**{'pair(4).point(1)': [0.9, 0.95], 'crank': [0.3, 0.3]})
+    assert both['pair(4).point(1)'].values.tolist() == [0.9, 0.95] and both['top'].values[0] == study['top'].values[2]
+    with pytest.raises(mech9.UsageError, match='same length'):
+        four_bar.study(crank=[0.2], **{'pair(4).point(1)': [0.9, 0.95]})
+    with pytest.raises(mech9.DataError):
+        four_bar.study(cranck=[0.2])
+
+
 def test_optimum(mech9):
     path = os.path.join(EXAMPLES, 'five_timed_points', 'five_timed_points.nml')
     if not os.path.exists(path):
@@ -191,6 +206,59 @@ def test_simulation(mech9):
         assert motion.t == results.t[-1]
     with pytest.raises(mech9.UsageError, match='closed'):
         motion.q
+
+
+def cart(mech9):
+    """2 kg on a rail, pushed by a force that is zero at first."""
+    m = mech9.Mechanism(title='cart')
+    m.add('structure', cq=1).add('pair', coordinate=1, links=(1, 2), kind='prismatic', axis=(1, 0, 0))
+    m.add('body', link=2, mass=2.0).add('load', kind='force', link=2, force=(0, 0, 0))
+    return m.add('initial', coordinate=1, position=1.0)
+
+
+def test_control(mech9):
+    with cart(mech9).simulation() as sim:
+        x, v, h = 1.0, 0.0, 0.01
+        for _ in range(100):
+            force = -4.0*sim.q[0] - sim.dq[0]
+            sim.set('load(1).force(1)', force)
+            assert abs(sim.ddq[0] - force/2.0) < 1e-14
+            sim.advance(sim.t + h)
+            # the force stands still within a step, so that the motion is a parabola
+            x, v = x + h*v + h*h*force/4.0, v + h*force/2.0
+            assert abs(sim.q[0] - x) < 1e-9 and abs(sim.dq[0] - v) < 1e-9
+        for wrong, kind in (('load(2).force(1)', mech9.DataError), ('pair(1).axis(1)', mech9.UsageError), ('', mech9.UsageError)):
+            with pytest.raises(kind):
+                sim.set(wrong, 1.0)
+        assert sim.q[0] == pytest.approx(x, abs=1e-9)
+    with mech9.read(four_bar_path()).simulation() as driven, pytest.raises(mech9.UsageError, match='drives determine'):
+        driven.set('load(1).force(1)', 1.0)
+
+
+def test_states_and_equations(mech9):
+    folder = os.path.join(EXAMPLES, 'motor_crank')
+    m = mech9.read(os.path.join(folder, 'motor_crank.nml'))
+    with m.simulation() as first, m.simulation() as other:
+        first.advance(0.5)
+        state = first.state()
+        other.set_state(state)
+        assert other.t == 0.5 and np.abs(other.q - first.q).max() < 1e-14
+        first.advance(1.0)
+        other.advance(1.0)
+        # both hold the tolerances of the data file, 1e-8 and better
+        assert np.abs(other.q - first.q).max() < 1e-7
+        mass, free = first.mass_matrix(), [k - 1 for k in first.free]
+        assert np.abs(mass @ first.ddq[free] + first.bias()).max() < 1e-12
+        with pytest.raises(mech9.UsageError, match='no state'):
+            first.set_state(state[:-1])
+        with pytest.raises(mech9.UsageError, match='no state'):
+            first.set_state(np.full(len(state), np.nan))
+    with mech9.read(os.path.join(EXAMPLES, 'double_pendulum', 'double_pendulum.nml')).simulation(accuracy=0.0) as sim:
+        sim.advance(0.3)
+        mass = sim.mass_matrix()
+        assert mass.shape == (2, 2) and np.allclose(mass, mass.T) and (np.linalg.eigvalsh(mass) > 0).all()
+        kinetic = 0.5*sim.dq @ mass @ sim.dq
+        assert kinetic == pytest.approx(sim.energies[0], rel=1e-12)
 
 
 def test_pictures(mech9, four_bar):
