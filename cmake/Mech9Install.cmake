@@ -70,3 +70,19 @@ install(FILES
   "${PROJECT_BINARY_DIR}/install/mech9ConfigVersion.cmake"
   cmake/Mech9Programs.cmake
   DESTINATION "${package_dir}")
+
+# The library for C and C++: a header, libmech9.so, and what pkg-config and CMake need to find both.
+if(MECH9_SHARED)
+  install(TARGETS mech9_shared EXPORT mech9SharedTargets LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+  set_target_properties(mech9_shared PROPERTIES EXPORT_NAME c)
+  install(FILES include/mech9.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+  install(EXPORT mech9SharedTargets NAMESPACE mech9:: DESTINATION "${package_dir}")
+  configure_file(cmake/mech9.pc.in "${PROJECT_BINARY_DIR}/install/mech9.pc" @ONLY)
+  install(FILES "${PROJECT_BINARY_DIR}/install/mech9.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+endif()
+
+# The Python package holds the library and the programs beside its modules.
+if(MECH9_PYTHON)
+  install(TARGETS mech9_shared LIBRARY DESTINATION mech9 COMPONENT python NAMELINK_SKIP)
+  install(TARGETS mech9k mech9d RUNTIME DESTINATION mech9/bin COMPONENT python)
+endif()
