@@ -208,7 +208,7 @@ class Mechanism:
 
     def text(self) -> str:
         """The text of a data file that makes this mechanism."""
-        return lib.mechanism_text(self._handle).decode('utf-8')
+        return str(lib.mechanism_text(self._handle).decode('utf-8'))
 
     def __getstate__(self) -> str:
         return self.text()
@@ -268,9 +268,9 @@ class Mechanism:
         try:
             failure = call_stoppable(function, lambda stop: arguments(stop, ctypes.byref(handle)))
         except KeyboardInterrupt as interrupt:
-            interrupt.results = Results(handle.value, parameters) if handle else None   # type: ignore[attr-defined]
+            interrupt.results = Results(handle.value, parameters) if handle.value else None   # type: ignore[attr-defined]
             raise
-        results = Results(handle.value, parameters) if handle else None   # type: ignore[arg-type]
+        results = Results(handle.value, parameters) if handle.value else None
         if failure is not None:
             failure.results = results
             raise failure

@@ -128,7 +128,7 @@ class Results(Mapping[str, np.ndarray]):
 
     def to_pandas(self) -> Any:
         """The table as a pandas.DataFrame, with the time as its index where there is one."""
-        import pandas
+        import pandas  # type: ignore[import-untyped,unused-ignore]
         frame = pandas.DataFrame(self.table, columns=list(self.names))
         frame.attrs['units'] = dict(self.units)
         return frame.set_index('t') if 't' in self._columns else frame

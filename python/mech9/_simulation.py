@@ -83,7 +83,7 @@ class Simulation:
     @property
     def t(self) -> float:
         """The present time [s]."""
-        return lib.simulation_time(self._open())
+        return float(lib.simulation_time(self._open()))
 
     def _take(self, place: int) -> np.ndarray:
         found = np.empty(self._n)
@@ -123,4 +123,4 @@ class Simulation:
     @property
     def closure(self) -> float:
         """Largest gap of a closed chain [m]."""
-        return lib.simulation_closure(self._open())
+        return float(lib.simulation_closure(self._open()))

@@ -37,7 +37,7 @@ contains
     call file%put('provenance/program', program_names(model%program), 'program that wrote this file')
     call file%put('provenance/version', version, 'version of the program')
     call file%put('provenance/revision', revision, 'git revision of its sources; empty where unknown')
-    call file%put('provenance/compiler', compiler(), 'compiler that built it')
+    call file%put('provenance/compiler', compiler, 'compiler that built it')
     call file%put('provenance/libraries', libraries(), 'libraries that it stands on')
     call file%put('provenance/created', began, 'when the run began')
     call file%put('provenance/command_line', program_names(model%program)//' '//options%line, 'command line of the run')

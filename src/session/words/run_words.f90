@@ -88,7 +88,7 @@ contains
     call json%add('program', program_names(model%program))
     call json%add('version', version)
     call json%add('revision', revision)
-    call json%add('compiler', compiler())
+    call json%add('compiler', compiler)
     if (allocated(model%mechanism%title)) call json%add('title', model%mechanism%title)
     call json%add('exit_code', exit_code)
   end subroutine add_outcome
