@@ -19,7 +19,7 @@ from ._words import group, run_setting, written
 
 if TYPE_CHECKING:
     from ._function import Function
-    from ._simulation import Simulation
+    from ._simulation import Simulation, Simulations
 
 
 def read(path: str | os.PathLike[str]) -> Mechanism:
@@ -435,6 +435,11 @@ class Mechanism:
         """A motion that is advanced from time to time; it takes the words of &solver and &time."""
         from ._simulation import Simulation
         return Simulation(self._with_words(words), driven)
+
+    def simulations(self, count: int, *, driven: bool = False, threads: int = 1, **words: Any) -> Simulations:
+        """Many motions side by side, each from the same start: q, dq (count, M), set(name, values), advance(t)."""
+        from ._simulation import Simulations
+        return Simulations(self._with_words(words), int(count), driven, int(threads))
 
 
 class _PositionFinder:

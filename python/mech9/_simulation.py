@@ -2,11 +2,12 @@
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
 
-from ._errors import UsageError
+from ._errors import Error, UsageError
 from ._library import call, lib
 
 if TYPE_CHECKING:
@@ -124,3 +125,89 @@ class Simulation:
     def closure(self) -> float:
         """Largest gap of a closed chain [m]."""
         return float(lib.simulation_closure(self._open()))
+
+
+class Simulations:
+    """Many motions of one mechanism side by side: q, dq, ddq (count, M) in the units of the data file, and `code` (count,).
+
+    A motion that cannot go on keeps the exit code of its failure, and its rows are NaN from then on.
+    """
+
+    def __init__(self, mechanism: Mechanism, count: int, driven: bool, threads: int):
+        if count < 1:
+            raise UsageError('there must be at least one motion', 2)
+        self._all = [Simulation(mechanism, driven) for _ in range(count)]
+        self._pool = ThreadPoolExecutor(max(1, threads)) if threads > 1 else None
+        self._parts = [range(count*i//threads, count*(i + 1)//threads) for i in range(threads)] if threads > 1 else [range(count)]
+        self.code: np.ndarray = np.zeros(count, dtype=int)
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    def __getitem__(self, i: int) -> Simulation:
+        """One of the motions."""
+        return self._all[i]
+
+    def __enter__(self) -> Simulations:
+        return self
+
+    def __exit__(self, *reason: Any) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End all motions and free their memory."""
+        for one in self._all:
+            one.close()
+        if self._pool is not None:
+            self._pool.shutdown()
+            self._pool = None
+
+    def _each(self, work: Callable[[int], None]) -> None:
+        """Do something for all motions that can go on, in threads."""
+        def part(numbers: range) -> None:
+            for i in numbers:
+                if self.code[i] == 0:
+                    work(i)
+        if self._pool is None:
+            part(range(len(self._all)))
+        else:
+            list(self._pool.map(part, self._parts))
+
+    def advance(self, t: float) -> None:
+        """Go on to a time [s] with all motions that can go on."""
+        def one(i: int) -> None:
+            try:
+                self._all[i].advance(t)
+            except UsageError:
+                raise
+            except Error as failure:
+                self.code[i] = failure.code
+        self._each(one)
+
+    def set(self, name: str, values: Any) -> None:
+        """Give a number of a load or a motor a value in each motion, from now on: one for all, or (count,)."""
+        given = np.broadcast_to(np.asarray(values, dtype=float), (len(self._all),))
+        self._each(lambda i: self._all[i].set(name, float(given[i])))
+
+    def _take(self, place: int) -> np.ndarray:
+        found = np.full((len(self._all), self._all[0]._n), np.nan)
+
+        def one(i: int) -> None:
+            found[i] = self._all[i]._take(place)
+        self._each(one)
+        return found
+
+    @property
+    def q(self) -> np.ndarray:
+        """The coordinates (count, M)."""
+        return self._take(0)
+
+    @property
+    def dq(self) -> np.ndarray:
+        """Their rates (count, M)."""
+        return self._take(1)
+
+    @property
+    def ddq(self) -> np.ndarray:
+        """Their second derivatives (count, M)."""
+        return self._take(2)

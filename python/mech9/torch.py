@@ -8,7 +8,7 @@ from ._function import Function
 
 def wrap(f: Function) -> Callable[[Any], Any]:
     """A `Function` as a function of tensors: x (inputs,) gives (outputs,). It can be differentiated once, backwards."""
-    import torch
+    import torch  # type: ignore[import-not-found,unused-ignore]
 
     class Quantities(torch.autograd.Function):   # type: ignore[misc,name-defined,unused-ignore]
         @staticmethod

@@ -235,6 +235,26 @@ def test_control(mech9):
         driven.set('load(1).force(1)', 1.0)
 
 
+def test_many_at_once(mech9):
+    with cart(mech9).simulations(5) as many:
+        forces = np.linspace(-2.0, 2.0, 5)
+        many.set('load(1).force(1)', forces)
+        many.advance(0.5)
+        assert many.q.shape == (5, 1) and np.abs(many.q[:, 0] - (1.0 + forces*0.25/4.0)).max() < 1e-9
+        assert np.abs(many.ddq[:, 0] - forces/2.0).max() < 1e-14 and (many.code == 0).all() and len(many) == 5
+        with pytest.raises(mech9.UsageError):
+            many.advance(0.1)
+    with pytest.raises(mech9.UsageError, match='at least one'):
+        cart(mech9).simulations(0)
+
+
+def test_many_that_fail(mech9, four_bar):
+    four_bar['pair(2).point(1)'] = 0.7
+    with four_bar.simulations(2, driven=True) as many:
+        many.advance(2.0)
+        assert (many.code == 6).all() and np.isnan(many.q).all()
+
+
 def test_states_and_equations(mech9):
     folder = os.path.join(EXAMPLES, 'motor_crank')
     m = mech9.read(os.path.join(folder, 'motor_crank.nml'))

@@ -25,6 +25,10 @@ def built(mech9):
     return m
 
 
+def test_version(build, mech9):
+    assert mech9.__version__ == build.version
+
+
 def test_from_nothing(mech9, four_bar):
     assert (built(mech9).kinematics().table == four_bar.kinematics().table).all()
 

@@ -1,0 +1,14 @@
+"""The version stands once, in CMakeLists.txt; others that name it agree."""
+import os
+import re
+
+from mech9_cases import TREE, run, text_of
+
+
+def test_version(checks, build, mech9k, mech9d):
+    version = re.search(r'project\(MECH9 VERSION ([0-9.]+)', text_of(os.path.join(TREE, 'CMakeLists.txt'))).group(1)
+    citation = re.search(r'^version: (\S+)$', text_of(os.path.join(TREE, 'CITATION.cff')), re.M).group(1)
+    changes = re.search(r'^## ([0-9.]+)', text_of(os.path.join(TREE, 'CHANGELOG.md')), re.M).group(1)
+    checks.equal((citation, changes, build.version), (version, version, version), 'CITATION.cff, CHANGELOG.md and the build')
+    for program in (mech9k, mech9d):
+        checks.true(f' {version} ' in run(program, '--version').stdout, f'{os.path.basename(program)} --version')
