@@ -2,12 +2,13 @@
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any, Sequence
+from typing import TYPE_CHECKING, Any, Mapping, Sequence
 
 import numpy as np
 
-from ._errors import UsageError
+from ._errors import DataError, UsageError
 from ._library import call, lib
+from ._mechanism import free_name
 from ._results import Results
 
 if TYPE_CHECKING:
@@ -27,8 +28,9 @@ class Function:
         self._names = []
         for i, name in enumerate(self.inputs):
             if name not in known:
-                self._mechanism.add('parameter', name=f'input_{i + 1}', sets=name)
-            self._names.append(name if name in known else f'input_{i + 1}')
+                new = free_name(self._mechanism.parameters, i + 1)
+                self._mechanism.add('parameter', name=new, sets=name)
+            self._names.append(name if name in known else new)
         self._places = [f'parameter({self._mechanism.parameters.index(name) + 1}).value'.encode() for name in self._names]
         self._analysis = lib.kinematics if self._mechanism.is_driven else lib.dynamics
         self._with_gradients = self._mechanism.copy()
@@ -51,9 +53,15 @@ class Function:
     def __call__(self, x: Any) -> np.ndarray:
         """The outputs (outputs,) at x (inputs,)."""
         found = self._run(self._mechanism, x).quantities
-        return np.array([found[name] for name in self.outputs])
+        return np.array([found[self._known(name, found)] for name in self.outputs])
 
     def jacobian(self, x: Any) -> np.ndarray:
         """Derivatives of the outputs by the inputs at x, (outputs, inputs)."""
         found = self._run(self._with_gradients, x).gradients
-        return np.array([[found[name][parameter] for parameter in self._names] for name in self.outputs])
+        return np.array([[found[self._known(name, found)][parameter] for parameter in self._names] for name in self.outputs])
+
+    @staticmethod
+    def _known(name: str, found: Mapping[str, Any]) -> str:
+        if name not in found:
+            raise DataError(f'there is no quantity {name!r}; the quantities are {", ".join(found) or "none"}', 3)
+        return name

@@ -2,12 +2,13 @@
 from __future__ import annotations
 
 import ctypes
+import operator
 import os
 import threading
 from ctypes import POINTER, c_char_p, c_double, c_int, c_void_p
 from typing import Any, Callable
 
-from ._errors import CODES, INTERRUPTED, Error, Finding
+from ._errors import CODES, INTERRUPTED, Error, Finding, UsageError
 
 _NAME = 'libmech9.so.0'
 _STATUS = 'status'   # a function that can fail: its last argument is the error handle
@@ -118,6 +119,27 @@ def _load() -> Library:
 lib = _load()
 
 
+def count(value: Any, name: str, least: int = 0) -> int:
+    """A whole number for a function of C; refuses all else."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise UsageError(f'{name} is a whole number, not {value!r}', 2) from None
+    if not least <= number < 2**31:
+        raise UsageError(f'{name} is a whole number from {least} on, below 2^31', 2)
+    return number
+
+
+def text(value: Any) -> bytes:
+    """A text for a function of C."""
+    if not isinstance(value, str):
+        raise UsageError(f'a text is wanted, not {value!r}', 2)
+    encoded = value.encode('utf-8')
+    if b'\0' in encoded:
+        raise UsageError('a text must not have zero bytes', 2)
+    return encoded
+
+
 def version() -> str:
     """The version of the library, as '0.9.0'."""
     number = lib.version()
@@ -159,35 +181,48 @@ def call(function: Callable[..., int], *arguments: Any) -> None:
         raise _failure(code)
 
 
-def call_stoppable(function: Callable[..., int], arguments: Callable[[Any], tuple[Any, ...]]) -> Error | None:
+# Seconds that a call may take to stop.
+MOST_SECONDS = 1.0
+# What calls need that could not be stopped.
+_forgotten: list[Any] = []
+
+
+def call_stoppable(function: Callable[..., int], arguments: Callable[[Any], tuple[Any, ...]], kept: Any = None) -> Error | None:
     """Call a function that may take long, and return its failure. `arguments` makes its arguments from the address of the number that
     stops it. Ctrl-C stops it and raises KeyboardInterrupt: Python handles signals in the main thread alone, so that the function
-    runs in another one.
+    runs in another one. `kept` must live as long as the call.
     """
     stop = c_int(0)
+    made = arguments(ctypes.addressof(stop))
     failures: list[Error | None] = []
-
+    broken: list[BaseException] = []
     done = threading.Event()
 
     def work() -> None:
         try:
-            code = function(*arguments(ctypes.addressof(stop)), _handle.address)
+            code = function(*made, _handle.address)
             failures.append(_failure(code) if code else None)
+        except BaseException as reason:
+            broken.append(reason)
         finally:
             done.set()
 
     if threading.current_thread() is not threading.main_thread():
         work()
-        return failures[0]
-    threading.Thread(target=work, daemon=True).start()
-    try:
-        # a signal that does not come from the system, as in a notebook, does not end a wait
-        while not done.wait(0.05):
-            pass
-    except BaseException:
-        stop.value = 1
-        done.wait()
-        raise
+    else:
+        threading.Thread(target=work, daemon=True).start()
+        try:
+            # a signal that does not come from the system, as in a notebook, does not end a wait
+            while not done.wait(0.05):
+                pass
+        except BaseException:
+            stop.value = 1
+            # some calls cannot be stopped: they go on alone, and keep what they need
+            if not done.wait(MOST_SECONDS):
+                _forgotten.append((stop, made, kept))
+            raise
+    if broken:
+        raise broken[0]
     failure = failures[0]
     if failure is not None and failure.code == INTERRUPTED:
         raise KeyboardInterrupt(failure.message)

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, Sequence
 import numpy as np
 
 from ._errors import DataError, Error, UsageError
-from ._library import call, call_stoppable, lib
+from ._library import call, call_stoppable, count, lib
+from ._library import text as text_of
 from ._pictures import Picture, drawn
 from ._results import Results
 from ._words import group, run_setting, written
@@ -25,22 +26,25 @@ if TYPE_CHECKING:
 def read(path: str | os.PathLike[str]) -> Mechanism:
     """Read a data file. Grammar is judged here; the structure is judged by `check` or a run."""
     handle = ctypes.c_void_p()
-    call(lib.read_file, os.fsencode(path), ctypes.byref(handle))
+    name = os.fsencode(path)
+    if b'\0' in name:
+        raise UsageError('a path must not have zero bytes', 2)
+    call(lib.read_file, name, ctypes.byref(handle))
     return Mechanism(_handle=handle)
 
 
 def read_text(text: str) -> Mechanism:
     """Read a text that has the form of a data file."""
     handle = ctypes.c_void_p()
-    call(lib.read_text, _bytes(text), ctypes.byref(handle))
+    call(lib.read_text, text_of(text), ctypes.byref(handle))
     return Mechanism(_handle=handle)
 
 
-def _bytes(text: str) -> bytes:
-    encoded = text.encode('utf-8')
-    if b'\0' in encoded:
-        raise UsageError('a text must not have zero bytes', 2)
-    return encoded
+def _double(value: Any) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        raise UsageError(f'{value} is too large', 2) from None
 
 
 @dataclass(frozen=True)
@@ -129,7 +133,8 @@ class Positions(np.ndarray):
 
     def __array_finalize__(self, made_from: Any) -> None:
         if made_from is not None and not hasattr(self, 'code'):
-            self.code = getattr(made_from, 'code', None)   # type: ignore[assignment]
+            # of other rows the codes are not known
+            self.code = getattr(made_from, 'code', None) if self.shape == made_from.shape else None   # type: ignore[assignment]
 
 
 class Mechanism:
@@ -154,28 +159,39 @@ class Mechanism:
 
     def add(self, name: str, /, **words: Any) -> Mechanism:
         """Add a group of the data file: add('pair', coordinate=1, links=(1, 2), kind='revolute')."""
-        call(lib.mechanism_add, self._handle, _bytes(group(name, words)))
+        call(lib.mechanism_add, self._handle, text_of(group(name, words)))
         return self
 
     def remove(self, name: str) -> Mechanism:
         """Remove all groups of a name: remove('drive'). There may be none."""
-        call(lib.mechanism_remove, self._handle, _bytes(name))
+        call(lib.mechanism_remove, self._handle, text_of(name))
         return self
 
     def __getitem__(self, name: str) -> float:
         """A number by the name that --set has for it, or the value of a parameter."""
         value = ctypes.c_double()
-        call(lib.mechanism_number, self._handle, _bytes(self._full_name(name)), ctypes.byref(value))
+        call(lib.mechanism_number, self._handle, text_of(self._full_name(name)), ctypes.byref(value))
         return value.value
 
     def __setitem__(self, name: str, value: Any) -> None:
         """Set a number, or a name of a group to a text, a truth value or a list."""
         if isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool):
-            call(lib.mechanism_set, self._handle, _bytes(self._full_name(name)), float(value))
+            try:
+                call(lib.mechanism_set, self._handle, text_of(self._full_name(name)), _double(value))
+            except DataError as reason:
+                try:   # a group or a name that is missing is added
+                    call(lib.mechanism_apply, self._handle, text_of(f'{name}={written(value)}'))
+                except Error:
+                    raise reason from None
         else:
-            call(lib.mechanism_apply, self._handle, _bytes(f'{name}={written(value)}'))
+            call(lib.mechanism_apply, self._handle, text_of(f'{name}={written(value)}'))
+
+    __iter__ = None   # numbers have names, not places
+    __contains__ = None
 
     def _full_name(self, name: str) -> str:
+        if not isinstance(name, str):
+            raise UsageError(f'a number has a name such as pair(2).point(1), and not {name!r}', 2)
         if '.' in name:
             return name
         try:
@@ -208,7 +224,7 @@ class Mechanism:
 
     def text(self) -> str:
         """The text of a data file that makes this mechanism."""
-        return str(lib.mechanism_text(self._handle).decode('utf-8'))
+        return str(lib.mechanism_text(self._handle).decode('utf-8', 'replace'))
 
     def __getstate__(self) -> str:
         return self.text()
@@ -219,7 +235,8 @@ class Mechanism:
         self._handle = handle
 
     def __repr__(self) -> str:
-        return f'<mech9.Mechanism: {self.text().count(chr(10) + "&") + 1} groups>'
+        groups = sum(line.startswith('&') for line in self.text().splitlines())
+        return f'<mech9.Mechanism: {groups} groups>'
 
     # analyses
 
@@ -258,7 +275,7 @@ class Mechanism:
             return self
         changed = self.copy()
         for word, value in words.items():
-            call(lib.mechanism_apply, changed._handle, _bytes(run_setting(word, value)))
+            call(lib.mechanism_apply, changed._handle, text_of(run_setting(word, value)))
         return changed
 
     def _results(self, function: Any, arguments: Any) -> Results:
@@ -266,7 +283,7 @@ class Mechanism:
         handle = ctypes.c_void_p()
         parameters = self.parameters
         try:
-            failure = call_stoppable(function, lambda stop: arguments(stop, ctypes.byref(handle)))
+            failure = call_stoppable(function, lambda stop: arguments(stop, ctypes.byref(handle)), (self, handle))
         except KeyboardInterrupt as interrupt:
             interrupt.results = Results(handle.value, parameters) if handle.value else None   # type: ignore[attr-defined]
             raise
@@ -279,7 +296,7 @@ class Mechanism:
 
     def equilibrium(self, starts: int = 0) -> Results:
         """The equilibrium to which the start leads, or those of many random starts: a row for each."""
-        return self._results(lib.equilibrium, lambda stop, out: (self._handle, int(starts), stop, out))
+        return self._results(lib.equilibrium, lambda stop, out: (self._handle, count(starts, 'starts'), stop, out))
 
     def modes(self) -> Results:
         """The modes of vibration about the equilibrium to which the start leads: a row for each."""
@@ -287,7 +304,7 @@ class Mechanism:
 
     def assemblies(self, starts: int = 100) -> Results:
         """The assemblies with the independent coordinates of the start: a row of coordinates for each."""
-        return self._results(lib.assemblies, lambda stop, out: (self._handle, int(starts), out))
+        return self._results(lib.assemblies, lambda stop, out: (self._handle, count(starts, 'starts'), out))
 
     def range(self) -> Results:
         """How far each independent coordinate can go while the others are held: coordinate, lower, upper."""
@@ -306,11 +323,14 @@ class Mechanism:
         for i, name in enumerate(values):
             if name in self.parameters:
                 continue
-            names[f'input_{i + 1}'] = name
-            changed.add('parameter', name=f'input_{i + 1}', value=self[name], sets=name)
+            new = free_name(changed.parameters, i + 1)
+            names[new] = name
+            changed.add('parameter', name=new, value=self[name], sets=name)
         lists = {name: np.atleast_1d(np.asarray(one, dtype=float)) for name, one in values.items()}
         n = {len(one) for one in lists.values()}
-        if len(n) != 1 or any(one.ndim != 1 for one in lists.values()):
+        if any(one.ndim != 1 or not np.isfinite(one).all() for one in lists.values()) or 0 in n:
+            raise UsageError('the values of a study are lists of finite numbers', 2)
+        if len(n) != 1:
             raise UsageError('the lists of values must have the same length', 2)
         columns = [lists[names.get(name, name)] if names.get(name, name) in lists else np.full(max(n), changed[name])
                    for name in changed.parameters]
@@ -322,7 +342,7 @@ class Mechanism:
 
     def _study(self, threads: int, dynamics: bool | None, names: dict[str, str]) -> Any:
         with_forces = not self.is_driven if dynamics is None else dynamics
-        runs = self._results(lib.study, lambda stop, out: (self._handle, int(with_forces), int(threads), stop, out))
+        runs = self._results(lib.study, lambda stop, out: (self._handle, int(with_forces), count(threads, 'threads', 1), stop, out))
         try:
             import xarray
         except ImportError:
@@ -348,15 +368,15 @@ class Mechanism:
         if words:
             searched = self.copy()
             for word, value in words.items():
-                call(lib.mechanism_apply, searched._handle, _bytes(f'optimum.{word}={written(value)}'))
-        found = searched._results(lib.optimize, lambda stop, out: (searched._handle, int(with_forces), int(threads), stop, out))
+                call(lib.mechanism_apply, searched._handle, text_of(f'optimum.{word}={written(value)}'))
+        found = searched._results(lib.optimize, lambda stop, out: (searched._handle, int(with_forces), count(threads, 'threads', 1), stop, out))
         return Optimum(searched, with_forces, found)
 
     # pictures
 
     def sketch(self, view: str | None = None) -> Picture:
         """The assembled start as a drawing; view as for the option --view."""
-        return drawn(lambda path: call(lib.sketch, self._handle, path, _bytes(view or '')), 'svg')
+        return drawn(lambda path: call(lib.sketch, self._handle, path, text_of(view or '')), 'svg')
 
     def animate(self, *, kind: str = 'html', view: str | None = None, dynamics: bool | None = None, **words: Any) -> Picture:
         """A run as a moving picture of a kind: 'html', 'svg' or 'gif'. It takes the words of a run."""
@@ -364,7 +384,7 @@ class Mechanism:
         with_forces = not run.is_driven if dynamics is None else dynamics
 
         def draw(path: bytes) -> None:
-            failure = call_stoppable(lib.animate, lambda stop: (run._handle, int(with_forces), path, _bytes(view or ''), stop))
+            failure = call_stoppable(lib.animate, lambda stop: (run._handle, int(with_forces), path, text_of(view or ''), stop))
             if failure is not None:
                 raise failure
         return drawn(draw, kind)
@@ -402,7 +422,7 @@ class Mechanism:
         n = len(arrays[0])
         found = [np.empty((n, first.coordinates)) for _ in arrays]
         code = np.zeros(n, dtype=np.intc)
-        threads = max(1, min(int(threads), n))
+        threads = max(1, min(count(threads, 'threads', 1), n))
         bounds = [n*i//threads for i in range(threads + 1)]
         finders = [first] + [_PositionFinder(self) for _ in range(threads - 1)]
 
@@ -436,10 +456,18 @@ class Mechanism:
         from ._simulation import Simulation
         return Simulation(self._with_words(words), driven)
 
-    def simulations(self, count: int, *, driven: bool = False, threads: int = 1, **words: Any) -> Simulations:
+    def simulations(self, how_many: int, *, driven: bool = False, threads: int = 1, **words: Any) -> Simulations:
         """Many motions side by side, each from the same start: q, dq (count, M), set(name, values), advance(t)."""
         from ._simulation import Simulations
-        return Simulations(self._with_words(words), int(count), driven, int(threads))
+        return Simulations(self._with_words(words), count(how_many, 'how_many', 1), driven, count(threads, 'threads', 1))
+
+
+def free_name(taken: tuple[str, ...], i: int) -> str:
+    """A name for a parameter that no other has."""
+    name = f'input_{i}'
+    while name in taken:
+        name += '_'
+    return name
 
 
 class _PositionFinder:

@@ -150,6 +150,9 @@ class Results(Mapping[str, np.ndarray]):
         heads = ''.join(f'<th>{html.escape(name)}<br>{html.escape(self.units[name])}</th>' for name in self.names)
         return f'<table><thead><tr>{heads}</tr></thead><tbody>' + ''.join(f'<tr>{row}</tr>' for row in rows) + '</tbody></table>'
 
+    __eq__ = object.__eq__   # arrays have no single answer
+    __hash__ = object.__hash__
+
     def __repr__(self) -> str:
         return f'<mech9.Results: {len(self.table)} rows of {", ".join(self.names[:8])}{"" if len(self.names) <= 8 else " and others"}>'
 

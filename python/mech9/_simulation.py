@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Callable
 import numpy as np
 
 from ._errors import Error, UsageError
-from ._library import call, lib
+from ._library import call, lib, text
 
 if TYPE_CHECKING:
     from ._mechanism import Mechanism
@@ -36,6 +36,15 @@ class Simulation:
 
     __del__ = close
 
+    def __copy__(self) -> Simulation:
+        raise UsageError('a simulation cannot be copied; start another one, and give it the state of this one', 2)
+
+    def __deepcopy__(self, memo: Any) -> Simulation:
+        return self.__copy__()
+
+    def __reduce__(self) -> Any:
+        return self.__copy__()
+
     def __enter__(self) -> Simulation:
         return self
 
@@ -43,12 +52,12 @@ class Simulation:
         self.close()
 
     def advance(self, t: float) -> None:
-        """Go on to a time [s]. After a failure the motion stays at the last time that it reached."""
-        call(lib.simulation_advance, self._open(), t)
+        """Go on to a time [s]. A motion that cannot go on stays at the last time that it reached."""
+        call(lib.simulation_advance, self._open(), float(t))
 
     def set(self, name: str, value: float) -> None:
         """Give a number of a load or a motor another value, from now on: set('load(1).force(2)', 3.5)."""
-        call(lib.simulation_set, self._open(), name.encode('utf-8'), value)
+        call(lib.simulation_set, self._open(), text(name), float(value))
 
     def mass_matrix(self) -> np.ndarray:
         """The mass matrix (n, n) of the free coordinates in the order of cq, in SI units: M ddq + bias = 0."""
@@ -77,7 +86,10 @@ class Simulation:
         return found
 
     def set_state(self, state: Any) -> None:
-        """Go to a state, perhaps of another simulation of the same mechanism; the motion starts there anew."""
+        """Go to a state, perhaps of another simulation of the same mechanism; the motion starts there anew.
+
+        Coordinates that do not close the chains are corrected. After a failure the motion is where it was.
+        """
         numbers = np.ascontiguousarray(state, dtype=float).ravel()
         call(lib.simulation_set_state, self._open(), len(numbers), numbers.ctypes.data)
 
@@ -111,7 +123,7 @@ class Simulation:
     def point(self, name: str) -> np.ndarray:
         """Position, velocity and acceleration of a named point, (3, 3), in the system of link 1 [m, m/s, m/s2]."""
         found = np.empty((3, 3))
-        call(lib.simulation_point, self._open(), name.encode('utf-8'), *(row.ctypes.data for row in found))
+        call(lib.simulation_point, self._open(), text(name), *(row.ctypes.data for row in found))
         return found
 
     @property

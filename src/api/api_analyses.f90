@@ -3,7 +3,7 @@ module mech9_api_analyses
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr
   use mech9, only: wp, error_type, finding_type, mechanism_type, run_type, rest_type, study_type, optimum_type, &
     linear_system_type, judge_mobility, list_assemblies, list_ranges, name_coordinates, find_linear_system, draw_sketch, &
-    draw_film, exit_data, exit_structure, exit_interrupted, kinematics, dynamics
+    draw_film, exit_file, exit_data, exit_structure, exit_interrupted, kinematics, dynamics
   use mech9_api_text, only: c_text_type, read_c_text
   use mech9_api_error, only: begin_call, end_call
   use mech9_api_interruption, only: flag_interruption_type, new_interruption
@@ -100,11 +100,18 @@ contains
     type(results_type), intent(inout) :: found             !< gets them
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     character(len=:), allocatable :: names(:), units(:)
+    integer :: status
 
     call run%columns(names, units)
     call put_texts(names, found%names)
     call put_texts(units, found%units)
-    allocate (found%rows(size(names), run%outputs()))
+    allocate (found%rows(size(names), run%outputs()), stat=status)
+    if (status /= 0) then
+      allocate (err)
+      err%code = exit_file
+      err%message = 'there is not enough memory for all rows; ask for fewer outputs'
+      return
+    end if
     call run%take_rows(found%rows, found%count, err)
     call run%quantities(names, found%numbers, units)
     call put_texts(names, found%number_names)

@@ -6,8 +6,8 @@ module mech9_checked_mechanism
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, place_type, raise, exit_usage
-  use mech9_text, only: string_type, to_text, lower
+  use mech9_error, only: error_type, place_type, raise, exit_usage, exit_data
+  use mech9_text, only: string_type, to_text, exact_digits, lower
   use mech9_model, only: model_type
   use mech9_explanation, only: explain
   use mech9_source, only: source_type, span_type, source_from_text
@@ -233,6 +233,7 @@ contains
     diagnostics%sources = self%sources
     call apply_setting(candidate%document, setting, diagnostics)
     call check(candidate, diagnostics, err, findings)
+    if (.not. allocated(err)) call refuse_override(candidate%document, diagnostics%sources, err)
     if (allocated(err)) return
     self%document = candidate%document
     self%sources = diagnostics%sources
@@ -267,13 +268,28 @@ contains
     type(number_place_type) :: place
     type(checked_mechanism_type) :: candidate
     type(diagnostics_type) :: diagnostics
+    type(span_type) :: span
+    character(len=:), allocatable :: digits
+    integer :: source
 
+    if (.not. abs(value) <= huge(value)) then
+      call raise(err, exit_data, 'the value for '//trim(name)//' is no finite number')
+      return
+    end if
     call find_named(self, name, .true., candidate%document, place, diagnostics, err)
     if (.not. allocated(err)) call refuse_set_by_parameter(candidate%document, self%sources, name, place, err)
     if (allocated(err)) return
     call set_number(candidate%document, place, value)
     candidate%is_whole = self%is_whole
-    call check(candidate, diagnostics, err)
+    associate (changed => candidate%document%groups(place%group)%items(place%item)%values(place%value))
+      ! messages of this call show the new number
+      span = changed%span
+      digits = to_text(value, exact_digits(value))
+      call diagnostics%add_source(source_from_text('the value for '//trim(name), digits, is_file=.false.), source)
+      changed%span = span_type(source, 1, len(digits))
+      call check(candidate, diagnostics, err)
+      changed%span = span
+    end associate
     if (.not. allocated(err)) self%document = candidate%document
   end subroutine set
 
@@ -346,6 +362,29 @@ contains
       return
     end do
   end subroutine refuse_set_by_parameter
+
+  !> Refuse a setting of a number that follows the value of a parameter.
+  subroutine refuse_override(document, sources, err)
+    type(document_type), intent(in) :: document            !< with the setting
+    type(source_type), intent(in) :: sources(:)            !< the texts that it comes from
+    type(error_type), allocatable, intent(out) :: err      !< allocated if a parameter with a value sets the number
+    type(document_type) :: placed
+    type(parameter_type), allocatable :: parameters(:)
+    type(diagnostics_type) :: diagnostics
+    integer :: i
+
+    placed = document
+    diagnostics%sources = sources
+    call check_document(placed, diagnostics)
+    call read_parameters(placed, parameters, diagnostics)
+    do i = 1, size(parameters)
+      if (.not. allocated(parameters(i)%note)) cycle
+      if (index(parameters(i)%note, 'decides, not parameter') == 0) cycle
+      call raise(err, exit_usage, 'parameter '''//parameters(i)%name//''' sets this number; set parameter('//to_text(i)// &
+                 ').value in its place')
+      return
+    end do
+  end subroutine refuse_override
 
   !> The mechanism as the text of a data file, without comments; empty where there is no mechanism.
   subroutine text(self, written)

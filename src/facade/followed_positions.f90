@@ -131,6 +131,8 @@ contains
     end if
     if (allocated(err)) return
     codes = merge(0, exit_data, all(ieee_is_finite(values), dim=1))
+    if (present(rates)) codes = merge(codes, exit_data, all(ieee_is_finite(rates), dim=1))
+    if (present(accelerations)) codes = merge(codes, exit_data, all(ieee_is_finite(accelerations), dim=1))
     places = pack([(i, i=1, size(codes))], codes == 0)
     if (size(self%moved) == 1) then
       ! on a line all positions on one side of the start lie on one path

@@ -4,7 +4,7 @@ module mech9_motion
   use mech9_program_kind, only: kinematics, dynamics
   use mech9_kinds, only: wp
   use mech9_text, only: to_text, lower
-  use mech9_error, only: error_type, raise, exit_usage, exit_singular
+  use mech9_error, only: error_type, raise, exit_usage, exit_singular, exit_interrupted
   use mech9_model, only: model_type
   use mech9_point, only: point_type
   use mech9_plan, only: plan_type
@@ -31,6 +31,7 @@ module mech9_motion
     type(model_type), pointer :: model => null()            !< owned; the simulation refers to it
     class(simulation_type), allocatable :: simulation
     integer, allocatable :: independent(:)                  !< the independent coordinates of the mechanism
+    logical :: has_failed = .false.                         !< the motion cannot go on
     integer :: n_free = 0                                   !< how many of them have no drive
     type(reaction_plan_type) :: reaction_plan               !< of forces, once they are asked for
     class(reactions_type), allocatable :: reactions         !< of the last position whose forces were asked for
@@ -59,6 +60,9 @@ module mech9_motion
     procedure :: statistics
     procedure :: close => close_motion
   end type motion_type
+
+  !> Largest number of a state; data files have none that are larger [SI units].
+  real(wp), parameter :: largest_number = 1.0e100_wp
 
 contains
 
@@ -120,7 +124,7 @@ contains
       if (n > 0) then
         motion%start%motor = motors(:n)
         motion%start%motor_rate = 0.0_wp*motors(:n)
-        motion%start%limited = nint(motors(n + 1:))
+        motion%start%limited = nint(max(-1.0_wp, min(1.0_wp, motors(n + 1:))))
       end if
     end if
     if (.not. allocated(err)) call motion%prepare(self%model, err, pictures=.true.)
@@ -130,6 +134,7 @@ contains
       call motion%close()
     else
       self%independent = motion%plan%independent
+      self%has_failed = .false.
       self%n_free = 0
       if (.not. self%model%is_driven()) self%n_free = size(motion%plan%free)
       call move_alloc(motion%simulation, self%simulation)
@@ -162,26 +167,40 @@ contains
 
   !> Go on to a time. Times come in the direction of the mechanism's end. Fails with exit_singular where the motion cannot go on,
   !> with exit_integrator where the integration cannot, and with exit_usage for a motion that does not run or a time before the
-  !> present one.
+  !> present one. A motion that cannot go on stays at the last time that it reached.
   subroutine advance(self, t, err)
     class(motion_type), intent(inout) :: self           !< the motion, started
     real(wp), intent(in) :: t                           !< time to go to [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(error_type), allocatable :: unused
 
-    if (allocated(self%simulation)) then
-      call self%simulation%advance(t, err)
-      if (allocated(err)) call explain(err)
-    else
+    if (.not. allocated(self%simulation)) then
       call raise(err, exit_usage, 'a motion must be started before it can advance')
+    else if (self%has_failed) then
+      call raise(err, exit_usage, 'this motion cannot go on; start it anew, or go to another state')
+    else
+      call self%simulation%advance(t, err)
     end if
+    if (.not. allocated(err)) return
+    call explain(err)
+    if (err%code == exit_usage) return
+    self%has_failed = err%code /= exit_interrupted
+    select type (simulation => self%simulation)
+    type is (free_simulation_type)
+      call simulation%stand_at_step(unused)
+    end select
   end subroutine advance
 
   !> The present time [s]; not a number where no motion is started.
   real(wp) function t(self)
-    class(motion_type), intent(in) :: self   !< the motion
+    class(motion_type), intent(in), target :: self   !< the motion
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
 
     t = ieee_value(t, ieee_quiet_nan)
-    if (allocated(self%simulation)) t = self%simulation%t
+    if (.not. allocated(self%simulation)) return
+    call self%simulation%present(plan, state)
+    t = state%t
   end function t
 
   !> Number of coordinates; 0 where no motion is started.
@@ -396,30 +415,47 @@ contains
     allocate (numbers(0))
     if (.not. allocated(self%simulation)) return
     call self%simulation%present(plan, state)
-    numbers = [self%simulation%t, state%q, state%dq]
+    numbers = [state%t, state%q, state%dq]
     if (allocated(state%motor)) numbers = [numbers, state%motor, real(state%limited, wp)]
   end subroutine take_state
 
   !> Go to a state that take_state gave, perhaps of another motion of the same mechanism: the motion starts there anew. Fails with
-  !> exit_usage where it is no such state, else as start_dynamics does; the motion is then closed.
+  !> exit_usage where it is no such state, else as start_dynamics does; the motion then
+  !> stays where it was.
   subroutine go_to_state(self, numbers, err)
     class(motion_type), intent(inout) :: self              !< the motion, started
     real(wp), intent(in) :: numbers(:)                     !< (1 + 2M + 2 motors) the state
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(error_type), allocatable :: unused
     real(wp), allocatable :: present(:)
-    real(wp) :: span
-    integer :: m
 
     call self%take_state(present)
     if (size(present) == 0) then
       call raise(err, exit_usage, 'a motion must be started before it can go to another state')
-    else if (size(numbers) /= size(present) .or. .not. all(abs(numbers) <= huge(1.0_wp))) then
+    else if (size(numbers) /= size(present) .or. .not. all(abs(numbers) <= largest_number)) then
       call raise(err, exit_usage, 'this is no state of this mechanism')
     end if
     if (allocated(err)) return
-    m = self%coordinates()
-    call self%simulation%close()
-    deallocate (self%simulation)
+    call start_at(self, numbers, err)
+    if (.not. allocated(err)) return
+    ! back to the state before
+    call start_at(self, present, unused)
+    if (allocated(unused)) call self%close()
+  end subroutine go_to_state
+
+  !> Start the motion anew at a state.
+  subroutine start_at(self, numbers, err)
+    class(motion_type), intent(inout) :: self              !< the motion
+    real(wp), intent(in) :: numbers(:)                     !< (1 + 2M + 2 motors) the state
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    real(wp) :: span
+    integer :: m
+
+    m = size(self%model%mechanism%pairs)
+    if (allocated(self%simulation)) then
+      call self%simulation%close()
+      deallocate (self%simulation)
+    end if
     self%planned = -1
     associate (initial => self%model%problem%initial, time => self%model%request%time)
       initial%position = numbers(2:m + 1)
@@ -432,8 +468,7 @@ contains
     end associate
     call start_model(self, err, motors=numbers(2*m + 2:))
     call self%mechanism%point_at(err)
-    if (allocated(err)) call self%close()
-  end subroutine go_to_state
+  end subroutine start_at
 
   !> Motion of a named point, in the system of link 1. Fails with exit_usage for a name that is not known.
   subroutine point(self, name, err, position, velocity, acceleration)

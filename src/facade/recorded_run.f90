@@ -3,7 +3,7 @@ module mech9_recorded_run
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_program_kind, only: kinematics, dynamics
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_usage, exit_interrupted
+  use mech9_error, only: error_type, raise, exit_usage, exit_file, exit_interrupted
   use mech9_text, only: string_type, texts_of_one_length
   use mech9_model, only: model_type
   use mech9_simulation, only: interruption_type
@@ -155,7 +155,7 @@ contains
     integer, intent(out) :: count                         !< rows that were taken
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     real(wp), allocatable :: whole(:, :)
-    integer :: taken
+    integer :: taken, status
 
     count = 0
     if (.not. associated(self%run)) then
@@ -168,7 +168,12 @@ contains
     if (allocated(err)) return
     associate (source => self%run%source, time => self%model%request%time)
       ! rows of the engine may end with derivatives that only quantities need
-      allocate (whole(source%columns%width(), min(size(rows, 2), time%intervals + 1 - self%next)), source=0.0_wp)
+      allocate (whole(source%columns%width(), min(size(rows, 2), time%intervals + 1 - self%next)), stat=status)
+      if (status /= 0) then
+        call raise(err, exit_file, 'there is not enough memory for all rows; take fewer at a time')
+        return
+      end if
+      whole = 0.0_wp
       do taken = 1, size(whole, 2)
         call source%add_row(time%time(self%next), whole, count, err)
         if (allocated(err)) exit

@@ -22,6 +22,7 @@ module mech9_recorded_study
 
   !> Runs that one thread may make before one that takes long is taken.
   integer, parameter :: runs_ahead = 64
+  integer, parameter :: most_threads = 1024   !< the system may refuse more
 
   !> All runs of a study, in the order of their numbers.
   type :: recorded_study_type
@@ -90,6 +91,7 @@ contains
     type(model_type) :: model
     type(varied_document_type) :: variable
     type(quantity_record_type) :: quantities
+    integer :: makers
 
     call allocate_arrays(self, model, 0)
     call mechanism%take_request(program, model, err)
@@ -100,10 +102,11 @@ contains
     if (.not. allocated(err)) then
       call mechanism%take_variable(program, variable)
       call allocate_arrays(self, model, model%request%study%runs)
+      makers = max(1, min(threads, model%request%study%runs, most_threads))
       if (present(interruption)) then
-        call make_runs(self, model, variable, max(1, threads), interruption, err)
+        call make_runs(self, model, variable, makers, interruption, err)
       else
-        call make_runs(self, model, variable, max(1, threads), no_interruption_type(), err)
+        call make_runs(self, model, variable, makers, no_interruption_type(), err)
       end if
     end if
     call mechanism%point_at(err)

@@ -180,8 +180,8 @@ contains
     allocate (later(size(parameter%targets)))
     do i = 1, size(later)
       own = span_of_target(document, parameter%targets(i))
-      later(i) = own%source > from%source
-      if (own%source > 1 .and. .not. later(i)) &
+      later(i) = own%source > from%source .and. diagnostics%is_setting(own)
+      if (diagnostics%is_setting(own) .and. .not. later(i)) &
         parameter%note = '--set '//diagnostics%sources(from%source)%text//' stands after --set '// &
                          diagnostics%sources(own%source)%text//' and decides'
       if (later(i)) &

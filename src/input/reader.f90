@@ -2,6 +2,7 @@
 module mech9_reader
   use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp, radians_per_degree
+  use mech9_text, only: to_text
   use mech9_structure, only: structure_type
   use mech9_partition, only: partition_type
   use mech9_mechanism, only: mechanism_type
@@ -35,6 +36,9 @@ module mech9_reader
 
   !> Largest data_tolerance [rad, parts of the mechanism's size]; a chain that stays open by more is not closed.
   real(wp), parameter :: largest_data_tolerance = 1.0e-3_wp
+
+  !> More outputs than this would take years, and their numbers would not fit.
+  integer, parameter :: most_intervals = 1000000000
 
 contains
 
@@ -187,6 +191,8 @@ contains
     time%start = get_real(group, 'start')
     time%end = get_real(group, 'end')
     time%intervals = get_integer(group, 'intervals')
+    if (time%intervals > most_intervals) &
+      call diagnostics%add(span_of(group, 'intervals', 1), 'there are at most '//to_text(most_intervals)//' intervals')
     if (time%intervals == 0) then
       if (has_name(group, 'end') .and. abs(time%end - time%start) > 0.0_wp) &
         call diagnostics%add(span_of(group, 'intervals', 1), 'intervals=0 gives the start alone; leave ''end'' out, or give '// &

@@ -42,6 +42,7 @@ module mech9_free_simulation
     procedure :: begin
     procedure :: go_to
     procedure :: take_changes
+    procedure :: stand_at_step
     procedure :: present
     procedure :: present_for_forces
     procedure :: begin_sensitivity
@@ -210,6 +211,15 @@ contains
     call self%motion%restart(self%t, self%motion%system%vector(), err)
     if (.not. allocated(err)) call self%motion%show_angles(err)
   end subroutine take_changes
+
+  !> Stand at the end of the last step that was accepted, after a failure beyond it.
+  subroutine stand_at_step(self, err)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation, started
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+
+    call self%motion%system%move_to(self%motion%t, self%motion%y, err)
+    if (.not. allocated(err)) call self%motion%show_angles(err)
+  end subroutine stand_at_step
 
   !> Continue the angles of the data file to a time within the last step, over ways that are short enough, if others are
   !> integrated. The system stands at this time before and after.

@@ -244,7 +244,7 @@ def test_many_at_once(mech9):
         assert np.abs(many.ddq[:, 0] - forces/2.0).max() < 1e-14 and (many.code == 0).all() and len(many) == 5
         with pytest.raises(mech9.UsageError):
             many.advance(0.1)
-    with pytest.raises(mech9.UsageError, match='at least one'):
+    with pytest.raises(mech9.UsageError, match='from 1 on'):
         cart(mech9).simulations(0)
 
 
@@ -279,6 +279,53 @@ def test_states_and_equations(mech9):
         assert mass.shape == (2, 2) and np.allclose(mass, mass.T) and (np.linalg.eigvalsh(mass) > 0).all()
         kinetic = 0.5*sim.dq @ mass @ sim.dq
         assert kinetic == pytest.approx(sim.energies[0], rel=1e-12)
+
+
+def test_failed_motions_stay_where_they_are(mech9):
+    with cart(mech9).simulation() as sim:
+        sim.set('load(1).force(1)', 1.0)
+        sim.advance(1.0)
+        with pytest.raises(mech9.IntegrationError):
+            sim.advance(1e300)
+        # the force of 1 N moves 2 kg by t^2/4
+        assert sim.q[0] == pytest.approx(1.0 + sim.t**2/4.0, rel=1e-6) and sim.t >= 1.0
+        with pytest.raises(mech9.UsageError, match='cannot go on'):
+            sim.advance(sim.t + 1.0)
+        sim.set_state([0.0, 1.0, 0.0])
+        sim.advance(1.0)
+        assert sim.q[0] == pytest.approx(1.25, abs=1e-9)
+    m = mech9.read(four_bar_path()).with_(**{'pair(2).point(1)': 0.8})
+    with m.simulation(driven=True) as sim:
+        with pytest.raises(mech9.SingularError):
+            sim.advance(1.2)
+        # the drive of the data file: 0.6 + 5 t
+        assert sim.q[0] == pytest.approx(0.6 + 5.0*sim.t, abs=1e-12) and sim.t > 0.0
+
+
+def test_states_that_are_none(mech9):
+    with cart(mech9).simulation() as sim:
+        sim.advance(0.5)
+        for wrong in ([0.0, 1e300, 0.0], [0.0, np.inf, 0.0], [], [1.0]):
+            with pytest.raises(mech9.UsageError, match='no state'):
+                sim.set_state(wrong)
+        assert sim.t == 0.5 and sim.q[0] == 1.0
+        import copy
+        with pytest.raises(mech9.UsageError, match='cannot be copied'):
+            copy.copy(sim)
+
+
+def test_numbers_of_calls(mech9, four_bar):
+    for wrong in (None, 1.5, 'many', -1, 2**31, float('nan')):
+        with pytest.raises(mech9.UsageError, match='whole number'):
+            four_bar.assemblies(wrong)
+        with pytest.raises(mech9.UsageError, match='whole number'):
+            four_bar.positions([0.0], threads=wrong)
+    with pytest.raises(mech9.DataError, match='at most'):
+        four_bar.kinematics(intervals=2**31 - 1)
+    f = four_bar.function(['pair(2).point(1)'], ['nope'])
+    with pytest.raises(mech9.DataError, match='no quantity'):
+        f([0.3])
+    assert (four_bar.rates([0.6, 0.6], [np.nan, 1.0]).code == [3, 0]).all()
 
 
 def test_pictures(mech9, four_bar):

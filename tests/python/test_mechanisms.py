@@ -77,6 +77,48 @@ def test_parameters(mech9, four_bar):
         four_bar['rocker']
 
 
+def test_parameters_win(mech9, four_bar):
+    """A parameter sets its number, whichever of both comes first, and nothing else does."""
+    m = built(mech9).add('parameter', name='crank', value=0.25, sets='pair(2).point(1)')
+    with pytest.raises(mech9.UsageError, match="parameter 'crank' sets"):
+        m['pair(2).point(1)'] = 0.3
+    with pytest.raises(mech9.UsageError, match="parameter 'crank' sets"):
+        m['pair(2).point'] = (0.3, 0, 0)
+    first = mech9.Mechanism().add('parameter', name='crank', value=0.25, sets='pair(2).point(1)')
+    for group in m.copy().remove('parameter').text().split('&')[1:]:
+        call_group(first, group)
+    assert (first.kinematics().table == m.kinematics().table).all()
+    assert (mech9.read_text(m.text()).kinematics().table == m.kinematics().table).all()
+
+
+def call_group(mechanism, text):
+    """Add a group that is written as text() writes it."""
+    name, *lines = text.strip().rstrip('/').strip().split('\n')
+    words = {}
+    for line in lines:
+        word, value = line.split('=', 1)
+        values = [one.strip() for one in value.split(',')]
+        read = [one.strip("'") if one.startswith("'") else float(one) if '.' in one or 'e' in one else int(one) for one in values]
+        words[word.strip()] = read[0] if len(read) == 1 else read
+    mechanism.add(name, **words)
+
+
+def test_messages_of_added_groups(mech9):
+    with pytest.raises(mech9.DataError) as caught:
+        built(mech9)['pair(2).point(1)'] = 'x'
+    assert len(caught.value.findings) == 1 and "'x'" in str(caught.value) and '--set adds' not in str(caught.value)
+    with pytest.raises(mech9.DataError, match='no finite number'):
+        built(mech9)['pair(2).point(1)'] = float('nan')
+    with pytest.raises(mech9.DataError) as caught:
+        built(mech9)['structure.cq'] = 1.5
+    assert '1.5' in str(caught.value)
+
+
+def test_missing_groups_come(mech9, four_bar):
+    four_bar['solver.relative_tolerance'] = 1e-9
+    assert four_bar['solver.relative_tolerance'] == 1e-9
+
+
 @pytest.mark.parametrize('name', ['pair(9).point(1)', 'pair(2).pont(1)', 'pair(2).point(4)', 'nothing.at_all', '', '.', 'pair(2).'])
 def test_unknown_numbers(mech9, four_bar, name):
     with pytest.raises(mech9.DataError) as caught:

@@ -39,7 +39,7 @@ contains
         group%sound = .not. has_bad_value(group)
         call check_group(group, diagnostics)
         group%sound = group%sound .and. diagnostics%count == found
-        if (.not. group%sound .and. group%span%source > 1) call explain_added(document, i, diagnostics)
+        if (.not. group%sound .and. diagnostics%is_setting(group%span)) call explain_added(document, i, diagnostics)
       end associate
     end do
     do i = 1, size(group_table)

@@ -29,6 +29,7 @@ module mech9_diagnostics
     procedure :: add
     procedure :: add_error
     procedure :: add_source
+    procedure :: is_setting
     procedure :: clear
     procedure :: failed
     procedure :: code
@@ -120,6 +121,15 @@ contains
     grown(number) = source
     call move_alloc(grown, self%sources)
   end subroutine add_source
+
+  !> Whether a span stands in a setting of --set, not in groups of a file or of a mechanism in memory.
+  pure logical function is_setting(self, span)
+    class(diagnostics_type), intent(in) :: self  !< the diagnostics
+    type(span_type), intent(in) :: span          !< bytes of a source
+
+    is_setting = .false.
+    if (span%source > 1) is_setting = self%sources(span%source)%name == '--set'
+  end function is_setting
 
   !> Forget all errors, and keep the sources.
   pure subroutine clear(self)
