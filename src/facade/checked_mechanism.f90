@@ -6,7 +6,7 @@ module mech9_checked_mechanism
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, place_type, raise, exit_usage, exit_data
+  use mech9_error, only: error_type, raise, exit_usage, exit_data
   use mech9_text, only: string_type, to_text, exact_digits, lower
   use mech9_model, only: model_type
   use mech9_explanation, only: explain
@@ -22,11 +22,13 @@ module mech9_checked_mechanism
   use mech9_parameter_reader, only: read_parameters
   use mech9_varied_document, only: varied_document_type, new_varied_document
   use mech9_diagnostics, only: diagnostics_type
+  use mech9_findings, only: finding_type, fail_as
+  use mech9_numbers_of_parameters, only: refuse_set_by_parameter, refuse_override
   use mech9_parser, only: read_document, parse_document
   use mech9_reader, only: read_model
   implicit none
   private
-  public :: checked_mechanism_type, finding_type, read_file, read_text, parse_file, parse_text
+  public :: checked_mechanism_type, read_file, read_text, parse_file, parse_text
 
   type :: checked_mechanism_type
     private
@@ -53,17 +55,6 @@ module mech9_checked_mechanism
     procedure :: take_variable
     procedure :: point_at
   end type checked_mechanism_type
-
-  !> One of the errors of a mechanism.
-  type :: finding_type
-    character(len=:), allocatable :: message   !< the error in words, without its place
-    character(len=:), allocatable :: file      !< path of the data file; empty: the error is in no file
-    integer :: line = 0                        !< in the file; 0: no place is known
-    integer :: column = 0                      !< in the line
-  end type finding_type
-
-  !> Errors that are told together.
-  integer, parameter :: most_told = 20
 
 contains
 
@@ -334,58 +325,6 @@ contains
     call fail_as(diagnostics, err)
   end subroutine find_named
 
-  !> Refuse to set a number that follows the value of a parameter.
-  subroutine refuse_set_by_parameter(document, sources, name, place, err)
-    type(document_type), intent(in) :: document            !< checked, with the number
-    type(source_type), intent(in) :: sources(:)            !< the texts that it comes from
-    character(len=*), intent(in) :: name                   !< of the number
-    type(number_place_type), intent(in) :: place           !< of the number
-    type(error_type), allocatable, intent(out) :: err      !< allocated if a parameter with a value sets it
-    type(document_type) :: placed
-    type(parameter_type), allocatable :: parameters(:)
-    type(diagnostics_type) :: diagnostics
-    integer, allocatable :: groups(:)
-    integer :: i
-
-    placed = document
-    diagnostics%sources = sources
-    call read_parameters(placed, parameters, diagnostics)
-    groups = groups_named(placed, 'parameter')
-    do i = 1, size(parameters)
-      if (.not. has_name(placed%groups(groups(i)), 'value')) cycle
-      associate (targets => parameters(i)%targets)
-        if (.not. any(targets%group_place == place%group .and. targets%item_place == place%item .and. &
-                      targets%position == place%value)) cycle
-      end associate
-      call raise(err, exit_usage, 'parameter '''//parameters(i)%name//''' sets '//trim(name)//'; set parameter('//to_text(i)// &
-                 ').value in its place')
-      return
-    end do
-  end subroutine refuse_set_by_parameter
-
-  !> Refuse a setting of a number that follows the value of a parameter.
-  subroutine refuse_override(document, sources, err)
-    type(document_type), intent(in) :: document            !< with the setting
-    type(source_type), intent(in) :: sources(:)            !< the texts that it comes from
-    type(error_type), allocatable, intent(out) :: err      !< allocated if a parameter with a value sets the number
-    type(document_type) :: placed
-    type(parameter_type), allocatable :: parameters(:)
-    type(diagnostics_type) :: diagnostics
-    integer :: i
-
-    placed = document
-    diagnostics%sources = sources
-    call check_document(placed, diagnostics)
-    call read_parameters(placed, parameters, diagnostics)
-    do i = 1, size(parameters)
-      if (.not. allocated(parameters(i)%note)) cycle
-      if (index(parameters(i)%note, 'decides, not parameter') == 0) cycle
-      call raise(err, exit_usage, 'parameter '''//parameters(i)%name//''' sets this number; set parameter('//to_text(i)// &
-                 ').value in its place')
-      return
-    end do
-  end subroutine refuse_override
-
   !> The mechanism as the text of a data file, without comments; empty where there is no mechanism.
   subroutine text(self, written)
     class(checked_mechanism_type), intent(in) :: self         !< the mechanism
@@ -570,48 +509,4 @@ contains
     end associate
     coordinates = pack(cq, [(any(coordinates == cq(i)), i=1, size(cq))])
   end subroutine order_as_given
-
-  !> All errors of reading as one failure; none where there are none.
-  subroutine fail_as(diagnostics, err, findings)
-    type(diagnostics_type), intent(in) :: diagnostics                              !< the errors, and the texts that they stand in
-    type(error_type), allocatable, intent(out) :: err                              !< allocated if there is an error
-    type(finding_type), allocatable, intent(out), optional :: findings(:)          !< all errors, by place
-    character(len=:), allocatable :: text, message
-    integer, allocatable :: order(:)
-    integer :: i
-
-    if (present(findings)) then
-      order = diagnostics%sorted()
-      allocate (findings(size(order)))
-      do i = 1, size(order)
-        call find_place(diagnostics, order(i), findings(i))
-      end do
-    end if
-    if (.not. diagnostics%failed()) return
-    message = ''
-    do i = 1, min(diagnostics%known(), most_told)
-      call diagnostics%render(i, text)
-      if (i > 1) message = message//new_line('a')
-      message = message//text
-    end do
-    call raise(err, diagnostics%code(), message)
-  end subroutine fail_as
-
-  !> One error with its file, line and column.
-  subroutine find_place(diagnostics, number, finding)
-    type(diagnostics_type), intent(in) :: diagnostics   !< the errors, and the texts that they stand in
-    integer, intent(in) :: number                       !< of the error
-    type(finding_type), intent(out) :: finding          !< the error
-    type(place_type) :: place
-    type(span_type) :: span
-
-    call diagnostics%get(number, finding%message, span)
-    finding%file = ''
-    if (span%source == 0) return
-    if (.not. diagnostics%sources(span%source)%is_file) return
-    place = diagnostics%place(span)
-    finding%file = diagnostics%sources(span%source)%name
-    finding%line = place%line
-    finding%column = place%column
-  end subroutine find_place
 end module mech9_checked_mechanism

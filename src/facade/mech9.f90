@@ -11,7 +11,8 @@ module mech9
   use mech9_error, only: error_type, exit_usage, exit_data, exit_structure, exit_assembly, exit_singular, exit_integrator, &
     exit_file, exit_interrupted
   use mech9_simulation, only: interruption_type, simulation_statistics_type, coordinate_change_type
-  use mech9_checked_mechanism, only: mechanism_type => checked_mechanism_type, finding_type, &
+  use mech9_findings, only: finding_type
+  use mech9_checked_mechanism, only: mechanism_type => checked_mechanism_type, &
     read_file, read_text, parse_file, parse_text
   use mech9_design, only: design_type
   use mech9_motion, only: motion_type

@@ -1,0 +1,70 @@
+!> Numbers that follow the values of parameters: nothing else may set them.
+module mech9_numbers_of_parameters
+  use mech9_error, only: error_type, raise, exit_usage
+  use mech9_text, only: to_text
+  use mech9_source, only: source_type
+  use mech9_document, only: document_type
+  use mech9_named_number, only: number_place_type
+  use mech9_lookup, only: has_name, groups_named
+  use mech9_checker, only: check_document
+  use mech9_parameter, only: parameter_type
+  use mech9_parameter_reader, only: read_parameters
+  use mech9_diagnostics, only: diagnostics_type
+  implicit none
+  private
+  public :: refuse_set_by_parameter, refuse_override
+
+contains
+
+  !> Refuse to set a number that follows the value of a parameter.
+  subroutine refuse_set_by_parameter(document, sources, name, place, err)
+    type(document_type), intent(in) :: document            !< checked, with the number
+    type(source_type), intent(in) :: sources(:)            !< the texts that it comes from
+    character(len=*), intent(in) :: name                   !< of the number
+    type(number_place_type), intent(in) :: place           !< of the number
+    type(error_type), allocatable, intent(out) :: err      !< allocated if a parameter with a value sets it
+    type(document_type) :: placed
+    type(parameter_type), allocatable :: parameters(:)
+    type(diagnostics_type) :: diagnostics
+    integer, allocatable :: groups(:)
+    integer :: i
+
+    placed = document
+    diagnostics%sources = sources
+    call read_parameters(placed, parameters, diagnostics)
+    groups = groups_named(placed, 'parameter')
+    do i = 1, size(parameters)
+      if (.not. has_name(placed%groups(groups(i)), 'value')) cycle
+      associate (targets => parameters(i)%targets)
+        if (.not. any(targets%group_place == place%group .and. targets%item_place == place%item .and. &
+                      targets%position == place%value)) cycle
+      end associate
+      call raise(err, exit_usage, 'parameter '''//parameters(i)%name//''' sets '//trim(name)//'; set parameter('//to_text(i)// &
+                 ').value in its place')
+      return
+    end do
+  end subroutine refuse_set_by_parameter
+
+  !> Refuse a setting of a number that follows the value of a parameter.
+  subroutine refuse_override(document, sources, err)
+    type(document_type), intent(in) :: document            !< with the setting
+    type(source_type), intent(in) :: sources(:)            !< the texts that it comes from
+    type(error_type), allocatable, intent(out) :: err      !< allocated if a parameter with a value sets the number
+    type(document_type) :: placed
+    type(parameter_type), allocatable :: parameters(:)
+    type(diagnostics_type) :: diagnostics
+    integer :: i
+
+    placed = document
+    diagnostics%sources = sources
+    call check_document(placed, diagnostics)
+    call read_parameters(placed, parameters, diagnostics)
+    do i = 1, size(parameters)
+      if (.not. allocated(parameters(i)%note)) cycle
+      if (index(parameters(i)%note, 'decides, not parameter') == 0) cycle
+      call raise(err, exit_usage, 'parameter '''//parameters(i)%name//''' sets this number; set parameter('//to_text(i)// &
+                 ').value in its place')
+      return
+    end do
+  end subroutine refuse_override
+end module mech9_numbers_of_parameters
