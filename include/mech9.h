@@ -4,9 +4,9 @@
  *
  * Functions that can fail return 0, or the exit code of the programs: 2 usage, 3 data, 4 structure, 5 assembly,
  * 6 singular position, 7 integration, 8 file, 130 stopped by the caller. They tell the failure to the error handle,
- * which may be null. Nothing is printed, and the process is never ended.
+ * which may be null. Nothing is printed. The process is not ended, but where the memory does not suffice.
  *
- * Texts that a handle returns hold until the next call with this handle. Texts are UTF-8. Positions in lists begin with 0.
+ * Do not use a handle after it was destroyed. Texts that a handle returns hold until the next call with this handle. Texts are UTF-8. Positions in lists begin with 0.
  * Threads may use different handles at the same time.
  */
 #ifndef MECH9_H
@@ -69,7 +69,8 @@ int mech9_results_numbers(const mech9_results *results);
 const char *mech9_results_number_name(const mech9_results *results, int i);
 const char *mech9_results_number_unit(const mech9_results *results, int i);
 double mech9_results_number(const mech9_results *results, int i);
-int mech9_results_parameters(const mech9_results *results);       /* 0: the numbers have no derivatives */
+int mech9_results_parameters(const mech9_results *results);       /* 0: no derivatives */
+/* Parameters come in the order of mech9_mechanism_parameter. */
 double mech9_results_derivative(const mech9_results *results, int i, int parameter);
 const char *mech9_results_text(const mech9_results *results);     /* null: the analysis writes no report */
 /* Matrices, with names and units for their rows and columns. */
@@ -120,7 +121,7 @@ int mech9_positions_find(mech9_positions *positions, int n, const double *values
                          const double *accelerations, const volatile int *stop, double *q, double *dq, double *ddq, int *codes,
                          mech9_error *error);
 
-/* A motion that the caller advances. with_forces 0: driven, as by mech9k; else under forces, as by mech9d. */
+/* A motion that the caller advances; `stop` must outlive it. with_forces 0: driven, as by mech9k; else under forces, as by mech9d. */
 int mech9_simulation_create(const mech9_mechanism *mechanism, int with_forces, const volatile int *stop,
                             mech9_simulation **simulation, mech9_error *error);
 void mech9_simulation_destroy(mech9_simulation *simulation);

@@ -52,7 +52,7 @@ class UsageError(Error):
 
 
 class DataError(Error, KeyError):
-    """Wrong data, or a name that is not known (code 3)."""
+    """Wrong data, or a name that is not known (code 3). It is a KeyError, too."""
 
 
 class StructureError(Error):

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def read(path: str | os.PathLike[str]) -> Mechanism:
-    """Read a data file. Grammar is judged here; the structure is judged by `check` or a run."""
+    """Read a data file, and check its syntax. `check` or a run checks whether the mechanism makes sense."""
     handle = ctypes.c_void_p()
     name = os.fsencode(path)
     if b'\0' in name:
@@ -100,7 +100,7 @@ class Optimum:
 
     @property
     def value(self) -> float:
-        """The value of the best design: the less the better."""
+        """The value of the best design; smaller is better."""
         return float(self.optima['value'][0])
 
     @property
@@ -205,7 +205,7 @@ class Mechanism:
         return tuple(lib.mechanism_parameter(self._handle, i).decode() for i in range(lib.mechanism_parameters(self._handle)))
 
     def copy(self) -> Mechanism:
-        """A mechanism of its own with the same groups."""
+        """An independent copy."""
         handle = ctypes.c_void_p()
         call(lib.mechanism_copy, self._handle, ctypes.byref(handle))
         return Mechanism(_handle=handle)
@@ -307,7 +307,7 @@ class Mechanism:
         return self._results(lib.assemblies, lambda stop, out: (self._handle, count(starts, 'starts'), out))
 
     def range(self) -> Results:
-        """How far each independent coordinate can go while the others are held: coordinate, lower, upper."""
+        """How far each independent coordinate can go while the others are held: coordinate, lower, upper; infinite where nothing stops it."""
         return self._results(lib.range, lambda stop, out: (self._handle, out))
 
     def study(self, threads: int = 1, dynamics: bool | None = None, **values: Any) -> Any:
@@ -401,8 +401,8 @@ class Mechanism:
     def positions(self, q: Any, *, threads: int = 1) -> Positions:
         """Positions for values of the independent coordinates, (n, I) in the order of cq; for one such coordinate also (n,).
 
-        Each is reached from the assembled start on a straight line, so that none depends on the others. The result is (n, M), with
-        `code` (n,). A position that is not reached is NaN.
+        The solver goes from the assembled start to each position directly: the order of the rows does not matter, and far values take
+        long. The result is (n, M), with `code` (n,). A position that is not reached is NaN.
         """
         return self._positions(threads, q)[0]
 
@@ -452,7 +452,7 @@ class Mechanism:
         return Function(self, inputs, outputs)
 
     def simulation(self, *, driven: bool = False, **words: Any) -> Simulation:
-        """A motion that is advanced from time to time; it takes the words of &solver and &time."""
+        """A motion that you advance step by step; it takes the words of &solver and &time."""
         from ._simulation import Simulation
         return Simulation(self._with_words(words), driven)
 

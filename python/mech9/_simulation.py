@@ -1,4 +1,4 @@
-"""Motions that are advanced from time to time, as in a loop with a controller."""
+"""Motions that are advanced step by step, as in a loop with a controller."""
 from __future__ import annotations
 
 import ctypes
@@ -56,7 +56,7 @@ class Simulation:
         call(lib.simulation_advance, self._open(), float(t))
 
     def set(self, name: str, value: float) -> None:
-        """Give a number of a load or a motor another value, from now on: set('load(1).force(2)', 3.5)."""
+        """Change a number of a load or a motor, from the present time on: set('load(1).force(2)', 3.5)."""
         call(lib.simulation_set, self._open(), text(name), float(value))
 
     def mass_matrix(self) -> np.ndarray:
@@ -67,7 +67,7 @@ class Simulation:
         return found
 
     def bias(self) -> np.ndarray:
-        """The bias (n,) of the equations of motion in SI units, with the loads in it: M ddq + bias = 0."""
+        """The bias (n,): terms of velocity, and loads, in SI units: M ddq + bias = 0."""
         found = np.empty(lib.simulation_free(self._open()))
         call(lib.simulation_equations, self._open(), None, None, found.ctypes.data)
         return found
