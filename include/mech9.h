@@ -6,7 +6,8 @@
  * 6 singular position, 7 integration, 8 file, 130 stopped by the caller. They tell the failure to the error handle,
  * which may be null. Nothing is printed. The process is not ended, but where the memory does not suffice.
  *
- * Do not use a handle after it was destroyed. Texts that a handle returns hold until the next call with this handle. Texts are UTF-8. Positions in lists begin with 0.
+ * Do not use a handle after it was destroyed. Texts that a handle returns hold until the next call with this handle. Texts are
+ * UTF-8. Positions in lists begin with 0.
  * Threads may use different handles at the same time.
  */
 #ifndef MECH9_H
@@ -121,7 +122,8 @@ int mech9_positions_find(mech9_positions *positions, int n, const double *values
                          const double *accelerations, const volatile int *stop, double *q, double *dq, double *ddq, int *codes,
                          mech9_error *error);
 
-/* A motion that the caller advances; `stop` must outlive it. with_forces 0: driven, as by mech9k; else under forces, as by mech9d. */
+/* A motion that the caller advances; `stop` must outlive it. with_forces 0: driven, as by mech9k; else under forces, as by
+ * mech9d. */
 int mech9_simulation_create(const mech9_mechanism *mechanism, int with_forces, const volatile int *stop,
                             mech9_simulation **simulation, mech9_error *error);
 void mech9_simulation_destroy(mech9_simulation *simulation);
