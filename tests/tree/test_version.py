@@ -12,3 +12,8 @@ def test_version(checks, build, mech9k, mech9d):
     checks.equal((citation, changes, build.version), (version, version, version), 'CITATION.cff, CHANGELOG.md and the build')
     for program in (mech9k, mech9d):
         checks.true(f' {version} ' in run(program, '--version').stdout, f'{os.path.basename(program)} --version')
+    wanted = f"find_package(mech9 {'.'.join(version.split('.')[:2])} REQUIRED)"
+    asking = ('docs/how-to/user-procedures.md', 'docs/how-to/library.md', 'examples/library/CMakeLists.txt',
+              'examples/c/CMakeLists.txt', 'tests/user/user_project/CMakeLists.txt')
+    for name in asking:
+        checks.true(wanted in text_of(os.path.join(TREE, name)), f'{name} asks for this version')
