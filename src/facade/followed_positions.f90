@@ -8,6 +8,7 @@ module mech9_followed_positions
   use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_interrupted
   use mech9_text, only: to_text
   use mech9_counted, only: counted
+  use mech9_sorting, only: sort_by
   use mech9_model, only: model_type
   use mech9_partition, only: driven_coordinate
   use mech9_plan, only: plan_type
@@ -103,8 +104,8 @@ contains
   end subroutine independent
 
   !> Find positions, and rates and accelerations in them. A position that is not reached has the exit code of its failure, and is not
-  !> a number; so has one with a value that is not finite, with exit_data. Fails with exit_usage where no mechanism is assembled or the arrays have other shapes, with exit_interrupted where the
-  !> search is stopped.
+  !> a number; one with a value that is not finite has exit_data. Fails with exit_usage where no mechanism is assembled or the arrays
+  !> have other shapes, with exit_interrupted where the search is stopped.
   subroutine find(self, values, q, codes, err, interruption, rates, dq, accelerations, ddq)
     class(followed_positions_type), intent(inout) :: self           !< the positions
     real(wp), intent(in) :: values(:, :)                            !< (I,n) of the independent coordinates [unit of the data file]
@@ -116,7 +117,7 @@ contains
     real(wp), intent(out), optional :: dq(:, :)                     !< (M,n) rates of all coordinates [unit/s]
     real(wp), intent(in), optional :: accelerations(:, :)           !< (I,n) of the independent coordinates [unit/s^2]
     real(wp), intent(out), optional :: ddq(:, :)                    !< (M,n) second derivatives of all coordinates [unit/s^2]
-    integer, allocatable :: places(:), order(:)
+    integer, allocatable :: places(:)
     integer :: i, below
 
     q = ieee_value(1.0_wp, ieee_quiet_nan)
@@ -136,9 +137,10 @@ contains
     places = pack([(i, i=1, size(codes))], codes == 0)
     if (size(self%moved) == 1) then
       ! on a line all positions on one side of the start lie on one path
-      call sort_from(values(1, places), self%motion%start%q(self%moved(1))/unit(self, 1), order, below)
-      call follow_path(self, places(order(below + 1:)), 1.0_wp)
-      call follow_path(self, places(order(below:1:-1)), -1.0_wp)
+      call sort_by(values(1, :), places)
+      below = count(values(1, places) < self%motion%start%q(self%moved(1))/unit(self, 1))
+      call follow_path(self, places(below + 1:), 1.0_wp)
+      call follow_path(self, places(below:1:-1), -1.0_wp)
     else
       do i = 1, size(places)
         call follow_line(self, places(i))
@@ -255,63 +257,6 @@ contains
 
     unit = self%motion%plan%result_unit(self%moved(i))
   end function unit
-
-  !> Sort values, and find how many of them lie below one.
-  pure subroutine sort_from(values, start, order, below)
-    real(wp), intent(in) :: values(:)                 !< (n) the values, finite
-    real(wp), intent(in) :: start                     !< the value that divides them
-    integer, allocatable, intent(out) :: order(:)     !< (n) their places, ascending
-    integer, intent(out) :: below                     !< number of values below start
-    integer, allocatable :: other(:)
-    integer :: i, width, first, middle, last, left, right
-
-    ! merge sort from the bottom up (Knuth, The Art of Computer Programming, vol. 3, section 5.2.4)
-    order = [(i, i=1, size(values))]
-    allocate (other(size(order)))
-    width = 1
-    do while (width < size(order))
-      do first = 1, size(order), 2*width
-        middle = min(first + width, size(order) + 1)
-        last = min(first + 2*width, size(order) + 1)
-        left = first
-        right = middle
-        do i = first, last - 1
-          if (left < middle .and. (right >= last .or. .not. is_after(left, right))) then
-            other(i) = order(left)
-            left = left + 1
-          else
-            other(i) = order(right)
-            right = right + 1
-          end if
-        end do
-      end do
-      call exchange(order, other)
-      width = 2*width
-    end do
-    below = count(values < start)
-
-  contains
-
-    !> Whether the value at one place of the order comes after that at another one.
-    pure logical function is_after(a, b)
-      integer, intent(in) :: a   !< place in the order
-      integer, intent(in) :: b   !< place in the order; it may be beyond the end
-
-      is_after = .false.
-      if (b <= size(order)) is_after = values(order(a)) > values(order(b))
-    end function is_after
-  end subroutine sort_from
-
-  !> Exchange two arrays.
-  pure subroutine exchange(a, b)
-    integer, allocatable, intent(inout) :: a(:)   !< one
-    integer, allocatable, intent(inout) :: b(:)   !< the other
-    integer, allocatable :: kept(:)
-
-    call move_alloc(a, kept)
-    call move_alloc(b, a)
-    call move_alloc(kept, b)
-  end subroutine exchange
 
   !> Free all memory. Another mechanism can then be assembled.
   subroutine close_positions(self)

@@ -2,6 +2,7 @@
 !> item.
 module mech9_drawing
   use mech9_kinds, only: wp
+  use mech9_sorting, only: sort_by
   use mech9_film, only: film_type
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, item_type, facing_path, spring, in_thread, in_damper
@@ -46,6 +47,7 @@ contains
     integer, allocatable :: order(:)
     integer :: keys(scene%n_items), i, j
 
+    keys = 0
     allocate (order(scene%n_items))
     order = [(i, i=1, scene%n_items)]
     if (scene%last_sorted <= scene%first_sorted) return
@@ -57,40 +59,8 @@ contains
         end do
       end associate
     end do
-    call sort(keys, order, scene%first_sorted, scene%last_sorted)
+    call sort_by(real(keys, wp), order(scene%first_sorted:scene%last_sorted))
   end function drawing_order
-
-  !> Sort the numbers order(first:last) by their keys; numbers with equal keys keep their order (merge sort).
-  pure recursive subroutine sort(keys, order, first, last)
-    integer, intent(in) :: keys(:)      !< key of each item, by the number of the item
-    integer, intent(in) :: first        !< first place of the part of `order` that is sorted
-    integer, intent(in) :: last         !< last place of that part
-    integer, intent(inout) :: order(:)  !< numbers of the items
-    integer :: merged(last - first + 1), middle, i, j, n
-
-    if (last <= first) return
-    middle = (first + last)/2
-    call sort(keys, order, first, middle)
-    call sort(keys, order, middle + 1, last)
-    i = first
-    j = middle + 1
-    do n = 1, size(merged)
-      if (j > last) then
-        merged(n) = order(i)
-        i = i + 1
-      else if (i > middle) then
-        merged(n) = order(j)
-        j = j + 1
-      else if (keys(order(j)) < keys(order(i))) then
-        merged(n) = order(j)
-        j = j + 1
-      else
-        merged(n) = order(i)
-        i = i + 1
-      end if
-    end do
-    order(first:last) = merged
-  end subroutine sort
 
   !> The corners of a path, of segments, or of the windings of a spring, on the page [px]. There are none where a facing
   !> path shows its back.
