@@ -60,8 +60,7 @@ contains
     call check_document(placed, diagnostics)
     call read_parameters(placed, parameters, diagnostics)
     do i = 1, size(parameters)
-      if (.not. allocated(parameters(i)%note)) cycle
-      if (index(parameters(i)%note, 'decides, not parameter') == 0) cycle
+      if (.not. parameters(i)%is_overruled) cycle
       call raise(err, exit_usage, 'parameter '''//parameters(i)%name//''' sets this number; set parameter('//to_text(i)// &
                  ').value in its place')
       return

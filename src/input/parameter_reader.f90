@@ -187,6 +187,7 @@ contains
       if (later(i)) &
         parameter%note = '--set '//diagnostics%sources(own%source)%text//' decides, not parameter '''//parameter%name//''''
     end do
+    parameter%is_overruled = any(later)
     if (.not. any(later)) return
     if (size(later) == 1) then
       parameter%value = value_of_target(document, parameter%targets(1))

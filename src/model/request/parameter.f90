@@ -32,6 +32,7 @@ module mech9_parameter
     real(wp) :: spread = 0.0_wp           !< standard deviation, or half the width of a uniform distribution; 0: not given
     logical :: uniform = .false.          !< the distribution about `value` is uniform, not normal
     type(place_type) :: place             !< of its group in the data file
+    logical :: is_overruled = .false.     !< --set decides on a number that it would set
     character(len=:), allocatable :: note !< a sentence where it and --set contradict each other: which one decides; else empty
   end type parameter_type
 end module mech9_parameter
