@@ -201,12 +201,13 @@ contains
     end associate
   end subroutine go_to
 
-  !> Go on from the present time with numbers of loads or motors of the model that were changed. Steps no longer go beyond the times
-  !> that are asked for, since more changes may come.
+  !> Go on from the time at which the system stands with numbers of loads or motors of the model that were changed. Steps no longer go
+  !> beyond the times that are asked for, since more changes may come.
   subroutine take_changes(self, err)
     class(free_simulation_type), intent(inout) :: self   !< the simulation, started
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
 
+    self%t = self%motion%system%state%t
     self%end = self%t
     call self%motion%restart(self%t, self%motion%system%vector(), err)
     if (.not. allocated(err)) call self%motion%show_angles(err)

@@ -2,7 +2,7 @@
 module test_library
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use mech9, only: wp, mechanism_type, motion_type, error_type, read_text, coordinate_change_type, simulation_statistics_type, &
-    exit_usage, exit_file, exit_integrator, read_file
+    interruption_type, exit_usage, exit_file, exit_integrator, exit_interrupted, read_file
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -13,6 +13,13 @@ module test_library
     '&body link=2, mass=3, centre=0.5,0,0, inertia=0,0,0.1,0,0,0 / &gravity acceleration=0,-9.81,0 /'
   character(len=*), parameter :: driven = turning//' &drive coordinate=1, kind=''polynomial'', coefficients=0.2,2.0 /'
   character(len=*), parameter :: free = turning//' &initial coordinate=1, position=0.2, velocity=2.0 /'
+
+  !> Stops a motion once, where it asks for the twelfth time.
+  type, extends(interruption_type) :: twelfth_time_type
+    integer, pointer :: asked => null()   !< how often it was asked; not owned
+  contains
+    procedure :: is_wanted => is_twelfth
+  end type twelfth_time_type
 
 contains
 
@@ -25,6 +32,7 @@ contains
     if (test%runs('check_all_driven')) call check_all_driven(test)
     if (test%runs('check_one_after_the_other')) call check_one_after_the_other(test)
     if (test%runs('check_accuracy')) call check_accuracy(test)
+    if (test%runs('check_change_after_a_stop')) call check_change_after_a_stop(test)
   end subroutine run
 
   !> Questions to a motion that was never started have no numbers, and do no harm.
@@ -171,4 +179,44 @@ contains
     q = motion%q(1)
     call motion%close()
   end subroutine ride
+
+  !> Whether this is the twelfth question.
+  logical function is_twelfth(self)
+    class(twelfth_time_type), intent(in) :: self   !< the interruption
+
+    self%asked = self%asked + 1
+    is_twelfth = self%asked == 12
+  end function is_twelfth
+
+  !> 2 kg under 4 N are stopped amid the steps to 100 s, where they are at t^2; from there on 8 N act.
+  subroutine check_change_after_a_stop(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    character(len=*), parameter :: cart = '&structure cq=1 / &pair coordinate=1, links=1,2, kind=''prismatic'', axis=1,0,0 / '// &
+      '&body link=2, mass=2 / &load kind=''force'', link=2, force=4,0,0 / &initial coordinate=1, position=0, velocity=0 / '// &
+      '&time end=100 /'
+    type(mechanism_type) :: mechanism
+    type(motion_type) :: motion
+    type(twelfth_time_type) :: interruption
+    type(error_type), allocatable :: err
+    integer, target :: asked
+    real(wp) :: t
+
+    asked = 0
+    interruption%asked => asked
+    call read_text(cart, mechanism, err)
+    call test%no_error(err, 'a cart')
+    call motion%start_dynamics(mechanism, err, interruption)
+    call motion%advance(100.0_wp, err)
+    call test%has_error(err, exit_interrupted, 'the motion is stopped')
+    t = motion%t()
+    call test%is_true(t > 0.01_wp .and. t < 100.0_wp, 'amid its steps')
+    ! 1e-6 of the way: the tolerances are 1e-8, and a constant force makes no errors of the method
+    call test%near(motion%q(1), t**2, 1e-6_wp*max(1.0_wp, t**2), 'time and position belong together')
+    call motion%set('load(1).force(1)', 8.0_wp, err)
+    call test%no_error(err, 'the force is changed there')
+    call motion%advance(t + 1.0_wp, err)
+    call test%no_error(err, 'the motion goes on from there')
+    call test%near(motion%q(1), t**2 + 2.0_wp*t + 2.0_wp, 1e-6_wp*(1.0_wp + t)**2, 'with the new force for one second')
+    call motion%close()
+  end subroutine check_change_after_a_stop
 end module test_library
