@@ -1,14 +1,12 @@
 !> Errors for C: a handle that holds the last failure, with its place and all findings (include/mech9.h).
 module mech9_api_error
-  use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr, c_associated, c_f_pointer, c_loc
+  use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr, c_f_pointer, c_loc
   use mech9, only: error_type, finding_type, mechanism_type, exit_usage
+  use mech9_api_handle, only: is_live, error_mark, no_mark
   use mech9_api_text, only: c_text_type
   implicit none
   private
   public :: begin_call, end_call, refuse
-
-  !> Marks the memory of a handle of this type.
-  integer(c_int), parameter :: mark = 901
 
   type :: shown_finding_type
     type(c_text_type) :: message
@@ -18,7 +16,7 @@ module mech9_api_error
   end type shown_finding_type
 
   type :: error_handle_type
-    integer(c_int) :: mark = mark
+    integer(c_int) :: mark = error_mark
     integer(c_int) :: code = 0
     type(c_text_type) :: message
     type(shown_finding_type), allocatable :: findings(:)
@@ -45,7 +43,7 @@ contains
     if (.not. associated(handle)) return
     call forget(handle)
     call handle%message%clear()
-    handle%mark = 0
+    handle%mark = no_mark
     deallocate (handle)
   end subroutine destroy
 
@@ -129,9 +127,7 @@ contains
     type(error_handle_type), pointer, intent(out) :: handle    !< the handle
 
     handle => null()
-    if (.not. c_associated(error)) return
-    call c_f_pointer(error, handle)
-    if (handle%mark /= mark) handle => null()
+    if (is_live(error, error_mark)) call c_f_pointer(error, handle)
   end subroutine find_handle
 
   !> One of the errors of a handle; null where there is none.

@@ -1,19 +1,17 @@
 !> Mechanisms for C: handles that read, hold and change the groups of a data file (include/mech9.h).
 module mech9_api_mechanism
-  use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_null_ptr, c_associated, c_f_pointer, c_loc
+  use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_null_ptr, c_f_pointer, c_loc
   use mech9, only: error_type, finding_type, mechanism_type, parse_file, parse_text, string_type, name_coordinates, kinematics, &
     dynamics
+  use mech9_api_handle, only: is_live, mechanism_mark, no_mark
   use mech9_api_text, only: c_text_type, read_c_text
   use mech9_api_error, only: begin_call, end_call, refuse
   implicit none
   private
   public :: find_mechanism
 
-  !> Marks the memory of a handle of this type.
-  integer(c_int), parameter :: mark = 902
-
   type :: mechanism_handle_type
-    integer(c_int) :: mark = mark
+    integer(c_int) :: mark = mechanism_mark
     type(mechanism_type) :: mechanism
     type(c_text_type) :: text           !< as the caller asked for it last
   end type mechanism_handle_type
@@ -96,7 +94,7 @@ contains
     call find_handle(mechanism, handle, err)
     if (allocated(err)) return
     call handle%text%clear()
-    handle%mark = 0
+    handle%mark = no_mark
     deallocate (handle)
   end subroutine destroy
 
@@ -312,10 +310,10 @@ contains
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
 
     handle => null()
-    if (c_associated(address)) then
+    if (is_live(address, mechanism_mark)) then
       call c_f_pointer(address, handle)
-      if (handle%mark /= mark) handle => null()
+    else
+      call refuse('this is no mechanism, or it was destroyed; read one first', err)
     end if
-    if (.not. associated(handle)) call refuse('this is no mechanism, or it was destroyed; read one first', err)
   end subroutine find_handle
 end module mech9_api_mechanism

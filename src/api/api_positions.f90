@@ -2,6 +2,7 @@
 module mech9_api_positions
   use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_null_ptr, c_associated, c_f_pointer, c_loc
   use mech9, only: error_type, mechanism_type, positions_type, dynamics
+  use mech9_api_handle, only: is_live, positions_mark, no_mark
   use mech9_api_error, only: begin_call, end_call, refuse
   use mech9_api_interruption, only: flag_interruption_type, new_interruption
   use mech9_api_mechanism, only: find_mechanism
@@ -10,11 +11,8 @@ module mech9_api_positions
   private
   public :: create, destroy, coordinates, count_independent, independent_at, find
 
-  !> Marks the memory of a handle of this type.
-  integer(c_int), parameter :: mark = 904
-
   type :: positions_handle_type
-    integer(c_int) :: mark = mark
+    integer(c_int) :: mark = positions_mark
     type(positions_type) :: positions
   end type positions_handle_type
 
@@ -50,7 +48,7 @@ contains
     call find_handle(positions, handle, err)
     if (allocated(err)) return
     call handle%positions%close()
-    handle%mark = 0
+    handle%mark = no_mark
     deallocate (handle)
   end subroutine destroy
 
@@ -156,10 +154,10 @@ contains
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
 
     handle => null()
-    if (c_associated(address)) then
+    if (is_live(address, positions_mark)) then
       call c_f_pointer(address, handle)
-      if (handle%mark /= mark) handle => null()
+    else
+      call refuse('these are no positions, or they were destroyed; create them first', err)
     end if
-    if (.not. associated(handle)) call refuse('these are no positions, or they were destroyed; create them first', err)
   end subroutine find_handle
 end module mech9_api_positions

@@ -2,15 +2,13 @@
 !> gives its answer in this form.
 module mech9_api_results
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_null_ptr, c_associated, c_f_pointer, c_loc
+  use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_null_ptr, c_f_pointer, c_loc
   use mech9, only: wp
+  use mech9_api_handle, only: is_live, results_mark, no_mark
   use mech9_api_text, only: c_text_type
   implicit none
   private
   public :: results_type, show_results, put_texts, put_matrix
-
-  !> Marks the memory of a handle of this type.
-  integer(c_int), parameter :: mark = 903
 
   !> A matrix with names for its rows and columns.
   type :: matrix_type
@@ -22,7 +20,7 @@ module mech9_api_results
 
   !> The answer of an analysis.
   type :: results_type
-    integer(c_int), private :: mark = mark
+    integer(c_int), private :: mark = results_mark
     type(c_text_type), allocatable :: names(:)           !< (columns)
     type(c_text_type), allocatable :: units(:)           !< (columns)
     real(wp), pointer :: rows(:, :) => null()            !< (columns,rows) owned
@@ -79,7 +77,7 @@ contains
     end do
     call results%text%clear()
     deallocate (results%rows)
-    results%mark = 0
+    results%mark = no_mark
     deallocate (results)
   end subroutine destroy
 
@@ -386,8 +384,6 @@ contains
     type(results_type), pointer, intent(out) :: results       !< the results
 
     results => null()
-    if (.not. c_associated(address)) return
-    call c_f_pointer(address, results)
-    if (results%mark /= mark) results => null()
+    if (is_live(address, results_mark)) call c_f_pointer(address, results)
   end subroutine find_results
 end module mech9_api_results

@@ -3,6 +3,7 @@ module mech9_api_simulation
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_null_ptr, c_associated, c_f_pointer, c_loc
   use mech9, only: wp, error_type, mechanism_type, motion_type, kinematics, dynamics
+  use mech9_api_handle, only: is_live, simulation_mark, no_mark
   use mech9_api_text, only: read_c_text
   use mech9_api_error, only: begin_call, end_call, refuse
   use mech9_api_interruption, only: flag_interruption_type, new_interruption
@@ -13,11 +14,8 @@ module mech9_api_simulation
   public :: create, destroy, advance, time, coordinates, take, point, energies, closure
   public :: set, free_coordinates, take_equations, size_of_state, take_state, set_state
 
-  !> Marks the memory of a handle of this type.
-  integer(c_int), parameter :: mark = 905
-
   type :: simulation_handle_type
-    integer(c_int) :: mark = mark
+    integer(c_int) :: mark = simulation_mark
     type(motion_type) :: motion
     real(wp), allocatable :: units(:)             !< (M) of the coordinates in the data file [rad, m]
   end type simulation_handle_type
@@ -67,7 +65,7 @@ contains
     call find_handle(simulation, handle, err)
     if (allocated(err)) return
     call handle%motion%close()
-    handle%mark = 0
+    handle%mark = no_mark
     deallocate (handle)
   end subroutine destroy
 
@@ -310,10 +308,10 @@ contains
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
 
     handle => null()
-    if (c_associated(address)) then
+    if (is_live(address, simulation_mark)) then
       call c_f_pointer(address, handle)
-      if (handle%mark /= mark) handle => null()
+    else
+      call refuse('this is no simulation, or it was destroyed; create one first', err)
     end if
-    if (.not. associated(handle)) call refuse('this is no simulation, or it was destroyed; create one first', err)
   end subroutine find_handle
 end module mech9_api_simulation
