@@ -22,6 +22,8 @@ typedef struct mech9_mechanism mech9_mechanism;
 typedef struct mech9_results mech9_results;
 typedef struct mech9_positions mech9_positions;
 typedef struct mech9_simulation mech9_simulation;
+typedef struct mech9_motion mech9_motion;
+typedef struct mech9_loads mech9_loads;
 
 /* The version as one number: 10000 times the major number, 100 times the minor number, and the patch. */
 int mech9_version(void);
@@ -58,6 +60,38 @@ int mech9_mechanism_parameters(const mech9_mechanism *mechanism);
 const char *mech9_mechanism_parameter(mech9_mechanism *mechanism, int i);
 /* Whether drives move all independent coordinates. */
 int mech9_mechanism_is_driven(const mech9_mechanism *mechanism, int *driven, mech9_error *error);
+
+/* User procedures: functions that are called for all groups with kind='user', in place of Fortran procedures that are linked. A
+ * copy of the mechanism has them, too. They return 0, or another number where they have no values. `parameters` are those of the
+ * group &user, in number `n`. `data` is what was registered with the function. Studies and searches with several threads call them
+ * in several threads at the same time. Null takes a function back.
+ * Leave the derivatives as they are where they are not known: they are then found by differences, at 17 or more calls. */
+/* Three points of the moving link in the system of its reference link, not on a line [m]: origin, a point on the x axis, a third
+ * one. points[0] has the points, points[1] and points[2] their first and second derivatives by q. */
+typedef int mech9_pair_function(int coordinate, double q, int n, const double *parameters, double points[3][3][3], void *data);
+/* A coordinate and its derivatives by t [rad, m]. */
+typedef int mech9_drive_function(int coordinate, double t, int n, const double *parameters, double values[3], void *data);
+/* The second coordinate of a coupling and its derivatives by the first one [rad, m]. Couplings count from 1. */
+typedef int mech9_coupling_function(int coupling, double first, int n, const double *parameters, double values[3], void *data);
+/* Forces: they are added to `loads`. */
+typedef int mech9_force_function(double t, const mech9_motion *motion, int n, const double *parameters, mech9_loads *loads,
+                                 void *data);
+int mech9_mechanism_use_pair(mech9_mechanism *mechanism, mech9_pair_function *function, void *data, mech9_error *error);
+int mech9_mechanism_use_drive(mech9_mechanism *mechanism, mech9_drive_function *function, void *data, mech9_error *error);
+int mech9_mechanism_use_coupling(mech9_mechanism *mechanism, mech9_coupling_function *function, void *data, mech9_error *error);
+int mech9_mechanism_use_force(mech9_mechanism *mechanism, mech9_force_function *function, void *data, mech9_error *error);
+/* For forces, within a call. Links and coordinates have their numbers, from 1. Points and vectors have three numbers: points and
+ * directions that are given in the system of the link, all else along the axes of link 1. SI units. A number that does not exist
+ * gives zeros, and ends the analysis. */
+void mech9_motion_position(const mech9_motion *motion, int link, const double *point, double *position);
+void mech9_motion_velocity(const mech9_motion *motion, int link, const double *point, double *velocity);
+void mech9_motion_turned(const mech9_motion *motion, int link, const double *direction, double *turned);
+void mech9_motion_angular_velocity(const mech9_motion *motion, int link, double *angular_velocity);
+double mech9_motion_q(const mech9_motion *motion, int coordinate);
+double mech9_motion_dq(const mech9_motion *motion, int coordinate);
+void mech9_loads_add_force(mech9_loads *loads, const mech9_motion *motion, int link, const double *point, const double *force);
+void mech9_loads_add_torque(mech9_loads *loads, int link, const double *torque);
+void mech9_loads_add_generalized(mech9_loads *loads, int coordinate, double value);
 
 /* Results: a table with named columns, and numbers with names of their own. */
 void mech9_results_destroy(mech9_results *results);

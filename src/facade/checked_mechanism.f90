@@ -4,11 +4,13 @@
 !> set; a mechanism of parse_file or parse_text is judged by its first answer, so that groups can be added to it until then.
 module mech9_checked_mechanism
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use, intrinsic :: iso_c_binding, only: c_funptr, c_ptr
   use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage, exit_data
   use mech9_text, only: string_type, to_text, exact_digits, lower
   use mech9_model, only: model_type
+  use mech9_registered_procedures, only: registered_procedure_type
   use mech9_explanation, only: explain
   use mech9_source, only: source_type, span_type, source_from_text
   use mech9_document, only: document_type, group_type
@@ -40,6 +42,7 @@ module mech9_checked_mechanism
     procedure :: add
     procedure :: remove
     procedure :: apply
+    procedure :: register
     procedure :: set
     procedure :: number
     procedure :: text
@@ -206,6 +209,29 @@ contains
     self%document%groups = kept(:n)
     self%is_whole = .false.
   end subroutine remove
+
+  !> Register a procedure of the user, a function of C as include/mech9.h declares it, for all groups of a name whose kind is 'user'.
+  !> It comes before one that is linked.
+  pure subroutine register(self, name, function, data)
+    class(checked_mechanism_type), intent(inout) :: self   !< the mechanism
+    character(len=*), intent(in) :: name                   !< of the groups: pair, drive, coupling or load
+    type(c_funptr), intent(in) :: function                 !< address of the function; null takes back the one that was registered
+    type(c_ptr), intent(in) :: data                        !< is given to each call
+
+    associate (procedures => self%document%procedures, given => registered_procedure_type(function, data))
+      select case (name)
+      case ('pair')
+        procedures%pair = given
+      case ('drive')
+        procedures%drive = given
+      case ('coupling')
+        procedures%coupling = given
+      case ('load')
+        procedures%force = given
+      end select
+    end associate
+    self%is_whole = .false.
+  end subroutine register
 
   !> Give names other values, as an option --set does: time.intervals=200, pair(3).axis=1,0,0. A group or a name that is missing is
   !> added. The mechanism stays as it was where this fails. Fails with exit_data.
@@ -477,6 +503,7 @@ contains
     ! the files that it names are found beside the data file
     diagnostics%sources = diagnostics%sources(:0)
     call parse_document(source_from_text(self%sources(1)%name, changed, is_file=.false.), design%document, diagnostics)
+    design%document%procedures = self%document%procedures
     call take_parsed(design, diagnostics, err)
   end subroutine take_design
 

@@ -11,6 +11,8 @@ module mech9
   use mech9_error, only: error_type, exit_usage, exit_data, exit_structure, exit_assembly, exit_singular, exit_integrator, &
     exit_file, exit_interrupted
   use mech9_simulation, only: interruption_type, simulation_statistics_type, coordinate_change_type
+  use mech9_motion_view, only: motion_view_type
+  use mech9_force_sum, only: force_sum_type
   use mech9_findings, only: finding_type
   use mech9_checked_mechanism, only: mechanism_type => checked_mechanism_type, &
     read_file, read_text, parse_file, parse_text
@@ -29,6 +31,7 @@ module mech9
   public :: wp, kinematics, dynamics, string_type
   public :: mechanism_type, finding_type, read_file, read_text, parse_file, parse_text, design_type
   public :: motion_type, run_type, study_type, rest_type, optimum_type, positions_type, linear_system_type
+  public :: motion_view_type, force_sum_type
   public :: interruption_type, simulation_statistics_type, coordinate_change_type
   public :: judge_mobility, list_assemblies, list_ranges, name_coordinates, find_linear_system, draw_sketch, draw_film
   public :: error_type, exit_usage, exit_data, exit_structure, exit_assembly, exit_singular, exit_integrator, exit_file, &

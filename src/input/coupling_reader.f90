@@ -63,7 +63,7 @@ contains
       case ('table')
         call read_table(beside(document%source%name, get_text(group, 'file')), group, mechanism, slot, diagnostics)
       case ('user')
-        call read_procedure(group, i, positions, mechanism%parameters, slot, diagnostics)
+        call read_procedure(group, i, positions, mechanism, slot, diagnostics)
       case default
         call read_linear(group, positions, mechanism, slot, diagnostics)
       end select
@@ -173,11 +173,11 @@ contains
   end subroutine read_table
 
   !> A coupling by a user's procedure. The slot stays empty where an error was reported.
-  subroutine read_procedure(group, number, positions, parameters, slot, diagnostics)
+  subroutine read_procedure(group, number, positions, mechanism, slot, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     integer, intent(in) :: number                         !< of the coupling
     real(wp), intent(in) :: positions(:)                  !< (M) coordinates at the start [rad, m]
-    real(wp), intent(in) :: parameters(:)                 !< numbers of the group &user
+    type(mechanism_type), intent(in) :: mechanism         !< with the user's procedures and their numbers
     type(coupling_slot_type), intent(inout) :: slot       !< gets the coupling
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(procedure_coupling_type) :: coupling
@@ -185,7 +185,7 @@ contains
     integer :: k(2)
 
     k = get_integers(group, 'coordinates')
-    call make_procedure_coupling(number, positions(k(1)), parameters, coupling, err)
+    call make_procedure_coupling(number, positions(k(1)), mechanism%parameters, mechanism%procedures%coupling, coupling, err)
     if (allocated(err)) then
       call diagnostics%add(span_of(group, 'kind', 1), err%message, err%code)
     else

@@ -70,7 +70,8 @@ contains
 
     associate (group => document%groups(number), angle_unit => mechanism%angle_unit)
       if (get_text(group, 'kind') == 'user') then
-        call make_procedure_drive(get_integer(group, 'coordinate'), start, mechanism%parameters, user_drive, err)
+        call make_procedure_drive(get_integer(group, 'coordinate'), start, mechanism%parameters, mechanism%procedures%drive, &
+                                  user_drive, err)
         if (.not. allocated(err)) allocate (slot%drive, source=user_drive)
         if (allocated(err)) call diagnostics%add(span_of(group, 'kind', 1), err%message, err%code)
       else

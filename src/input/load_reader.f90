@@ -57,7 +57,8 @@ contains
         call check_coordinate(group, size(pairs), diagnostics)
         allocate (slot%load, source=coordinate_load(group, pairs, mechanism%angle_unit))
       case ('user')
-        allocate (slot%load, source=procedure_load_type(parameters=mechanism%parameters, n_links=n_links))
+        allocate (slot%load, source=procedure_load_type(parameters=mechanism%parameters, n_links=n_links, &
+                                                       registered=mechanism%procedures%force))
       end select
       slot%load%place = diagnostics%place(group%span)
       if (get_text(group, 'kind') == 'user' .or. .not. has_name(group, 'law')) return

@@ -109,7 +109,7 @@ contains
     kind = get_text(group, 'kind')
     coordinate = get_integer(group, 'coordinate')
     if (kind == 'user') then
-      call make_procedure_pair(coordinate, mechanism%parameters, procedure_pair, err)
+      call make_procedure_pair(coordinate, mechanism%parameters, mechanism%procedures%pair, procedure_pair, err)
       if (allocated(err)) then
         call diagnostics%add(span_of(group, 'kind', 1), err%message, err%code)
         return

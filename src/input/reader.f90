@@ -164,6 +164,7 @@ contains
                            'are not closed')
     group = group_or_empty(document, 'user')
     mechanism%parameters = get_reals(group, 'parameters')
+    mechanism%procedures = document%procedures
   end subroutine read_settings
 
   !> Read the times of the results, and the settings of the solver.

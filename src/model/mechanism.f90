@@ -8,6 +8,7 @@ module mech9_mechanism
   use mech9_load, only: load_slot_type
   use mech9_motor, only: motor_slot_type
   use mech9_coupling, only: coupling_slot_type
+  use mech9_registered_procedures, only: registered_procedures_type
   implicit none
   private
   public :: mechanism_type
@@ -27,7 +28,8 @@ module mech9_mechanism
     type(load_slot_type), allocatable :: loads(:)     !< in the order of the data file
     type(motor_slot_type), allocatable :: motors(:)   !< in the order of the data file; their forces act beside those of the loads
     real(wp) :: gravity(3) = 0.0_wp                 !< in the axes of link 1 [m/s^2]
-    real(wp), allocatable :: parameters(:)                  !< numbers for the user's procedures
+    real(wp), allocatable :: parameters(:)          !< numbers for the user's procedures
+    type(registered_procedures_type) :: procedures  !< the user's procedures that are not linked
   contains
     procedure :: acting_loads
     procedure :: has_forces

@@ -9,6 +9,8 @@ module mech9_procedure_coupling
     length_along
   use mech9_coupling, only: coupling_name_length, curve_order
   use mech9_function_coupling, only: function_coupling_type
+  use mech9_registered_procedures, only: registered_procedure_type
+  use mech9_registered_calls, only: call_function
   use mech9_not_linked, only: not_linked
   use mech9_user_coupling, only: user_coupling
   use mech9_user_coupling_values, only: user_coupling_values
@@ -20,7 +22,8 @@ module mech9_procedure_coupling
   type, extends(function_coupling_type) :: procedure_coupling_type
     integer :: number = 0                    !< of the coupling in the data file
     real(wp), allocatable :: parameters(:)   !< numbers for the user's procedure
-    logical :: plain_values = .false.        !< the form in plain reals is linked, not the one in Taylor arithmetic
+    type(registered_procedure_type) :: registered   !< the procedure, where it is not linked
+    logical :: plain_values = .false.        !< it gives plain reals, not their derivatives
   contains
     procedure :: find_curve
     procedure :: find_third
@@ -34,11 +37,12 @@ module mech9_procedure_coupling
 
 contains
 
-  !> Make the coupling and find out which form of procedure is linked. Fails where none is, and where it gives no numbers.
-  subroutine make_procedure_coupling(number, start, parameters, coupling, err)
+  !> Make the coupling and find out which form of procedure there is. Fails where there is none, and where it gives no numbers.
+  subroutine make_procedure_coupling(number, start, parameters, registered, coupling, err)
     integer, intent(in) :: number                           !< of the coupling in the data file
     real(wp), intent(in) :: start                           !< a first coordinate for which the procedure may be called [rad, m]
     real(wp), intent(in) :: parameters(:)                   !< numbers for the user's procedure
+    type(registered_procedure_type), intent(in) :: registered   !< the procedure; the linked one where it does not exist
     type(procedure_coupling_type), intent(out) :: coupling  !< the coupling, without its coordinates
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(taylor) :: second
@@ -46,19 +50,53 @@ contains
 
     coupling%number = number
     coupling%parameters = parameters
-    call user_coupling(number, variable(start), parameters, second)
-    coupling%plain_values = second%value <= not_linked
-    if (coupling%plain_values) then
+    coupling%registered = registered
+    call find_taylor(coupling, start, second)
+    if (registered%exists()) then
+      coupling%plain_values = .not. (ieee_is_finite(second%first) .and. ieee_is_finite(second%second))
+    else
+      coupling%plain_values = second%value <= not_linked
+    end if
+    if (coupling%plain_values .and. .not. registered%exists()) then
       call user_coupling_values(number, start, parameters, value)
       if (value <= not_linked) then
         call raise(err, exit_data, 'coupling '//to_text(number)//' asks for a user procedure, but none is linked; '// &
-                   'see docs/how-to/user-procedures.md for how to write user_coupling and link it')
+                   'see docs/how-to/user-procedures.md for how to write user_coupling and link or register it')
         return
       end if
     end if
     call coupling%find_curve(start, curve, err)
     coupling%steepest = abs(curve(1))
   end subroutine make_procedure_coupling
+
+  !> Value and derivatives from the form with derivatives. A procedure that is registered may leave derivatives out, which are then
+  !> not numbers.
+  subroutine find_taylor(self, q, second)
+    class(procedure_coupling_type), intent(in) :: self   !< the coupling
+    real(wp), intent(in) :: q                            !< the first coordinate [rad, m]
+    type(taylor), intent(out) :: second                  !< the second coordinate with its derivatives by the first one [rad, m]
+
+    if (self%registered%exists()) then
+      call call_function(self%registered, self%number, q, self%parameters, second)
+    else
+      call user_coupling(self%number, variable(q), self%parameters, second)
+    end if
+  end subroutine find_taylor
+
+  !> The value from the form in plain reals.
+  subroutine find_value(self, q, value)
+    class(procedure_coupling_type), intent(in) :: self   !< the coupling
+    real(wp), intent(in) :: q                            !< the first coordinate [rad, m]
+    real(wp), intent(out) :: value                       !< the second coordinate [rad, m]
+    type(taylor) :: second
+
+    if (self%registered%exists()) then
+      call call_function(self%registered, self%number, q, self%parameters, second)
+      value = second%value
+    else
+      call user_coupling_values(self%number, q, self%parameters, value)
+    end if
+  end subroutine find_value
 
   !> The procedure's value and derivatives. Fails where they are not finite.
   subroutine find_curve(self, q, curve, err)
@@ -72,7 +110,7 @@ contains
     if (self%plain_values) then
       call differentiate(self, q, of_value, curve, ok)
     else
-      call user_coupling(self%number, variable(q), self%parameters, second)
+      call find_taylor(self, q, second)
       curve = [second%value, second%first, second%second]
       ok = all(ieee_is_finite(curve))
     end if
@@ -146,10 +184,10 @@ contains
     logical :: ok
 
     if (.not. self%plain_values) then
-      call user_coupling(self%number, variable(q), self%parameters, second)
+      call find_taylor(self, q, second)
       sample = merge(second%value, second%second, form == of_value)
     else if (form == of_value) then
-      call user_coupling_values(self%number, q, self%parameters, sample)
+      call find_value(self, q, sample)
     else
       call differentiate(self, q, of_value, curve, ok)
       sample = merge(curve(2), huge(curve), ok)

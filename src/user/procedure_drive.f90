@@ -8,6 +8,8 @@ module mech9_procedure_drive
   use mech9_differentiation, only: half_width, step_count, trial_step, derivatives_from_stencil, best_slopes_type, &
     length_along
   use mech9_law, only: law_type
+  use mech9_registered_procedures, only: registered_procedure_type
+  use mech9_registered_calls, only: call_function
   use mech9_not_linked, only: not_linked
   use mech9_user_drive, only: user_drive
   use mech9_user_drive_values, only: user_drive_values
@@ -18,7 +20,8 @@ module mech9_procedure_drive
   !> A drive by a user's procedure.
   type, extends(law_type) :: procedure_drive_type
     real(wp), allocatable :: parameters(:)   !< numbers for the user's procedure
-    logical :: plain_values = .false.        !< the form in plain reals is linked, not the one in Taylor arithmetic
+    type(registered_procedure_type) :: registered   !< the procedure, where it is not linked
+    logical :: plain_values = .false.        !< it gives plain reals, not their derivatives
   contains
     procedure :: evaluate
     procedure :: constants
@@ -27,11 +30,12 @@ module mech9_procedure_drive
 
 contains
 
-  !> Make the drive and find out which form of procedure is linked. Fails where none is.
-  subroutine make_procedure_drive(coordinate, start, parameters, drive, err)
+  !> Make the drive and find out which form of procedure there is. Fails where there is none.
+  subroutine make_procedure_drive(coordinate, start, parameters, registered, drive, err)
     integer, intent(in) :: coordinate                   !< number of the coordinate that is driven
     real(wp), intent(in) :: start                       !< a time at which the procedure may be called [s]
     real(wp), intent(in) :: parameters(:)               !< numbers for the user's procedure
+    type(registered_procedure_type), intent(in) :: registered   !< the procedure; the linked one where it does not exist
     type(procedure_drive_type), intent(out) :: drive    !< the drive
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(taylor) :: q
@@ -39,14 +43,48 @@ contains
 
     drive%coordinate = coordinate
     drive%parameters = parameters
-    call user_drive(coordinate, variable(start), parameters, q)
+    drive%registered = registered
+    call find_taylor(drive, start, q)
+    if (registered%exists()) then
+      drive%plain_values = .not. (ieee_is_finite(q%first) .and. ieee_is_finite(q%second))
+      return
+    end if
     drive%plain_values = q%value <= not_linked
     if (.not. drive%plain_values) return
     call user_drive_values(coordinate, start, parameters, value)
     if (value <= not_linked) &
       call raise(err, exit_data, 'the drive of coordinate '//to_text(coordinate)//' asks for a user procedure, '// &
-                 'but none is linked; see docs/how-to/user-procedures.md for how to write user_drive and link it')
+                 'but none is linked; see docs/how-to/user-procedures.md for how to write user_drive and link or register it')
   end subroutine make_procedure_drive
+
+  !> Value and derivatives from the form with derivatives. A procedure that is registered may leave derivatives out, which are then
+  !> not numbers.
+  subroutine find_taylor(self, t, x)
+    type(procedure_drive_type), intent(in) :: self   !< the procedure drive
+    real(wp), intent(in) :: t                        !< time [s]
+    type(taylor), intent(out) :: x                   !< the coordinate with its derivatives in time
+
+    if (self%registered%exists()) then
+      call call_function(self%registered, self%coordinate, t, self%parameters, x)
+    else
+      call user_drive(self%coordinate, variable(t), self%parameters, x)
+    end if
+  end subroutine find_taylor
+
+  !> The value from the form in plain reals.
+  subroutine find_value(self, t, value)
+    type(procedure_drive_type), intent(in) :: self   !< the procedure drive
+    real(wp), intent(in) :: t                        !< time [s]
+    real(wp), intent(out) :: value                   !< the coordinate [rad, m]
+    type(taylor) :: x
+
+    if (self%registered%exists()) then
+      call call_function(self%registered, self%coordinate, t, self%parameters, x)
+      value = x%value
+    else
+      call user_drive_values(self%coordinate, t, self%parameters, value)
+    end if
+  end subroutine find_value
 
   !> The procedure's value and derivatives. Fails where they are not finite.
   subroutine evaluate(self, t, q, dq, ddq, err)
@@ -62,7 +100,7 @@ contains
     if (self%plain_values) then
       call differentiate(self, t, x, ok)
     else
-      call user_drive(self%coordinate, variable(t), self%parameters, x)
+      call find_taylor(self, t, x)
       ok = ieee_is_finite(x%value) .and. ieee_is_finite(x%first) .and. ieee_is_finite(x%second)
     end if
     q = x%value
@@ -129,7 +167,7 @@ contains
     do number = 1, step_count
       h = trial_step(number, 1.0_wp)
       do i = -half_width, half_width
-        call user_drive_values(self%coordinate, t + i*h, self%parameters, values(i))
+        call find_value(self, t + i*h, values(i))
       end do
       if (.not. all(ieee_is_finite(values))) cycle   ! too wide: outside the procedure's domain
       call derivatives_from_stencil(values, h, first, second, error)

@@ -9,6 +9,8 @@ module mech9_procedure_load
   use mech9_motion_view, only: motion_view_type
   use mech9_force_sum, only: force_sum_type, new_force_sum
   use mech9_load, only: load_type
+  use mech9_registered_procedures, only: registered_procedure_type
+  use mech9_registered_calls, only: call_force
   use mech9_user_force, only: user_force
   implicit none
   private
@@ -17,6 +19,7 @@ module mech9_procedure_load
   !> A load by a user's procedure.
   type, extends(load_type) :: procedure_load_type
     real(wp), allocatable :: parameters(:)   !< numbers for the user's procedure
+    type(registered_procedure_type) :: registered   !< the procedure, where it is not linked
     integer :: n_links = huge(1)             !< links that the user knows, which are those of the data file
   contains
     procedure :: mark_links
@@ -45,22 +48,33 @@ contains
     needed = .true.
   end subroutine mark_coordinates
 
-  !> Call the procedure, which adds its forces. Fails where none is linked, or its numbers are of no use.
+  !> Call the procedure, which adds its forces. Fails where there is none, or its numbers are of no use.
   subroutine apply(self, state, sum, err)
     class(procedure_load_type), intent(in) :: self      !< the procedure load
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
     type(force_sum_type), intent(inout) :: sum          !< forces so far; the load is added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    logical :: has_failed
 
     sum%fault%links = self%n_links
     if (associated(state%fault)) state%fault%links = self%n_links
-    call user_force(state%t, state, self%parameters, sum)
+    has_failed = .false.
+    if (self%registered%exists()) then
+      call call_force(self%registered, state, self%parameters, sum, has_failed)
+    else
+      call user_force(state%t, state, self%parameters, sum)
+    end if
     if (associated(state%fault)) call must_exist(self, state%fault, err)
     if (.not. allocated(err)) call must_exist(self, sum%fault, err)
     if (allocated(err)) return
     if (sum%unanswered) then
       call raise(err, exit_data, 'a load asks for a user procedure, but none is linked; '// &
-                 'see docs/how-to/user-procedures.md for how to write user_force and link it', self%place)
+                 'see docs/how-to/user-procedures.md for how to write user_force and link or register it', self%place)
+      return
+    end if
+    if (has_failed) then
+      call raise(err, exit_data, 'the user procedure for forces says that it has no forces at t = '//to_text(state%t, 12)//' s', &
+                 self%place)
       return
     end if
     if (.not. (all(ieee_is_finite(sum%force)) .and. all(ieee_is_finite(sum%torque)) .and. &
@@ -76,7 +90,7 @@ contains
     type(error_type), allocatable, intent(inout) :: err   !< allocated if it failed
 
     if (.not. fault%found) return
-    call raise(err, exit_data, 'user_force calls '//trim(fault%procedure)//' with '//trim(fault%counted)//' '// &
+    call raise(err, exit_data, 'the user procedure for forces calls '//trim(fault%procedure)//' with '//trim(fault%counted)//' '// &
                to_text(fault%number)//', but the '//trim(fault%counted)//'s of this mechanism are 1 to '// &
                to_text(fault%greatest)//'; correct the number in the procedure', self%place)
   end subroutine must_exist

@@ -10,6 +10,8 @@ module mech9_procedure_pair
   use mech9_rotation, only: axial_vector, cross
   use mech9_pose, only: pose_type, pose_from_points
   use mech9_pair, only: pair_type, pair_motion_type, screw_factors_type, kind_name_length
+  use mech9_registered_procedures, only: registered_procedure_type
+  use mech9_registered_calls, only: call_pair
   use mech9_not_linked, only: not_linked
   use mech9_user_pair, only: user_pair
   use mech9_user_pair_values, only: user_pair_values
@@ -20,7 +22,8 @@ module mech9_procedure_pair
   !> A pair by a user's procedure.
   type, extends(pair_type) :: procedure_pair_type
     real(wp), allocatable :: parameters(:)   !< numbers for the user's procedure
-    logical :: plain_values = .false.        !< the form in plain reals is linked, not the one in Taylor arithmetic
+    type(registered_procedure_type) :: registered   !< the procedure, where it is not linked
+    logical :: plain_values = .false.        !< it gives plain reals, not their derivatives
   contains
     procedure :: evaluate
     procedure :: as_screw
@@ -35,25 +38,31 @@ module mech9_procedure_pair
 
 contains
 
-  !> Make the pair and find out which form of procedure is linked. Fails where none is.
-  subroutine make_procedure_pair(coordinate, parameters, pair, err)
+  !> Make the pair and find out which form of procedure there is. Fails where there is none.
+  subroutine make_procedure_pair(coordinate, parameters, registered, pair, err)
     integer, intent(in) :: coordinate                   !< number of the pair and its coordinate
     real(wp), intent(in) :: parameters(:)               !< numbers for the user's procedure
+    type(registered_procedure_type), intent(in) :: registered   !< the procedure; the linked one where it does not exist
     type(procedure_pair_type), intent(out) :: pair      !< the pair, without its links
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(taylor) :: r1(3), r2(3), r3(3)
+    type(taylor) :: r(3, 3)
     real(wp) :: v1(3), v2(3), v3(3)
 
     pair%coordinate = coordinate
     pair%angular = .false.
     pair%parameters = parameters
-    call user_pair(coordinate, variable(0.0_wp), parameters, r1, r2, r3)
-    pair%plain_values = all(is_missing(r1%value))
+    pair%registered = registered
+    call find_points(pair, 0.0_wp, r)
+    if (registered%exists()) then
+      pair%plain_values = .not. all(ieee_is_finite(r%first) .and. ieee_is_finite(r%second))
+      return
+    end if
+    pair%plain_values = all(is_missing(r(:, 1)%value))
     if (.not. pair%plain_values) return
     call user_pair_values(coordinate, 0.0_wp, parameters, v1, v2, v3)
     if (all(is_missing(v1))) &
       call raise(err, exit_data, 'pair '//to_text(coordinate)//' asks for a user procedure, but none is linked; '// &
-                 'see docs/how-to/user-procedures.md for how to write user_pair and link it')
+                 'see docs/how-to/user-procedures.md for how to write user_pair and link or register it')
   end subroutine make_procedure_pair
 
   !> Whether a number is the answer of a default procedure.
@@ -62,6 +71,35 @@ contains
 
     is_missing = x <= not_linked
   end function is_missing
+
+  !> The three points from the form with derivatives. A procedure that is registered may leave derivatives out, which are then not
+  !> numbers.
+  subroutine find_points(self, q, r)
+    type(procedure_pair_type), intent(in) :: self   !< the procedure pair
+    real(wp), intent(in) :: q                       !< value of the coordinate, in the user's unit
+    type(taylor), intent(out) :: r(3, 3)            !< the three points by columns, with derivatives in q [m]
+
+    if (self%registered%exists()) then
+      call call_pair(self%registered, self%coordinate, q, self%parameters, r)
+    else
+      call user_pair(self%coordinate, variable(q), self%parameters, r(:, 1), r(:, 2), r(:, 3))
+    end if
+  end subroutine find_points
+
+  !> The three points from the form in plain reals.
+  subroutine find_plain_points(self, q, points)
+    type(procedure_pair_type), intent(in) :: self   !< the procedure pair
+    real(wp), intent(in) :: q                       !< value of the coordinate, in the user's unit
+    real(wp), intent(out) :: points(3, 3)           !< the three points by columns [m]
+    type(taylor) :: r(3, 3)
+
+    if (self%registered%exists()) then
+      call call_pair(self%registered, self%coordinate, q, self%parameters, r)
+      points = r%value
+    else
+      call user_pair_values(self%coordinate, q, self%parameters, points(:, 1), points(:, 2), points(:, 3))
+    end if
+  end subroutine find_plain_points
 
   !> The motion from the procedure's three points. Fails where they are not finite, or lie on one line.
   subroutine evaluate(self, q, motion, err)
@@ -76,7 +114,7 @@ contains
     if (self%plain_values) then
       call differentiate(self, q, r, ok)
     else
-      call user_pair(self%coordinate, variable(q), self%parameters, r(:, 1), r(:, 2), r(:, 3))
+      call find_points(self, q, r)
       ok = all(ieee_is_finite(r%value) .and. ieee_is_finite(r%first) .and. ieee_is_finite(r%second))
     end if
     if (.not. ok) then
@@ -161,8 +199,7 @@ contains
     do number = 1, step_count
       h = trial_step(number, 1.0_wp)
       do i = -half_width, half_width
-        call user_pair_values(self%coordinate, q + i*h, self%parameters, &
-                              values(i, :, 1), values(i, :, 2), values(i, :, 3))
+        call find_plain_points(self, q + i*h, values(i, :, :))
       end do
       if (.not. all(ieee_is_finite(values))) cycle   ! too wide: outside the procedure's domain
       call points_from_stencil(values, h, trial, worst)

@@ -1,4 +1,5 @@
 """The library for C and C++: what it shows, its header, and the programs of examples/c."""
+import math
 import os
 import re
 import shutil
@@ -6,7 +7,7 @@ import subprocess
 
 import pytest
 
-from mech9_cases import TREE, run, text_of
+from mech9_cases import TREE, read_table, run, table_of, text_of, tolerance_of
 
 HEADER = os.path.join(TREE, 'include', 'mech9.h')
 FOLDER = os.path.join(TREE, 'examples', 'c')
@@ -21,7 +22,7 @@ def shared_library(build):
 
 
 def declared_names():
-    return set(re.findall(r'\b(mech9_\w+)\(', text_of(HEADER)))
+    return {name for name in re.findall(r'\b(mech9_\w+)\(', text_of(HEADER)) if not name.endswith('_function')}
 
 
 def compiled(build, library, source, tmp_path, compiler, *options):
@@ -32,7 +33,7 @@ def compiled(build, library, source, tmp_path, compiler, *options):
     sanitizers = ['-fsanitize=address,undefined'] if build.kind == 'Sanitize' else []
     folder = os.path.dirname(library)
     done = subprocess.run([compiler, '-Wall', '-Wextra', '-Wpedantic', '-Werror', *options, *sanitizers, '-I', os.path.dirname(HEADER),
-                           source, '-o', str(program), library, f'-Wl,-rpath,{folder}'], capture_output=True, text=True)
+                           source, '-o', str(program), library, f'-Wl,-rpath,{folder}', '-lm'], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return str(program)
 
@@ -130,3 +131,49 @@ def test_wrong_use(checks, build, library, tmp_path):
     program = compiled(build, library, str(source), tmp_path, 'gcc', '-std=c99')
     done = run(program, folder=FOLDER)
     checks.equal((done.returncode, done.stdout), (0, ''), f'wrong calls are told, and nothing else is printed; {done.stderr}')
+
+
+def test_own_force_in_c(checks, build, library, tmp_path):
+    done = run(compiled(build, library, os.path.join(FOLDER, 'air_drag.c'), tmp_path, 'gcc', '-std=c99'))
+    checks.equal(done.returncode, 0, f'it runs; {done.stderr}')
+    speeds = [float(line.split()[-2]) for line in done.stdout.splitlines()]
+    final = (2*9.81/0.1)**0.5
+    # the tolerances of a run that names none are 1e-8
+    checks.near(speeds, [final*math.tanh(9.81*t/final) for t in range(6)], 2e-6, 'the weight falls towards its final speed')
+
+
+@pytest.fixture(name='with_procedures')
+def program_with_user_procedures(build, library, tmp_path):
+    """A function that makes a run of a sample of user_procs with functions of C of a form."""
+    program = compiled(build, library, os.path.join(TREE, 'tests', 'api', 'user_procedures.c'), tmp_path, 'gcc', '-std=c99')
+    return lambda sample, form: run(program, sample, os.path.join(TREE, 'user_procs', sample, sample + '.nml'), form, folder=tmp_path)
+
+
+@pytest.mark.parametrize('sample', ('trammel', 'cycloidal_drive', 'cardan_coupling', 'air_drag'))
+def test_user_procedures(checks, build, with_procedures, sample):
+    """Functions of C and linked procedures in Fortran, which closed forms are held against elsewhere, give the same motion."""
+    linked = table_of(build.program(sample + ('_d' if sample == 'air_drag' else '_k')),
+                      os.path.join(TREE, 'user_procs', sample, sample + '.nml'))
+    for form in ('exact', 'values'):
+        done = with_procedures(sample, form)
+        checks.equal(done.returncode, 0, f'{sample}, {form}: it runs; {done.stderr}')
+        table = read_table(done.stdout)
+        for column in linked:
+            if column != 'closure':
+                # motions under forces agree to their tolerances of 1e-10, which drag makes smaller
+                limit = 1e-9 if sample == 'air_drag' else tolerance_of(column)
+                checks.near(table[column], linked[column], limit, f'{sample}, {form}: {column}')
+
+
+@pytest.mark.parametrize('sample, form, code, told', (
+    ('trammel', 'failing', 3, 'the user procedure of pair 1 gives numbers that are not finite at q = 0.3'),
+    ('trammel', 'none', 3, 'asks for a user procedure, but none is linked'),
+    ('cycloidal_drive', 'failing', 3, 'the user procedure of the drive of coordinate 4 gives numbers that are not finite at t = 0'),
+    ('cardan_coupling', 'failing', 3, 'the user procedure of coupling 1 gives numbers that are not finite'),
+    ('air_drag', 'failing', 3, 'the user procedure for forces says that it has no forces at t = 0'),
+    ('air_drag', 'wrong', 3, 'the user procedure for forces calls add_force with link 40, but the links of this mechanism are 1 to 3')))
+def test_failing_user_procedures(checks, with_procedures, sample, form, code, told):
+    done = with_procedures(sample, form)
+    checks.equal(done.returncode, code, f'{sample}, {form}: it fails; {done.stderr}')
+    checks.true(told in done.stderr, f'{sample}, {form}: it is told: {done.stderr}')
+    checks.true(f'{sample}.nml:' in done.stderr, f'{sample}, {form}: with its place: {done.stderr}')

@@ -18,7 +18,7 @@ def c_page():
     """The header with an introduction."""
     return f'''# The interface for C and C++
 
-This page shows `include/mech9.h` as it is. `examples/c` has a program in C and one in C++. The library is built by `cmake --preset release -DMECH9_SHARED=ON`.
+This page shows `include/mech9.h` as it is. `examples/c` has two programs in C and one in C++. The library is built by `cmake --preset release -DMECH9_SHARED=ON`.
 After its installation CMake finds it by `find_package(mech9)` as `mech9::c`, and other builds by `pkg-config --cflags --libs mech9`.
 
 ```c
@@ -69,7 +69,7 @@ def python_page():
     shown = next(ast.literal_eval(item.value) for item in start.body if isinstance(item, ast.Assign) and item.targets[0].id == '__all__')
     found = {item.name: item for module in tree.values() for item in module.body if isinstance(item, (ast.FunctionDef, ast.ClassDef))}
     lines = ['# The Python package', '',
-             'This page is made from the code of `python/mech9`; [ten things in Python](../tutorials/python.md) shows how it is used.', '']
+             'This page is made from the code of `python/mech9`; [eleven things in Python](../tutorials/python.md) shows how it is used.', '']
     functions = [name for name in shown if isinstance(found[name], ast.FunctionDef)]
     lines += ['| function | |', '| --- | --- |', *(f'| `mech9.{name}{signature(found[name])}` | {words(found[name])} |' for name in functions), '']
     for name in shown:

@@ -23,8 +23,8 @@ BALL = CASE.replace('coordinates=2', 'coordinates=4').replace('cq=1,2', 'cq=1,2,
     "&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /", "&pair coordinates=2,3,4, links=2,3, kind='spherical' /").replace(
     '&body link=2', '\n'.join(f'&initial coordinate={k}, position=0 /' for k in (3, 4)) + '\n&body link=2').replace(
     'centre=1.0,0.0,0.0 /', 'centre=1.0,0.0,0.0, inertia=1,1,1,0,0,0 /')
-PROCEDURES = (('loads%add_force', 'link', 3), ('loads%add_torque', 'link', 3), ('loads%add_generalized', 'coordinate', 2),
-              ('state%position', 'link', 3), ('state%velocity', 'link', 3), ('state%turned', 'link', 3))
+PROCEDURES = (('add_force', 'link', 3), ('add_torque', 'link', 3), ('add_generalized', 'coordinate', 2),
+              ('position', 'link', 3), ('velocity', 'link', 3), ('turned', 'link', 3))
 EACH = pytest.mark.parametrize('kind', range(1, len(PROCEDURES) + 1), ids=[name for name, _, _ in PROCEDURES])
 
 

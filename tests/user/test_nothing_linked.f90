@@ -4,6 +4,7 @@ module test_nothing_linked
   use mech9_error, only: error_type, exit_data
   use mech9_motion_view, only: motion_view_type
   use mech9_force_sum, only: force_sum_type, new_force_sum
+  use mech9_registered_procedures, only: registered_procedure_type
   use mech9_procedure_pair, only: procedure_pair_type, make_procedure_pair
   use mech9_procedure_drive, only: procedure_drive_type, make_procedure_drive
   use mech9_procedure_load, only: procedure_load_type
@@ -32,18 +33,18 @@ contains
     type(force_sum_type) :: forces
     type(error_type), allocatable :: err
 
-    call make_procedure_pair(3, [1.0_wp, 2.0_wp], pair, err)
+    call make_procedure_pair(3, [1.0_wp, 2.0_wp], registered_procedure_type(), pair, err)
     call test%has_error(err, exit_data, 'a pair without its procedure is refused')
     call test%is_true(index(err%message, 'pair 3') > 0 .and. index(err%message, 'none is linked') > 0 .and. &
                       index(err%message, 'user_pair') > 0, 'the message names the pair, its procedure and that none is linked')
 
-    call make_procedure_drive(5, 0.0_wp, [real(wp) ::], drive, err)
+    call make_procedure_drive(5, 0.0_wp, [real(wp) ::], registered_procedure_type(), drive, err)
     call test%has_error(err, exit_data, 'a drive without its procedure is refused')
     call test%is_true(index(err%message, 'coordinate 5') > 0 .and. index(err%message, 'none is linked') > 0 .and. &
                       index(err%message, 'user_drive') > 0, &
                       'the message names the coordinate, its procedure and that none is linked')
 
-    call make_procedure_coupling(2, 0.0_wp, [real(wp) ::], coupling, err)
+    call make_procedure_coupling(2, 0.0_wp, [real(wp) ::], registered_procedure_type(), coupling, err)
     call test%has_error(err, exit_data, 'a coupling without its procedure is refused')
     call test%is_true(index(err%message, 'coupling 2') > 0 .and. index(err%message, 'none is linked') > 0 .and. &
                       index(err%message, 'user_coupling') > 0, &

@@ -3,6 +3,7 @@ module test_plain_values_linked
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_pair, only: pair_motion_type
+  use mech9_registered_procedures, only: registered_procedure_type
   use mech9_procedure_pair, only: procedure_pair_type, make_procedure_pair
   use mech9_procedure_drive, only: procedure_drive_type, make_procedure_drive
   use mech9_testing, only: tester_type
@@ -27,7 +28,7 @@ contains
     type(error_type), allocatable :: err
     real(wp) :: q, dq, ddq
 
-    call make_procedure_pair(2, [real(wp) ::], pair, err)
+    call make_procedure_pair(2, [real(wp) ::], registered_procedure_type(), pair, err)
     call test%no_error(err, 'a pair in plain values is made')
     call test%is_true(pair%plain_values, 'the form of the pair is found')
     call pair%evaluate(0.5_wp, motion, err)
@@ -37,7 +38,7 @@ contains
     call test%near(motion%v(2), cos(0.5_wp), 1.0e-11_wp, 'the point moves with the slope of its curve')
     call test%near(motion%v_rate(3), 0.6_wp, 1.0e-10_wp, 'the second derivative is that of the curve')
 
-    call make_procedure_drive(1, 0.0_wp, [0.0_wp, 1.0_wp, 2.0_wp], drive, err)
+    call make_procedure_drive(1, 0.0_wp, [0.0_wp, 1.0_wp, 2.0_wp], registered_procedure_type(), drive, err)
     call test%no_error(err, 'a drive in plain values is made')
     call test%is_true(drive%plain_values, 'the form of the drive is found')
     call drive%evaluate(0.5_wp, q, dq, ddq, err)

@@ -3,6 +3,7 @@ module test_user_couplings
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_type, exit_data
   use mech9_random, only: random_type
+  use mech9_registered_procedures, only: registered_procedure_type
   use mech9_procedure_coupling, only: procedure_coupling_type, make_procedure_coupling
   use mech9_testing, only: tester_type
   implicit none
@@ -27,7 +28,7 @@ contains
     type(procedure_coupling_type), intent(out) :: couplings(2)   !< in Taylor arithmetic, in plain values
     type(error_type), allocatable :: err
 
-    call make_procedure_coupling(number, 0.0_wp, parameters, couplings(1), err)
+    call make_procedure_coupling(number, 0.0_wp, parameters, registered_procedure_type(), couplings(1), err)
     call test%no_error(err, 'a coupling whose procedure is linked is accepted')
     call test%is_true(.not. couplings(1)%plain_values, 'where both forms are linked Taylor arithmetic is taken')
     couplings(2) = couplings(1)

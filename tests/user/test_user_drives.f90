@@ -3,6 +3,7 @@ module test_user_drives
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_type, exit_data
   use mech9_random, only: random_type
+  use mech9_registered_procedures, only: registered_procedure_type
   use mech9_procedure_drive, only: procedure_drive_type, make_procedure_drive
   use mech9_testing, only: tester_type
   implicit none
@@ -27,7 +28,7 @@ contains
     type(procedure_drive_type), intent(out) :: drives(2)   !< in Taylor arithmetic, in plain values
     type(error_type), allocatable :: err
 
-    call make_procedure_drive(coordinate, 0.0_wp, parameters, drives(1), err)
+    call make_procedure_drive(coordinate, 0.0_wp, parameters, registered_procedure_type(), drives(1), err)
     call test%no_error(err, 'a drive whose procedure is linked is accepted')
     call test%is_true(.not. drives(1)%plain_values, 'where both forms are linked Taylor arithmetic is taken')
     drives(2) = drives(1)

@@ -11,6 +11,7 @@ module test_user_pairs
   use mech9_pose, only: pose_type
   use mech9_pair, only: pair_motion_type, screw_factors_type
   use mech9_screw_pair, only: screw_pair_type, helical_pair
+  use mech9_registered_procedures, only: registered_procedure_type
   use mech9_procedure_pair, only: procedure_pair_type, make_procedure_pair
   use mech9_random_geometry, only: random_pose
   use mech9_motion_check, only: check_derivatives, check_same_motion
@@ -45,7 +46,7 @@ contains
     type(procedure_pair_type), intent(out) :: plain_pair   !< by plain values
     type(error_type), allocatable :: err
 
-    call make_procedure_pair(coordinate, parameters, exact_pair, err)
+    call make_procedure_pair(coordinate, parameters, registered_procedure_type(), exact_pair, err)
     call test%no_error(err, 'a pair whose procedure is linked is accepted')
     call test%is_true(.not. exact_pair%plain_values, 'where both forms are linked Taylor arithmetic is taken')
     plain_pair = exact_pair

@@ -4,6 +4,7 @@
 module mech9_document
   use mech9_kinds, only: wp, long
   use mech9_source, only: source_type, span_type
+  use mech9_registered_procedures, only: registered_procedures_type
   implicit none
   private
   public :: document_type, group_type, item_type, value_type, subscript_type
@@ -54,6 +55,7 @@ module mech9_document
   type :: document_type
     type(source_type) :: source  !< the data file
     type(group_type), allocatable :: groups(:)
+    type(registered_procedures_type) :: procedures   !< for its groups of kind 'user', beside those that are linked
   end type document_type
 
 contains

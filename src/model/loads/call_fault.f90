@@ -8,7 +8,7 @@ module mech9_call_fault
   type :: call_fault_type
     integer :: links = huge(1)             !< links that users know; those of joints with several freedoms have higher numbers
     logical :: found = .false.
-    character(len=21) :: procedure = ' '   !< name of the procedure called, such as loads%add_force
+    character(len=16) :: procedure = ' '   !< name of the procedure called, such as add_force
     character(len=10) :: counted = ' '     !< 'link' or 'coordinate'
     integer :: number = 0     !< the number given
     integer :: greatest = 0   !< the greatest number that exists; the least is 1

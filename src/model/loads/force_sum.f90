@@ -58,7 +58,7 @@ contains
     real(wp) :: arm(3)
     logical :: exists
 
-    call self%has_link(link, 'loads%add_force', exists)
+    call self%has_link(link, 'add_force', exists)
     if (.not. exists) return
     arm = turn(state%links(link)%r, point)
     self%force(:, link) = self%force(:, link) + force
@@ -72,7 +72,7 @@ contains
     real(wp), intent(in) :: torque(3)              !< fixed axes [N m]
     logical :: exists
 
-    call self%has_link(link, 'loads%add_torque', exists)
+    call self%has_link(link, 'add_torque', exists)
     if (exists) self%torque(:, link) = self%torque(:, link) + torque
   end subroutine add_torque
 
@@ -85,7 +85,7 @@ contains
     real(wp), intent(in) :: value                  !< [N m, N]
 
     if (coordinate < 1 .or. coordinate > size(self%generalized)) then
-      call self%fault%note('loads%add_generalized', 'coordinate', coordinate, size(self%generalized))
+      call self%fault%note('add_generalized', 'coordinate', coordinate, size(self%generalized))
       return
     end if
     self%generalized(coordinate) = self%generalized(coordinate) + value

@@ -38,6 +38,9 @@ module mech9_motion_view
     procedure :: position
     procedure :: velocity
     procedure :: turned
+    procedure :: angular_velocity
+    procedure :: coordinate
+    procedure :: rate
     procedure, private, non_overridable :: has_link
   end type motion_view_type
 
@@ -78,7 +81,7 @@ contains
     real(wp) :: position(3)
 
     position = 0.0_wp
-    if (self%has_link(link, 'state%position')) position = self%links(link)%point_position(point)
+    if (self%has_link(link, 'position')) position = self%links(link)%point_position(point)
   end function position
 
   !> Velocity of a point of a link, fixed axes [m/s]; zero where there is no such link, which is noted.
@@ -89,7 +92,7 @@ contains
     real(wp) :: velocity(3)
 
     velocity = 0.0_wp
-    if (self%has_link(link, 'state%velocity')) velocity = self%links(link)%point_velocity(point)
+    if (self%has_link(link, 'velocity')) velocity = self%links(link)%point_velocity(point)
   end function velocity
 
   !> A vector given in the axes of a link, in fixed axes; zero where there is no such link, which is noted.
@@ -100,8 +103,46 @@ contains
     real(wp) :: turned(3)
 
     turned = 0.0_wp
-    if (self%has_link(link, 'state%turned')) turned = self%links(link)%fixed_components(vector)
+    if (self%has_link(link, 'turned')) turned = self%links(link)%fixed_components(vector)
   end function turned
+
+  !> Angular velocity of a link, fixed axes [rad/s]; zero where there is no such link, which is noted.
+  function angular_velocity(self, link)
+    class(motion_view_type), intent(in) :: self   !< the motion
+    integer, intent(in) :: link                   !< its number
+    real(wp) :: angular_velocity(3)
+
+    angular_velocity = 0.0_wp
+    if (self%has_link(link, 'angular_velocity')) angular_velocity = self%links(link)%omega
+  end function angular_velocity
+
+  !> A coordinate [rad, m]; zero where there is none of this number, which is noted.
+  real(wp) function coordinate(self, number)
+    class(motion_view_type), intent(in) :: self   !< the motion
+    integer, intent(in) :: number                 !< of the coordinate
+
+    coordinate = 0.0_wp
+    if (has_coordinate(self, number, 'q')) coordinate = self%q(number)
+  end function coordinate
+
+  !> The rate of a coordinate [rad/s, m/s]; zero where there is none of this number, which is noted.
+  real(wp) function rate(self, number)
+    class(motion_view_type), intent(in) :: self   !< the motion
+    integer, intent(in) :: number                 !< of the coordinate
+
+    rate = 0.0_wp
+    if (has_coordinate(self, number, 'dq')) rate = self%dq(number)
+  end function rate
+
+  !> Whether a coordinate exists. If not, the call is noted where faults are kept.
+  logical function has_coordinate(self, number, procedure)
+    class(motion_view_type), intent(in) :: self   !< the motion
+    integer, intent(in) :: number                 !< of the coordinate
+    character(len=*), intent(in) :: procedure     !< name of the procedure that was given the number
+
+    has_coordinate = number >= 1 .and. number <= size(self%q)
+    if (.not. has_coordinate .and. associated(self%fault)) call self%fault%note(procedure, 'coordinate', number, size(self%q))
+  end function has_coordinate
 
   !> From now on, until `note_no_faults`, wrong numbers of links are noted in `fault`, which must exist as long.
   subroutine note_faults_in(self, fault)
