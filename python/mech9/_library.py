@@ -36,6 +36,19 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     'mechanism_parameters': (c_int, [c_void_p]),
     'mechanism_parameter': (c_char_p, [c_void_p, c_int]),
     'mechanism_is_driven': (_STATUS, [c_void_p, POINTER(c_int)]),
+    'mechanism_use_pair': (_STATUS, [c_void_p, c_void_p, c_void_p]),
+    'mechanism_use_drive': (_STATUS, [c_void_p, c_void_p, c_void_p]),
+    'mechanism_use_coupling': (_STATUS, [c_void_p, c_void_p, c_void_p]),
+    'mechanism_use_force': (_STATUS, [c_void_p, c_void_p, c_void_p]),
+    'motion_position': (None, [c_void_p, c_int, c_void_p, c_void_p]),
+    'motion_velocity': (None, [c_void_p, c_int, c_void_p, c_void_p]),
+    'motion_turned': (None, [c_void_p, c_int, c_void_p, c_void_p]),
+    'motion_angular_velocity': (None, [c_void_p, c_int, c_void_p]),
+    'motion_q': (c_double, [c_void_p, c_int]),
+    'motion_dq': (c_double, [c_void_p, c_int]),
+    'loads_add_force': (None, [c_void_p, c_void_p, c_int, c_void_p, c_void_p]),
+    'loads_add_torque': (None, [c_void_p, c_int, c_void_p]),
+    'loads_add_generalized': (None, [c_void_p, c_int, c_double]),
     'results_destroy': (None, [c_void_p]),
     'results_columns': (c_int, [c_void_p]),
     'results_rows': (c_int, [c_void_p]),
@@ -93,6 +106,16 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     'simulation_set_state': (_STATUS, [c_void_p, c_int, c_void_p]),
     'simulation_closure': (c_double, [c_void_p]),
 }
+
+
+class Handle(c_void_p):
+    """The address of an object of the library, and the user procedures that calls with it may call."""
+    procedures: tuple[Any, ...] = ()
+
+    def __init__(self, value: int | None = None, procedures: tuple[Any, ...] = ()):
+        super().__init__(value)
+        if procedures:
+            self.procedures = procedures
 
 
 class Library:
@@ -163,22 +186,37 @@ def _text(value: bytes | None) -> str:
     return '' if value is None else value.decode('utf-8', 'replace')
 
 
-def _failure(code: int) -> Error:
-    """The failure of the last call in this thread."""
+def _begin(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Forget what user procedures raised in earlier calls, and return those that this call may call."""
+    procedures: tuple[Any, ...] = getattr(arguments[0], 'procedures', ()) if arguments else ()
+    for procedure in procedures:
+        procedure.raised.clear()
+    return procedures
+
+
+def _failure(code: int, procedures: tuple[Any, ...]) -> Error:
+    """The failure of the last call in this thread; what a user procedure raised is its cause."""
     handle = _handle.address
     found = []
     for i in range(lib.error_findings(handle)):
         line = lib.error_finding_line(handle, i)
         found.append(Finding(_text(lib.error_finding_message(handle, i)), _text(lib.error_finding_file(handle, i)) or None,
                              line or None, lib.error_finding_column(handle, i) or None if line else None))
-    return CODES.get(code, Error)(_text(lib.error_message(handle)), code, tuple(found))
+    failure = CODES.get(code, Error)(_text(lib.error_message(handle)), code, tuple(found))
+    for procedure in procedures:
+        for reason in procedure.raised:
+            if not isinstance(reason, Exception):
+                raise reason   # KeyboardInterrupt, SystemExit
+            failure.__cause__ = reason
+    return failure
 
 
 def call(function: Callable[..., int], *arguments: Any) -> None:
     """Call a function that can fail, and raise its failure."""
+    procedures = _begin(arguments)
     code = function(*arguments, _handle.address)
     if code:
-        raise _failure(code)
+        raise _failure(code, procedures)
 
 
 # Seconds that a call may take to stop.
@@ -194,6 +232,7 @@ def call_stoppable(function: Callable[..., int], arguments: Callable[[Any], tupl
     """
     stop = c_int(0)
     made = arguments(ctypes.addressof(stop))
+    procedures = _begin(made)
     failures: list[Error | None] = []
     broken: list[BaseException] = []
     done = threading.Event()
@@ -201,7 +240,7 @@ def call_stoppable(function: Callable[..., int], arguments: Callable[[Any], tupl
     def work() -> None:
         try:
             code = function(*made, _handle.address)
-            failures.append(_failure(code) if code else None)
+            failures.append(_failure(code, procedures) if code else None)
         except BaseException as reason:
             broken.append(reason)
         finally:

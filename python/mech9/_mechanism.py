@@ -7,14 +7,15 @@ import os
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Sequence
+from typing import TYPE_CHECKING, Any, Sequence, TypeVar
 
 import numpy as np
 
 from ._errors import DataError, Error, UsageError
-from ._library import call, call_stoppable, count, lib
+from ._library import Handle, call, call_stoppable, count, lib
 from ._library import text as text_of
 from ._pictures import Picture, drawn
+from ._procedures import Procedure
 from ._results import Results
 from ._words import group, run_setting, written
 
@@ -23,9 +24,12 @@ if TYPE_CHECKING:
     from ._simulation import Simulation, Simulations
 
 
+F = TypeVar('F')
+
+
 def read(path: str | os.PathLike[str]) -> Mechanism:
     """Read a data file, and check its syntax. `check` or a run checks whether the mechanism makes sense."""
-    handle = ctypes.c_void_p()
+    handle = Handle()
     name = os.fsencode(path)
     if b'\0' in name:
         raise UsageError('a path must not have zero bytes', 2)
@@ -35,7 +39,7 @@ def read(path: str | os.PathLike[str]) -> Mechanism:
 
 def read_text(text: str) -> Mechanism:
     """Read a text that has the form of a data file."""
-    handle = ctypes.c_void_p()
+    handle = Handle()
     call(lib.read_text, text_of(text), ctypes.byref(handle))
     return Mechanism(_handle=handle)
 
@@ -118,7 +122,7 @@ class Optimum:
         row = self.optima.table[i]
         n = len(self._searched.parameters)
         parameters, q = np.array(row[1:1 + n]), np.array(row[1 + n:-1])
-        handle = ctypes.c_void_p()
+        handle = Handle(procedures=self._searched._handle.procedures)
         call(lib.mechanism_design, self._searched._handle, int(self._with_forces), parameters.ctypes.data, q.ctypes.data,
              ctypes.byref(handle))
         return Mechanism(_handle=handle)
@@ -143,9 +147,9 @@ class Mechanism:
     Mechanism(title='four-bar') makes an empty one, to which `add` brings groups.
     """
 
-    def __init__(self, title: str | None = None, *, _handle: ctypes.c_void_p | None = None):
+    def __init__(self, title: str | None = None, *, _handle: Handle | None = None):
         if _handle is None:
-            _handle = ctypes.c_void_p()
+            _handle = Handle()
             call(lib.read_text, b'', ctypes.byref(_handle))
         self._handle = _handle
         if title is not None:
@@ -206,7 +210,7 @@ class Mechanism:
 
     def copy(self) -> Mechanism:
         """An independent copy."""
-        handle = ctypes.c_void_p()
+        handle = Handle(procedures=self._handle.procedures)
         call(lib.mechanism_copy, self._handle, ctypes.byref(handle))
         return Mechanism(_handle=handle)
 
@@ -226,17 +230,51 @@ class Mechanism:
         """The text of a data file that makes this mechanism."""
         return str(lib.mechanism_text(self._handle).decode('utf-8', 'replace'))
 
-    def __getstate__(self) -> str:
-        return self.text()
+    def __getstate__(self) -> tuple[str, list[tuple[str, Any]]]:
+        return self.text(), [(procedure.name, procedure.function) for procedure in self._handle.procedures]
 
-    def __setstate__(self, text: str) -> None:
-        handle = ctypes.c_void_p()
+    def __setstate__(self, state: tuple[str, list[tuple[str, Any]]]) -> None:
+        text, procedures = state
+        handle = Handle()
         call(lib.read_text, text.encode('utf-8'), ctypes.byref(handle))
         self._handle = handle
+        for name, function in procedures:
+            self._use(name, function)
 
     def __repr__(self) -> str:
         groups = sum(line.startswith('&') for line in self.text().splitlines())
         return f'<mech9.Mechanism: {groups} groups>'
+
+    # user procedures
+
+    def pair(self, function: F) -> F:
+        """Register a function for pairs with kind='user', also as @m.pair: f(coordinate, q, parameters) returns three points (3, 3)
+        [m] of the moving link in its reference link, or (3, 3, 3): the points and their two derivatives by q.
+
+        A compiled function has an `address`, as one of numba.cfunc (mech9.numba has the signatures).
+        """
+        return self._use('pair', function)
+
+    def drive(self, function: F) -> F:
+        """Register a function for drives with kind='user', also as @m.drive: f(coordinate, t, parameters) returns the coordinate
+        [rad, m], or three numbers: the coordinate and its two derivatives by t."""
+        return self._use('drive', function)
+
+    def coupling(self, function: F) -> F:
+        """Register a function for couplings with kind='user', also as @m.coupling: f(coupling, first, parameters) returns the second
+        coordinate [rad, m], or three numbers: this coordinate and its two derivatives by the first one."""
+        return self._use('coupling', function)
+
+    def force(self, function: F) -> F:
+        """Register a function for loads with kind='user', also as @m.force: f(t, motion, parameters, loads) reads the motion and adds
+        to the loads (see Motion and Loads)."""
+        return self._use('force', function)
+
+    def _use(self, name: str, function: F) -> F:
+        procedure = Procedure(name, function)
+        call(getattr(lib, 'mechanism_use_' + name), self._handle, procedure.address, None)
+        self._handle.procedures = tuple(one for one in self._handle.procedures if one.name != name) + (procedure,)
+        return function
 
     # analyses
 
@@ -474,7 +512,7 @@ class _PositionFinder:
     """The assembled mechanism whose positions are found."""
 
     def __init__(self, mechanism: Mechanism):
-        self.handle = ctypes.c_void_p()
+        self.handle = Handle(procedures=mechanism._handle.procedures)
         call(lib.positions_create, mechanism._handle, ctypes.byref(self.handle))
         self.coordinates: int = lib.positions_coordinates(self.handle)
         self.independent: int = lib.positions_independent(self.handle)

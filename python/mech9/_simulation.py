@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Callable
 import numpy as np
 
 from ._errors import Error, UsageError
-from ._library import call, lib, text
+from ._library import Handle, call, lib, text
 
 if TYPE_CHECKING:
     from ._mechanism import Mechanism
@@ -18,9 +18,9 @@ class Simulation:
     """A motion from its start: t [s], q, dq, ddq (M,) in the units of the data file."""
 
     def __init__(self, mechanism: Mechanism, driven: bool):
-        handle = ctypes.c_void_p()
+        handle = Handle(procedures=mechanism._handle.procedures)
         call(lib.simulation_create, mechanism._handle, 0 if driven else 1, None, ctypes.byref(handle))
-        self._handle: ctypes.c_void_p | None = handle
+        self._handle: Handle | None = handle
         self._n: int = lib.simulation_coordinates(handle)
 
     def _open(self) -> ctypes.c_void_p:

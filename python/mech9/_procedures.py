@@ -1,0 +1,152 @@
+"""User procedures: functions of Python, or compiled ones, that the library calls for groups with kind='user'."""
+from __future__ import annotations
+
+import ctypes
+from ctypes import CFUNCTYPE, POINTER, c_double, c_int, c_void_p
+from typing import Any, Callable
+
+import numpy as np
+
+from ._errors import UsageError
+from ._library import lib
+
+_Numbers = POINTER(c_double)
+_Three = c_double*3
+_PAIR = CFUNCTYPE(c_int, c_int, c_double, c_int, _Numbers, _Numbers, c_void_p)
+_CURVE = _PAIR   # of drives and couplings
+_FORCE = CFUNCTYPE(c_int, c_double, c_void_p, c_int, _Numbers, c_void_p, c_void_p)
+
+
+def _three(values: Any) -> Any:
+    x, y, z = values
+    return _Three(x, y, z)
+
+
+class Motion:
+    """The motion of links and coordinates in a call for forces, in SI units. Links and coordinates have their numbers, from 1.
+
+    Points and directions are given in the system of the link; all else is along the axes of link 1.
+    """
+
+    def __init__(self, address: int):
+        self._address: int | None = address
+
+    def _open(self) -> int:
+        if self._address is None:
+            raise UsageError('motion and loads can be used within the call alone', 2)
+        return self._address
+
+    def _ask(self, function: Callable[..., None], *arguments: Any) -> np.ndarray:
+        found = _Three()
+        function(self._open(), *arguments, found)
+        return np.array(found)
+
+    def position(self, link: int, point: Any) -> np.ndarray:
+        """Position of a point of a link (3,) [m]."""
+        return self._ask(lib.motion_position, link, _three(point))
+
+    def velocity(self, link: int, point: Any) -> np.ndarray:
+        """Velocity of a point of a link (3,) [m/s]."""
+        return self._ask(lib.motion_velocity, link, _three(point))
+
+    def turned(self, link: int, direction: Any) -> np.ndarray:
+        """A direction that is fixed in a link (3,)."""
+        return self._ask(lib.motion_turned, link, _three(direction))
+
+    def angular_velocity(self, link: int) -> np.ndarray:
+        """Angular velocity of a link (3,) [rad/s]."""
+        return self._ask(lib.motion_angular_velocity, link)
+
+    def q(self, coordinate: int) -> float:
+        """A coordinate [rad, m]."""
+        return float(lib.motion_q(self._open(), coordinate))
+
+    def dq(self, coordinate: int) -> float:
+        """The rate of a coordinate [rad/s, m/s]."""
+        return float(lib.motion_dq(self._open(), coordinate))
+
+
+class Loads:
+    """The forces of a call, to which a procedure adds its own, in SI units along the axes of link 1."""
+
+    def __init__(self, address: int, motion: Motion):
+        self._address, self._motion = address, motion
+
+    def _open(self) -> int:
+        self._motion._open()
+        return self._address
+
+    def add_force(self, link: int, point: Any, force: Any) -> None:
+        """Add a force [N] at a point of a link, which is given in its system [m]."""
+        lib.loads_add_force(self._open(), self._motion._open(), link, _three(point), _three(force))
+
+    def add_torque(self, link: int, torque: Any) -> None:
+        """Add a torque [N m] on a link."""
+        lib.loads_add_torque(self._open(), link, _three(torque))
+
+    def add_generalized(self, coordinate: int, value: float) -> None:
+        """Add a torque or force [N m, N] on a coordinate: on its moving link, and the opposite on its reference link."""
+        lib.loads_add_generalized(self._open(), coordinate, value)
+
+
+class Procedure:
+    """A function for groups of one name, as the library calls it. `raised` is what its last call in the present analysis raised."""
+
+    def __init__(self, name: str, function: Any):
+        self.name, self.function = name, function
+        self.raised: list[BaseException] = []
+        address = getattr(function, 'address', None)
+        if isinstance(address, int):
+            self.address: int | None = address   # compiled, as numba.cfunc does
+            return
+        if not callable(function):
+            raise UsageError(f'a procedure is a function, not {function!r}', 2)
+        self._thunk = _MAKERS[name](function, self.raised)
+        self.address = ctypes.cast(self._thunk, c_void_p).value
+
+
+def _answered(raised: list[BaseException], work: Callable[[], None]) -> int:
+    """Do the work of a call. An exception must not leave it: it is kept, and the library learns that there are no values."""
+    try:
+        work()
+        return 0
+    except BaseException as reason:
+        raised[:] = [reason]
+        return 1
+
+
+def _parameters(n: int, address: Any) -> np.ndarray:
+    return np.array(address[:n])
+
+
+def _filled(values: Any, shape: tuple[int, ...], address: Any) -> None:
+    """Give values back, with or without two derivatives."""
+    array = np.asarray(values, dtype=float)
+    if array.shape not in (shape, (3, *shape)):
+        raise UsageError(f'the procedure must return an array of the shape {shape}, or {(3, *shape)} with two derivatives, '
+                         f'not {array.shape}', 2)
+    ctypes.memmove(address, np.ascontiguousarray(array).ctypes.data, array.nbytes)
+
+
+def _pair(function: Callable[..., Any], raised: list[BaseException]) -> Any:
+    def call(coordinate: int, q: float, n: int, parameters: Any, points: Any, data: Any) -> int:
+        return _answered(raised, lambda: _filled(function(coordinate, q, _parameters(n, parameters)), (3, 3), points))
+    return _PAIR(call)
+
+
+def _curve(function: Callable[..., Any], raised: list[BaseException]) -> Any:
+    def call(number: int, x: float, n: int, parameters: Any, values: Any, data: Any) -> int:
+        return _answered(raised, lambda: _filled(function(number, x, _parameters(n, parameters)), (), values))
+    return _CURVE(call)
+
+
+def _force(function: Callable[..., Any], raised: list[BaseException]) -> Any:
+    def call(t: float, motion: int, n: int, parameters: Any, loads: int, data: Any) -> int:
+        seen = Motion(motion)
+        code = _answered(raised, lambda: function(t, seen, _parameters(n, parameters), Loads(loads, seen)))
+        seen._address = None
+        return code
+    return _FORCE(call)
+
+
+_MAKERS: dict[str, Callable[..., Any]] = {'pair': _pair, 'drive': _curve, 'coupling': _curve, 'force': _force}

@@ -1,0 +1,232 @@
+"""User procedures in Python and in Numba: against linked ones in Fortran, built-in kinds, and closed forms."""
+import gc
+import math
+import os
+import pickle
+import traceback
+
+import numpy as np
+import pytest
+
+from mech9_cases import TREE, table_of, tolerance_of
+
+WEIGHT = ("&structure cq=1 / &pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,-1 / &body link=2, mass=2 / "
+          "&gravity acceleration=0,0,-9.81 / &load kind='user' / &initial coordinate=1, position=0, velocity=0 / "
+          "&user parameters=0.1 / &time end=2, intervals=4 / &solver relative_tolerance=1e-10, absolute_tolerance=1e-10 /")
+CENTRE = (0.0, 0.0, 0.0)
+
+
+def data_of(sample):
+    return os.path.join(TREE, 'user_procs', sample, sample + '.nml')
+
+
+def trammel(coordinate, q, parameters):
+    (length,) = parameters
+    first = [length*math.cos(q), 0, 0]
+    return [first, [0, length*math.sin(q), 0], [first[0], 0, -1]]
+
+
+def trammel_with_derivatives(coordinate, q, parameters):
+    (length,) = parameters
+    c, s = length*math.cos(q), length*math.sin(q)
+    return [trammel(coordinate, q, parameters), [[-s, 0, 0], [0, c, 0], [-s, 0, 0]], [[-c, 0, 0], [0, -s, 0], [-c, 0, 0]]]
+
+
+def cycloid(coordinate, t, parameters):
+    assert coordinate == 4
+    rise, duration = parameters
+    share = t/duration
+    return rise*(share - math.sin(2*math.pi*share)/(2*math.pi))
+
+
+def cardan(coupling, first, parameters):
+    assert coupling == 1
+    k = math.cos(parameters[0])
+    return first + math.atan2((1 - k)*math.sin(first)*math.cos(first), math.sin(first)**2 + k*math.cos(first)**2)
+
+
+def drag(t, motion, parameters, loads):
+    v = motion.velocity(2, CENTRE)
+    loads.add_force(2, CENTRE, -parameters[0]*np.linalg.norm(v)*v)
+
+
+@pytest.fixture(name='falling')
+def falling_weight(mech9):
+    """The falling weight, whose drag is to be registered."""
+    return mech9.read_text(WEIGHT)
+
+
+def fall(t):
+    """Its way in closed form."""
+    final = math.sqrt(2*9.81/0.1)
+    return final**2/9.81*np.log(np.cosh(9.81*t/final))
+
+
+@pytest.mark.parametrize('sample, kind, function', (
+    ('trammel', 'pair', trammel), ('trammel', 'pair', trammel_with_derivatives), ('cycloidal_drive', 'drive', cycloid),
+    ('cardan_coupling', 'coupling', cardan)))
+def test_like_linked_procedures(checks, build, mech9, sample, kind, function):
+    linked = table_of(build.program(sample + '_k'), data_of(sample))
+    m = mech9.read(data_of(sample))
+    assert getattr(m, kind)(function) is function
+    r = m.kinematics()
+    for column in linked:
+        if column != 'closure':
+            checks.near(r[column], linked[column], tolerance_of(column), f'{sample}: {column}')
+
+
+def test_force(checks, falling):
+    falling.force(drag)
+    r = falling.dynamics()
+    checks.near(r['q1'], fall(r.t), 1e-8, 'the weight falls as the closed form says')
+    with falling.simulation() as sim:
+        sim.advance(2.0)
+        checks.near(sim.q[0], fall(2.0), 1e-8, 'so it does step by step')
+
+
+def test_all_that_forces_read_and_add(checks, mech9):
+    """A spring, a damper and a torque as a procedure, beside the built-in kinds."""
+    groups = ("&structure c(1,:)=0,1,0, c(2,:)=1,0,2, c(3,:)=0,2,0, cq=1,2 / &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 / "
+              "&pair coordinate=2, links=2,3, kind='revolute', point=0.5,0,0, axis=0,1,0 / &time end=1, intervals=10 / "
+              "&body link=2, mass=1, centre=0.3,0,0, inertia=0.1,0.1,0.1,0,0,0 / &body link=3, mass=2, centre=0.2,0.1,0, "
+              "inertia=0.2,0.2,0.2,0,0,0 / &solver relative_tolerance=1e-10, absolute_tolerance=1e-10 / &initial coordinate=1, position=0.2, velocity=1 / &initial coordinate=2, position=0.1, velocity=-2 / ")
+    built = mech9.read_text(groups + "&load kind='spring', links=1,3, position=1,1,1, second_position=0.4,0,0.1, stiffness=20, "
+                            "free_length=0.3, damping=0.5 / &load kind='coordinate', coordinate=2, stiffness=3, damping=0.2, rest=0.1 / "
+                            "&load kind='torque', link=3, torque=1,2,3, frame='link' /").dynamics()
+    own = mech9.read_text(groups + "&load kind='user' /")
+    spins = []
+
+    @own.force
+    def forces(t, motion, parameters, loads):
+        a, b = np.ones(3), (0.4, 0.0, 0.1)
+        way = motion.position(3, b) - motion.position(1, a)
+        length = np.linalg.norm(way)
+        pull = (20*(length - 0.3) + 0.5*(motion.velocity(3, b) @ way)/length)*way/length
+        loads.add_force(1, a, pull)
+        loads.add_force(3, b, -pull)
+        loads.add_generalized(2, -3*(motion.q(2) - 0.1) - 0.2*motion.dq(2))
+        loads.add_torque(3, motion.turned(3, (1, 2, 3)))
+        spins.append(motion.angular_velocity(2) - (0, 0, motion.dq(1)))
+        assert len(parameters) == 0
+
+    r = own.dynamics()
+    for column in ('q1', 'q2', 'ddq1', 'ddq2'):
+        # the tolerances of both motions are 1e-10
+        checks.near(r[column], built[column], 1e-9, f'{column} as under built-in loads', scale=10.0)
+    checks.near(np.array(spins), 0.0, 1e-15, 'the first link turns with its coordinate', scale=10.0)
+
+
+def test_failing_procedures(mech9, falling):
+    @falling.force
+    def late(t, motion, parameters, loads):
+        if t > 0.5:
+            raise RuntimeError('no forces any more')
+    with pytest.raises(mech9.DataError) as caught:
+        falling.dynamics()
+    assert isinstance(caught.value.__cause__, RuntimeError) and 'late' in ''.join(traceback.format_exception(caught.value.__cause__))
+    assert 'says that it has no forces at t = 0.5' in caught.value.message and caught.value.line == 1
+    assert caught.value.results.t.tolist() == [0.0]   # the step beyond fails before the output at 0.5
+
+    falling.force(lambda t, motion, parameters, loads: loads.add_torque(7, CENTRE))
+    with pytest.raises(mech9.DataError, match='calls add_torque with link 7') as caught:
+        falling.dynamics()
+    assert caught.value.__cause__ is None
+    falling.force(lambda t, motion, parameters, loads: loads.add_force(2, (0, 0), CENTRE))
+    with pytest.raises(mech9.DataError) as caught:
+        falling.dynamics()
+    assert isinstance(caught.value.__cause__, ValueError)
+
+    m = mech9.read(data_of('trammel'))
+    m.pair(lambda coordinate, q, parameters: np.zeros((2, 3)))
+    with pytest.raises(mech9.DataError, match='user procedure of pair 1') as caught:
+        m.kinematics()
+    assert 'of the shape (3, 3)' in str(caught.value.__cause__)
+    m.pair(lambda coordinate, q, parameters: np.zeros((3, 3)))
+    with pytest.raises(mech9.DataError, match='on one line'):
+        m.kinematics()
+    with pytest.raises(mech9.UsageError, match='a procedure is a function'):
+        m.pair(3.0)
+    with pytest.raises(mech9.DataError, match='none is linked'):
+        mech9.read(data_of('trammel')).kinematics()
+
+
+def test_interrupted_procedure(falling):
+    @falling.force
+    def stopped(t, motion, parameters, loads):
+        if t > 0.5:
+            raise KeyboardInterrupt
+    with pytest.raises(KeyboardInterrupt), falling.simulation() as sim:
+        sim.advance(1.0)
+
+
+def test_motion_outlives_no_call(mech9, falling):
+    kept = []
+    falling.force(lambda t, motion, parameters, loads: kept.append((motion, loads)))
+    falling.dynamics()
+    motion, loads = kept[0]
+    for call in (lambda: motion.q(1), lambda: motion.position(2, CENTRE), lambda: loads.add_torque(2, CENTRE)):
+        with pytest.raises(mech9.UsageError, match='within the call alone'):
+            call()
+
+
+def test_functions_live_as_long_as_needed(checks, mech9, falling):
+    """No name but the library's own refers to these functions."""
+    falling.force(lambda t, motion, parameters, loads: drag(t, motion, parameters, loads))
+    sim, copy, run = falling.simulation(), falling.copy(), falling.dynamics()
+    changed = falling.with_(**{'user.parameters(1)': 0.2})
+    falling.force(drag)
+    sent = pickle.loads(pickle.dumps(falling))
+    del falling
+    gc.collect()
+    sim.advance(2.0)
+    sim.close()
+    checks.near([sim_q[-1] for sim_q in (copy.dynamics()['q1'], sent.dynamics()['q1'])], fall(2.0), 1e-8, 'copies keep the function')
+    checks.true(changed.dynamics()['q1'][-1] < fall(2.0) - 0.1, 'another number brakes more')
+    checks.true('<svg' in run.sketch()._repr_html_(), 'so does a run that is drawn')
+
+
+def test_studies_and_functions(checks, falling):
+    falling.force(drag)
+    falling.add('quantity', name='way', of='q1', take='end')
+    f = falling.function(['user.parameters(1)'], ['way'])
+    h = 1e-5
+    # differences of fourth order in steps of a ten-thousandth of the number: 1e-8
+    slope = (8*(f([0.1 + h]) - f([0.1 - h])) - f([0.1 + 2*h]) + f([0.1 - 2*h]))/(12*h)
+    checks.near(f.jacobian([0.1])[0], slope, 1e-6, 'the derivative by a number of &user', scale=10.0)
+    one, two = (falling.study(threads=n, **{'user.parameters(1)': [0.05, 0.1, 0.2, 0.4]}) for n in (1, 2))
+    checks.equal(np.asarray(two['way']).tolist(), np.asarray(one['way']).tolist(), 'threads give the same bits')
+    checks.near(float(np.asarray(one['way'])[1]), fall(2.0), 1e-8, 'the second run')
+
+
+def test_compiled_procedures(checks, mech9, falling):
+    numba = pytest.importorskip('numba')
+    from mech9 import numba as ours
+
+    @falling.force
+    @numba.cfunc(ours.FORCE)
+    def compiled(t, motion, n, parameters, loads, data):
+        centre = np.zeros(3)
+        v = ours.velocity(motion, 2, centre)
+        ours.add_force(loads, motion, 2, centre, -parameters[0]*np.sqrt(v @ v)*v)
+        return 0
+
+    r = falling.dynamics()
+    checks.near(r['q1'], fall(r.t), 1e-8, 'a compiled force')
+    del compiled
+    gc.collect()
+    checks.near(falling.dynamics()['q1'], r['q1'], 0.0, 'lives as long as its mechanism')
+
+    m = mech9.read(data_of('cycloidal_drive'))
+
+    @m.drive
+    @numba.cfunc(ours.DRIVE)
+    def drive(coordinate, t, n, parameters, values, data):
+        share, turn = t/parameters[1], 2*math.pi
+        values[0] = parameters[0]*(share - math.sin(turn*share)/turn)
+        values[1] = parameters[0]/parameters[1]*(1 - math.cos(turn*share))
+        values[2] = parameters[0]/parameters[1]**2*turn*math.sin(turn*share)
+        return 0
+
+    m2 = mech9.read(data_of('cycloidal_drive'))
+    m2.drive(cycloid)
+    checks.near(m.kinematics()['ddq1'], m2.kinematics()['ddq1'], 1e-9, 'a compiled drive with derivatives', scale=10.0)
