@@ -107,7 +107,8 @@ double mech9_results_number(const mech9_results *results, int i);
 int mech9_results_parameters(const mech9_results *results);       /* 0: no derivatives */
 /* Parameters come in the order of mech9_mechanism_parameter. */
 double mech9_results_derivative(const mech9_results *results, int i, int parameter);
-const char *mech9_results_text(const mech9_results *results);     /* null: the analysis writes no report */
+/* The report: of a run as JSON, as the option --report writes it, of a check in words; null: the analysis writes none. */
+const char *mech9_results_text(const mech9_results *results);
 /* Matrices, with names and units for their rows and columns. */
 int mech9_results_matrices(const mech9_results *results);
 const char *mech9_results_matrix_name(const mech9_results *results, int i);

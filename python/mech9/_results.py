@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import ctypes
 import html
+import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Iterator, Mapping
 
@@ -64,6 +65,7 @@ class Results(Mapping[str, np.ndarray]):
         self.units: dict[str, str] = {name: lib.results_unit(handle, i).decode() for i, name in enumerate(self.names)}
         self.table: np.ndarray = (np.asarray(memory) if hasattr(memory, '__array_interface__')
                                   else np.empty((0, len(self.names))))
+        self._report_text: bytes = lib.results_text(handle) or b''
         self._columns = {name: i for i, name in enumerate(self.names)}
         numbers = [lib.results_number_name(handle, i).decode() for i in range(lib.results_numbers(handle))]
         self.quantities: dict[str, float] = {name: lib.results_number(handle, i) for i, name in enumerate(numbers)}
@@ -72,6 +74,16 @@ class Results(Mapping[str, np.ndarray]):
                                             for i in range(lib.results_matrices(handle))}
         self.gradients = Gradients({name: {parameter: lib.results_derivative(handle, i, p) for p, parameter in enumerate(parameters)}
                                     for i, name in enumerate(numbers)} if lib.results_parameters(handle) else {})
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """How a run ended and the work that it took, as the option --report writes it; empty for other analyses."""
+        return dict(json.loads(self._report_text)) if self._report_text else {}
+
+    @property
+    def events(self) -> list[dict[str, Any]]:
+        """What happened at single times of a run under forces, in their order: changes of the independent coordinates."""
+        return list(self.report.get('events', []))
 
     def _of_run(self, mechanism: Mechanism, with_forces: bool) -> None:
         """Remember the run, for pictures of it."""

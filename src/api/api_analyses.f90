@@ -99,7 +99,7 @@ contains
     type(run_type), intent(inout) :: run                   !< the run, begun
     type(results_type), intent(inout) :: found             !< gets them
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    character(len=:), allocatable :: names(:), units(:)
+    character(len=:), allocatable :: names(:), units(:), text
     integer :: status
 
     call run%columns(names, units)
@@ -117,6 +117,8 @@ contains
     call put_texts(names, found%number_names)
     call put_texts(units, found%number_units)
     call run%gradients(found%derivatives)
+    call run%report(text)
+    call found%text%put(text)
   end subroutine take_run
 
   !> Find the equilibrium to which the start leads, or those of many random starts.

@@ -30,7 +30,7 @@ module mech9_api_results
     real(wp), allocatable :: numbers(:)                  !< (numbers)
     real(wp), allocatable :: derivatives(:, :)           !< (parameters,numbers) of the numbers by the parameters
     type(matrix_type), allocatable :: matrices(:)        !< (matrices)
-    type(c_text_type) :: text                            !< a report
+    type(c_text_type) :: text                            !< a report: of a run as JSON, of a check in words
   end type results_type
 
 contains

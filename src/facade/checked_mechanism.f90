@@ -57,6 +57,7 @@ module mech9_checked_mechanism
     procedure :: take_standing
     procedure :: take_variable
     procedure :: point_at
+    procedure :: begin_diagnostics
   end type checked_mechanism_type
 
 contains
@@ -426,10 +427,18 @@ contains
     if (.not. allocated(err)) return
     call explain(err)
     if (err%place%line == 0 .or. .not. allocated(self%sources)) return
-    diagnostics%sources = self%sources
+    call self%begin_diagnostics(diagnostics)
     call diagnostics%add_error(err)
     call diagnostics%render(1, err%message)
   end subroutine point_at
+
+  !> Make diagnostics without errors, which know the texts of the groups.
+  pure subroutine begin_diagnostics(self, diagnostics)
+    class(checked_mechanism_type), intent(in) :: self          !< the mechanism
+    type(diagnostics_type), intent(out) :: diagnostics         !< get errors with places in these texts
+
+    if (allocated(self%sources)) diagnostics%sources = self%sources
+  end subroutine begin_diagnostics
 
   !> Find the file, line and column of a failure of an answer; the file is empty and the line is 0 where it has no place.
   subroutine find_error_place(self, err, file, line, column)

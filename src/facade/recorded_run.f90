@@ -8,7 +8,14 @@ module mech9_recorded_run
   use mech9_model, only: model_type
   use mech9_simulation, only: interruption_type
   use mech9_explanation, only: explain
+  use mech9_clock, only: seconds
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_facts, only: facts_type
+  use mech9_json, only: json_type
   use mech9_run, only: run_type
+  use mech9_run_outcome, only: run_outcome_type
+  use mech9_run_facts, only: list_run_facts
+  use mech9_whole_report, only: compose_report
   use mech9_mechanism_pictures, only: mechanism_pictures_type
   use mech9_varied_document, only: varied_document_type
   use mech9_checked_mechanism, only: checked_mechanism_type
@@ -23,6 +30,8 @@ module mech9_recorded_run
     type(varied_document_type), pointer :: variable => null()    !< owned; the run refers to it
     type(run_type), pointer :: run => null()                     !< owned; null where none is begun
     class(interruption_type), pointer :: interruption => null()  !< owned; null where the run cannot be stopped
+    type(diagnostics_type) :: diagnostics                        !< gets the failure of the run
+    type(run_outcome_type) :: outcome                            !< rows that were taken, and the time for them
     integer :: next = 0                                          !< number of the next output, from 0 on
     logical :: has_failed = .false.                              !< the run ended before its last output
   contains
@@ -35,6 +44,7 @@ module mech9_recorded_run
     procedure :: take_rows
     procedure :: quantities
     procedure :: gradients
+    procedure :: report
     procedure :: close => close_run
   end type recorded_run_type
 
@@ -95,6 +105,7 @@ contains
     call self%close()
     allocate (self%model, self%variable, self%run)
     if (present(interruption)) allocate (self%interruption, source=interruption)
+    call mechanism%begin_diagnostics(self%diagnostics)
     call mechanism%take_request(program, self%model, err)
     if (.not. allocated(err)) then
       if (self%model%request%output%with_derivatives()) call mechanism%take_variable(program, self%variable)
@@ -155,6 +166,7 @@ contains
     integer, intent(out) :: count                         !< rows that were taken
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     real(wp), allocatable :: whole(:, :)
+    real(wp) :: began
     integer :: taken, status
 
     count = 0
@@ -174,6 +186,7 @@ contains
         return
       end if
       whole = 0.0_wp
+      began = seconds()
       do taken = 1, size(whole, 2)
         call source%add_row(time%time(self%next), whole, count, err)
         if (allocated(err)) exit
@@ -181,6 +194,8 @@ contains
       end do
       if (.not. allocated(err)) call source%complete(whole, count, err)
       rows(:, :count) = whole(:size(rows, 1), :count)
+      self%outcome%rows = self%outcome%rows + count
+      self%outcome%seconds_solving = self%outcome%seconds_solving + seconds() - began
     end associate
     call finish(self, err)
   end subroutine take_rows
@@ -192,6 +207,7 @@ contains
 
     if (allocated(err)) then
       self%has_failed = err%code /= exit_interrupted
+      call self%diagnostics%add_error(err)
       call explain(err)
       return
     end if
@@ -236,6 +252,20 @@ contains
     if (.not. allocated(values)) allocate (values(0, 0))
   end subroutine gradients
 
+  !> The report of the run as JSON, as --report writes it: how it ended, and the work that it took. It is empty where no run is begun.
+  subroutine report(self, text)
+    class(recorded_run_type), intent(inout) :: self              !< the run
+    character(len=:), allocatable, intent(out) :: text           !< the report
+    type(facts_type) :: facts
+    type(json_type) :: json
+
+    text = ''
+    if (.not. associated(self%run)) return
+    call list_run_facts(self%run%motion, self%outcome, facts)
+    call compose_report(json, self%model, self%diagnostics, '', facts, self%run)
+    text = json%text()
+  end subroutine report
+
   !> End the run and free its memory. Another one can then be begun.
   subroutine close_run(self)
     class(recorded_run_type), intent(inout) :: self   !< the run
@@ -249,5 +279,6 @@ contains
     if (associated(self%interruption)) deallocate (self%interruption)
     self%next = 0
     self%has_failed = .false.
+    self%outcome = run_outcome_type()
   end subroutine close_run
 end module mech9_recorded_run

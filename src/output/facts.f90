@@ -2,13 +2,14 @@
 module mech9_facts
   use mech9_kinds, only: wp, long
   use mech9_json, only: json_type
-  use mech9_hdf5_file, only: hdf5_file_type
   implicit none
   private
-  public :: facts_type
+  public :: facts_type, fact_type, a_number, a_count, a_text
 
+  !> Kinds of facts.
   integer, parameter :: a_number = 1, a_count = 2, a_text = 3
 
+  !> A number or a text with its name.
   type :: fact_type
     character(len=:), allocatable :: name       !< a word of lower-case letters and underscores
     character(len=:), allocatable :: long_name  !< a few words for the reader of the report
@@ -21,7 +22,6 @@ module mech9_facts
 
   !> The facts in their order.
   type :: facts_type
-    private
     type(fact_type), allocatable :: items(:)
     integer :: count = 0
   contains
@@ -29,7 +29,6 @@ module mech9_facts
     !> add(name, value, long_name [, unit])
     generic :: add => add_number, add_count, add_whole, add_text
     procedure :: to_json
-    procedure :: to_hdf5
   end type facts_type
 
 contains
@@ -123,26 +122,4 @@ contains
     end do
   end subroutine to_json
 
-  !> Write each fact as a data set of a group. The call before a run makes the data sets; the call after the run changes only
-  !> numbers in their places, so that the file is whole whenever the run is killed. Texts stay as they were.
-  subroutine to_hdf5(self, file, group, again)
-    class(facts_type), intent(in) :: self        !< the facts
-    type(hdf5_file_type), intent(inout) :: file  !< the open file
-    character(len=*), intent(in) :: group        !< path of the group in the file
-    logical, intent(in) :: again                 !< whether the data sets exist already, with other values
-    integer :: i
-
-    do i = 1, self%count
-      associate (item => self%items(i))
-        select case (item%kind)
-        case (a_number)
-          call file%put(group//'/'//item%name, item%number, item%long_name, item%unit)
-        case (a_count)
-          call file%put(group//'/'//item%name, item%whole, item%long_name)
-        case (a_text)
-          if (.not. again) call file%put(group//'/'//item%name, item%text, item%long_name)
-        end select
-      end associate
-    end do
-  end subroutine to_hdf5
 end module mech9_facts

@@ -36,6 +36,7 @@ module mech9_json
     procedure :: begin_array
     procedure :: end_array
     procedure :: save => save_document
+    procedure :: text => text_of_document
     procedure, private :: add_real, add_integer, add_long, add_logical, add_text, add_reals
     procedure, private :: item_real, item_integer, item_long, item_logical, item_text
     !> `add(name, value)` in an object, `add(value)` in an array.
@@ -175,17 +176,26 @@ contains
     call self%put_item(quoted(value))
   end subroutine item_text
 
+  !> The finished document; empty where the calls did not compose a whole one.
+  pure function text_of_document(self) result(text)
+    class(json_type), intent(in) :: self   !< the document
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (.not. (self%wrong .or. self%depth /= 0 .or. self%page%is_empty())) text = self%page%text()//line_end
+  end function text_of_document
+
   !> Write the finished document to a file.
   subroutine save_document(self, path, err)
     class(json_type), intent(in) :: self               !< the document
     character(len=*), intent(in) :: path               !< path of the file; '-' is standard output
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
 
-    if (self%wrong .or. self%depth /= 0 .or. self%page%is_empty()) then
+    if (self%text() == '') then
       call raise(err, exit_internal, 'the report '//path//' was not composed as a whole document')
-      return
+    else
+      call save_text(path, self%text(), err)
     end if
-    call save_text(path, self%page%text()//line_end, err)
   end subroutine save_document
 
   !> Begin an object or array.

@@ -22,7 +22,7 @@ module mech9_cam_task
   use mech9_cam_picture, only: save_cam_picture
   use mech9_cam_text, only: print_cam, judge_cam, name_of_cam
   use mech9_cam_report, only: add_cam
-  use mech9_run_words, only: begin_report
+  use mech9_report_parts, only: begin_report
   implicit none
   private
   public :: work_on_cams

@@ -3,20 +3,16 @@ module mech9_dynamic_report
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_counted, only: counted
-  use mech9_json, only: json_type
-  use mech9_facts, only: facts_type
   use mech9_hdf5_sink, only: hdf5_sink_type
-  use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_law_notes, only: print_jumps
   use mech9_model_motion, only: model_motion_type
-  use mech9_recording, only: recording_outcome_type
-  use mech9_integration_methods, only: integration_methods
-  use mech9_block_solver, only: work_count_type
+  use mech9_run_outcome, only: run_outcome_type
   use mech9_integrator, only: integration_statistics_type
   use mech9_simulation, only: coordinate_change_type
   use mech9_free_simulation, only: free_simulation_type
   use mech9_run_words, only: duration, each
+  use mech9_run_facts, only: method_of
   use mech9_run_report, only: run_report_type
   implicit none
   private
@@ -25,8 +21,6 @@ module mech9_dynamic_report
   type, extends(run_report_type) :: dynamic_report_type
   contains
     procedure, nopass :: print => print_report
-    procedure, nopass :: find_facts
-    procedure, nopass :: add_to
     procedure, nopass :: write_start
     procedure, nopass :: write_end
   end type dynamic_report_type
@@ -38,7 +32,7 @@ contains
     integer, intent(in) :: unit                               !< Fortran unit to write to
     type(model_motion_type), intent(inout) :: motion          !< the motion, as far as it went
     character(len=*), intent(in) :: table_path                !< path of the table; '-': standard output; empty: none
-    type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
+    type(run_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
     type(free_simulation_type), pointer :: simulation
     type(integration_statistics_type) :: counts
     integer :: i
@@ -103,15 +97,6 @@ contains
     if (same_numbers) same_numbers = all(a == b)
   end function same_numbers
 
-  !> The method in use.
-  pure function method_of(simulation) result(name)
-    type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
-    character(len=:), allocatable :: name
-
-    name = simulation%motion%system%model%request%solver%method
-    if (name == '') name = trim(integration_methods(1)%name)
-  end function method_of
-
   !> Print the coefficients of motion a(p,r) at the start, p and r the numbers of the independent coordinates.
   subroutine print_coefficients(unit, plan, coefficients)
     integer, intent(in) :: unit                  !< the output unit
@@ -127,129 +112,6 @@ contains
       end do
     end do
   end subroutine print_coefficients
-
-  !> List the facts about a run, for reports that programs read.
-  subroutine find_facts(motion, outcome, facts)
-    type(model_motion_type), intent(inout) :: motion          !< the motion, as far as it went
-    type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
-    type(facts_type), intent(out) :: facts                    !< named numbers and texts about the run
-    type(free_simulation_type), pointer :: simulation
-
-    simulation => motion%free()
-    call facts_of(simulation%model, motion%plan, outcome, simulation, facts)
-  end subroutine find_facts
-
-  !> List the facts about a free motion.
-  subroutine facts_of(model, plan, outcome, simulation, facts)
-    type(model_type), intent(in) :: model                     !< the model
-    type(plan_type), intent(in) :: plan                       !< the plan of the mechanism
-    type(recording_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
-    type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
-    type(facts_type), intent(inout) :: facts                  !< named numbers and texts about the run
-    type(integration_statistics_type) :: counts
-    type(work_count_type) :: work
-
-    counts = simulation%motion%statistics()
-    call facts%add('outputs', outcome%rows, 'outputs computed')
-    call facts%add('method', method_of(simulation), 'method of integration')
-    call facts%add('relative_tolerance', model%request%solver%relative_tolerance, 'relative error allowed in a step', '1')
-    call facts%add('absolute_tolerance', model%request%solver%absolute_tolerance, 'absolute error allowed in a step', '1')
-    if (simulation%with_error) then
-      call facts%add('accuracy', simulation%errors%allowed, 'largest error that was allowed', 'rad,m')
-      call facts%add('error', simulation%largest_error, 'largest estimated error of the outputs', 'rad,m')
-      call facts%add('other_runs', simulation%errors%runs, 'runs that tell the error and the tolerances')
-      call facts%add('other_evaluations', simulation%errors%evaluations, 'evaluations of the accelerations in these runs')
-    end if
-    call facts%add('steps', counts%steps, 'steps of the integrator')
-    if (method_of(simulation) == 'auto') then
-      call facts%add('implicit_steps', counts%implicit_steps, 'steps of bdf, where the motion was stiff')
-      call facts%add('method_changes', counts%method_changes, 'changes between prince-dormand and bdf')
-    end if
-    call facts%add('evaluations', counts%rate_evaluations, 'evaluations of the accelerations')
-    call facts%add('jacobian_evaluations', counts%jacobian_evaluations, &
-                   'Jacobians of the equations of motion, by differences (bdf)')
-    call facts%add('error_test_failures', counts%error_test_failures, 'steps made again for their error')
-    call facts%add('convergence_failures', counts%convergence_failures, 'steps made again that did not converge')
-    call facts%add('refusals', counts%refusals, 'steps made again for what they met')
-    call facts%add('newton_iterations', simulation%motion%iterations(), 'Newton iterations')
-    call facts%add('largest_closure', simulation%worst_closure, 'largest error of a closed chain', 'm')
-    call facts%add('size', plan%length, 'size of the mechanism, which weighs lengths against angles', 'm')
-    if (model%request%output%energies) then
-      call facts%add('energy_at_start', simulation%energy_at_start, 'kinetic and potential energy at the start', 'J')
-      call facts%add('largest_energy_change', simulation%largest_energy_change, 'largest change of that energy', 'J')
-    end if
-    call facts%add('least_conditioning', simulation%conditioning%least, 'least singular value of any block: 0 is singular', '1')
-    call facts%add('least_conditioning_time', simulation%conditioning%t, 'when it was that', 's')
-    if (associated(simulation%motion%system)) then
-      work = simulation%motion%work_done()
-      call facts%add('frames_placed', work%frames_placed, 'poses of frames that were found in closing chains')
-      call facts%add('factorizations', work%factorizations, 'Jacobians of blocks that were factorized')
-      call facts%add('links_with_inertia', size(simulation%motion%system%dynamics%bodies), &
-                     'links that the coefficients of motion have terms of')
-      call facts%add('acting_loads', size(simulation%motion%system%dynamics%acting) + &
-                     size(simulation%motion%system%model%mechanism%motors), 'loads and motors that may move anything')
-      call facts%add('frames_carried', count(simulation%motion%system%dynamics%carries(1:)), &
-                     'frames whose motion a mass or a load depends on')
-    end if
-    call facts%add('seconds_solving', outcome%seconds_solving, 'time spent solving', 's')
-    call facts%add('seconds_writing', outcome%seconds_writing, 'time spent writing', 's')
-  end subroutine facts_of
-
-  !> Add coefficients of motion and events to the report.
-  subroutine add_to(json, motion)
-    type(json_type), intent(inout) :: json              !< the report, inside its object
-    type(model_motion_type), intent(inout) :: motion    !< the motion, as far as it went
-    type(free_simulation_type), pointer :: simulation
-
-    simulation => motion%free()
-    call add_coefficients(json, motion%plan, simulation%coefficients)
-    call add_events(json, simulation)
-  end subroutine add_to
-
-  !> Add the coefficients of motion: [{"p": 1, "r": 5, "value": ...}, ...]
-  subroutine add_coefficients(json, plan, coefficients)
-    type(json_type), intent(inout) :: json       !< the report, inside its object
-    type(plan_type), intent(in) :: plan          !< the plan of the mechanism
-    real(wp), intent(in) :: coefficients(:, :)   !< (I,I) a(p,r), in the order of the independent coordinates
-    integer :: p, r
-
-    call json%begin_array('coefficients')
-    do p = 1, size(plan%independent)
-      do r = p, size(plan%independent)
-        call json%begin_object()
-        call json%add('p', plan%independent(p))
-        call json%add('r', plan%independent(r))
-        call json%add('value', coefficients(r, p))
-        call json%end_object()
-      end do
-    end do
-    call json%end_array()
-  end subroutine add_coefficients
-
-  !> Add the changes of the independent coordinates, and of the angles that are integrated.
-  subroutine add_events(json, simulation)
-    type(json_type), intent(inout) :: json                 !< the report, inside its object
-    type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
-    integer :: i, k
-
-    call json%begin_array('events')
-    do i = 1, size(simulation%events)
-      call json%begin_object()
-      call json%add('t', simulation%events(i)%t)
-      call json%begin_array('independent')
-      do k = 1, size(simulation%events(i)%independent)
-        call json%add(simulation%events(i)%independent(k))
-      end do
-      call json%end_array()
-      call json%begin_array('replaced')
-      do k = 1, size(simulation%events(i)%replaced)
-        call json%add(simulation%events(i)%replaced(k))
-      end do
-      call json%end_array()
-      call json%end_object()
-    end do
-    call json%end_array()
-  end subroutine add_events
 
   !> Write the coefficients of motion as data sets, and make data sets for events.
   subroutine write_start(hdf5, motion)

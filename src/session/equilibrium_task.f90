@@ -25,7 +25,7 @@ module mech9_equilibrium_task
   use mech9_equilibrium_rows, only: columns_of_equilibria, rows_of_equilibria, columns_of_modes, rows_of_modes
   use mech9_equilibrium_file, only: put_rows, put_forces, put_energy_shares
   use mech9_linear_file, only: put_linear_system
-  use mech9_run_words, only: begin_report, add_uniqueness
+  use mech9_report_parts, only: begin_report, add_uniqueness
   use mech9_force_record, only: force_record_type, reacting_pairs
   use mech9_equilibrium_words, only: print_findings
   use mech9_force_text, only: print_undetermined, print_forceless

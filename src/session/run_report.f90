@@ -1,10 +1,8 @@
-!> The report of a run: a few lines for a person, named numbers and data sets for programs. Each kind of motion has its own.
+!> The report of a run: a few lines for a person, and data sets for programs. Each kind of motion has its own.
 module mech9_run_report
-  use mech9_json, only: json_type
-  use mech9_facts, only: facts_type
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_model_motion, only: model_motion_type
-  use mech9_recording, only: recording_outcome_type
+  use mech9_run_outcome, only: run_outcome_type
   implicit none
   private
   public :: run_report_type
@@ -12,8 +10,6 @@ module mech9_run_report
   type, abstract :: run_report_type
   contains
     procedure(print_interface), deferred, nopass :: print
-    procedure(facts_interface), deferred, nopass :: find_facts
-    procedure, nopass :: add_to => add_nothing
     procedure, nopass :: write_start => write_nothing
     procedure, nopass :: write_end => write_nothing
   end type run_report_type
@@ -21,29 +17,15 @@ module mech9_run_report
   abstract interface
     !> Print the short report of a run.
     subroutine print_interface(unit, motion, table_path, outcome)
-      import :: model_motion_type, recording_outcome_type
+      import :: model_motion_type, run_outcome_type
       integer, intent(in) :: unit                             !< Fortran unit to write to
       type(model_motion_type), intent(inout) :: motion        !< the motion, as far as it went
       character(len=*), intent(in) :: table_path              !< path of the table; '-': standard output; empty: none
-      type(recording_outcome_type), intent(in) :: outcome     !< number of rows, and the times for solving and writing
+      type(run_outcome_type), intent(in) :: outcome     !< number of rows, and the times for solving and writing
     end subroutine print_interface
-
-    !> List the facts about a run, for reports that programs read.
-    subroutine facts_interface(motion, outcome, facts)
-      import :: model_motion_type, recording_outcome_type, facts_type
-      type(model_motion_type), intent(inout) :: motion        !< the motion, as far as it went
-      type(recording_outcome_type), intent(in) :: outcome     !< number of rows, and the times for solving and writing
-      type(facts_type), intent(out) :: facts                  !< named numbers and texts about the run
-    end subroutine facts_interface
   end interface
 
 contains
-
-  !> Add lists to the report in JSON, behind the facts.
-  subroutine add_nothing(json, motion)
-    type(json_type), intent(inout) :: json              !< the report, inside its object
-    type(model_motion_type), intent(inout) :: motion    !< the motion, as far as it went
-  end subroutine add_nothing
 
   !> Write data sets at the start of a run, or at its end.
   subroutine write_nothing(hdf5, motion)

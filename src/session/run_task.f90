@@ -8,7 +8,6 @@ module mech9_run_task
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_requested, only: requested_type
-  use mech9_driven_simulation, only: driven_simulation_type
   use mech9_model_motion, only: model_motion_type
   use mech9_run, only: run_type
   use mech9_row_source, only: row_source_type
@@ -25,12 +24,14 @@ module mech9_run_task
   use mech9_plan_text, only: print_plan
   use mech9_force_text, only: print_undetermined, print_forceless
   use mech9_start_way_text, only: print_start_way
-  use mech9_run_words, only: begin_report, add_structure, add_uniqueness
   use mech9_picture_requests, only: picture_requests_type
   use mech9_results, only: results_type
-  use mech9_quantity_results, only: write_quantities, print_quantities, report_quantities
+  use mech9_quantity_results, only: write_quantities, print_quantities
   use mech9_signal_interruption, only: signal_interruption_type
-  use mech9_recording, only: recording_outcome_type, record
+  use mech9_run_outcome, only: run_outcome_type
+  use mech9_run_facts, only: list_run_facts
+  use mech9_whole_report, only: compose_report
+  use mech9_recording, only: record
   use mech9_run_report, only: run_report_type
   implicit none
   private
@@ -50,8 +51,9 @@ contains
     type(kept_rows_type), intent(inout), optional :: kept             !< gets the rows as well, for a look at them after the run
     type(results_type), target :: results
     type(facts_type) :: facts
+    type(json_type) :: json
     type(hdf5_sink_type), pointer :: hdf5
-    type(recording_outcome_type) :: outcome
+    type(run_outcome_type) :: outcome
     type(error_type), allocatable :: err
     logical :: ready
 
@@ -63,19 +65,20 @@ contains
       reported = ready .and. options%has('report')
       if (.not. ready) return
       call find_tolerances(options, pictures, model, motion, err)
-      call report%find_facts(motion, outcome, facts)
+      call list_run_facts(motion, outcome, facts)
       call results%write_facts(facts)
       hdf5 => results%hdf5()
       if (associated(hdf5)) call report%write_start(hdf5, motion)
       if (.not. allocated(err)) call record(source, model, results, options%has('quiet'), outcome, err, kept)
       if (.not. options%has('quiet')) call report%print(error_unit, motion, results%table_path, outcome)
       if (allocated(err)) call diagnostics%add_error(err)
-      call report%find_facts(motion, outcome, facts)
+      call list_run_facts(motion, outcome, facts)
       call results%write_facts(facts, diagnostics%code())
       if (associated(hdf5)) call report%write_end(hdf5, motion)
       call end_run(options, pictures, model, source, results, diagnostics)
       if (.not. reported) return
-      call save_report(options%argument('report'), results%table_path, model, facts, diagnostics, report, run, err)
+      call compose_report(json, model, diagnostics, results%table_path, facts, run)
+      call json%save(options%argument('report'), err)
       if (allocated(err)) call diagnostics%add_error(err)
     end associate
   end subroutine carry_out
@@ -95,37 +98,6 @@ contains
     call motion%find_tolerances(model, err, pictures%any_wanted(), interruption)
     call interruption%words%finish()
   end subroutine find_tolerances
-
-  !> Write the report as JSON, with the structure.
-  subroutine save_report(path, table_path, model, facts, diagnostics, report, run, err)
-    character(len=*), intent(in) :: path                  !< of the report
-    character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
-    type(model_type), intent(in) :: model                 !< the model
-    type(facts_type), intent(in) :: facts                 !< about the run
-    type(diagnostics_type), intent(in) :: diagnostics     !< messages and exit code of the run
-    class(run_report_type), intent(in) :: report          !< of this kind of motion
-    type(run_type), intent(inout) :: run                  !< the run, as far as it went
-    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
-    type(driven_simulation_type), pointer :: driven
-    type(json_type) :: json
-
-    call begin_report(json, model, diagnostics, table_path)
-    call facts%to_json(json)
-    call report%add_to(json, run%motion)
-    call report_quantities(run%source%quantities, json)
-    associate (forces => run%source%forces)
-      if (allocated(forces%unique)) call add_uniqueness(json, reacting_pairs(model), forces%unique)
-    end associate
-    driven => run%motion%driven()
-    if (associated(driven)) then
-      ! only the blocks that are requested are executed
-      call add_structure(json, model, driven%plan)
-    else
-      call add_structure(json, model, run%motion%plan)
-    end if
-    call json%end_object()
-    call json%save(path, err)
-  end subroutine save_report
 
   !> Print the title of the run and open its results. `ready` is false after an error.
   subroutine begin_run(options, model, plan, requested, source, results, diagnostics, ready)

@@ -22,7 +22,7 @@ module mech9_session
   use mech9_model, only: model_type
   use mech9_structure_text, only: print_structure, print_names_of_vectors
   use mech9_task, only: task_type, answers_only
-  use mech9_run_words, only: save_short_report
+  use mech9_report_parts, only: save_short_report
   use mech9_study_task, only: work_on_study
   use mech9_study_processes, only: study_processes_type
   use mech9_dakota_task, only: work_for_dakota

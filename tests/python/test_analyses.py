@@ -294,7 +294,7 @@ def test_failed_motions_stay_where_they_are(mech9):
         sim.set_state([0.0, 1.0, 0.0])
         sim.advance(1.0)
         assert sim.q[0] == pytest.approx(1.25, abs=1e-9)
-    m = mech9.read(four_bar_path()).with_(**{'pair(2).point(1)': 0.8})
+    m = mech9.read(four_bar_path()).with_(**{'pair(2).point(1)': 0.65})
     with m.simulation(driven=True) as sim:
         with pytest.raises(mech9.SingularError):
             sim.advance(1.2)
@@ -378,3 +378,27 @@ print('done')
         script.write_text(f'import sys\nsys.path.insert(0, {package!r})\n{order}\n{work}')
         done = run(sys.executable, '-B', script, folder=tmp_path)
         assert done.stdout == 'done\n', done.stderr
+
+
+def test_reports(checks, build, mech9, four_bar):
+    """The report of a run is that of the program, but for what differs from run to run."""
+    from mech9_cases import report_of
+    m, path = four_bar, os.path.join(TREE, 'examples', 'library', 'four_bar.nml')
+    theirs, ours = report_of(build.program('mech9k'), path), m.kinematics().report
+    for name in theirs.keys() | ours.keys():
+        if name not in ('table', 'seconds_solving', 'seconds_writing'):
+            checks.equal(ours.get(name), theirs.get(name), f'{name} in the report')
+    checks.true(0 < ours['seconds_solving'] < 60 and m.kinematics().events == [], 'a driven run has no events')
+
+    free = os.path.join(TREE, 'examples', 'pendulum_four_bar', 'pendulum_four_bar.nml')
+    theirs, run = report_of(build.program('mech9d'), free), mech9.read(free).dynamics()
+    for name in ('outputs', 'steps', 'evaluations', 'coefficients', 'events', 'exit_code', 'largest_energy_change'):
+        checks.equal(run.report[name], theirs[name], f'{name} in the report of a free motion')
+
+    checks.true(len(run.events) > 0 and run.events == theirs['events'], 'its events are those of the report')
+    stuck = m.with_(**{'pair(2).point(1)': 0.65})
+    with pytest.raises(mech9.Error) as caught:
+        stuck.kinematics()
+    report = caught.value.results.report
+    checks.equal((report['exit_code'], len(report['errors'])), (caught.value.code, 1), 'a failure is in the report')
+    checks.equal(m.assemblies().report, {}, 'other analyses have none')

@@ -20,7 +20,10 @@ module mech9_uniqueness
   use mech9_singular_cluster, only: singular_cluster_type, decompose_cluster
   implicit none
   private
-  public :: uniqueness_type, find_unique
+  public :: uniqueness_type, find_unique, component_names
+
+  !> Components of a wrench, in the axes of the pair's frame in its moving link.
+  character(len=2), parameter :: component_names(6) = ['fx', 'fy', 'fz', 'mx', 'my', 'mz']
 
   !> Forces that equilibrium determines.
   type :: uniqueness_type

@@ -9,6 +9,7 @@ module mech9_hdf5_record
   use mech9_result_units, only: unit_name
   use mech9_columns, only: columns_type
   use mech9_force_record, only: force_record_type
+  use mech9_uniqueness, only: component_names
   use mech9_hdf5_file, only: hdf5_file_type, hdf5_version
   use mech9_command_line, only: command_line_type
   use mech9_version, only: name_and_version, version, revision, compiler, sundials_version
@@ -115,14 +116,13 @@ contains
     type(hdf5_file_type), intent(inout) :: file        !< the open file
     type(columns_type), intent(in) :: columns          !< the columns, with the pairs whose wrenches are recorded
     type(force_record_type), intent(in) :: forces      !< with the components that are unique
-    character(len=2), parameter :: names(6) = ['fx', 'fy', 'fz', 'mx', 'my', 'mz']
     type(string_type) :: components(6)
     integer :: i
 
     if (.not. allocated(forces%unique) .or. columns%forces() == 0) return
     if (size(columns%reacting) == 0) return
     do i = 1, 6
-      components(i)%text = names(i)
+      components(i)%text = component_names(i)
     end do
     call file%put('component', components, 'component in the axes of the pair''s frame in its moving link, z along its axis')
     call file%make_scale('component')

@@ -1,14 +1,14 @@
-!> The quantities of a run in its HDF5 file, in its report, and in lines.
+!> The quantities of a run in its HDF5 file, and in lines.
 module mech9_quantity_results
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use mech9_text, only: to_text, string_type
   use mech9_quantity_record, only: quantity_record_type
   use mech9_facts, only: facts_type
-  use mech9_json, only: json_type
+  use mech9_hdf5_facts, only: put_facts
   use mech9_hdf5_file, only: hdf5_file_type
   implicit none
   private
-  public :: write_quantities, print_quantities, report_quantities
+  public :: write_quantities, print_quantities
 
 contains
 
@@ -37,7 +37,7 @@ contains
     integer :: i
 
     call find_facts(quantities, facts)
-    call facts%to_hdf5(file, 'quantities', again)
+    call put_facts(facts, file, 'quantities', again)
     if (.not. quantities%has_gradient()) return
     if (.not. again) then
       do i = 1, size(names)
@@ -79,30 +79,4 @@ contains
     end do
   end subroutine print_quantities
 
-  !> Write the quantities as a list in a report:
-  !> [{"name": "stroke", "value": 0.6, "unit": "m", "gradient": [{"parameter": "crank", "value": 2.0}]}, ...]
-  subroutine report_quantities(quantities, json)
-    type(quantity_record_type), intent(in) :: quantities   !< of a run
-    type(json_type), intent(inout) :: json                 !< the report, inside its object
-    integer :: i, p
-
-    if (quantities%is_empty()) return
-    call json%begin_array('quantities')
-    do i = 1, size(quantities%tracked)
-      call json%begin_object()
-      call json%add('name', quantities%quantities(i)%name)
-      call json%add('value', quantities%numbers(i))
-      call json%add('unit', quantities%unit_of(i))
-      if (quantities%has_gradient()) call json%begin_array('gradient')
-      do p = 1, size(quantities%gradient, 1)
-        call json%begin_object()
-        call json%add('parameter', quantities%columns%parameters(p)%text)
-        call json%add('value', quantities%gradient(p, i))
-        call json%end_object()
-      end do
-      if (quantities%has_gradient()) call json%end_array()
-      call json%end_object()
-    end do
-    call json%end_array()
-  end subroutine report_quantities
 end module mech9_quantity_results

@@ -9,6 +9,7 @@ module mech9_recording
   use mech9_model, only: model_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_row_source, only: row_source_type
+  use mech9_run_outcome, only: run_outcome_type
   use mech9_results, only: results_type
   use mech9_progress, only: progress_type
   use mech9_simulation, only: standing_type
@@ -17,20 +18,13 @@ module mech9_recording
   use mech9_waiting_words, only: first_words_after
   implicit none
   private
-  public :: recording_outcome_type, record
+  public :: record
 
   !> Rows that are computed before they are written together, so that both can be timed without a
   !> clock in the inner loop.
   integer, parameter :: rows_together = 256
   !> Time after which computed rows are written even if there are fewer, so that a killed run does not lose them [s].
   real(wp), parameter :: longest_wait = 0.25_wp
-
-  !> The outcome of a recording.
-  type :: recording_outcome_type
-    integer :: rows = 0            !< how many rows were computed
-    real(wp) :: seconds_solving = 0.0_wp      !< real time [s]
-    real(wp) :: seconds_writing = 0.0_wp      !< real time [s]
-  end type recording_outcome_type
 
 contains
 
@@ -42,7 +36,7 @@ contains
     type(model_type), intent(in) :: model       !< the model
     type(results_type), intent(inout) :: results                !< open
     logical, intent(in) :: quiet                                !< no progress is shown
-    type(recording_outcome_type), intent(out) :: outcome        !< how the recording went
+    type(run_outcome_type), intent(out) :: outcome        !< how the recording went
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows, for use after the run
     type(error_type), allocatable :: stopped, at_flush

@@ -11,6 +11,7 @@ module mech9_results
   use mech9_plot, only: plot_type, picture_of_plot
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_facts, only: facts_type
+  use mech9_hdf5_facts, only: put_facts
   use mech9_xdmf, only: new_xdmf
   use mech9_command_line, only: command_line_type
   use mech9_written_files, only: result_paths_type, find_result_paths
@@ -221,7 +222,7 @@ contains
 
     hdf5 => self%hdf5()
     if (.not. associated(hdf5)) return
-    call facts%to_hdf5(hdf5%file, 'diagnostics', again=present(exit_code))
+    call put_facts(facts, hdf5%file, 'diagnostics', again=present(exit_code))
     code = -1
     if (present(exit_code)) code = exit_code
     call hdf5%file%put('diagnostics/exit_code', code, 'what the program answered to the shell; -1: the run did not end')

@@ -8,7 +8,8 @@ module mech9_study_words
   use mech9_model, only: model_type
   use mech9_json, only: json_type
   use mech9_quantity_record, only: quantity_record_type
-  use mech9_run_words, only: duration, begin_report
+  use mech9_run_words, only: duration
+  use mech9_report_parts, only: begin_report
   use mech9_study_sums, only: study_sums_type
   use mech9_main_effects, only: shares_type
   use mech9_study_propagation, only: propagation_type

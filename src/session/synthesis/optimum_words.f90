@@ -10,7 +10,8 @@ module mech9_optimum_words
   use mech9_model, only: model_type
   use mech9_json, only: json_type
   use mech9_version, only: name_and_version
-  use mech9_run_words, only: duration, begin_report
+  use mech9_run_words, only: duration
+  use mech9_report_parts, only: begin_report
   use mech9_synthesis, only: synthesis_type
   implicit none
   private

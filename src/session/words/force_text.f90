@@ -6,12 +6,10 @@ module mech9_force_text
   use mech9_mechanism, only: mechanism_type
   implicit none
   private
-  public :: print_uniqueness, print_undetermined, print_forceless, component_names
+  public :: print_uniqueness, print_undetermined, print_forceless
 
   !> Most numbers that a list shows.
   integer, parameter :: longest_list = 24
-  !> Components of a wrench, in the axes of the pair's frame in its moving link.
-  character(len=2), parameter :: component_names(6) = ['fx', 'fy', 'fz', 'mx', 'my', 'mz']
 
 contains
 

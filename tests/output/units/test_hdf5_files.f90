@@ -4,6 +4,7 @@ module test_hdf5_files
   use mech9_error, only: error_type, exit_file
   use mech9_text, only: string_type
   use mech9_facts, only: facts_type
+  use mech9_hdf5_facts, only: put_facts
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_reading, only: open_existing, read_text, read_texts, read_integer, has_data_set
   use mech9_hdf5_quantity, only: new_quantity
@@ -55,7 +56,7 @@ contains
     call file%put('a/b/text', 'in a group of a group', 'a text')
     call file%put('texts', names, 'some texts')
     call file%put('matrix', reshape([1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp, 5.0_wp, 6.0_wp], [3, 2]), 'a matrix', 'm')
-    call facts%to_hdf5(file, 'run', .false.)
+    call put_facts(facts, file, 'run', .false.)
     call file%flush()
     call file%close()
     call tester%is_true(.not. allocated(file%failure), 'all of it is written')

@@ -14,7 +14,8 @@ module test_recording
   use mech9_kept_rows, only: kept_rows_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
-  use mech9_recording, only: recording_outcome_type, record
+  use mech9_run_outcome, only: run_outcome_type
+  use mech9_recording, only: record
   use mech9_results, only: results_type
   use mech9_row_source, only: row_source_type, new_row_source
   use mech9_state, only: state_type
@@ -53,7 +54,7 @@ contains
     type(row_source_type), allocatable :: source
     type(command_line_type) :: options
     type(results_type) :: results
-    type(recording_outcome_type) :: outcome
+    type(run_outcome_type) :: outcome
     type(kept_rows_type) :: kept
     type(error_type), allocatable :: err
 

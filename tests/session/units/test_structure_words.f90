@@ -4,7 +4,7 @@ module test_structure_words
   use mech9_program_kind, only: kinematics, dynamics
   use mech9_command_line, only: command_line_type
   use mech9_error, only: error_type
-  use mech9_force_text, only: print_uniqueness, print_undetermined, print_forceless, component_names
+  use mech9_force_text, only: print_uniqueness, print_undetermined, print_forceless
   use mech9_held_text, only: print_held
   use mech9_mobility_report, only: mobility_report_type, report_mobility
   use mech9_model, only: model_type
@@ -14,7 +14,7 @@ module test_structure_words
   use mech9_requested, only: requested_type
   use mech9_state, only: state_type
   use mech9_structure_text, only: print_structure, print_mobility, print_mobility_report, print_marked
-  use mech9_uniqueness, only: uniqueness_type
+  use mech9_uniqueness, only: uniqueness_type, component_names
   use mech9_unused_options, only: print_unused_options
   use mech9_small_models, only: slider_crank, eol
   use mech9_text_models, only: model_from_text

@@ -1,0 +1,132 @@
+!> The report of a run, as JSON: how it ended and the work that it took (docs/reference/results.md).
+module mech9_whole_report
+  use mech9_kinds, only: wp
+  use mech9_json, only: json_type
+  use mech9_facts, only: facts_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_model, only: model_type
+  use mech9_plan, only: plan_type
+  use mech9_driven_simulation, only: driven_simulation_type
+  use mech9_free_simulation, only: free_simulation_type
+  use mech9_model_motion, only: model_motion_type
+  use mech9_quantity_record, only: quantity_record_type
+  use mech9_force_record, only: reacting_pairs
+  use mech9_run, only: run_type
+  use mech9_report_parts, only: begin_report, add_structure, add_uniqueness
+  implicit none
+  private
+  public :: compose_report
+
+contains
+
+  !> Compose the whole report of a run, with the structure.
+  subroutine compose_report(json, model, diagnostics, table_path, facts, run)
+    type(json_type), intent(inout) :: json                !< gets the report
+    type(model_type), intent(in) :: model                 !< the model
+    type(diagnostics_type), intent(in) :: diagnostics     !< messages and exit code of the run
+    character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
+    type(facts_type), intent(in) :: facts                 !< about the run
+    type(run_type), intent(inout) :: run                  !< the run, as far as it went
+    type(driven_simulation_type), pointer :: driven
+    type(free_simulation_type), pointer :: free
+
+    call begin_report(json, model, diagnostics, table_path)
+    call facts%to_json(json)
+    driven => run%motion%driven()
+    free => run%motion%free()
+    if (associated(free)) call add_free(json, run%motion, free)
+    call report_quantities(run%source%quantities, json)
+    associate (forces => run%source%forces)
+      if (allocated(forces%unique)) call add_uniqueness(json, reacting_pairs(model), forces%unique)
+    end associate
+    if (associated(driven)) then
+      ! only the blocks that are requested are executed
+      call add_structure(json, model, driven%plan)
+    else
+      call add_structure(json, model, run%motion%plan)
+    end if
+    call json%end_object()
+  end subroutine compose_report
+
+  !> Add coefficients of motion and events to the report.
+  subroutine add_free(json, motion, simulation)
+    type(json_type), intent(inout) :: json                 !< the report, inside its object
+    type(model_motion_type), intent(in) :: motion          !< the motion, as far as it went
+    type(free_simulation_type), intent(in) :: simulation   !< its simulation
+
+    call add_coefficients(json, motion%plan, simulation%coefficients)
+    call add_events(json, simulation)
+  end subroutine add_free
+
+  !> Add the coefficients of motion: [{"p": 1, "r": 5, "value": ...}, ...]
+  subroutine add_coefficients(json, plan, coefficients)
+    type(json_type), intent(inout) :: json       !< the report, inside its object
+    type(plan_type), intent(in) :: plan          !< the plan of the mechanism
+    real(wp), intent(in) :: coefficients(:, :)   !< (I,I) a(p,r), in the order of the independent coordinates
+    integer :: p, r
+
+    call json%begin_array('coefficients')
+    do p = 1, size(plan%independent)
+      do r = p, size(plan%independent)
+        call json%begin_object()
+        call json%add('p', plan%independent(p))
+        call json%add('r', plan%independent(r))
+        call json%add('value', coefficients(r, p))
+        call json%end_object()
+      end do
+    end do
+    call json%end_array()
+  end subroutine add_coefficients
+
+  !> Add the changes of the independent coordinates, and of the angles that are integrated.
+  subroutine add_events(json, simulation)
+    type(json_type), intent(inout) :: json                 !< the report, inside its object
+    type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
+    integer :: i, k
+
+    call json%begin_array('events')
+    do i = 1, size(simulation%events)
+      call json%begin_object()
+      call json%add('t', simulation%events(i)%t)
+      call json%begin_array('independent')
+      do k = 1, size(simulation%events(i)%independent)
+        call json%add(simulation%events(i)%independent(k))
+      end do
+      call json%end_array()
+      call json%begin_array('replaced')
+      do k = 1, size(simulation%events(i)%replaced)
+        call json%add(simulation%events(i)%replaced(k))
+      end do
+      call json%end_array()
+      call json%end_object()
+    end do
+    call json%end_array()
+  end subroutine add_events
+
+  !> Write the quantities as a list in a report:
+  !> [{"name": "stroke", "value": 0.6, "unit": "m", "gradient": [{"parameter": "crank", "value": 2.0}]}, ...]
+  subroutine report_quantities(quantities, json)
+    type(quantity_record_type), intent(in) :: quantities   !< of a run
+    type(json_type), intent(inout) :: json                 !< the report, inside its object
+    integer :: i, p
+
+    if (quantities%is_empty()) return
+    call json%begin_array('quantities')
+    do i = 1, size(quantities%tracked)
+      call json%begin_object()
+      call json%add('name', quantities%quantities(i)%name)
+      call json%add('value', quantities%numbers(i))
+      call json%add('unit', quantities%unit_of(i))
+      if (quantities%has_gradient()) call json%begin_array('gradient')
+      do p = 1, size(quantities%gradient, 1)
+        call json%begin_object()
+        call json%add('parameter', quantities%columns%parameters(p)%text)
+        call json%add('value', quantities%gradient(p, i))
+        call json%end_object()
+      end do
+      if (quantities%has_gradient()) call json%end_array()
+      call json%end_object()
+    end do
+    call json%end_array()
+  end subroutine report_quantities
+end module mech9_whole_report
