@@ -39,7 +39,11 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
   set(CMAKE_Fortran_FLAGS_DEV "-g -O1 ${mech9_no_false_warnings}")
   set(CMAKE_Fortran_FLAGS_DEBUG
     "-g -Og -Wno-maybe-uninitialized -fcheck=all,no-array-temps -finit-real=snan -finit-derived -ffpe-trap=invalid,zero,overflow")
-  set(mech9_sanitizers "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer")
+  # The address sanitizer finds null pointers and ends of objects, too: they are not asked for twice. Long procedures call its checks
+  # in place of holding them. Both together: a file that copies deep types compiles in a fifth of the time.
+  string(CONCAT mech9_sanitizers
+    "-fsanitize=address,signed-integer-overflow,shift,integer-divide-by-zero,bounds,float-cast-overflow,bool,return,unreachable "
+    "--param asan-instrumentation-with-call-threshold=500 -fno-sanitize-recover=all -fno-omit-frame-pointer")
   foreach(language C Fortran)
     # With -Og the bounds of arrays that are about to be allocated would be taken for overflows of integers.
     set(CMAKE_${language}_FLAGS_SANITIZE "-g1 -O1 ${mech9_sanitizers} ${mech9_no_false_warnings}")
