@@ -200,15 +200,13 @@ def test_a_part_is_continued_as_that_part(cases, mech9k):
 
 
 class Parts:
-    """The three parts of a study, the whole study, and merges of them."""
+    """The three parts of a study, the whole study, and merges of them, in the folder of a test."""
 
-    def __init__(self, cases, mech9k):
+    def __init__(self, cases, mech9k, made):
         self.cases, self.mech9k, self.text = cases, mech9k, random_study(3000)
-        cases.study(mech9k, self.text, '--hdf5', cases.path('whole.h5'), '--table', cases.path('whole.dat'), why='whole')
+        shutil.copytree(made, cases.folder, dirs_exist_ok=True)
         self.whole = numbers_of(cases.path('whole.h5'))
         self.files = [cases.path(f'part{k}.h5') for k in (1, 2, 3)]
-        for k, path in enumerate(self.files):
-            cases.study(mech9k, self.text, '--part', f'{k + 1}/3', '--hdf5', path, why=f'part {k + 1}')
         self.joined = cases.path('joined.h5')
 
     def merge(self, paths, *more, code=DONE, why):
@@ -217,9 +215,25 @@ class Parts:
         return done.stderr
 
 
+@pytest.fixture(scope='module')
+def made(mech9k, tmp_path_factory):
+    """A folder with the three parts of a study, the whole study and another one, which no test changes."""
+    folder = tmp_path_factory.mktemp('made')
+
+    def study(text, *words):
+        (folder / 'case.nml').write_text(text, encoding='utf-8')
+        done = run(mech9k, 'case.nml', '--study', *words, folder=folder)
+        assert done.returncode == DONE, done.stderr
+    study(random_study(2999), '--hdf5', 'other.h5')
+    study(random_study(3000), '--hdf5', 'whole.h5', '--table', 'whole.dat')
+    for k in (1, 2, 3):
+        study(random_study(3000), '--part', f'{k}/3', '--hdf5', f'part{k}.h5')
+    return folder
+
+
 @pytest.fixture
-def parts(cases, mech9k):
-    return Parts(cases, mech9k)
+def parts(cases, mech9k, made):
+    return Parts(cases, mech9k, made)
 
 
 @pytest.mark.parametrize('order', ((0, 1, 2), (2, 1, 0), (1, 0, 2, 1)), ids=('in order', 'backwards', 'one twice'))
@@ -258,7 +272,6 @@ def merged(parts):
     """The parts, with a whole merge and files beside it that do not go together with them."""
     cases, files = parts.cases, parts.files
     parts.merge(files, why='merge')
-    cases.study(parts.mech9k, random_study(2999), '--hdf5', cases.path('other.h5'), why='another')
     shutil.copy(files[1], cases.path('changed.h5'))
     with h5py.File(cases.path('changed.h5'), 'r+') as file:
         file['quantities/way'][7] += 1e-9
