@@ -44,6 +44,7 @@ module mech9_checked_mechanism
     procedure :: apply
     procedure :: register
     procedure :: set
+    procedure :: put_number
     procedure :: number
     procedure :: text
     procedure :: list_findings
@@ -278,11 +279,12 @@ contains
   !> Give a number another value, by the name that --set has for it, such as pair(2).point(1). The mechanism stays as it was where
   !> this fails: with exit_data for a name that is not known or a value out of its range, with exit_usage where a parameter sets the
   !> number.
-  subroutine set(self, name, value, err)
+  subroutine set(self, name, value, err, found)
     class(checked_mechanism_type), intent(inout) :: self   !< the mechanism
     character(len=*), intent(in) :: name                   !< of the number: group.name, or group(2).name(3)
     real(wp), intent(in) :: value                          !< in the unit of the data file
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(number_place_type), intent(out), optional :: found   !< the place of the number
     type(number_place_type) :: place
     type(checked_mechanism_type) :: candidate
     type(diagnostics_type) :: diagnostics
@@ -308,8 +310,18 @@ contains
       call check(candidate, diagnostics, err)
       changed%span = span
     end associate
+    if (present(found)) found = place
     if (.not. allocated(err)) self%document = candidate%document
   end subroutine set
+
+  !> Give a number that `set` has found before a value that it may have.
+  pure subroutine put_number(self, place, value)
+    class(checked_mechanism_type), intent(inout) :: self   !< the mechanism
+    type(number_place_type), intent(in) :: place           !< of the number
+    real(wp), intent(in) :: value                          !< in the unit of the data file
+
+    call set_number(self%document, place, value)
+  end subroutine put_number
 
   !> A number by its name, in the unit of the data file; its default where the mechanism does not give it. Fails with exit_data
   !> where there is no such number.

@@ -3,7 +3,7 @@ module mech9_motion
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_program_kind, only: kinematics, dynamics
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text, lower
+  use mech9_text, only: to_text
   use mech9_error, only: error_type, raise, exit_usage, exit_singular, exit_interrupted
   use mech9_model, only: model_type
   use mech9_point, only: point_type
@@ -19,6 +19,7 @@ module mech9_motion
   use mech9_explanation, only: explain
   use mech9_model_motion, only: model_motion_type
   use mech9_checked_mechanism, only: checked_mechanism_type
+  use mech9_changed_loads, only: changed_loads_type
   implicit none
   private
   public :: motion_type
@@ -26,7 +27,8 @@ module mech9_motion
   !> It must not be copied.
   type :: motion_type
     private
-    type(checked_mechanism_type) :: mechanism               !< with the numbers that were set since the start
+    type(checked_mechanism_type) :: mechanism               !< as it was at the start
+    type(changed_loads_type) :: loads                       !< with the numbers that were set since then
     integer :: program = kinematics                         !< or dynamics
     type(model_type), pointer :: model => null()            !< owned; the simulation refers to it
     class(simulation_type), allocatable :: simulation
@@ -102,6 +104,7 @@ contains
     allocate (model)
     self%model => model
     self%mechanism = mechanism
+    call self%loads%begin(mechanism)
     self%program = program
     call mechanism%take(program, self%model, err)
     if (.not. allocated(err)) call start_model(self, err, interruption)
@@ -309,28 +312,18 @@ contains
     character(len=*), intent(in) :: name                   !< of the number, as load(1).force(2)
     real(wp), intent(in) :: value                          !< in the unit of the data file
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    type(checked_mechanism_type) :: changed
-    type(model_type) :: model
-    integer, allocatable :: acting(:)
     real(wp), allocatable :: present(:)
+    logical :: other_loads_act
 
     if (.not. allocated(self%simulation)) then
       call raise(err, exit_usage, 'a motion must be started before its forces are changed')
     else if (self%model%is_driven()) then
       call raise(err, exit_usage, 'drives determine this motion; no force changes it')
-    else if (all(group_of(name) /= [character(len=5) :: 'load', 'motor'])) then
-      call raise(err, exit_usage, 'numbers of &load and &motor alone can be changed while a motion runs, and not '//name)
     end if
     if (allocated(err)) return
-    changed = self%mechanism
-    call changed%set(name, value, err)
-    if (.not. allocated(err)) call changed%take(self%program, model, err)
+    call self%loads%change(name, value, self%model, other_loads_act, err)
     if (allocated(err)) return
-    acting = self%model%mechanism%acting_loads()
-    call move_alloc(model%mechanism%loads, self%model%mechanism%loads)
-    call move_alloc(model%mechanism%motors, self%model%mechanism%motors)
-    self%mechanism = changed
-    if (.not. have_same(acting, self%model%mechanism%acting_loads())) then
+    if (other_loads_act) then
       ! the plan of the motion leaves idle loads out
       call self%take_state(present)
       call self%go_to_state(present, err)
@@ -342,23 +335,6 @@ contains
     end select
     if (allocated(err)) call explain(err)
   end subroutine set
-
-  !> Whether two lists have the same numbers.
-  pure logical function have_same(a, b)
-    integer, intent(in) :: a(:)   !< one list
-    integer, intent(in) :: b(:)   !< the other
-
-    have_same = size(a) == size(b)
-    if (have_same) have_same = all(a == b)
-  end function have_same
-
-  !> The group of the name of a number, in lower case.
-  pure function group_of(name)
-    character(len=*), intent(in) :: name   !< as load(1).force
-    character(len=5) :: group_of
-
-    group_of = lower(name(:scan(name//'.', '(.') - 1))
-  end function group_of
 
   !> Take the equations of motion of the free coordinates in the present position, inertia ddq + bias = 0, in SI units. Fails with
   !> exit_usage where no motion is started, and with exit_singular while other coordinates are integrated near a singular position.

@@ -11,7 +11,7 @@ module mech9_named_number
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: number_name_type, number_place_type, read_name, find_number, set_number
+  public :: takes_any, number_name_type, number_place_type, read_name, find_number, set_number
 
   !> The parts of a name.
   type :: number_name_type
@@ -126,6 +126,15 @@ contains
       if (item_table(place%row)%type == 'integer') call make_whole(value)
     end associate
   end subroutine set_number
+
+  !> Whether a number may have any value.
+  pure logical function takes_any(place)
+    type(number_place_type), intent(in) :: place   !< of the number
+
+    associate (row => item_table(place%row))
+      takes_any = row%type == 'real' .and. row%range == ''
+    end associate
+  end function takes_any
 
   !> Report names of groups and items that the grammar does not have, with the nearest that it has.
   pure subroutine check_names(name, of_parameter, span, diagnostics)

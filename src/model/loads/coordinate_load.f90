@@ -27,6 +27,7 @@ module mech9_coordinate_load
     procedure :: knows_slopes
     procedure :: add_slopes
     procedure :: numbers
+    procedure :: take_numbers
     procedure :: vary_by_numbers
     procedure :: varied_potential
   end type coordinate_load_type
@@ -121,6 +122,19 @@ contains
 
     values = [self%stiffness, self%rest, self%damping, self%force]
   end subroutine numbers
+
+  !> Take other numbers.
+  pure subroutine take_numbers(self, values, are_taken)
+    class(coordinate_load_type), intent(inout) :: self   !< the coordinate load
+    real(wp), intent(in) :: values(:)           !< (4) as of `numbers`
+    logical, intent(out) :: are_taken           !< true
+
+    self%stiffness = values(1)
+    self%rest = values(2)
+    self%damping = values(3)
+    self%force = values(4)
+    are_taken = .true.
+  end subroutine take_numbers
 
   !> Add the derivative of the generalized force by a parameter on which its numbers depend.
   subroutine vary_by_numbers(self, change, factor, state, changes, err)

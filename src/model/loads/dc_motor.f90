@@ -18,6 +18,7 @@ module mech9_dc_motor
     procedure :: act
     procedure :: vary_act
     procedure :: numbers
+    procedure :: take_numbers
     procedure :: has_state
     procedure :: has_limit
     procedure :: has_input
@@ -62,6 +63,20 @@ contains
 
     values = [self%voltage, self%resistance, self%inductance, self%constant, self%gear_ratio]
   end subroutine numbers
+
+  !> Take other numbers.
+  pure subroutine take_numbers(self, values, are_taken)
+    class(dc_motor_type), intent(inout) :: self   !< the motor
+    real(wp), intent(in) :: values(:)    !< (5) as of `numbers`
+    logical, intent(out) :: are_taken    !< true
+
+    self%voltage = values(1)
+    self%resistance = values(2)
+    self%inductance = values(3)
+    self%constant = values(4)
+    self%gear_ratio = values(5)
+    are_taken = .true.
+  end subroutine take_numbers
 
   !> The derivative of the action by a parameter. Fails where the voltage has no value.
   subroutine vary_act(self, motion, moved, numbers, change, err)

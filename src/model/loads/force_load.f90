@@ -27,6 +27,7 @@ module mech9_force_load
     procedure :: knows_slopes
     procedure :: add_slopes
     procedure :: numbers
+    procedure :: take_numbers
     procedure :: vary_by_numbers
   end type force_load_type
 
@@ -129,6 +130,18 @@ contains
 
     values = [self%position, self%force, self%torque]
   end subroutine numbers
+
+  !> Take other numbers.
+  pure subroutine take_numbers(self, values, are_taken)
+    class(force_load_type), intent(inout) :: self   !< the force load
+    real(wp), intent(in) :: values(:)      !< (9) as of `numbers`
+    logical, intent(out) :: are_taken      !< true
+
+    self%position = values(1:3)
+    self%force = values(4:6)
+    self%torque = values(7:9)
+    are_taken = .true.
+  end subroutine take_numbers
 
   !> Add the derivatives of the forces by a parameter on which the point, the force and the torque depend.
   subroutine vary_by_numbers(self, change, factor, state, changes, err)

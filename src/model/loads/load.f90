@@ -27,6 +27,7 @@ module mech9_load
     procedure :: knows_slopes
     procedure :: add_slopes
     procedure :: numbers => unknown_numbers
+    procedure :: take_numbers => take_no_numbers
     procedure :: vary_by_numbers
     procedure :: varied_potential => unvaried_potential
     procedure, non_overridable :: constants
@@ -158,6 +159,15 @@ contains
     real(wp), allocatable, intent(out) :: values(:)   !< its numbers; not allocated where they are not known
 
   end subroutine unknown_numbers
+
+  !> Take other numbers in place of those of `numbers`. This procedure, for kinds that do not give it, takes none.
+  pure subroutine take_no_numbers(self, values, are_taken)
+    class(load_type), intent(inout) :: self   !< the load
+    real(wp), intent(in) :: values(:)         !< as of `numbers`
+    logical, intent(out) :: are_taken         !< false
+
+    are_taken = .false.
+  end subroutine take_no_numbers
 
   !> Add the derivatives of the load's forces by a parameter on which its own numbers depend, for the present motion. This
   !> procedure is for loads without such numbers.

@@ -28,6 +28,7 @@ module mech9_spring_load
     procedure :: knows_slopes
     procedure :: add_slopes
     procedure :: numbers
+    procedure :: take_numbers
     procedure :: vary_by_numbers
     procedure :: varied_potential
     procedure, private, non_overridable :: span
@@ -235,6 +236,20 @@ contains
 
     values = [self%positions(:, 1), self%positions(:, 2), self%stiffness, self%free_length, self%damping]
   end subroutine numbers
+
+  !> Take other numbers.
+  pure subroutine take_numbers(self, values, are_taken)
+    class(spring_load_type), intent(inout) :: self   !< the spring load
+    real(wp), intent(in) :: values(:)       !< (9) as of `numbers`
+    logical, intent(out) :: are_taken       !< true
+
+    self%positions(:, 1) = values(1:3)
+    self%positions(:, 2) = values(4:6)
+    self%stiffness = values(7)
+    self%free_length = values(8)
+    self%damping = values(9)
+    are_taken = .true.
+  end subroutine take_numbers
 
   !> Add the derivatives of the pull by a parameter on which the ends and the numbers of the spring depend. Fails for a spring with
   !> a free length whose ends meet.
