@@ -182,6 +182,13 @@ int mech9_simulation_equations(const mech9_simulation *simulation, int *numbers,
 int mech9_simulation_state_size(const mech9_simulation *simulation);
 int mech9_simulation_state(const mech9_simulation *simulation, double *state, mech9_error *error);
 int mech9_simulation_set_state(mech9_simulation *simulation, int n, const double *state, mech9_error *error);
+/* The same for n motions of one mechanism. codes[n] has the exit code of each: a motion whose code is not 0 is left out, and
+ * one that cannot go on gets its code. Rows of coordinates [n][M] that are not known are not numbers. */
+int mech9_simulations_advance(mech9_simulation *const *simulations, int n, double t, int *codes, mech9_error *error);
+int mech9_simulations_set(mech9_simulation *const *simulations, int n, const char *name, const double *values, const int *codes,
+                          mech9_error *error);
+int mech9_simulations_take(mech9_simulation *const *simulations, int n, const int *codes, double *q, double *dq, double *ddq,
+                           mech9_error *error);
 
 #ifdef __cplusplus
 }

@@ -5,6 +5,7 @@ import ctypes
 import operator
 import os
 import threading
+import time
 from ctypes import POINTER, c_char_p, c_double, c_int, c_void_p
 from typing import Any, Callable
 
@@ -105,6 +106,9 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     'simulation_state': (_STATUS, [c_void_p, c_void_p]),
     'simulation_set_state': (_STATUS, [c_void_p, c_int, c_void_p]),
     'simulation_closure': (c_double, [c_void_p]),
+    'simulations_advance': (_STATUS, [c_void_p, c_int, c_double, c_void_p]),
+    'simulations_set': (_STATUS, [c_void_p, c_int, c_char_p, c_void_p, c_void_p]),
+    'simulations_take': (_STATUS, [c_void_p, c_int] + 4*[c_void_p]),
 }
 
 
@@ -266,3 +270,66 @@ def call_stoppable(function: Callable[..., int], arguments: Callable[[Any], tupl
     if failure is not None and failure.code == INTERRUPTED:
         raise KeyboardInterrupt(failure.message)
     return failure
+
+
+class _Watch:
+    """Lets a long call of the main thread return for a moment, again and again: Python handles Ctrl-C between two calls alone. A
+    thread of its own stops the call; it rests where there is none."""
+    _interval = 0.1
+
+    def __init__(self) -> None:
+        self.stop: c_int | None = None     # of the present call
+        self.calls = 0
+        self._is_resting = True
+        self._wake = threading.Event()
+        self._thread: threading.Thread | None = None
+        os.register_at_fork(after_in_child=self.__init__)   # type: ignore[misc]
+
+    def begin(self, stop: c_int) -> None:
+        """A call begins that another number than 0 in `stop` stops."""
+        self.stop = stop
+        self.calls += 1
+        if self._is_resting:
+            self._is_resting = False
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._work, daemon=True)
+                self._thread.start()
+            self._wake.set()
+
+    def _work(self) -> None:
+        last_change = time.monotonic()
+        while True:
+            calls, stop = self.calls, self.stop
+            time.sleep(self._interval)
+            if self.calls != calls:
+                last_change = time.monotonic()
+            elif stop is not None and self.stop is stop:
+                stop.value = 1
+            elif self.stop is None and time.monotonic() - last_change > 2.0:
+                self._wake.clear()
+                self._is_resting = True
+                if self.stop is None:   # or a call has just begun
+                    self._wake.wait()
+                self._is_resting = False
+                last_change = time.monotonic()
+
+
+_watch = _Watch()
+
+
+def call_with_pauses(function: Callable[..., int], stop: c_int, *arguments: Any) -> None:
+    """Call a function that goes on where it was stopped by a number, and raise its failure; Ctrl-C raises KeyboardInterrupt."""
+    procedures = _begin(arguments)
+    is_main = threading.current_thread() is threading.main_thread()
+    code = INTERRUPTED
+    try:
+        while code == INTERRUPTED:
+            stop.value = 0
+            if is_main:
+                _watch.begin(stop)
+            code = function(*arguments, _handle.address)
+    finally:
+        if is_main:
+            _watch.stop = None
+    if code:
+        raise _failure(code, procedures)

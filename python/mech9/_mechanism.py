@@ -492,7 +492,7 @@ class Mechanism:
     def simulation(self, *, driven: bool = False, **words: Any) -> Simulation:
         """A motion that you advance step by step; it takes the words of &solver and &time."""
         from ._simulation import Simulation
-        return Simulation(self._with_words(words), driven)
+        return Simulation(self._with_words(words), driven, ctypes.c_int(0))
 
     def simulations(self, how_many: int, *, driven: bool = False, threads: int = 1, **words: Any) -> Simulations:
         """Many motions side by side, each from the same start: q, dq (count, M), set(name, values), advance(t)."""

@@ -2,13 +2,13 @@
 from __future__ import annotations
 
 import ctypes
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
 
-from ._errors import Error, UsageError
-from ._library import Handle, call, lib, text
+from ._errors import INTERRUPTED, UsageError
+from ._library import Handle, call, call_with_pauses, lib, text
 
 if TYPE_CHECKING:
     from ._mechanism import Mechanism
@@ -17,9 +17,10 @@ if TYPE_CHECKING:
 class Simulation:
     """A motion from its start: t [s], q, dq, ddq (M,) in the units of the data file."""
 
-    def __init__(self, mechanism: Mechanism, driven: bool):
+    def __init__(self, mechanism: Mechanism, driven: bool, stop: ctypes.c_int):
         handle = Handle(procedures=mechanism._handle.procedures)
-        call(lib.simulation_create, mechanism._handle, 0 if driven else 1, None, ctypes.byref(handle))
+        self._stop = stop   # another number than 0 stops the motion
+        call(lib.simulation_create, mechanism._handle, 0 if driven else 1, ctypes.addressof(stop), ctypes.byref(handle))
         self._handle: Handle | None = handle
         self._n: int = lib.simulation_coordinates(handle)
 
@@ -53,7 +54,7 @@ class Simulation:
 
     def advance(self, t: float) -> None:
         """Go on to a time [s]. A motion that cannot go on stays at the last time that it reached."""
-        call(lib.simulation_advance, self._open(), float(t))
+        call_with_pauses(lib.simulation_advance, self._stop, self._open(), float(t))
 
     def set(self, name: str, value: float) -> None:
         """Change a number of a load or a motor, from the present time on: set('load(1).force(2)', 3.5)."""
@@ -148,10 +149,14 @@ class Simulations:
     def __init__(self, mechanism: Mechanism, count: int, driven: bool, threads: int):
         if count < 1:
             raise UsageError('there must be at least one motion', 2)
-        self._all = [Simulation(mechanism, driven) for _ in range(count)]
-        self._pool = ThreadPoolExecutor(max(1, threads)) if threads > 1 else None
-        self._parts = [range(count*i//threads, count*(i + 1)//threads) for i in range(threads)] if threads > 1 else [range(count)]
-        self.code: np.ndarray = np.zeros(count, dtype=int)
+        self._stop = ctypes.c_int(0)
+        self._all = [Simulation(mechanism, driven, self._stop) for _ in range(count)]
+        self._handles = (ctypes.c_void_p*count)(*(one._handle.value for one in self._all if one._handle is not None))
+        self._procedures = mechanism._handle.procedures
+        self._pool = ThreadPoolExecutor(max(1, threads))
+        threads = max(1, min(threads, count))
+        self._bounds = [count*i//threads for i in range(threads + 1)]
+        self.code: np.ndarray = np.zeros(count, dtype=np.intc)
 
     def __len__(self) -> int:
         return len(self._all)
@@ -170,43 +175,45 @@ class Simulations:
         """End all motions and free their memory."""
         for one in self._all:
             one.close()
-        if self._pool is not None:
-            self._pool.shutdown()
-            self._pool = None
+        self._pool.shutdown()
 
-    def _each(self, work: Callable[[int], None]) -> None:
-        """Do something for all motions that can go on, in threads."""
-        def part(numbers: range) -> None:
-            for i in numbers:
-                if self.code[i] == 0:
-                    work(i)
-        if self._pool is None:
-            part(range(len(self._all)))
-        else:
-            list(self._pool.map(part, self._parts))
+    def _each_part(self, function: Callable[..., int], *arguments: Any) -> None:
+        """Call a function for the motions of each part, in threads. An array among its arguments has a row for each motion."""
+        for one in self._all:
+            one._open()
+
+        def part(first: int, last: int) -> None:
+            handles = Handle(ctypes.addressof(self._handles) + first*ctypes.sizeof(ctypes.c_void_p), self._procedures)
+            call(function, handles, last - first, *(
+                argument[first:].ctypes.data if isinstance(argument, np.ndarray) else argument for argument in arguments))
+        parts = [self._pool.submit(part, *bounds) for bounds in zip(self._bounds, self._bounds[1:])]
+        try:
+            # Python handles Ctrl-C in the main thread alone, which must not wait without end
+            while wait(parts, 0.05).not_done:
+                pass
+        except BaseException:
+            self._stop.value = 1
+            wait(parts)
+            self._stop.value = 0
+            self.code[self.code == INTERRUPTED] = 0
+            raise
+        for done in parts:
+            done.result()
 
     def advance(self, t: float) -> None:
         """Go on to a time [s] with all motions that can go on."""
-        def one(i: int) -> None:
-            try:
-                self._all[i].advance(t)
-            except UsageError:
-                raise
-            except Error as failure:
-                self.code[i] = failure.code
-        self._each(one)
+        self._each_part(lib.simulations_advance, float(t), self.code)
 
     def set(self, name: str, values: Any) -> None:
         """Give a number of a load or a motor a value in each motion, from now on: one for all, or (count,)."""
-        given = np.broadcast_to(np.asarray(values, dtype=float), (len(self._all),))
-        self._each(lambda i: self._all[i].set(name, float(given[i])))
+        given = np.ascontiguousarray(np.broadcast_to(np.asarray(values, dtype=float), (len(self._all),)))
+        self._each_part(lib.simulations_set, text(name), given, self.code)
 
     def _take(self, place: int) -> np.ndarray:
-        found = np.full((len(self._all), self._all[0]._n), np.nan)
-
-        def one(i: int) -> None:
-            found[i] = self._all[i]._take(place)
-        self._each(one)
+        found = np.empty((len(self._all), self._all[0]._n))
+        arrays: list[np.ndarray | None] = [None, None, None]
+        arrays[place] = found
+        self._each_part(lib.simulations_take, self.code, *arrays)
         return found
 
     @property

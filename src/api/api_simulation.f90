@@ -11,9 +11,11 @@ module mech9_api_simulation
   use mech9_api_analyses, only: end_analysis
   implicit none
   private
+  public :: simulation_handle_type, find_simulation
   public :: create, destroy, advance, time, coordinates, take, point, energies, closure
   public :: set, free_coordinates, take_equations, size_of_state, take_state, set_state
 
+  !> A motion that is advanced, and the units of its coordinates.
   type :: simulation_handle_type
     integer(c_int) :: mark = simulation_mark
     type(motion_type) :: motion
@@ -62,7 +64,7 @@ contains
     type(simulation_handle_type), pointer :: handle
     type(error_type), allocatable :: err
 
-    call find_handle(simulation, handle, err)
+    call find_simulation(simulation, handle, err)
     if (allocated(err)) return
     call handle%motion%close()
     handle%mark = no_mark
@@ -78,7 +80,7 @@ contains
     type(error_type), allocatable :: err
 
     call begin_call(error)
-    call find_handle(simulation, handle, err)
+    call find_simulation(simulation, handle, err)
     if (.not. allocated(err)) call handle%motion%advance(t, err)
     code = end_call(error, err)
   end function advance
@@ -90,7 +92,7 @@ contains
     type(error_type), allocatable :: err
 
     time = ieee_value(time, ieee_quiet_nan)
-    call find_handle(simulation, handle, err)
+    call find_simulation(simulation, handle, err)
     if (associated(handle)) time = handle%motion%t()
   end function time
 
@@ -101,7 +103,7 @@ contains
     type(error_type), allocatable :: err
 
     coordinates = 0
-    call find_handle(simulation, handle, err)
+    call find_simulation(simulation, handle, err)
     if (associated(handle)) coordinates = handle%motion%coordinates()
   end function coordinates
 
@@ -117,7 +119,7 @@ contains
     real(wp), allocatable :: found(:, :)
 
     call begin_call(error)
-    call find_handle(simulation, handle, err)
+    call find_simulation(simulation, handle, err)
     if (.not. allocated(err)) then
       allocate (found(size(handle%units), 3))
       call handle%motion%take_coordinates(found(:, 1), found(:, 2), found(:, 3))
@@ -144,7 +146,7 @@ contains
 
     call begin_call(error)
     call read_c_text(name, text)
-    call find_handle(simulation, handle, err)
+    call find_simulation(simulation, handle, err)
     if (.not. allocated(err)) call handle%motion%point(text, err, found(:, 1), found(:, 2), found(:, 3))
     if (.not. allocated(err)) then
       call put(found(:, 1), position)
@@ -166,7 +168,7 @@ contains
     call begin_call(error)
     kinetic = ieee_value(kinetic, ieee_quiet_nan)
     potential = kinetic
-    call find_handle(simulation, handle, err)
+    call find_simulation(simulation, handle, err)
     if (.not. allocated(err)) call handle%motion%energies(kinetic, potential)
     code = end_call(error, err)
   end function energies
@@ -178,7 +180,7 @@ contains
     type(error_type), allocatable :: err
 
     closure = ieee_value(closure, ieee_quiet_nan)
-    call find_handle(simulation, handle, err)
+    call find_simulation(simulation, handle, err)
     if (associated(handle)) closure = handle%motion%closure()
   end function closure
 
@@ -194,7 +196,7 @@ contains
 
     call begin_call(error)
     call read_c_text(name, text)
-    call find_handle(simulation, handle, err)
+    call find_simulation(simulation, handle, err)
     if (.not. allocated(err)) call handle%motion%set(text, value, err)
     code = end_call(error, err)
   end function set
@@ -206,7 +208,7 @@ contains
     type(error_type), allocatable :: err
 
     free_coordinates = 0
-    call find_handle(simulation, handle, err)
+    call find_simulation(simulation, handle, err)
     if (associated(handle)) free_coordinates = handle%motion%free_coordinates()
   end function free_coordinates
 
@@ -225,7 +227,7 @@ contains
     real(wp), allocatable :: inertia(:, :), forces(:)
 
     call begin_call(error)
-    call find_handle(simulation, handle, err)
+    call find_simulation(simulation, handle, err)
     if (.not. allocated(err)) call handle%motion%take_equations(coordinates, inertia, forces, err)
     if (.not. allocated(err)) then
       if (c_associated(numbers)) then
@@ -246,7 +248,7 @@ contains
     real(wp), allocatable :: numbers(:)
 
     size_of_state = 0
-    call find_handle(simulation, handle, err)
+    call find_simulation(simulation, handle, err)
     if (allocated(err)) return
     call handle%motion%take_state(numbers)
     size_of_state = size(numbers)
@@ -262,7 +264,7 @@ contains
     real(wp), allocatable :: numbers(:)
 
     call begin_call(error)
-    call find_handle(simulation, handle, err)
+    call find_simulation(simulation, handle, err)
     if (.not. allocated(err)) then
       call handle%motion%take_state(numbers)
       call put(numbers, state)
@@ -281,7 +283,7 @@ contains
     real(c_double), pointer :: numbers(:)
 
     call begin_call(error)
-    call find_handle(simulation, handle, err)
+    call find_simulation(simulation, handle, err)
     if (.not. allocated(err) .and. (n < 0 .or. .not. c_associated(state))) call refuse('this is no state of this mechanism', err)
     if (.not. allocated(err)) then
       call c_f_pointer(state, numbers, [n])
@@ -302,7 +304,7 @@ contains
   end subroutine put
 
   !> The handle at an address. Fails with exit_usage where there is none.
-  subroutine find_handle(address, handle, err)
+  subroutine find_simulation(address, handle, err)
     type(c_ptr), intent(in) :: address                               !< its address
     type(simulation_handle_type), pointer, intent(out) :: handle     !< the handle
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
@@ -313,5 +315,5 @@ contains
     else
       call refuse('this is no simulation, or it was destroyed; create one first', err)
     end if
-  end subroutine find_handle
+  end subroutine find_simulation
 end module mech9_api_simulation

@@ -402,3 +402,69 @@ def test_reports(checks, build, mech9, four_bar):
     report = caught.value.results.report
     checks.equal((report['exit_code'], len(report['errors'])), (caught.value.code, 1), 'a failure is in the report')
     checks.equal(m.assemblies().report, {}, 'other analyses have none')
+
+
+def test_pauses_change_nothing(mech9, monkeypatch):
+    """A motion that is stopped again and again, to see whether there was a Ctrl-C, goes on with the same bits."""
+    from mech9 import _library
+    driven = mech9.read(os.path.join(EXAMPLES, 'library', 'four_bar.nml'))
+    free = mech9.read(os.path.join(EXAMPLES, 'heavy_top', 'heavy_top.nml'))
+    states = []
+    for interval in (10.0, 0.0005):
+        monkeypatch.setattr(_library._watch, '_interval', interval)
+        for m, end in ((driven, 300.0), (free, 30.0)):
+            with m.simulation(driven=m is driven, end=end) as sim:
+                sim.advance(end)
+                states.append(np.concatenate(([sim.t], sim.q, sim.dq, sim.ddq)))
+    assert np.array_equal(states[0], states[2]) and np.array_equal(states[1], states[3])
+
+
+@pytest.mark.parametrize('many', (False, True), ids=('one motion', 'many motions'))
+def test_interrupted_simulation(mech9, many):
+    import _thread
+    m = mech9.read(os.path.join(EXAMPLES, 'heavy_top', 'heavy_top.nml'))
+    with m.simulations(3, end=1e6) if many else m.simulation(end=1e6) as sim:
+        timer = threading.Timer(0.5, _thread.interrupt_main)
+        timer.start()
+        with pytest.raises(KeyboardInterrupt):
+            sim.advance(1e6)
+        timer.join()
+        one = sim[0] if many else sim
+        reached = one.t
+        assert 0 < reached < 1e6
+        one.advance(reached + 0.5)
+        assert one.t == reached + 0.5
+
+
+@pytest.mark.parametrize('group, name, values', (
+    ("&load kind='force', link=2, force=1,0,0, position=0,0.1,0 /", 'load(1).force(1)', (1.5, 2.0, 0.0, 3.0, 2.5, 1e300)),
+    ("&load kind='force', link=2, force=1,0,0 /", 'load.torque(3)', (1.5, 2.0, 0.0, 3.0)),
+    ("&load kind='coordinate', coordinate=1, force=2, stiffness=3, rest=20 /", 'load(1).rest', (10.0, 30.0, 40.0)),
+    ("&load kind='coordinate', coordinate=1, force=2, stiffness=3, rest=20 /", 'load(1).force', (0.5, -0.5, 0.7)),
+    ("&load kind='coordinate', coordinate=1, stiffness=3 /", 'load(1).stiffness', (4.0, 5.0, -1.0)),
+    ("&load kind='spring', links=1,2, position=1,0,0, second_position=0,1,0, stiffness=2 /", 'load(1).position(2)', (0.2, 0.3, 0.4)),
+    ("&load kind='force', link=2, force=1,0,0, law='harmonic', amplitude=2, angular_frequency=3 /", 'load(1).amplitude', (3.0, 4.0)),
+    ("&motor kind='dc', coordinate=1, voltage=2, resistance=1, constant=0.1 /", 'motor(1).voltage', (3.0, 4.0, -5.0))))
+def test_many_changes_while_a_motion_runs(checks, mech9, group, name, values):
+    """The second change of a number may go to the load at once; the mechanism is read anew for each in the other motion."""
+    m = mech9.read_text("&mechanism angle_unit='deg' / &structure cq=1 / &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 / "
+                        "&body link=2, mass=1, centre=0.2,0,0, inertia=0,0,0.1,0,0,0 / &initial coordinate=1, position=10, velocity=50 / " + group)
+    with m.simulation() as sim:
+        for value in values:
+            state = sim.state()
+            with m.simulation() as other:
+                failures = []
+                for motion in (other, sim):
+                    try:
+                        motion.set(name, value)
+                        failures.append(None)
+                    except mech9.Error as failure:
+                        failures.append((failure.code, failure.message))
+                checks.equal(failures[1], failures[0], f'{name} = {value}: both take it, or refuse it')
+                if abs(value) > 1e100 or failures[0]:
+                    continue
+                other.set_state(state)
+                sim.set_state(state)
+                for motion in (other, sim):
+                    motion.advance(state[0] + 0.05)
+                checks.equal(sim.state().tolist(), other.state().tolist(), f'{name} = {value}: the same motion')
