@@ -2,14 +2,13 @@
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Sequence
 
 import numpy as np
 
 from ._errors import DataError, UsageError
 from ._library import call, lib
 from ._mechanism import free_name
-from ._results import Results
 
 if TYPE_CHECKING:
     from ._mechanism import Mechanism
@@ -31,37 +30,48 @@ class Function:
                 new = free_name(self._mechanism.parameters, i + 1)
                 self._mechanism.add('parameter', name=new, sets=name)
             self._names.append(name if name in known else new)
-        self._places = [f'parameter({self._mechanism.parameters.index(name) + 1}).value'.encode() for name in self._names]
+        self._columns = [self._mechanism.parameters.index(name) for name in self._names]
+        self._places = [f'parameter({column + 1}).value'.encode() for column in self._columns]
+        self._numbers: list[int] = []
         self._analysis = lib.kinematics if self._mechanism.is_driven else lib.dynamics
         self._with_gradients = self._mechanism.copy()
         self._with_gradients['output.gradients'] = True
 
-    def _run(self, mechanism: Mechanism, x: Any) -> Results:
+    def _run(self, mechanism: Mechanism, x: Any) -> ctypes.c_void_p:
+        """The results of a run at x, which are to be destroyed."""
         values = np.asarray(x, dtype=float)
         if values.shape != (len(self.inputs),):
             raise UsageError(f'x must have the shape ({len(self.inputs)},), not {values.shape}', 2)
-        for place, value in zip(self._places, values):
+        for place, value in zip(self._places, values.tolist()):
             call(lib.mechanism_set, mechanism._handle, place, value)
         handle = ctypes.c_void_p()
         try:
             call(self._analysis, mechanism._handle, None, ctypes.byref(handle))
+            if not self._numbers:
+                self._numbers = self._find_numbers(handle)
         except BaseException:
             lib.results_destroy(handle)
             raise
-        return Results(handle.value, mechanism.parameters)   # type: ignore[arg-type]
+        return handle
 
     def __call__(self, x: Any) -> np.ndarray:
         """The outputs (outputs,) at x (inputs,)."""
-        found = self._run(self._mechanism, x).quantities
-        return np.array([found[self._known(name, found)] for name in self.outputs])
+        handle = self._run(self._mechanism, x)
+        found = np.array([lib.results_number(handle, i) for i in self._numbers])
+        lib.results_destroy(handle)
+        return found
 
     def jacobian(self, x: Any) -> np.ndarray:
         """Derivatives of the outputs by the inputs at x, (outputs, inputs)."""
-        found = self._run(self._with_gradients, x).gradients
-        return np.array([[found[self._known(name, found)][parameter] for parameter in self._names] for name in self.outputs])
+        handle = self._run(self._with_gradients, x)
+        found = np.array([[lib.results_derivative(handle, i, p) for p in self._columns] for i in self._numbers])
+        lib.results_destroy(handle)
+        return found
 
-    @staticmethod
-    def _known(name: str, found: Mapping[str, Any]) -> str:
-        if name not in found:
-            raise DataError(f'there is no quantity {name!r}; the quantities are {", ".join(found) or "none"}', 3)
-        return name
+    def _find_numbers(self, handle: ctypes.c_void_p) -> list[int]:
+        """The places of the outputs among the quantities of a run."""
+        known = [lib.results_number_name(handle, i).decode() for i in range(lib.results_numbers(handle))]
+        for name in self.outputs:
+            if name not in known:
+                raise DataError(f'there is no quantity {name!r}; the quantities are {", ".join(known) or "none"}', 3)
+        return [known.index(name) for name in self.outputs]

@@ -5,7 +5,7 @@ import ctypes
 import html
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping
 
 import numpy as np
 
@@ -59,7 +59,7 @@ class Results(Mapping[str, np.ndarray]):
     gradients: their derivatives by parameters, where &output gradients asks for them.
     """
 
-    def __init__(self, handle: int, parameters: tuple[str, ...] = ()):
+    def __init__(self, handle: int, list_parameters: Callable[[], tuple[str, ...]] = tuple):
         memory = _Memory(handle)
         self.names: tuple[str, ...] = tuple(lib.results_name(handle, i).decode() for i in range(lib.results_columns(handle)))
         self.units: dict[str, str] = {name: lib.results_unit(handle, i).decode() for i, name in enumerate(self.names)}
@@ -72,8 +72,9 @@ class Results(Mapping[str, np.ndarray]):
         self.quantity_units: dict[str, str] = {name: lib.results_number_unit(handle, i).decode() for i, name in enumerate(numbers)}
         self.matrices: dict[str, Matrix] = {lib.results_matrix_name(handle, i).decode(): _matrix(handle, i)
                                             for i in range(lib.results_matrices(handle))}
+        parameters = list_parameters() if lib.results_parameters(handle) else ()
         self.gradients = Gradients({name: {parameter: lib.results_derivative(handle, i, p) for p, parameter in enumerate(parameters)}
-                                    for i, name in enumerate(numbers)} if lib.results_parameters(handle) else {})
+                                    for i, name in enumerate(numbers)} if parameters else {})
 
     @property
     def report(self) -> dict[str, Any]:
