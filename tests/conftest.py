@@ -10,6 +10,7 @@ import sys
 
 import pytest
 
+from browser import Browser, PageError, browser_path
 from mech9_cases import TREE, Checks
 
 # Seconds of processor time that a test, or a program that it calls, may take. A wall clock would fail on a busy machine.
@@ -90,3 +91,16 @@ def mech9d(build):
 @pytest.fixture
 def checks():
     return Checks()
+
+
+@pytest.fixture(scope='module')
+def browser():
+    """A page in a browser without a window, where one is installed."""
+    if not browser_path():
+        pytest.skip('chromium is not installed: pages are not tested')
+    try:
+        opened = Browser()
+    except PageError as error:
+        pytest.skip(f'chromium does not start ({error}): pages are not tested')
+    yield opened
+    opened.close()

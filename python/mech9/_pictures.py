@@ -4,6 +4,7 @@ from __future__ import annotations
 import base64
 import html
 import os
+import re
 import tempfile
 from typing import Callable
 
@@ -27,7 +28,8 @@ class Picture:
 
     def _repr_html_(self) -> str:
         if self.kind == 'svg':
-            return self.text[self.text.index('<svg'):]
+            # several drawings in one page must not bear the same ids, to which nothing in them refers
+            return re.sub(r' id="[^"]*"', '', self.text[self.text.index('<svg'):])
         if self.kind == 'gif':
             return f'<img src="data:image/gif;base64,{base64.b64encode(self.content).decode()}">'
         return (f'<iframe srcdoc="{html.escape(self.text, quote=True)}" style="width:100%;height:560px;border:0" '
