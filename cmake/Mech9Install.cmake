@@ -1,4 +1,5 @@
-# The files that `cmake --install` puts into place, and the command mech9-link for the build and the install tree.
+# The files that `cmake --install` puts into place, and the command mech9-link for the build and the install tree. Components:
+# programs, mpi, library (libmech9.so.0), development, and python for the wheel (python/pyproject.toml).
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/mech9")
@@ -33,34 +34,34 @@ set(link_library "\$here/${prefix_from_bin}${CMAKE_INSTALL_LIBDIR}/libmech9.a")
 set(link_programs "\$here/${prefix_from_bin}${MECH9_INSTALL_PROGRAMS}")
 configure_file(cmake/mech9-link.in install/mech9-link @ONLY)
 
-install(PROGRAMS "${PROJECT_BINARY_DIR}/install/mech9-link" DESTINATION "${CMAKE_INSTALL_BINDIR}")
+install(PROGRAMS "${PROJECT_BINARY_DIR}/install/mech9-link" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT development)
 foreach(program mech9k mech9d)
   if(TARGET ${program})
-    install(TARGETS ${program} DESTINATION "${CMAKE_INSTALL_BINDIR}")
+    install(TARGETS ${program} DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT programs)
     if(TARGET ${program}-mpi)
-      install(TARGETS ${program}-mpi DESTINATION "${CMAKE_INSTALL_BINDIR}")
+      install(TARGETS ${program}-mpi DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT mpi)
     endif()
-    install(FILES "${MECH9_PROGRAMS_DIR}/${program}.f90" DESTINATION "${MECH9_INSTALL_PROGRAMS}")
-    install(FILES "${PROJECT_BINARY_DIR}/pages/${program}.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+    install(FILES "${MECH9_PROGRAMS_DIR}/${program}.f90" DESTINATION "${MECH9_INSTALL_PROGRAMS}" COMPONENT development)
+    install(FILES "${PROJECT_BINARY_DIR}/pages/${program}.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT programs)
     install(FILES "${PROJECT_BINARY_DIR}/pages/${program}.bash"
-      DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME ${program})
+      DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME ${program} COMPONENT programs)
   endif()
 endforeach()
-install(FILES "${MECH9_PROGRAMS_DIR}/memory_guard.f90" DESTINATION "${MECH9_INSTALL_PROGRAMS}")
+install(FILES "${MECH9_PROGRAMS_DIR}/memory_guard.f90" DESTINATION "${MECH9_INSTALL_PROGRAMS}" COMPONENT development)
 # The library carries code for optimisation across files, which the linker would take at the cost of minutes. Programs of other projects
 # are linked with the other code, unless they ask: by LTO in mech9_add_programs, or by their property INTERPROCEDURAL_OPTIMIZATION.
 if(MECH9_LTO_NO_LINK)
   set(asked "$<OR:$<BOOL:$<TARGET_PROPERTY:MECH9_LTO>>,$<BOOL:$<TARGET_PROPERTY:INTERPROCEDURAL_OPTIMIZATION>>>")
   target_link_options(mech9 INTERFACE "$<INSTALL_INTERFACE:$<$<NOT:${asked}>:${MECH9_LTO_NO_LINK}>>")
 endif()
-install(TARGETS mech9 EXPORT mech9Targets DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+install(TARGETS mech9 EXPORT mech9Targets DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development)
 # .smod: users' submodules need those of their hooks
-install(DIRECTORY "${PROJECT_BINARY_DIR}/modules/" DESTINATION "${modules_dir}"
+install(DIRECTORY "${PROJECT_BINARY_DIR}/modules/" DESTINATION "${modules_dir}" COMPONENT development
   FILES_MATCHING PATTERN "*.mod" PATTERN "*.smod")
-install(DIRECTORY user_procs DESTINATION "${data_dir}")
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(DIRECTORY user_procs DESTINATION "${data_dir}" COMPONENT development)
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)
 
-install(EXPORT mech9Targets NAMESPACE mech9:: DESTINATION "${package_dir}")
+install(EXPORT mech9Targets NAMESPACE mech9:: DESTINATION "${package_dir}" COMPONENT development)
 configure_package_config_file(cmake/mech9Config.cmake.in "${PROJECT_BINARY_DIR}/install/mech9Config.cmake"
   INSTALL_DESTINATION "${package_dir}" PATH_VARS MECH9_INSTALL_PROGRAMS)
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/install/mech9ConfigVersion.cmake"
@@ -69,20 +70,25 @@ install(FILES
   "${PROJECT_BINARY_DIR}/install/mech9Config.cmake"
   "${PROJECT_BINARY_DIR}/install/mech9ConfigVersion.cmake"
   cmake/Mech9Programs.cmake
-  DESTINATION "${package_dir}")
+  DESTINATION "${package_dir}" COMPONENT development)
 
 # The library for C and C++: a header, libmech9.so, and what pkg-config and CMake need to find both.
 if(MECH9_SHARED)
-  install(TARGETS mech9_shared EXPORT mech9SharedTargets LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+  install(TARGETS mech9_shared EXPORT mech9SharedTargets
+    LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT library NAMELINK_COMPONENT development)
   set_target_properties(mech9_shared PROPERTIES EXPORT_NAME c)
-  install(FILES include/mech9.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
-  install(EXPORT mech9SharedTargets NAMESPACE mech9:: DESTINATION "${package_dir}")
+  install(FILES include/mech9.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT development)
+  install(EXPORT mech9SharedTargets NAMESPACE mech9:: DESTINATION "${package_dir}" COMPONENT development)
   configure_file(cmake/mech9.pc.in "${PROJECT_BINARY_DIR}/install/mech9.pc" @ONLY)
-  install(FILES "${PROJECT_BINARY_DIR}/install/mech9.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+  install(FILES "${PROJECT_BINARY_DIR}/install/mech9.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT development)
 endif()
 
 # The Python package holds the library and the programs beside its modules.
 if(MECH9_PYTHON)
   install(TARGETS mech9_shared LIBRARY DESTINATION mech9 COMPONENT python NAMELINK_SKIP)
   install(TARGETS mech9k mech9d RUNTIME DESTINATION mech9/bin COMPONENT python)
+endif()
+
+if(MECH9_DEB)
+  include(Mech9Deb)
 endif()
