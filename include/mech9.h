@@ -107,7 +107,7 @@ double mech9_results_number(const mech9_results *results, int i);
 int mech9_results_parameters(const mech9_results *results);       /* 0: no derivatives */
 /* Parameters come in the order of mech9_mechanism_parameter. */
 double mech9_results_derivative(const mech9_results *results, int i, int parameter);
-/* The report: of a run as JSON, as the option --report writes it, of a check in words; null: the analysis writes none. */
+/* The report: of a run and a cam as JSON, as the option --report writes it, of a check in words; null: there is none. */
 const char *mech9_results_text(const mech9_results *results);
 /* Matrices, with names and units for their rows and columns. */
 int mech9_results_matrices(const mech9_results *results);
@@ -130,6 +130,8 @@ int mech9_equilibrium(const mech9_mechanism *mechanism, int starts, const volati
 int mech9_modes(const mech9_mechanism *mechanism, mech9_results **results, mech9_error *error);
 int mech9_assemblies(const mech9_mechanism *mechanism, int starts, mech9_results **results, mech9_error *error);
 int mech9_range(const mech9_mechanism *mechanism, mech9_results **results, mech9_error *error);
+/* The profile of a cam, from 1 in the order of its groups: a row for each output, and its entry in a report as text. */
+int mech9_cam(const mech9_mechanism *mechanism, int number, mech9_results **results, mech9_error *error);
 int mech9_study(const mech9_mechanism *mechanism, int with_forces, int threads, const volatile int *stop,
                 mech9_results **results, mech9_error *error);
 /* Matrices second_order/M, C, K and state_space/A, B, C, D; a row with the coordinates in equilibrium. */

@@ -350,6 +350,10 @@ class Mechanism:
         """How far each independent coordinate can go while the others are held: coordinate, lower, upper; infinite where nothing stops it."""
         return self._results(lib.range, lambda stop, out: (self._handle, out))
 
+    def cam(self, number: int = 1) -> Results:
+        """The profile of a cam, of which &cam describes the follower: the columns of --cam, and its entry of a report as `report`."""
+        return self._results(lib.cam, lambda stop, out: (self._handle, count(number, 'number', 1), out))
+
     def study(self, threads: int = 1, dynamics: bool | None = None, **values: Any) -> Any:
         """Make all runs of &study, or one for each of the values of parameters or numbers: study(crank=np.linspace(0.2, 0.4, 5)).
 

@@ -78,7 +78,7 @@ class Results(Mapping[str, np.ndarray]):
 
     @property
     def report(self) -> dict[str, Any]:
-        """How a run ended and the work that it took, as the option --report writes it; empty for other analyses."""
+        """How a run ended and the work that it took, or what was found of a cam, as the option --report writes it; empty for other analyses."""
         return dict(json.loads(self._report_text)) if self._report_text else {}
 
     @property

@@ -2,7 +2,7 @@
 module mech9_api_analyses
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr
   use mech9, only: wp, error_type, finding_type, mechanism_type, run_type, rest_type, study_type, optimum_type, &
-    linear_system_type, judge_mobility, list_assemblies, list_ranges, name_coordinates, find_linear_system, draw_sketch, &
+    linear_system_type, judge_mobility, list_assemblies, list_ranges, name_coordinates, find_linear_system, find_cam, draw_sketch, &
     draw_film, exit_file, exit_data, exit_structure, exit_interrupted, kinematics, dynamics
   use mech9_api_text, only: c_text_type, read_c_text
   use mech9_api_error, only: begin_call, end_call
@@ -243,6 +243,34 @@ contains
     end if
     code = end_analysis(error, err, assembled, dynamics)
   end function find_ranges
+
+  !> Find the profile of a cam: a row for each output.
+  integer(c_int) function find_profile(mechanism, number, results, error) bind(c, name='mech9_cam') result(code)
+    type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
+    integer(c_int), value, intent(in) :: number   !< of the cam, from 1
+    type(c_ptr), intent(out) :: results           !< the profile; null after a failure
+    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
+    type(mechanism_type), pointer :: moved
+    type(results_type), pointer :: found
+    type(error_type), allocatable :: err
+    character(len=:), allocatable :: names(:), units(:), report
+    real(wp), allocatable :: rows(:, :)
+
+    call begin_call(error)
+    results = c_null_ptr
+    call find_mechanism(mechanism, moved, err)
+    if (.not. allocated(err)) call find_cam(moved, number, names, units, rows, report, err)
+    if (.not. allocated(err)) then
+      allocate (found)
+      call put_texts(names, found%names)
+      call put_texts(units, found%units)
+      allocate (found%rows, source=rows)
+      found%count = size(rows, 2)
+      call found%text%put(report)
+      results = show_results(found)
+    end if
+    code = end_analysis(error, err, moved, kinematics)
+  end function find_profile
 
   !> Make all runs of &study: a row for each, with its number, the values of its parameters, its quantities and its exit code.
   integer(c_int) function make_study(mechanism, with_forces, threads, stop, results, error) bind(c, name='mech9_study') &

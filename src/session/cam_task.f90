@@ -11,11 +11,10 @@ module mech9_cam_task
   use mech9_json, only: json_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
-  use mech9_request, only: cam_request_type
-  use mech9_result_units, only: unit_of, unit_name
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_cam_profile, only: cam_profile_type, find_profile
+  use mech9_cam_rows, only: list_cam_rows
   use mech9_table, only: table_type
   use mech9_heading, only: new_heading
   use mech9_version, only: name_and_version
@@ -26,8 +25,6 @@ module mech9_cam_task
   implicit none
   private
   public :: work_on_cams
-
-  character, parameter :: directions(3) = ['x', 'y', 'z']
 
 contains
 
@@ -122,57 +119,17 @@ contains
     type(string_type), allocatable :: names(:), units(:)
     type(table_type) :: table
     type(error_type), allocatable :: at_close
-    real(wp), allocatable :: row(:)
+    real(wp), allocatable :: rows(:, :)
     integer :: i
 
-    call list_columns(model, model%request%cams(number), profile%has_pressure, names, units)
+    call list_cam_rows(model%mechanism, model%request%cams(number), profile, names, units, rows)
     call table%open(path, new_heading(model%mechanism%title//new_line('a')//name_of_cam(model, number), names, units), &
                     name_and_version(model%program), err)
-    do i = 1, size(profile%contacts)
+    do i = 1, size(rows, 2)
       if (allocated(err)) exit
-      if (.not. (profile%at_output(i) .and. profile%contacts(i)%known)) cycle
-      associate (contact => profile%contacts(i), cam => model%request%cams(number))
-        row = [contact%t, contact%angle/unit_of(model%mechanism, cam%coordinate), contact%profile, contact%pitch, contact%radius, &
-               merge(1.0_wp, 0.0_wp, contact%undercut)]
-        if (profile%has_pressure) row = [row, contact%pressure/model%mechanism%angle_unit]
-        if (cam%flat) row = [row, contact%offset]
-      end associate
-      call table%write_row(row, err)
+      call table%write_row(rows(:, i), err)
     end do
     call table%close(at_close)
     if (.not. allocated(err)) call move_alloc(at_close, err)
   end subroutine save_table
-
-  !> List the columns of the table.
-  subroutine list_columns(model, cam, has_pressure, names, units)
-    type(model_type), intent(in) :: model                     !< the model
-    type(cam_request_type), intent(in) :: cam                 !< the cam
-    logical, intent(in) :: has_pressure                       !< the pressure angles are known
-    type(string_type), allocatable, intent(out) :: names(:)   !< headings of the columns
-    type(string_type), allocatable, intent(out) :: units(:)   !< their units
-    integer :: i, n
-
-    allocate (names(10 + count([has_pressure, cam%flat])), units(10 + count([has_pressure, cam%flat])))
-    do i = 1, size(units)
-      units(i)%text = 'm'
-    end do
-    names(1)%text = 't'
-    units(1)%text = 's'
-    names(2)%text = 'q'//to_text(cam%coordinate)
-    units(2)%text = trim(unit_name(model%mechanism, cam%coordinate))
-    do i = 1, 3
-      names(2 + i)%text = 'profile.'//directions(i)
-      names(5 + i)%text = 'pitch.'//directions(i)
-    end do
-    names(9)%text = 'radius'
-    names(10)%text = 'undercut'
-    units(10)%text = ''
-    n = 10
-    if (has_pressure) then
-      n = n + 1
-      names(n)%text = 'pressure_angle'
-      units(n)%text = trim(merge('rad', 'deg', abs(model%mechanism%angle_unit - 1.0_wp) <= 0.0_wp))
-    end if
-    if (cam%flat) names(n + 1)%text = 'offset'
-  end subroutine list_columns
 end module mech9_cam_task

@@ -2,6 +2,7 @@
 
 Compares the library with the programs, whose numbers other tests judge.
 """
+import json
 import os
 import sys
 import threading
@@ -9,7 +10,7 @@ import threading
 import numpy as np
 import pytest
 
-from mech9_cases import TREE, run, table_of
+from mech9_cases import TREE, read_table, run, table_of, text_of
 
 EXAMPLES = os.path.join(TREE, 'examples')
 
@@ -326,6 +327,21 @@ def test_numbers_of_calls(mech9, four_bar):
     with pytest.raises(mech9.DataError, match='no quantity'):
         f([0.3])
     assert (four_bar.rates([0.6, 0.6], [np.nan, 1.0]).code == [3, 0]).all()
+
+
+def test_cams(checks, build, mech9, tmp_path):
+    path = os.path.join(EXAMPLES, 'dwell_cam', 'dwell_cam.nml')
+    done = run(build.program('mech9k'), path, '--cam', f"1:{tmp_path / 'cam.dat'}", '--report', str(tmp_path / 'report.json'), folder=tmp_path)
+    checks.equal(done.returncode, 0, done.stderr)
+    theirs, told = read_table(text_of(str(tmp_path / 'cam.dat'))), json.loads(text_of(str(tmp_path / 'report.json')))['cams'][0]
+    m = mech9.read(path)
+    profile = m.cam()
+    checks.equal(list(profile.names), list(theirs), 'the columns of the program')
+    for name in theirs:
+        checks.near(profile[name], theirs[name], 0.0, f'{name} of the profile')
+    checks.equal(profile.report, told, 'the entry of the report')
+    with pytest.raises(mech9.UsageError, match='there is no cam 3; this mechanism has 2 cams'):
+        m.cam(3)
 
 
 def test_pictures(mech9, four_bar):
