@@ -52,7 +52,7 @@ contains
     else
       call list_cam_rows(model%mechanism, model%request%cams(number), profile, texts, of_units, rows)
       call add_cam(json, model, number, profile)
-      report = json%text()
+      call json%take_text(report)
     end if
     call texts_of_one_length(texts, names)
     call texts_of_one_length(of_units, units)

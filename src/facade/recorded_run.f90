@@ -263,7 +263,7 @@ contains
     if (.not. associated(self%run)) return
     call list_run_facts(self%run%motion, self%outcome, facts)
     call compose_report(json, self%model, self%diagnostics, '', facts, self%run)
-    text = json%text()
+    call json%take_text(text)
   end subroutine report
 
   !> End the run and free its memory. Another one can then be begun.

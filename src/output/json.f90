@@ -36,7 +36,7 @@ module mech9_json
     procedure :: begin_array
     procedure :: end_array
     procedure :: save => save_document
-    procedure :: text => text_of_document
+    procedure :: take_text
     procedure, private :: add_real, add_integer, add_long, add_logical, add_text, add_reals
     procedure, private :: item_real, item_integer, item_long, item_logical, item_text
     !> `add(name, value)` in an object, `add(value)` in an array.
@@ -177,24 +177,26 @@ contains
   end subroutine item_text
 
   !> The finished document; empty where the calls did not compose a whole one.
-  pure function text_of_document(self) result(text)
-    class(json_type), intent(in) :: self   !< the document
-    character(len=:), allocatable :: text
+  pure subroutine take_text(self, text)
+    class(json_type), intent(in) :: self                        !< the document
+    character(len=:), allocatable, intent(out) :: text          !< gets it
 
     text = ''
     if (.not. (self%wrong .or. self%depth /= 0 .or. self%page%is_empty())) text = self%page%text()//line_end
-  end function text_of_document
+  end subroutine take_text
 
   !> Write the finished document to a file.
   subroutine save_document(self, path, err)
     class(json_type), intent(in) :: self               !< the document
     character(len=*), intent(in) :: path               !< path of the file; '-' is standard output
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
+    character(len=:), allocatable :: text
 
-    if (self%text() == '') then
+    call self%take_text(text)
+    if (text == '') then
       call raise(err, exit_internal, 'the report '//path//' was not composed as a whole document')
     else
-      call save_text(path, self%text(), err)
+      call save_text(path, text, err)
     end if
   end subroutine save_document
 
