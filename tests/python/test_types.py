@@ -5,19 +5,22 @@ import pytest
 
 from mech9_cases import TREE
 
-api = pytest.importorskip('mypy.api', reason='mypy is not installed (pip install mypy)')
-version = pytest.importorskip('mypy.version').__version__
-if tuple(int(part) for part in version.split('.')[:2]) < (1, 8):
-    pytest.skip(f'mypy {version} does not know the types of NumPy; 1.8 does', allow_module_level=True)
+@pytest.fixture(name='api')
+def mypy_that_knows_numpy():
+    pytest.importorskip('mypy', reason='mypy is not installed (pip install mypy)')
+    from mypy import api, version
+    if tuple(int(part) for part in version.__version__.split('.')[:2]) < (1, 8):
+        pytest.skip(f'mypy {version.__version__} does not know the types of NumPy; 1.8 does')
+    return api
 
 
-def test_package(monkeypatch, tmp_path):
+def test_package(api, monkeypatch, tmp_path):
     monkeypatch.chdir(os.path.join(TREE, 'python'))
     told, errors, code = api.run(['--cache-dir', str(tmp_path), 'mech9'])
     assert code == 0, told + errors
 
 
-def test_use(monkeypatch, tmp_path):
+def test_use(api, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv('MYPYPATH', os.path.join(TREE, 'python'))
     (tmp_path / 'use.py').write_text('''
