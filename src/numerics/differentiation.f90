@@ -9,14 +9,25 @@ module mech9_differentiation
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: half_width, stencil_size, step_count, trial_step, derivatives_from_stencil, best_slopes_type, length_along
+  public :: half_width, stencil_size, beside, step_count, trial_step, derivatives_from_stencil, best_slopes_type, length_along
 
   !> Points of the stencil on either side of its middle.
   integer, parameter :: half_width = 8
-  !> Values on one stencil: x - 8h ... x + 8h.
-  integer, parameter :: stencil_size = 2*half_width + 1
+  !> Values on one stencil: x - 8h ... x + 8h, and one between them that tells whether the polynomial is the function.
+  integer, parameter :: stencil_size = 2*half_width + 2
+  !> Place of the value between the others, in steps from the middle. A function whose period is a step is seen there.
+  real(wp), parameter :: beside = 0.40625_wp
+  !> Values of Lagrange's polynomials of the stencil at this place.
+  real(wp), parameter :: beside_weights(-half_width:half_width) = [ &
+    2.8706488404701022e-06_wp, -5.213195193832624e-05_wp, 0.0004520221686359751_wp, -0.002499621626175816_wp, &
+    0.009967462832037961_wp, -0.03094485708588666_wp, 0.08030927196099158_wp, -0.19631155368242387_wp, 0.7644824927055929_wp, &
+    0.464948416616267_wp, -0.1212512537450265_wp, 0.04063842677544152_wp, -0.01222097616797698_wp, 0.002941731573662695_wp, &
+    -0.0005176790199462284_wp, 5.855579435726692e-05_wp, -3.1777964530306893e-06_wp]
   !> Number of steps h that are tried.
   integer, parameter :: step_count = 7
+
+  !> Errors of a derivative that always count as small, and a thousandth of what counts so for values of one.
+  real(wp), parameter :: least_error = 1.0e-9_wp
 
   !> First derivatives of several functions by the best one of the stencils that were offered.
   type :: best_slopes_type
@@ -75,15 +86,18 @@ contains
     h = 2.0_wp**exponent(scale)*2.0_wp**(-2 - 2*number)
   end function trial_step
 
-  !> First and second derivative from values on a stencil of step h, with an estimate of the error
-  !> of the second: the difference between degrees 16 and 14 together with the round-off of the values.
-  pure subroutine derivatives_from_stencil(values, h, first, second, error)
+  !> First and second derivative from values on a stencil of step h, with an estimate of the error of the worse one: the
+  !> difference between degrees 16 and 14 together with the round-off of the values, and where a value between them is given, its
+  !> distance from the polynomial, per h.
+  pure subroutine derivatives_from_stencil(values, h, first, second, error, between, is_smooth)
     real(wp), intent(in) :: values(-half_width:half_width)   !< at x + i h, i = -8 .. 8
     real(wp), intent(in) :: h   !< step [unit of x]
     real(wp), intent(out) :: first   !< derivative at x
     real(wp), intent(out) :: second   !< second derivative at x
-    real(wp), intent(out) :: error   !< estimated error of the second derivative
-    real(wp) :: odd(half_width), even(half_width), second_lower
+    real(wp), intent(out) :: error   !< estimated error of the worse derivative
+    real(wp), intent(in), optional :: between   !< value at x + beside h
+    logical, intent(out), optional :: is_smooth   !< with `between`: errors are below a thousandth of the derivatives, or mean nothing
+    real(wp) :: odd(half_width), even(half_width), first_lower, second_lower, round_off, deviation, strictest
     integer :: i
 
     do i = 1, half_width
@@ -92,16 +106,27 @@ contains
     end do
     first = 0.0_wp
     second = 0.0_wp
+    first_lower = 0.0_wp
     second_lower = 0.0_wp
     do i = half_width, 1, -1
       first = first + weight(half_width, i)*odd(i)/i
       second = second + 2.0_wp*weight(half_width, i)*even(i)/i**2
-      if (i < half_width) second_lower = second_lower + 2.0_wp*weight(half_width - 1, i)*even(i)/i**2
+      if (i == half_width) cycle
+      first_lower = first_lower + weight(half_width - 1, i)*odd(i)/i
+      second_lower = second_lower + 2.0_wp*weight(half_width - 1, i)*even(i)/i**2
     end do
     first = first/h
     second = second/h**2
     second_lower = second_lower/h**2
-    error = abs(second - second_lower) + 8.0_wp*epsilon(h)*maxval(abs(values))/h**2
+    round_off = 8.0_wp*epsilon(h)*maxval(abs(values))/h**2
+    error = max(abs(second - second_lower), abs(first - first_lower/h)) + round_off
+    if (.not. (present(between) .and. present(is_smooth))) return
+    deviation = abs(between - dot_product(beside_weights, values))
+    error = max(error, deviation/h)
+    ! degrees agree on the mean of a second derivative that jumps, but not on the first derivative
+    strictest = max(abs(second - second_lower), abs(first - first_lower/h)/h, deviation/h**2)
+    is_smooth = strictest <= 1.0e-3_wp*max(abs(first), abs(second)) + 2.0_wp*round_off + &
+                least_error*(1.0_wp + 1.0e3_wp*maxval(abs(values)))
   end subroutine derivatives_from_stencil
 
   !> (-1)^(i+1) (n!)^2 / ((n-i)! (n+i)!): the central-difference weight of order 2n at i.

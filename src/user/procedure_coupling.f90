@@ -5,7 +5,7 @@ module mech9_procedure_coupling
   use mech9_error, only: error_type, raise, exit_data
   use mech9_text, only: to_text
   use mech9_taylor, only: taylor, variable
-  use mech9_differentiation, only: half_width, step_count, trial_step, derivatives_from_stencil, best_slopes_type, &
+  use mech9_differentiation, only: half_width, beside, step_count, trial_step, derivatives_from_stencil, best_slopes_type, &
     length_along
   use mech9_coupling, only: coupling_name_length, curve_order
   use mech9_function_coupling, only: function_coupling_type
@@ -105,18 +105,19 @@ contains
     real(wp), intent(out) :: curve(0:curve_order)        !< value and derivatives
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(taylor) :: second
-    logical :: ok
+    logical :: ok, is_smooth
 
+    is_smooth = .true.
     if (self%plain_values) then
-      call differentiate(self, q, of_value, curve, ok)
+      call differentiate(self, q, of_value, curve, ok, is_smooth)
     else
       call find_taylor(self, q, second)
       curve = [second%value, second%first, second%second]
       ok = all(ieee_is_finite(curve))
     end if
-    if (ok) return
+    if (ok .and. is_smooth) return
     curve = 0.0_wp
-    call refuse(self, q, err)
+    call refuse(self, q, ok, err)
   end subroutine find_curve
 
   !> The third derivative, by differences of the second one. Fails where there are no finite numbers.
@@ -126,46 +127,59 @@ contains
     real(wp), intent(out) :: third                       !< third derivative
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     real(wp) :: bend(0:curve_order)
-    logical :: ok
+    logical :: ok, is_smooth
 
-    call differentiate(self, q, of_second, bend, ok)
+    call differentiate(self, q, of_second, bend, ok, is_smooth)
     third = 0.0_wp
     if (ok) third = bend(1)
-    if (.not. ok) call refuse(self, q, err)
+    if (.not. (ok .and. is_smooth)) call refuse(self, q, ok, err)
   end subroutine find_third
 
-  !> The failure of a procedure whose numbers are not finite.
-  subroutine refuse(self, q, err)
+  !> The failure of a procedure whose numbers are not finite, or whose derivatives are not known.
+  subroutine refuse(self, q, is_finite, err)
     class(procedure_coupling_type), intent(in) :: self   !< the coupling
     real(wp), intent(in) :: q                            !< the first coordinate [rad, m]
+    logical, intent(in) :: is_finite                     !< all numbers are finite
     type(error_type), allocatable, intent(out) :: err    !< always allocated
+    character(len=:), allocatable :: place
 
-    call raise(err, exit_data, 'the user procedure of coupling '//to_text(self%number)// &
-               ' gives numbers that are not finite where its first coordinate is '//to_text(q, 12)//' (rad, m)', self%place)
+    place = ' where its first coordinate is '//to_text(q, 12)//' (rad, m)'
+    if (is_finite) then
+      call raise(err, exit_data, 'the user procedure of coupling '//to_text(self%number)//' is not smooth'//place// &
+                 ': differences do not tell its derivatives; let it give them', self%place)
+    else
+      call raise(err, exit_data, 'the user procedure of coupling '//to_text(self%number)//' gives numbers that are not finite'// &
+                 place, self%place)
+    end if
   end subroutine refuse
 
   !> The value or the second derivative, with two derivatives from differences. The widest stencil whose error is round-off is
   !> taken, or else the one with the least error. `ok` is false where no stencil has finite values.
-  recursive subroutine differentiate(self, q, form, curve, ok)
+  recursive subroutine differentiate(self, q, form, curve, ok, is_smooth)
     class(procedure_coupling_type), intent(in) :: self   !< the coupling
     real(wp), intent(in) :: q                            !< the first coordinate [rad, m]
     integer, intent(in) :: form                          !< of_value or of_second
     real(wp), intent(out) :: curve(0:curve_order)        !< value of the function and its derivatives
     logical, intent(out) :: ok                           !< all values are finite
-    real(wp) :: values(-half_width:half_width), h, first, second, error, best
+    logical, intent(out) :: is_smooth                    !< whether the derivatives are known
+    real(wp) :: values(-half_width:half_width), between, h, first, second, error, best
     integer :: number, i
+    logical :: smooth
 
     best = huge(best)
     curve = 0.0_wp
+    is_smooth = .false.
     do number = 1, step_count
       h = trial_step(number, 1.0_wp)
       do i = -half_width, half_width
         values(i) = sample(self, q + i*h, form)
       end do
       if (.not. all(ieee_is_finite(values))) cycle   ! too wide: outside the procedure's domain
-      call derivatives_from_stencil(values, h, first, second, error)
+      between = sample(self, q + beside*h, form)
+      call derivatives_from_stencil(values, h, first, second, error, between, smooth)
       if (error < best) then
         best = error
+        is_smooth = smooth
         curve = [values(0), first, second]
       end if
       ! the error is small, or mere round-off, which only grows as stencils get narrower
@@ -181,7 +195,7 @@ contains
     integer, intent(in) :: form                          !< of_value or of_second
     type(taylor) :: second
     real(wp) :: curve(0:curve_order)
-    logical :: ok
+    logical :: ok, is_smooth
 
     if (.not. self%plain_values) then
       call find_taylor(self, q, second)
@@ -189,7 +203,7 @@ contains
     else if (form == of_value) then
       call find_value(self, q, sample)
     else
-      call differentiate(self, q, of_value, curve, ok)
+      call differentiate(self, q, of_value, curve, ok, is_smooth)
       sample = merge(curve(2), huge(curve), ok)
     end if
   end function sample

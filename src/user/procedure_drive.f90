@@ -5,7 +5,7 @@ module mech9_procedure_drive
   use mech9_error, only: error_type, raise, exit_data
   use mech9_text, only: to_text
   use mech9_taylor, only: taylor, variable
-  use mech9_differentiation, only: half_width, step_count, trial_step, derivatives_from_stencil, best_slopes_type, &
+  use mech9_differentiation, only: half_width, beside, step_count, trial_step, derivatives_from_stencil, best_slopes_type, &
     length_along
   use mech9_law, only: law_type
   use mech9_registered_procedures, only: registered_procedure_type
@@ -95,10 +95,11 @@ contains
     real(wp), intent(out) :: ddq                        !< its acceleration [rad/s^2, m/s^2]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(taylor) :: x
-    logical :: ok
+    logical :: ok, is_smooth
 
+    is_smooth = .true.
     if (self%plain_values) then
-      call differentiate(self, t, x, ok)
+      call differentiate(self, t, x, ok, is_smooth)
     else
       call find_taylor(self, t, x)
       ok = ieee_is_finite(x%value) .and. ieee_is_finite(x%first) .and. ieee_is_finite(x%second)
@@ -109,6 +110,10 @@ contains
     if (.not. ok) &
       call raise(err, exit_data, 'the user procedure of the drive of coordinate '//to_text(self%coordinate)// &
                  ' gives numbers that are not finite at t = '//to_text(t, 12), self%place)
+    if (ok .and. .not. is_smooth) &
+      call raise(err, exit_data, 'the user procedure of the drive of coordinate '//to_text(self%coordinate)// &
+                 ' is not smooth at t = '//to_text(t, 12)//': differences do not tell its derivatives; let it give them', &
+                 self%place)
   end subroutine evaluate
 
   !> The numbers for the user's procedure.
@@ -155,24 +160,29 @@ contains
 
   !> Value and derivatives from the form in plain reals. The widest stencil whose error is round-off is
   !> taken, or else the one with the least error. `ok` is false where no stencil has finite values.
-  subroutine differentiate(self, t, x, ok)
+  subroutine differentiate(self, t, x, ok, is_smooth)
     type(procedure_drive_type), intent(in) :: self   !< the procedure drive
     real(wp), intent(in) :: t                        !< time [s]
     type(taylor), intent(out) :: x                   !< the coordinate with its derivatives in time
     logical, intent(out) :: ok                       !< whether there are finite values
-    real(wp) :: values(-half_width:half_width), h, first, second, error, best
+    logical, intent(out) :: is_smooth                !< whether the derivatives are known
+    real(wp) :: values(-half_width:half_width), between, h, first, second, error, best
     integer :: number, i
+    logical :: smooth
 
     best = huge(best)
+    is_smooth = .false.
     do number = 1, step_count
       h = trial_step(number, 1.0_wp)
       do i = -half_width, half_width
         call find_value(self, t + i*h, values(i))
       end do
       if (.not. all(ieee_is_finite(values))) cycle   ! too wide: outside the procedure's domain
-      call derivatives_from_stencil(values, h, first, second, error)
+      call find_value(self, t + beside*h, between)
+      call derivatives_from_stencil(values, h, first, second, error, between, smooth)
       if (error < best) then
         best = error
+        is_smooth = smooth
         x = taylor(values(0), first, second)
       end if
       ! the error is small, or mere round-off, which only grows as stencils get narrower

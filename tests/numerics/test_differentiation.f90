@@ -34,7 +34,7 @@ contains
     type(tester_type), intent(inout) :: test   !< counts the checks
     integer :: number
 
-    call test%is_true(stencil_size == 2*half_width + 1, 'a stencil has its middle and two sides')
+    call test%is_true(stencil_size == 2*half_width + 2, 'a stencil has its middle, two sides, and a value between them')
     call test%near(trial_step(1, 1.0_wp), 0.125_wp, 0.0_wp, 'the first step is an eighth of the scale')
     do number = 2, step_count
       call test%near(trial_step(number, 1.0_wp)*4.0_wp, trial_step(number - 1, 1.0_wp), 0.0_wp, &
