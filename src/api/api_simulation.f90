@@ -11,7 +11,7 @@ module mech9_api_simulation
   use mech9_api_analyses, only: end_analysis
   implicit none
   private
-  public :: simulation_handle_type, find_simulation
+  public :: simulation_handle_type, find_simulation, claim, release
   public :: create, destroy, advance, time, coordinates, take, point, energies, closure
   public :: set, free_coordinates, take_equations, size_of_state, take_state, set_state
 
@@ -20,6 +20,7 @@ module mech9_api_simulation
     integer(c_int) :: mark = simulation_mark
     type(motion_type) :: motion
     real(wp), allocatable :: units(:)             !< (M) of the coordinates in the data file [rad, m]
+    logical :: is_busy = .false.                  !< a call changes it; a user procedure in it, or another thread, must not
   end type simulation_handle_type
 
 contains
@@ -58,13 +59,13 @@ contains
     code = end_analysis(error, err, moved, merge(kinematics, dynamics, with_forces == 0))
   end function create
 
-  !> End a motion and free its handle.
+  !> End a motion and free its handle. Nothing happens while a call changes it.
   subroutine destroy(simulation) bind(c, name='mech9_simulation_destroy')
     type(c_ptr), value, intent(in) :: simulation   !< the handle, or null
     type(simulation_handle_type), pointer :: handle
     type(error_type), allocatable :: err
 
-    call find_simulation(simulation, handle, err)
+    call claim(simulation, handle, err)
     if (allocated(err)) return
     call handle%motion%close()
     handle%mark = no_mark
@@ -72,7 +73,7 @@ contains
   end subroutine destroy
 
   !> Go on to a time. After a failure the motion stays at the last time that it reached.
-  integer(c_int) function advance(simulation, t, error) bind(c, name='mech9_simulation_advance') result(code)
+  recursive integer(c_int) function advance(simulation, t, error) bind(c, name='mech9_simulation_advance') result(code)
     type(c_ptr), value, intent(in) :: simulation   !< the handle
     real(c_double), value, intent(in) :: t         !< the time, in the direction of &time [s]
     type(c_ptr), value, intent(in) :: error        !< handle of errors, or null
@@ -80,8 +81,9 @@ contains
     type(error_type), allocatable :: err
 
     call begin_call(error)
-    call find_simulation(simulation, handle, err)
+    call claim(simulation, handle, err)
     if (.not. allocated(err)) call handle%motion%advance(t, err)
+    call release(handle)
     code = end_call(error, err)
   end function advance
 
@@ -157,7 +159,8 @@ contains
   end function point
 
   !> Energies of the present position.
-  integer(c_int) function energies(simulation, kinetic, potential, error) bind(c, name='mech9_simulation_energies') result(code)
+  recursive integer(c_int) function energies(simulation, kinetic, potential, error) &
+    bind(c, name='mech9_simulation_energies') result(code)
     type(c_ptr), value, intent(in) :: simulation   !< the handle
     real(c_double), intent(out) :: kinetic         !< of all bodies [J]
     real(c_double), intent(out) :: potential       !< of gravity and springs [J]
@@ -168,8 +171,9 @@ contains
     call begin_call(error)
     kinetic = ieee_value(kinetic, ieee_quiet_nan)
     potential = kinetic
-    call find_simulation(simulation, handle, err)
+    call claim(simulation, handle, err)
     if (.not. allocated(err)) call handle%motion%energies(kinetic, potential)
+    call release(handle)
     code = end_call(error, err)
   end function energies
 
@@ -185,7 +189,7 @@ contains
   end function closure
 
   !> Give a number of a load or a motor another value, from the present time on.
-  integer(c_int) function set(simulation, name, value, error) bind(c, name='mech9_simulation_set') result(code)
+  recursive integer(c_int) function set(simulation, name, value, error) bind(c, name='mech9_simulation_set') result(code)
     type(c_ptr), value, intent(in) :: simulation   !< the handle
     type(c_ptr), value, intent(in) :: name         !< of the number, as load(1).force(2)
     real(c_double), value, intent(in) :: value     !< in the unit of the data file
@@ -196,8 +200,9 @@ contains
 
     call begin_call(error)
     call read_c_text(name, text)
-    call find_simulation(simulation, handle, err)
+    call claim(simulation, handle, err)
     if (.not. allocated(err)) call handle%motion%set(text, value, err)
+    call release(handle)
     code = end_call(error, err)
   end function set
 
@@ -213,7 +218,7 @@ contains
   end function free_coordinates
 
   !> Take the equations of motion of the free coordinates, mass matrix times accelerations + bias = 0, in SI units.
-  integer(c_int) function take_equations(simulation, numbers, mass_matrix, bias, error) &
+  recursive integer(c_int) function take_equations(simulation, numbers, mass_matrix, bias, error) &
     bind(c, name='mech9_simulation_equations') result(code)
     type(c_ptr), value, intent(in) :: simulation    !< the handle
     type(c_ptr), value, intent(in) :: numbers       !< (n) gets the numbers of the free coordinates, from 1, or null
@@ -227,7 +232,7 @@ contains
     real(wp), allocatable :: inertia(:, :), forces(:)
 
     call begin_call(error)
-    call find_simulation(simulation, handle, err)
+    call claim(simulation, handle, err)
     if (.not. allocated(err)) call handle%motion%take_equations(coordinates, inertia, forces, err)
     if (.not. allocated(err)) then
       if (c_associated(numbers)) then
@@ -237,6 +242,7 @@ contains
       call put(reshape(inertia, [size(inertia)]), mass_matrix)
       call put(forces, bias)
     end if
+    call release(handle)
     code = end_call(error, err)
   end function take_equations
 
@@ -273,7 +279,7 @@ contains
   end function take_state
 
   !> Go to a state, perhaps of another simulation of the same mechanism: the motion starts there anew.
-  integer(c_int) function set_state(simulation, n, state, error) bind(c, name='mech9_simulation_set_state') result(code)
+  recursive integer(c_int) function set_state(simulation, n, state, error) bind(c, name='mech9_simulation_set_state') result(code)
     type(c_ptr), value, intent(in) :: simulation   !< the handle
     integer(c_int), value, intent(in) :: n         !< how many numbers the state has
     type(c_ptr), value, intent(in) :: state        !< the numbers of the state
@@ -283,12 +289,13 @@ contains
     real(c_double), pointer :: numbers(:)
 
     call begin_call(error)
-    call find_simulation(simulation, handle, err)
+    call claim(simulation, handle, err)
     if (.not. allocated(err) .and. (n < 0 .or. .not. c_associated(state))) call refuse('this is no state of this mechanism', err)
     if (.not. allocated(err)) then
       call c_f_pointer(state, numbers, [n])
       call handle%motion%go_to_state(numbers, err)
     end if
+    call release(handle)
     code = end_call(error, err)
   end function set_state
 
@@ -302,6 +309,29 @@ contains
     call c_f_pointer(address, array, [size(numbers)])
     array = numbers
   end subroutine put
+
+  !> The handle at an address, for a call that changes it. Fails with exit_usage where there is none, and while another call does.
+  subroutine claim(address, handle, err)
+    type(c_ptr), intent(in) :: address                               !< its address
+    type(simulation_handle_type), pointer, intent(out) :: handle     !< the handle; null after a failure
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+
+    call find_simulation(address, handle, err)
+    if (allocated(err)) return
+    if (handle%is_busy) then
+      handle => null()
+      call refuse('a call changes this simulation; a user procedure in it, or another thread, must use another simulation', err)
+    else
+      handle%is_busy = .true.
+    end if
+  end subroutine claim
+
+  !> End a call that changed a motion.
+  subroutine release(handle)
+    type(simulation_handle_type), pointer, intent(in) :: handle   !< the handle, or null
+
+    if (associated(handle)) handle%is_busy = .false.
+  end subroutine release
 
   !> The handle at an address. Fails with exit_usage where there is none.
   subroutine find_simulation(address, handle, err)

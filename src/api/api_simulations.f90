@@ -5,7 +5,7 @@ module mech9_api_simulations
   use mech9, only: wp, error_type, exit_usage
   use mech9_api_text, only: read_c_text
   use mech9_api_error, only: begin_call, end_call, refuse
-  use mech9_api_simulation, only: simulation_handle_type, find_simulation
+  use mech9_api_simulation, only: simulation_handle_type, find_simulation, claim, release
   implicit none
   private
   public :: advance, set, take
@@ -13,7 +13,7 @@ module mech9_api_simulations
 contains
 
   !> Go on to a time with all motions that can go on. Fails with exit_usage for a time before the present one.
-  integer(c_int) function advance(simulations, n, t, codes, error) bind(c, name='mech9_simulations_advance') result(code)
+  recursive integer(c_int) function advance(simulations, n, t, codes, error) bind(c, name='mech9_simulations_advance') result(code)
     integer(c_int), value, intent(in) :: n            !< number of motions
     type(c_ptr), intent(in) :: simulations(n)         !< their handles
     real(c_double), value, intent(in) :: t            !< the time [s]
@@ -26,9 +26,10 @@ contains
     call begin_call(error)
     do i = 1, n
       if (codes(i) /= 0) cycle
-      call find_simulation(simulations(i), handle, err)
+      call claim(simulations(i), handle, err)
       if (allocated(err)) exit
       call handle%motion%advance(t, err)
+      call release(handle)
       if (.not. allocated(err)) cycle
       if (err%code == exit_usage) exit
       codes(i) = err%code
@@ -38,7 +39,8 @@ contains
   end function advance
 
   !> Give a number of a load or a motor a value in each motion, from the present time on.
-  integer(c_int) function set(simulations, n, name, values, codes, error) bind(c, name='mech9_simulations_set') result(code)
+  recursive integer(c_int) function set(simulations, n, name, values, codes, error) &
+    bind(c, name='mech9_simulations_set') result(code)
     integer(c_int), value, intent(in) :: n            !< number of motions
     type(c_ptr), intent(in) :: simulations(n)         !< their handles
     type(c_ptr), value, intent(in) :: name            !< of the number, as load(1).force(2)
@@ -54,8 +56,9 @@ contains
     call read_c_text(name, text)
     do i = 1, n
       if (codes(i) /= 0) cycle
-      call find_simulation(simulations(i), handle, err)
+      call claim(simulations(i), handle, err)
       if (.not. allocated(err)) call handle%motion%set(text, values(i), err)
+      call release(handle)
       if (allocated(err)) exit
     end do
     code = end_call(error, err)
