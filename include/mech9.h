@@ -65,9 +65,10 @@ int mech9_mechanism_is_driven(const mech9_mechanism *mechanism, int *driven, mec
  * copy of the mechanism has them, too. They return 0, or another number where they have no values. `parameters` are those of the
  * group &user, in number `n`. `data` is what was registered with the function. Studies and searches with several threads call them
  * in several threads at the same time. Null takes a function back.
- * Leave the derivatives as they are where they are not known: they are then found by differences, at 17 or more calls. */
+ * Leave the derivatives as they are where they are not known: they are then found by differences, at 18 or more calls, up to 1 s, rad
+ * or m away. Functions with kinks must give them. A function must not change the simulation that calls it. */
 /* Three points of the moving link in the system of its reference link, not on a line [m]: origin, a point on the x axis, a third
- * one. points[0] has the points, points[1] and points[2] their first and second derivatives by q. */
+ * one. points[0] has the points (y is along (r2 - r1) x (r3 - r1)), points[1] and points[2] their first and second derivatives by q. */
 typedef int mech9_pair_function(int coordinate, double q, int n, const double *parameters, double points[3][3][3], void *data);
 /* A coordinate and its derivatives by t [rad, m]. */
 typedef int mech9_drive_function(int coordinate, double t, int n, const double *parameters, double values[3], void *data);

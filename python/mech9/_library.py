@@ -199,8 +199,17 @@ def _begin(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
     return procedures
 
 
+def raise_pending(procedures: tuple[Any, ...]) -> None:
+    """Raise the KeyboardInterrupt or SystemExit of a user procedure, which ended or paused the call."""
+    for procedure in procedures:
+        for reason in list(procedure.raised):
+            if not isinstance(reason, Exception):
+                raise reason
+
+
 def _failure(code: int, procedures: tuple[Any, ...]) -> Error:
     """The failure of the last call in this thread; what a user procedure raised is its cause."""
+    raise_pending(procedures)
     handle = _handle.address
     found = []
     for i in range(lib.error_findings(handle)):
@@ -209,10 +218,10 @@ def _failure(code: int, procedures: tuple[Any, ...]) -> Error:
                              line or None, lib.error_finding_column(handle, i) or None if line else None))
     failure = CODES.get(code, Error)(_text(lib.error_message(handle)), code, tuple(found))
     for procedure in procedures:
-        for reason in procedure.raised:
-            if not isinstance(reason, Exception):
-                raise reason   # KeyboardInterrupt, SystemExit
+        for reason in list(procedure.raised):
             failure.__cause__ = reason
+            failure.message += f'\nthe procedure raised {type(reason).__name__}: {reason}'
+            failure.args = (failure.message,)
     return failure
 
 
@@ -222,6 +231,8 @@ def call(function: Callable[..., int], *arguments: Any) -> None:
     code = function(*arguments, _handle.address)
     if code:
         raise _failure(code, procedures)
+    if procedures:
+        raise_pending(procedures)
 
 
 # Seconds that a call may take to stop.
@@ -267,6 +278,7 @@ def call_stoppable(function: Callable[..., int], arguments: Callable[[Any], tupl
             raise
     if broken:
         raise broken[0]
+    raise_pending(procedures)
     failure = failures[0]
     if failure is not None and failure.code == INTERRUPTED:
         raise KeyboardInterrupt(failure.message)
@@ -329,8 +341,16 @@ def call_with_pauses(function: Callable[..., int], stop: c_int, *arguments: Any)
             if is_main:
                 _watch.begin(stop)
             code = function(*arguments, _handle.address)
+            if procedures:
+                raise_pending(procedures)
     finally:
         if is_main:
             _watch.stop = None
     if code:
         raise _failure(code, procedures)
+
+
+def pause() -> None:
+    """Let the present call of the main thread return soon."""
+    if _watch.stop is not None and threading.current_thread() is threading.main_thread():
+        _watch.stop.value = 1

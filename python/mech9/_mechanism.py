@@ -252,7 +252,8 @@ class Mechanism:
 
     def pair(self, function: F) -> F:
         """Register a function for pairs with kind='user', also as @m.pair: f(coordinate, q, parameters) returns three points (3, 3)
-        [m] of the moving link in its reference link, or (3, 3, 3): the points and their two derivatives by q.
+        [m] of the moving link in its reference link: its origin, a point on its x axis, and a third one with y along
+        (r2 - r1) x (r3 - r1), as one on -z; or (3, 3, 3): the points and their two derivatives by q.
 
         A compiled function has an `address`, as one of numba.cfunc (mech9.numba has the signatures).
         """

@@ -2,13 +2,14 @@
 from __future__ import annotations
 
 import ctypes
+import operator
 from ctypes import CFUNCTYPE, POINTER, c_double, c_int, c_void_p
 from typing import Any, Callable
 
 import numpy as np
 
 from ._errors import UsageError
-from ._library import lib
+from ._library import lib, pause
 
 _Numbers = POINTER(c_double)
 _Three = c_double*3
@@ -18,8 +19,18 @@ _FORCE = CFUNCTYPE(c_int, c_double, c_void_p, c_int, _Numbers, c_void_p, c_void_
 
 
 def _three(values: Any) -> Any:
-    x, y, z = values
-    return _Three(x, y, z)
+    if len(values) != 3:
+        raise UsageError(f'points and vectors have three numbers, not {values!r}', 2)
+    return _Three(*values)
+
+
+def _number(value: Any) -> int:
+    """A number of a link or a coordinate for C."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise UsageError(f'links and coordinates have whole numbers, not {value!r}', 2) from None
+    return number if abs(number) < 2**31 else 0   # which no link and no coordinate has
 
 
 class Motion:
@@ -43,27 +54,27 @@ class Motion:
 
     def position(self, link: int, point: Any) -> np.ndarray:
         """Position of a point of a link (3,) [m]."""
-        return self._ask(lib.motion_position, link, _three(point))
+        return self._ask(lib.motion_position, _number(link), _three(point))
 
     def velocity(self, link: int, point: Any) -> np.ndarray:
         """Velocity of a point of a link (3,) [m/s]."""
-        return self._ask(lib.motion_velocity, link, _three(point))
+        return self._ask(lib.motion_velocity, _number(link), _three(point))
 
     def turned(self, link: int, direction: Any) -> np.ndarray:
         """A direction that is fixed in a link (3,)."""
-        return self._ask(lib.motion_turned, link, _three(direction))
+        return self._ask(lib.motion_turned, _number(link), _three(direction))
 
     def angular_velocity(self, link: int) -> np.ndarray:
         """Angular velocity of a link (3,) [rad/s]."""
-        return self._ask(lib.motion_angular_velocity, link)
+        return self._ask(lib.motion_angular_velocity, _number(link))
 
     def q(self, coordinate: int) -> float:
         """A coordinate [rad, m]."""
-        return float(lib.motion_q(self._open(), coordinate))
+        return float(lib.motion_q(self._open(), _number(coordinate)))
 
     def dq(self, coordinate: int) -> float:
         """The rate of a coordinate [rad/s, m/s]."""
-        return float(lib.motion_dq(self._open(), coordinate))
+        return float(lib.motion_dq(self._open(), _number(coordinate)))
 
 
 class Loads:
@@ -78,15 +89,15 @@ class Loads:
 
     def add_force(self, link: int, point: Any, force: Any) -> None:
         """Add a force [N] at a point of a link, which is given in its system [m]."""
-        lib.loads_add_force(self._open(), self._motion._open(), link, _three(point), _three(force))
+        lib.loads_add_force(self._open(), self._motion._open(), _number(link), _three(point), _three(force))
 
     def add_torque(self, link: int, torque: Any) -> None:
         """Add a torque [N m] on a link."""
-        lib.loads_add_torque(self._open(), link, _three(torque))
+        lib.loads_add_torque(self._open(), _number(link), _three(torque))
 
     def add_generalized(self, coordinate: int, value: float) -> None:
         """Add a torque or force [N m, N] on a coordinate: on its moving link, and the opposite on its reference link."""
-        lib.loads_add_generalized(self._open(), coordinate, value)
+        lib.loads_add_generalized(self._open(), _number(coordinate), value)
 
 
 class Procedure:
@@ -110,6 +121,16 @@ def _answered(raised: list[BaseException], work: Callable[[], None]) -> int:
     try:
         work()
         return 0
+    except KeyboardInterrupt as reason:
+        # Ctrl-C comes in the middle of a procedure: do its work again, so that the motion can go on after the pause
+        try:
+            work()
+            code = 0
+        except BaseException:
+            code = 1
+        raised[:] = [reason]
+        pause()
+        return code
     except BaseException as reason:
         raised[:] = [reason]
         return 1
@@ -121,11 +142,22 @@ def _parameters(n: int, address: Any) -> np.ndarray:
 
 def _filled(values: Any, shape: tuple[int, ...], address: Any) -> None:
     """Give values back, with or without two derivatives."""
-    array = np.asarray(values, dtype=float)
+    if values is None:
+        raise UsageError('the procedure returned None; it must return its values', 2)
+    array = np.asarray(values)
+    if array.dtype.kind not in 'iuf':
+        raise UsageError(f'the procedure must return real numbers, not {values!r}', 2)
+    array = array.astype(float)
     if array.shape not in (shape, (3, *shape)):
         raise UsageError(f'the procedure must return an array of the shape {shape}, or {(3, *shape)} with two derivatives, '
                          f'not {array.shape}', 2)
     ctypes.memmove(address, np.ascontiguousarray(array).ctypes.data, array.nbytes)
+
+
+def _nothing(answer: Any) -> None:
+    """Refuse an answer of a procedure for forces, whose user may think that it counts."""
+    if answer is not None:
+        raise UsageError(f'a procedure for forces adds to the loads and returns nothing, not {answer!r}', 2)
 
 
 def _pair(function: Callable[..., Any], raised: list[BaseException]) -> Any:
@@ -143,7 +175,7 @@ def _curve(function: Callable[..., Any], raised: list[BaseException]) -> Any:
 def _force(function: Callable[..., Any], raised: list[BaseException]) -> Any:
     def call(t: float, motion: int, n: int, parameters: Any, loads: int, data: Any) -> int:
         seen = Motion(motion)
-        code = _answered(raised, lambda: function(t, seen, _parameters(n, parameters), Loads(loads, seen)))
+        code = _answered(raised, lambda: _nothing(function(t, seen, _parameters(n, parameters), Loads(loads, seen))))
         seen._address = None
         return code
     return _FORCE(call)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Callable
 import numpy as np
 
 from ._errors import INTERRUPTED, UsageError
-from ._library import Handle, call, call_with_pauses, lib, text
+from ._library import Handle, call, call_with_pauses, lib, raise_pending, text
 
 if TYPE_CHECKING:
     from ._mechanism import Mechanism
@@ -53,7 +53,7 @@ class Simulation:
         self.close()
 
     def advance(self, t: float) -> None:
-        """Go on to a time [s]. A motion that cannot go on stays at the last time that it reached."""
+        """Go on to a time [s]. A motion that cannot go on stays at the last time that it reached, until set_state; after Ctrl-C it can go on."""
         call_with_pauses(lib.simulation_advance, self._stop, self._open(), float(t))
 
     def set(self, name: str, value: float) -> None:
@@ -143,7 +143,8 @@ class Simulation:
 class Simulations:
     """Many motions of one mechanism side by side: q, dq, ddq (count, M) in the units of the data file, and `code` (count,).
 
-    A motion that cannot go on keeps the exit code of its failure, and its rows are NaN from then on.
+    A motion that cannot go on keeps the exit code of its failure, and its rows are NaN from then on; `advance` of this one alone, many[i],
+    raises the failure.
     """
 
     def __init__(self, mechanism: Mechanism, count: int, driven: bool, threads: int):
@@ -162,7 +163,7 @@ class Simulations:
         return len(self._all)
 
     def __getitem__(self, i: int) -> Simulation:
-        """One of the motions."""
+        """One of the motions, many[i]."""
         return self._all[i]
 
     def __enter__(self) -> Simulations:
@@ -199,6 +200,7 @@ class Simulations:
             raise
         for done in parts:
             done.result()
+        raise_pending(self._procedures)
 
     def advance(self, t: float) -> None:
         """Go on to a time [s] with all motions that can go on."""

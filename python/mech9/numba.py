@@ -7,7 +7,8 @@
         mech9.numba.add_force(loads, motion, 2, tip, -0.1*mech9.numba.velocity(motion, 2, tip))
         return 0
 
-Numbers of the group &user are in parameters[0] to parameters[n - 1]. A procedure returns 0, or 1 where it has no values.
+Numbers of the group &user are in parameters[0] to parameters[n - 1]. A procedure returns 0, or 1 where it has no values. Numba ignores
+exceptions in it: guard divisions, and return 1.
 """
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ from ._library import lib
 
 # f(t, motion, n, parameters, loads, data)
 FORCE = 'int32(float64, voidptr, int32, CPointer(float64), voidptr, voidptr)'
-# f(coordinate, q, n, parameters, points, data): points[0] to points[8] are three points; two derivatives by q may follow
+# f(coordinate, q, n, parameters, points, data): points[0] to points[8] are three points, as for m.pair; two derivatives by q may follow
 PAIR = 'int32(int32, float64, int32, CPointer(float64), CPointer(float64), voidptr)'
 # f(coordinate, t, n, parameters, values, data), f(coupling, first, n, parameters, values, data): values[0] is the value; two
 # derivatives may follow
@@ -34,10 +35,20 @@ _compiled: Any = numba.njit   # has no types for mypy
 
 
 @_compiled
+def _three(values):   # type: ignore[no-untyped-def]
+    """Three numbers side by side, whatever they are given as; not numbers, which end the run, where there are not three."""
+    copied = np.full(3, np.nan)
+    if len(values) == 3:
+        for i in range(3):
+            copied[i] = values[i]
+    return copied
+
+
+@_compiled
 def position(motion, link, point):   # type: ignore[no-untyped-def]
     """Position of a point of a link (3,) [m]; the point is given in the system of the link."""
     found = np.empty(3)
-    _position(motion, link, point.ctypes, found.ctypes)
+    _position(motion, link, _three(point).ctypes, found.ctypes)
     return found
 
 
@@ -45,7 +56,7 @@ def position(motion, link, point):   # type: ignore[no-untyped-def]
 def velocity(motion, link, point):   # type: ignore[no-untyped-def]
     """Velocity of a point of a link (3,) [m/s]."""
     found = np.empty(3)
-    _velocity(motion, link, point.ctypes, found.ctypes)
+    _velocity(motion, link, _three(point).ctypes, found.ctypes)
     return found
 
 
@@ -53,7 +64,7 @@ def velocity(motion, link, point):   # type: ignore[no-untyped-def]
 def turned(motion, link, direction):   # type: ignore[no-untyped-def]
     """A direction that is fixed in a link (3,), along the axes of link 1."""
     found = np.empty(3)
-    _turned(motion, link, direction.ctypes, found.ctypes)
+    _turned(motion, link, _three(direction).ctypes, found.ctypes)
     return found
 
 
@@ -80,13 +91,13 @@ def dq(motion, coordinate):   # type: ignore[no-untyped-def]
 @_compiled
 def add_force(loads, motion, link, point, force):   # type: ignore[no-untyped-def]
     """Add a force [N] at a point of a link."""
-    _add_force(loads, motion, link, point.ctypes, force.ctypes)
+    _add_force(loads, motion, link, _three(point).ctypes, _three(force).ctypes)
 
 
 @_compiled
 def add_torque(loads, link, torque):   # type: ignore[no-untyped-def]
     """Add a torque [N m] on a link."""
-    _add_torque(loads, link, torque.ctypes)
+    _add_torque(loads, link, _three(torque).ctypes)
 
 
 @_compiled

@@ -131,16 +131,26 @@ def test_failing_procedures(mech9, falling):
     with pytest.raises(mech9.DataError, match='calls add_torque with link 7') as caught:
         falling.dynamics()
     assert caught.value.__cause__ is None
-    falling.force(lambda t, motion, parameters, loads: loads.add_force(2, (0, 0), CENTRE))
-    with pytest.raises(mech9.DataError) as caught:
+    for wrong, told in ((lambda t, motion, parameters, loads: loads.add_force(2, (0, 0), CENTRE), 'have three numbers'),
+                        (lambda t, motion, parameters, loads: np.ones(3), 'returns nothing'),
+                        (lambda t, motion, parameters, loads: motion.q(1.0), 'have whole numbers')):
+        falling.force(wrong)
+        with pytest.raises(mech9.DataError, match=told) as caught:
+            falling.dynamics()
+        assert isinstance(caught.value.__cause__, mech9.UsageError)
+    falling.force(lambda t, motion, parameters, loads: loads.add_generalized(2**32 + 1, 5.0))
+    with pytest.raises(mech9.DataError, match='calls add_generalized with coordinate 0'):
         falling.dynamics()
-    assert isinstance(caught.value.__cause__, ValueError)
 
     m = mech9.read(data_of('trammel'))
     m.pair(lambda coordinate, q, parameters: np.zeros((2, 3)))
     with pytest.raises(mech9.DataError, match='user procedure of pair 1') as caught:
         m.kinematics()
     assert 'of the shape (3, 3)' in str(caught.value.__cause__)
+    for answer, told in ((None, 'returned None'), ('1.5', 'must return real numbers'), (1j, 'must return real numbers')):
+        m.pair(lambda coordinate, q, parameters: answer)
+        with pytest.raises(mech9.DataError, match=told):
+            m.kinematics()
     m.pair(lambda coordinate, q, parameters: np.zeros((3, 3)))
     with pytest.raises(mech9.DataError, match='on one line'):
         m.kinematics()
@@ -150,13 +160,92 @@ def test_failing_procedures(mech9, falling):
         mech9.read(data_of('trammel')).kinematics()
 
 
-def test_interrupted_procedure(falling):
+@pytest.mark.parametrize('reason', (KeyboardInterrupt, SystemExit))
+def test_interrupted_procedure(falling, reason):
+    """The exceptions that end a program are seen, whatever calls the procedure."""
     @falling.force
     def stopped(t, motion, parameters, loads):
         if t > 0.5:
+            raise reason
+    falling.add('quantity', name='way', of='q1', take='end')
+    with falling.simulation() as sim, falling.simulations(2) as many:
+        for call in (lambda: sim.advance(1.0), lambda: many.advance(1.0), falling.dynamics,
+                     lambda: falling.study(**{'user.parameters(1)': [0.1, 0.2]})):
+            with pytest.raises(reason):
+                call()
+
+
+def test_ctrl_c_in_a_procedure(checks, falling):
+    """It comes once, in the middle of the procedure; afterwards the motion goes on."""
+    comes = [True]
+
+    @falling.force
+    def force(t, motion, parameters, loads):
+        if t > 0.5 and comes:
+            comes.clear()
             raise KeyboardInterrupt
-    with pytest.raises(KeyboardInterrupt), falling.simulation() as sim:
-        sim.advance(1.0)
+        drag(t, motion, parameters, loads)
+    with falling.simulation() as sim:
+        with pytest.raises(KeyboardInterrupt):
+            sim.advance(2.0)
+        sim.advance(2.0)
+        checks.near(sim.q[0], fall(2.0), 1e-8, 'the motion goes on')
+
+
+def test_calls_on_the_simulation_that_calls(mech9, falling):
+    """A procedure must not change the motion that calls it."""
+    refused, begun = [], []
+
+    @falling.force
+    def force(t, motion, parameters, loads):
+        for sim in begun:
+            for call in (lambda: sim.advance(5.0), lambda: sim.set('load(1).force', 1.0), lambda: sim.set_state(np.zeros(3)), sim.mass_matrix):
+                try:
+                    call()
+                except mech9.UsageError as reason:
+                    refused.append(str(reason))
+    with falling.simulation() as sim:
+        begun.append(sim)
+        sim.advance(0.1)
+        assert len(refused) >= 4 and all('a call changes this simulation' in reason for reason in refused)
+        assert abs(sim.q[0] - 0.5*9.81*0.1**2) < 1e-9
+
+
+@pytest.mark.parametrize('frequency', (25.1, 31.4, 16*math.pi, 50.0, 100.0, 1000.0))
+@pytest.mark.parametrize('phase', (0.0, 0.7))
+def test_fast_drives_without_derivatives(checks, mech9, frequency, phase):
+    """Differences are as good as the derivatives, also where the period is a step of the stencil, or the curve is odd."""
+    m = mech9.read_text("&structure cq=1 / &pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 / &drive coordinate=1, kind='user' / "
+                        "&time end=1, intervals=20 /")
+    m.drive(lambda coordinate, t, parameters: math.sin(frequency*t + phase))
+    r = m.kinematics()
+    angle = frequency*r.t + phase
+    # the round-off of the values in differences over a sixteenth of a period: 1e-16 16^2, ten times that for sums
+    checks.near(r['dq1']/frequency, np.cos(angle), 1e-10, 'rates')
+    checks.near(r['ddq1']/frequency**2, -np.sin(angle), 1e-8, 'accelerations')
+
+
+@pytest.mark.parametrize('function', (
+    lambda t: 0.0 if t < 0.5 else 1.0, lambda t: float(int(3*t)), lambda t: abs(t - 0.5), lambda t: t*t if t >= 0 else 0.0,
+    lambda t: float(np.interp(t, [0, 0.5, 1], [0, 1, 0])), lambda t: math.sin(1e6*t)))
+def test_drives_that_are_not_smooth(mech9, function):
+    """No derivatives are invented."""
+    m = mech9.read_text("&structure cq=1 / &pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 / &drive coordinate=1, kind='user' / "
+                        "&time end=1, intervals=20 /")
+    m.drive(lambda coordinate, t, parameters: function(t))
+    with pytest.raises(mech9.DataError, match='is not smooth at t = '):
+        m.kinematics()
+
+
+def test_pairs_and_couplings_that_are_not_smooth(mech9):
+    pair = mech9.read(data_of('trammel'))
+    pair.pair(lambda coordinate, q, parameters: np.array(trammel(coordinate, q, parameters)) + abs(q - 0.3))   # the kink is at the start
+    with pytest.raises(mech9.DataError, match='is not smooth at q = 0.3'):
+        pair.kinematics()
+    coupling = mech9.read(data_of('cardan_coupling'))
+    coupling.coupling(lambda coupling, first, parameters: abs(first - 0.3))
+    with pytest.raises(mech9.DataError, match='is not smooth where its first coordinate is'):
+        coupling.kinematics()
 
 
 def test_motion_outlives_no_call(mech9, falling):
@@ -215,6 +304,23 @@ def test_compiled_procedures(checks, mech9, falling):
     del compiled
     gc.collect()
     checks.near(falling.dynamics()['q1'], r['q1'], 0.0, 'lives as long as its mechanism')
+
+    # arrays of any kind are taken; a wrong number of numbers ends the run
+    for i, (vector, is_right) in enumerate((((0, 0, 5), True), (np.array([0, 0, 5]), True), (np.zeros((3, 2)) + [[0], [0], [5]], True),
+                                            (np.zeros(2), False))):
+        pushed = mech9.read_text(WEIGHT)
+        part = vector[:, 1] if i == 2 else vector
+
+        @pushed.force
+        @numba.cfunc(ours.FORCE)
+        def push(t, motion, n, parameters, loads, data):
+            ours.add_force(loads, motion, 2, (0.0, 0.0, 0.0), part)
+            return 0
+        if is_right:
+            checks.near(pushed.dynamics()['q1'][-1], (9.81 - 2.5)*2, 1e-8, f'force {i}')
+        else:
+            with pytest.raises(mech9.IntegrationError, match='not finite'):
+                pushed.dynamics()
 
     m = mech9.read(data_of('cycloidal_drive'))
 
