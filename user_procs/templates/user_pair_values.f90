@@ -1,5 +1,5 @@
 !> Template of a pair of your own, in plain real numbers; the program differentiates it, which costs
-!> 17 calls and more for each evaluation. As it stands it is a prismatic pair along x.
+!> 18 calls and more for each evaluation. As it stands it is a prismatic pair along x.
 submodule (mech9_user_pair_values) user_pair_values_template
   implicit none
 
