@@ -1,7 +1,7 @@
 !> Numbers of loads and motors that change while a motion runs.
 !>
 !> The first change of a number reads the mechanism anew, and sees which number of which load follows it. Where that is the number
-!> itself, and any value is allowed, later changes go to the load at once.
+!> itself, before and after the change, and any value is allowed, later changes go to the load at once.
 module mech9_changed_loads
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage
@@ -59,6 +59,7 @@ contains
     type(number_place_type) :: place
     type(model_type) :: anew
     integer, allocatable :: acting(:)
+    real(wp) :: old_value
     logical :: is_done
 
     other_loads_act = .false.
@@ -69,10 +70,12 @@ contains
     call change_at_once(self, name, value, model, is_done)
     if (is_done) return
     changed = self%mechanism
+    ! not a number where none was given so far
+    call changed%number(name, old_value, err)
     call changed%set(name, value, err, place)
     if (.not. allocated(err)) call changed%take(model%program, anew, err)
     if (allocated(err)) return
-    if (takes_any(place)) call learn(self, name, place, value, model, anew)
+    if (takes_any(place)) call learn(self, name, place, [old_value, value], model, anew)
     acting = model%mechanism%acting_loads()
     call move_alloc(anew%mechanism%loads, model%mechanism%loads)
     call move_alloc(anew%mechanism%motors, model%mechanism%motors)
@@ -127,11 +130,11 @@ contains
   end subroutine put
 
   !> Learn which number of which load or motor a number of the data file is, from the change of this number.
-  subroutine learn(self, name, place, value, before, after)
+  subroutine learn(self, name, place, values, before, after)
     type(changed_loads_type), intent(inout) :: self       !< gets to know the number
     character(len=*), intent(in) :: name                  !< of the number
     type(number_place_type), intent(in) :: place          !< in the data file
-    real(wp), intent(in) :: value                         !< its new value
+    real(wp), intent(in) :: values(2)                     !< its old value and its new one, in the unit of the data file
     type(model_type), intent(in) :: before                !< the model with the old value
     type(model_type), intent(in) :: after                 !< the model with the new one
     type(known_number_type) :: found
@@ -139,10 +142,10 @@ contains
 
     changes = 0
     do i = 1, size(before%mechanism%loads)
-      call compare(before%mechanism%loads(i)%load, after%mechanism%loads(i)%load, .false., i, value, found, changes)
+      call compare(before%mechanism%loads(i)%load, after%mechanism%loads(i)%load, .false., i, values, found, changes)
     end do
     do i = 1, size(before%mechanism%motors)
-      call compare(before%mechanism%motors(i)%motor, after%mechanism%motors(i)%motor, .true., i, value, found, changes)
+      call compare(before%mechanism%motors(i)%motor, after%mechanism%motors(i)%motor, .true., i, values, found, changes)
     end do
     if (changes /= 1 .or. found%owner == 0) return
     found%name = name
@@ -151,13 +154,13 @@ contains
   end subroutine learn
 
   !> Compare the numbers of a load before and after a change.
-  subroutine compare(before, after, of_motor, owner, value, found, changes)
+  subroutine compare(before, after, of_motor, owner, values, found, changes)
     class(load_type), intent(in) :: before             !< the load before the change
     class(load_type), intent(in) :: after              !< the load after it
     logical, intent(in) :: of_motor                    !< it is a motor
     integer, intent(in) :: owner                       !< its number
-    real(wp), intent(in) :: value                      !< the value of the number that changed
-    type(known_number_type), intent(inout) :: found    !< gets the place of this value where the load takes it as it is
+    real(wp), intent(in) :: values(2)                  !< old and new value of the number that changed
+    type(known_number_type), intent(inout) :: found    !< gets the place of the number where the load takes both as they are
     integer, intent(inout) :: changes                  !< how many numbers changed so far
     real(wp), allocatable :: old(:), new(:), own(:)
     integer :: j
@@ -173,7 +176,7 @@ contains
       changes = changes + 1
       ! numbers behind those of the load are those of its law
       if (j > size(own)) cycle
-      if (abs(new(j) - value) > 0.0_wp) cycle
+      if (any(abs([old(j), new(j)] - values) > 0.0_wp)) cycle
       found%of_motor = of_motor
       found%owner = owner
       found%position = j

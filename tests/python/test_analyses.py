@@ -454,8 +454,8 @@ def test_interrupted_simulation(mech9, many):
 
 @pytest.mark.parametrize('group, name, values', (
     ("&load kind='force', link=2, force=1,0,0, position=0,0.1,0 /", 'load(1).force(1)', (1.5, 2.0, 0.0, 3.0, 2.5, 1e300)),
-    ("&load kind='force', link=2, force=1,0,0 /", 'load.torque(3)', (1.5, 2.0, 0.0, 3.0)),
-    ("&load kind='coordinate', coordinate=1, force=2, stiffness=3, rest=20 /", 'load(1).rest', (10.0, 30.0, 40.0)),
+    ("&load kind='torque', link=2, torque=0,0,1 /", 'load.torque(3)', (1.5, 2.0, 0.0, 3.0)),
+    ("&load kind='coordinate', coordinate=1, force=2, stiffness=3, rest=20 /", 'load(1).rest', (0.0, 10.0, 30.0, 40.0)),
     ("&load kind='coordinate', coordinate=1, force=2, stiffness=3, rest=20 /", 'load(1).force', (0.5, -0.5, 0.7)),
     ("&load kind='coordinate', coordinate=1, stiffness=3 /", 'load(1).stiffness', (4.0, 5.0, -1.0)),
     ("&load kind='spring', links=1,2, position=1,0,0, second_position=0,1,0, stiffness=2 /", 'load(1).position(2)', (0.2, 0.3, 0.4)),
@@ -483,4 +483,29 @@ def test_many_changes_while_a_motion_runs(checks, mech9, group, name, values):
                 sim.set_state(state)
                 for motion in (other, sim):
                     motion.advance(state[0] + 0.05)
+                checks.equal(sim.state().tolist(), other.state().tolist(), f'{name} = {value}: the same motion')
+
+
+def test_changes_in_any_order(checks, mech9):
+    """Many numbers of several loads, in random order and with values at which loads come and go: the motion of a mechanism that has these
+    numbers from its start."""
+    m = mech9.read_text("&mechanism angle_unit='deg' / &structure cq=1 / &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 / "
+                        "&body link=2, mass=1, centre=0.2,0,0, inertia=0,0,0.1,0,0,0 / &initial coordinate=1, position=10, velocity=50 / "
+                        "&load kind='force', link=2, force=1,0,0 / &load kind='coordinate', coordinate=1, stiffness=3 / "
+                        "&load kind='spring', links=1,2, position=1,0,0, second_position=0,1,0, stiffness=2 / "
+                        "&load kind='force', link=2, force=0,1,0, law='harmonic', amplitude=2, angular_frequency=3 / "
+                        "&motor kind='dc', coordinate=1, voltage=2, resistance=1, constant=0.1 /")
+    names = ('load(1).force(1)', 'load(1).force(2)', 'load(1).position(2)', 'load(2).rest', 'load(2).force', 'load(2).damping',
+             'load(3).second_position(1)', 'load(3).free_length', 'load(4).amplitude', 'load(4).force(2)', 'motor(1).voltage')
+    random = np.random.default_rng(5)
+    with m.simulation() as sim:
+        for _ in range(80):
+            name, value = names[random.integers(len(names))], float(random.choice([0.0, 1.0, 0.5, 20.0, random.uniform(0, 3)]))
+            sim.set(name, value)
+            m[name] = value
+            with m.simulation() as other:
+                state = sim.state()
+                for motion in (sim, other):
+                    motion.set_state(state)
+                    motion.advance(state[0] + 0.01)
                 checks.equal(sim.state().tolist(), other.state().tolist(), f'{name} = {value}: the same motion')
