@@ -219,6 +219,7 @@ contains
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
 
     call self%motion%system%move_to(self%motion%t, self%motion%y, err)
+    if (.not. allocated(err)) call self%continue_angles(self%motion%t, err)
     if (.not. allocated(err)) call self%motion%show_angles(err)
   end subroutine stand_at_step
 
