@@ -9,7 +9,8 @@ module mech9_differentiation
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: half_width, stencil_size, beside, step_count, trial_step, derivatives_from_stencil, best_slopes_type, length_along
+  public :: half_width, stencil_size, beside, step_count, trial_step, derivatives_from_stencil, best_slopes_type, &
+    best_derivatives_type, length_along
 
   !> Points of the stencil on either side of its middle.
   integer, parameter :: half_width = 8
@@ -37,7 +38,54 @@ module mech9_differentiation
     procedure :: offer
   end type best_slopes_type
 
+  !> Most functions whose derivatives are looked for together.
+  integer, parameter :: most_functions = 9
+
+  !> First and second derivatives of several functions by the best one of the stencils that were offered: the widest one whose error is
+  !> round-off, or else the one with the least error.
+  type :: best_derivatives_type
+    real(wp) :: value(most_functions) = 0.0_wp
+    real(wp) :: first(most_functions) = 0.0_wp
+    real(wp) :: second(most_functions) = 0.0_wp
+    real(wp), private :: error = huge(1.0_wp)   !< estimated error of the worst derivative
+    logical :: is_found = .false.               !< there was a stencil of finite values
+    logical :: is_smooth = .false.              !< the derivatives are known
+  contains
+    procedure :: offer => offer_checked
+  end type best_derivatives_type
+
 contains
+
+  !> Take a stencil if it is better than those before. Values that are not finite are no stencil.
+  pure subroutine offer_checked(self, values, between, h, good)
+    class(best_derivatives_type), intent(inout) :: self         !< the derivatives so far
+    real(wp), intent(in) :: values(:, -half_width:)             !< (functions, stencil) at x + i h, i = -8 .. 8
+    real(wp), intent(in) :: between(:)                          !< (functions) at x + beside h
+    real(wp), intent(in) :: h                                   !< step [unit of x]
+    logical, intent(out) :: good                                !< the error is small, or near round-off: narrower ones are no better
+    real(wp) :: first(size(values, 1)), second(size(values, 1)), error, worst
+    integer :: i
+    logical :: is_smooth, all_smooth
+
+    good = .false.
+    if (.not. (all(ieee_is_finite(values)) .and. all(ieee_is_finite(between)))) return
+    worst = 0.0_wp
+    all_smooth = .true.
+    do i = 1, size(first)
+      call derivatives_from_stencil(values(i, :), h, first(i), second(i), error, between(i), is_smooth)
+      worst = max(worst, error)
+      all_smooth = all_smooth .and. is_smooth
+    end do
+    if (worst < self%error) then
+      self%error = worst
+      self%is_found = .true.
+      self%is_smooth = all_smooth
+      self%value(:size(first)) = values(:, 0)
+      self%first(:size(first)) = first
+      self%second(:size(first)) = second
+    end if
+    good = worst <= max(1.0e-12_wp, 16.0_wp*epsilon(h)/h**2)*maxval(abs(values))
+  end subroutine offer_checked
 
   !> Take a stencil if it is better than those before. Values that are not finite are no stencil.
   pure subroutine offer(self, values, h, good)

@@ -5,7 +5,7 @@ module mech9_procedure_coupling
   use mech9_error, only: error_type, raise, exit_data
   use mech9_text, only: to_text
   use mech9_taylor, only: taylor, variable
-  use mech9_differentiation, only: half_width, beside, step_count, trial_step, derivatives_from_stencil, best_slopes_type, &
+  use mech9_differentiation, only: half_width, beside, step_count, trial_step, best_slopes_type, best_derivatives_type, &
     length_along
   use mech9_coupling, only: coupling_name_length, curve_order
   use mech9_function_coupling, only: function_coupling_type
@@ -105,17 +105,20 @@ contains
     real(wp), intent(out) :: curve(0:curve_order)        !< value and derivatives
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(taylor) :: second
-    logical :: ok, is_smooth
+    type(best_derivatives_type) :: best
+    logical :: ok
 
-    is_smooth = .true.
+    best%is_smooth = .true.
     if (self%plain_values) then
-      call differentiate(self, q, of_value, curve, ok, is_smooth)
+      call differentiate(self, q, of_value, best)
+      curve = [best%value(1), best%first(1), best%second(1)]
+      ok = best%is_found
     else
       call find_taylor(self, q, second)
       curve = [second%value, second%first, second%second]
       ok = all(ieee_is_finite(curve))
     end if
-    if (ok .and. is_smooth) return
+    if (ok .and. best%is_smooth) return
     curve = 0.0_wp
     call refuse(self, q, ok, err)
   end subroutine find_curve
@@ -126,13 +129,11 @@ contains
     real(wp), intent(in) :: q                            !< the first coordinate [rad, m]
     real(wp), intent(out) :: third                       !< third derivative
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
-    real(wp) :: bend(0:curve_order)
-    logical :: ok, is_smooth
+    type(best_derivatives_type) :: best
 
-    call differentiate(self, q, of_second, bend, ok, is_smooth)
-    third = 0.0_wp
-    if (ok) third = bend(1)
-    if (.not. (ok .and. is_smooth)) call refuse(self, q, ok, err)
+    call differentiate(self, q, of_second, best)
+    third = best%first(1)
+    if (.not. best%is_smooth) call refuse(self, q, best%is_found, err)
   end subroutine find_third
 
   !> The failure of a procedure whose numbers are not finite, or whose derivatives are not known.
@@ -146,46 +147,32 @@ contains
     place = ' where its first coordinate is '//to_text(q, 12)//' (rad, m)'
     if (is_finite) then
       call raise(err, exit_data, 'the user procedure of coupling '//to_text(self%number)//' is not smooth'//place// &
-                 ': differences do not tell its derivatives; let it give them', self%place)
+                 ', so that its values do not tell its derivatives; smooth it, or let it return them', self%place)
     else
       call raise(err, exit_data, 'the user procedure of coupling '//to_text(self%number)//' gives numbers that are not finite'// &
                  place, self%place)
     end if
   end subroutine refuse
 
-  !> The value or the second derivative, with two derivatives from differences. The widest stencil whose error is round-off is
-  !> taken, or else the one with the least error. `ok` is false where no stencil has finite values.
-  recursive subroutine differentiate(self, q, form, curve, ok, is_smooth)
+  !> The value or the second derivative, with two derivatives from differences.
+  recursive subroutine differentiate(self, q, form, best)
     class(procedure_coupling_type), intent(in) :: self   !< the coupling
     real(wp), intent(in) :: q                            !< the first coordinate [rad, m]
     integer, intent(in) :: form                          !< of_value or of_second
-    real(wp), intent(out) :: curve(0:curve_order)        !< value of the function and its derivatives
-    logical, intent(out) :: ok                           !< all values are finite
-    logical, intent(out) :: is_smooth                    !< whether the derivatives are known
-    real(wp) :: values(-half_width:half_width), between, h, first, second, error, best
+    type(best_derivatives_type), intent(out) :: best     !< value of the function and its derivatives, if they are known
+    real(wp) :: values(1, -half_width:half_width), between(1), h
     integer :: number, i
-    logical :: smooth
+    logical :: good
 
-    best = huge(best)
-    curve = 0.0_wp
-    is_smooth = .false.
     do number = 1, step_count
       h = trial_step(number, 1.0_wp)
       do i = -half_width, half_width
-        values(i) = sample(self, q + i*h, form)
+        values(1, i) = sample(self, q + i*h, form)
       end do
-      if (.not. all(ieee_is_finite(values))) cycle   ! too wide: outside the procedure's domain
       between = sample(self, q + beside*h, form)
-      call derivatives_from_stencil(values, h, first, second, error, between, smooth)
-      if (error < best) then
-        best = error
-        is_smooth = smooth
-        curve = [values(0), first, second]
-      end if
-      ! the error is small, or mere round-off, which only grows as stencils get narrower
-      if (error <= max(1.0e-12_wp, 16.0_wp*epsilon(h)/h**2)*maxval(abs(values))) exit
+      call best%offer(values, between, h, good)
+      if (good) exit
     end do
-    ok = best < huge(best)
   end subroutine differentiate
 
   !> The procedure's value or its second derivative at one place.
@@ -194,8 +181,7 @@ contains
     real(wp), intent(in) :: q                            !< the first coordinate [rad, m]
     integer, intent(in) :: form                          !< of_value or of_second
     type(taylor) :: second
-    real(wp) :: curve(0:curve_order)
-    logical :: ok, is_smooth
+    type(best_derivatives_type) :: best
 
     if (.not. self%plain_values) then
       call find_taylor(self, q, second)
@@ -203,8 +189,8 @@ contains
     else if (form == of_value) then
       call find_value(self, q, sample)
     else
-      call differentiate(self, q, of_value, curve, ok, is_smooth)
-      sample = merge(curve(2), huge(curve), ok)
+      call differentiate(self, q, of_value, best)
+      sample = merge(best%second(1), huge(sample), best%is_found)
     end if
   end function sample
 

@@ -5,7 +5,7 @@ module mech9_procedure_drive
   use mech9_error, only: error_type, raise, exit_data
   use mech9_text, only: to_text
   use mech9_taylor, only: taylor, variable
-  use mech9_differentiation, only: half_width, beside, step_count, trial_step, derivatives_from_stencil, best_slopes_type, &
+  use mech9_differentiation, only: half_width, beside, step_count, trial_step, best_slopes_type, best_derivatives_type, &
     length_along
   use mech9_law, only: law_type
   use mech9_registered_procedures, only: registered_procedure_type
@@ -94,12 +94,15 @@ contains
     real(wp), intent(out) :: dq                         !< its rate [rad/s, m/s]
     real(wp), intent(out) :: ddq                        !< its acceleration [rad/s^2, m/s^2]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(best_derivatives_type) :: best
     type(taylor) :: x
-    logical :: ok, is_smooth
+    logical :: ok
 
-    is_smooth = .true.
+    best%is_smooth = .true.
     if (self%plain_values) then
-      call differentiate(self, t, x, ok, is_smooth)
+      call differentiate(self, t, best)
+      x = taylor(best%value(1), best%first(1), best%second(1))
+      ok = best%is_found
     else
       call find_taylor(self, t, x)
       ok = ieee_is_finite(x%value) .and. ieee_is_finite(x%first) .and. ieee_is_finite(x%second)
@@ -110,10 +113,10 @@ contains
     if (.not. ok) &
       call raise(err, exit_data, 'the user procedure of the drive of coordinate '//to_text(self%coordinate)// &
                  ' gives numbers that are not finite at t = '//to_text(t, 12), self%place)
-    if (ok .and. .not. is_smooth) &
+    if (ok .and. .not. best%is_smooth) &
       call raise(err, exit_data, 'the user procedure of the drive of coordinate '//to_text(self%coordinate)// &
-                 ' is not smooth at t = '//to_text(t, 12)//': differences do not tell its derivatives; let it give them', &
-                 self%place)
+                 ' is not smooth at t = '//to_text(t, 12)//', so that its values do not tell its derivatives; smooth it, '// &
+                 'or let it return them', self%place)
   end subroutine evaluate
 
   !> The numbers for the user's procedure.
@@ -158,36 +161,23 @@ contains
     ddq = best%slopes(3)
   end subroutine vary
 
-  !> Value and derivatives from the form in plain reals. The widest stencil whose error is round-off is
-  !> taken, or else the one with the least error. `ok` is false where no stencil has finite values.
-  subroutine differentiate(self, t, x, ok, is_smooth)
-    type(procedure_drive_type), intent(in) :: self   !< the procedure drive
-    real(wp), intent(in) :: t                        !< time [s]
-    type(taylor), intent(out) :: x                   !< the coordinate with its derivatives in time
-    logical, intent(out) :: ok                       !< whether there are finite values
-    logical, intent(out) :: is_smooth                !< whether the derivatives are known
-    real(wp) :: values(-half_width:half_width), between, h, first, second, error, best
+  !> Value and derivatives from the form in plain reals.
+  subroutine differentiate(self, t, best)
+    type(procedure_drive_type), intent(in) :: self         !< the procedure drive
+    real(wp), intent(in) :: t                              !< time [s]
+    type(best_derivatives_type), intent(out) :: best       !< the coordinate with its derivatives in time, if they are known
+    real(wp) :: values(1, -half_width:half_width), between(1), h
     integer :: number, i
-    logical :: smooth
+    logical :: good
 
-    best = huge(best)
-    is_smooth = .false.
     do number = 1, step_count
       h = trial_step(number, 1.0_wp)
       do i = -half_width, half_width
-        call find_value(self, t + i*h, values(i))
+        call find_value(self, t + i*h, values(1, i))
       end do
-      if (.not. all(ieee_is_finite(values))) cycle   ! too wide: outside the procedure's domain
-      call find_value(self, t + beside*h, between)
-      call derivatives_from_stencil(values, h, first, second, error, between, smooth)
-      if (error < best) then
-        best = error
-        is_smooth = smooth
-        x = taylor(values(0), first, second)
-      end if
-      ! the error is small, or mere round-off, which only grows as stencils get narrower
-      if (error <= max(1.0e-12_wp, 16.0_wp*epsilon(h)/h**2)*maxval(abs(values))) exit
+      call find_value(self, t + beside*h, between(1))
+      call best%offer(values, between, h, good)
+      if (good) exit
     end do
-    ok = best < huge(best)
   end subroutine differentiate
 end module mech9_procedure_drive

@@ -5,8 +5,8 @@ module mech9_procedure_pair
   use mech9_error, only: error_type, raise, exit_data
   use mech9_text, only: to_text
   use mech9_taylor, only: taylor, variable, sqrt, operator(+), operator(-), operator(*), operator(/)
-  use mech9_differentiation, only: half_width, stencil_size, beside, step_count, trial_step, derivatives_from_stencil, &
-    best_slopes_type, length_along
+  use mech9_differentiation, only: half_width, stencil_size, beside, step_count, trial_step, best_slopes_type, &
+    best_derivatives_type, length_along
   use mech9_rotation, only: axial_vector, cross
   use mech9_pose, only: pose_type, pose_from_points
   use mech9_pair, only: pair_type, pair_motion_type, screw_factors_type, kind_name_length
@@ -109,11 +109,16 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(taylor) :: r(3, 3)
     type(pose_type) :: pose
-    logical :: ok, is_smooth
+    type(best_derivatives_type) :: best
+    logical :: ok
 
-    is_smooth = .true.
+    best%is_smooth = .true.
     if (self%plain_values) then
-      call differentiate(self, q, r, ok, is_smooth)
+      call differentiate(self, q, best)
+      r%value = reshape(best%value, [3, 3])
+      r%first = reshape(best%first, [3, 3])
+      r%second = reshape(best%second, [3, 3])
+      ok = best%is_found
     else
       call find_points(self, q, r)
       ok = all(ieee_is_finite(r%value) .and. ieee_is_finite(r%first) .and. ieee_is_finite(r%second))
@@ -123,9 +128,9 @@ contains
                  ' gives numbers that are not finite at q = '//to_text(q, 12), self%place)
       return
     end if
-    if (.not. is_smooth) then
+    if (.not. best%is_smooth) then
       call raise(err, exit_data, 'the user procedure of pair '//to_text(self%coordinate)//' is not smooth at q = '// &
-                 to_text(q, 12)//': differences do not tell its derivatives; let it give them', self%place)
+                 to_text(q, 12)//', so that its values do not tell its derivatives; smooth it, or let it return them', self%place)
       return
     end if
     call pose_from_points(r(:, 1)%value, r(:, 2)%value, r(:, 3)%value, pose, ok)
@@ -190,63 +195,27 @@ contains
     e = a/sqrt(dot_taylor(a, a))
   end function unit_taylor
 
-  !> Points and their derivatives from the form in plain reals. The widest stencil whose error is
-  !> round-off is taken, or else the one with the least error. `ok` is false where no stencil has finite values.
-  subroutine differentiate(self, q, r, ok, is_smooth)
-    type(procedure_pair_type), intent(in) :: self   !< the procedure pair
-    real(wp), intent(in) :: q                       !< value of the coordinate, in the user's unit
-    type(taylor), intent(out) :: r(3, 3)            !< the three points by columns, with derivatives in q [m]
-    logical, intent(out) :: ok                      !< whether there are finite values
-    logical, intent(out) :: is_smooth               !< whether the derivatives are known
-    real(wp) :: values(-half_width:half_width, 3, 3), between(3, 3), h, worst, best
-    type(taylor) :: trial(3, 3)
+  !> Points and their derivatives from the form in plain reals.
+  subroutine differentiate(self, q, best)
+    type(procedure_pair_type), intent(in) :: self      !< the procedure pair
+    real(wp), intent(in) :: q                          !< value of the coordinate, in the user's unit
+    type(best_derivatives_type), intent(out) :: best   !< coordinates of the three points with derivatives in q, if they are known [m]
+    real(wp) :: values(9, -half_width:half_width), between(9), points(3, 3), h
     integer :: number, i
-    logical :: smooth
+    logical :: good
 
-    best = huge(best)
-    is_smooth = .false.
     do number = 1, step_count
       h = trial_step(number, 1.0_wp)
       do i = -half_width, half_width
-        call find_plain_points(self, q + i*h, values(i, :, :))
+        call find_plain_points(self, q + i*h, points)
+        values(:, i) = reshape(points, [9])
       end do
-      if (.not. all(ieee_is_finite(values))) cycle   ! too wide: outside the procedure's domain
-      call find_plain_points(self, q + beside*h, between)
-      call points_from_stencil(values, between, h, trial, worst, smooth)
-      if (worst < best) then
-        best = worst
-        is_smooth = smooth
-        r = trial
-      end if
-      ! the error is small, or mere round-off, which only grows as stencils get narrower
-      if (worst <= max(1.0e-12_wp, 16.0_wp*epsilon(h)/h**2)*maxval(abs(values))) exit
+      call find_plain_points(self, q + beside*h, points)
+      between = reshape(points, [9])
+      call best%offer(values, between, h, good)
+      if (good) exit
     end do
-    ok = best < huge(best)
   end subroutine differentiate
-
-  !> The three points with derivatives from their values on a stencil, and the worst error estimate.
-  pure subroutine points_from_stencil(values, between, h, r, worst, is_smooth)
-    real(wp), intent(in) :: values(-half_width:half_width, 3, 3)   !< (stencil, components, points) at q + i h [m]
-    real(wp), intent(in) :: between(3, 3)   !< (components, points) at q + beside h [m]
-    real(wp), intent(in) :: h   !< step of the stencil, in the unit of q
-    type(taylor), intent(out) :: r(3, 3)   !< the three points by columns, with derivatives in q [m]
-    real(wp), intent(out) :: worst   !< greatest estimated error of a second derivative
-    logical, intent(out) :: is_smooth   !< all derivatives are known
-    real(wp) :: error
-    integer :: i, j
-    logical :: smooth
-
-    worst = 0.0_wp
-    is_smooth = .true.
-    do j = 1, 3
-      do i = 1, 3
-        r(i, j)%value = values(0, i, j)
-        call derivatives_from_stencil(values(:, i, j), h, r(i, j)%first, r(i, j)%second, error, between(i, j), smooth)
-        worst = max(worst, error)
-        is_smooth = is_smooth .and. smooth
-      end do
-    end do
-  end subroutine points_from_stencil
 
   !> A user's pair has no fixed axis that the program knows.
   pure subroutine as_screw(self, factors, is_screw)
