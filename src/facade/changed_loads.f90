@@ -6,6 +6,7 @@ module mech9_changed_loads
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: lower
+  use mech9_number_lists, only: same_numbers
   use mech9_load, only: load_type
   use mech9_model, only: model_type
   use mech9_item_check, only: is_sensible
@@ -80,7 +81,7 @@ contains
     call move_alloc(anew%mechanism%loads, model%mechanism%loads)
     call move_alloc(anew%mechanism%motors, model%mechanism%motors)
     self%mechanism = changed
-    other_loads_act = .not. have_same(acting, model%mechanism%acting_loads())
+    other_loads_act = .not. same_numbers(acting, model%mechanism%acting_loads())
   end subroutine change
 
   !> Change a number that is known. It is not done for others, and where the load becomes idle, or acts from now on.
@@ -182,15 +183,6 @@ contains
       found%position = j
     end do
   end subroutine compare
-
-  !> Whether two lists have the same numbers.
-  pure logical function have_same(a, b)
-    integer, intent(in) :: a(:)   !< one list
-    integer, intent(in) :: b(:)   !< the other
-
-    have_same = size(a) == size(b)
-    if (have_same) have_same = all(a == b)
-  end function have_same
 
   !> The group of the name of a number, in lower case.
   pure function group_of(name)

@@ -3,6 +3,7 @@ module mech9_dynamic_report
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_counted, only: counted
+  use mech9_number_lists, only: same_numbers
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_plan, only: plan_type
   use mech9_law_notes, only: print_jumps
@@ -87,15 +88,6 @@ contains
     end if
     if (same_numbers(before, events(i)%replaced)) words = 'independent coordinates are now '//to_text(events(i)%independent)
   end function event_words
-
-  !> Whether two lists hold the same numbers.
-  pure logical function same_numbers(a, b)
-    integer, intent(in) :: a(:)   !< a list
-    integer, intent(in) :: b(:)   !< another list
-
-    same_numbers = size(a) == size(b)
-    if (same_numbers) same_numbers = all(a == b)
-  end function same_numbers
 
   !> Print the coefficients of motion a(p,r) at the start, p and r the numbers of the independent coordinates.
   subroutine print_coefficients(unit, plan, coefficients)

@@ -2,6 +2,7 @@
 !> ones come to a singular position.
 module mech9_free_simulation
   use mech9_kinds, only: wp
+  use mech9_number_lists, only: same_numbers
   use mech9_simulation_tolerances, only: doubtful_conditioning, refused_conditioning, regular_conditioning
   use mech9_error, only: error_type, raise, add_place, exit_data, exit_singular, exit_integrator
   use mech9_simulation_failures, only: failure_no_initial_position, failure_lost_angles
@@ -387,10 +388,7 @@ contains
     now = replaced_hinges(self)
     same_replaced = size(now) == 0
     if (size(self%events) == 0) return
-    associate (before => self%events(size(self%events))%replaced)
-      same_replaced = size(now) == size(before)
-      if (same_replaced) same_replaced = all(now == before)
-    end associate
+    same_replaced = same_numbers(now, self%events(size(self%events))%replaced)
   end function same_replaced
 
   !> Whether the same coordinates were independent at the last event, or at the start, beside the angles of joints with several freedoms.
