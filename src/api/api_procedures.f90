@@ -64,7 +64,7 @@ contains
 
     call begin_call(error)
     call find_mechanism(mechanism, found, err)
-    if (.not. allocated(err)) call found%register(name, function, data)
+    if (.not. allocated(err)) call found%register(name, function, data, err)
     code = end_call(error, err)
   end function register
 

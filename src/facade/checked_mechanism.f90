@@ -213,12 +213,13 @@ contains
   end subroutine remove
 
   !> Register a procedure of the user, a function of C as include/mech9.h declares it, for all groups of a name whose kind is 'user'.
-  !> It comes before one that is linked.
-  pure subroutine register(self, name, function, data)
+  !> It takes the place of one that is linked. Fails with exit_usage where no such groups have procedures.
+  pure subroutine register(self, name, function, data, err)
     class(checked_mechanism_type), intent(inout) :: self   !< the mechanism
     character(len=*), intent(in) :: name                   !< of the groups: pair, drive, coupling or load
     type(c_funptr), intent(in) :: function                 !< address of the function; null takes back the one that was registered
     type(c_ptr), intent(in) :: data                        !< is given to each call
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
 
     associate (procedures => self%document%procedures, given => registered_procedure_type(function, data))
       select case (name)
@@ -230,6 +231,8 @@ contains
         procedures%coupling = given
       case ('load')
         procedures%force = given
+      case default
+        call raise(err, exit_usage, 'procedures are registered for the groups pair, drive, coupling and load, not for '//name)
       end select
     end associate
     self%is_whole = .false.

@@ -186,6 +186,8 @@ contains
         return
       end if
       whole = 0.0_wp
+      ! a run that was stopped goes on
+      call self%diagnostics%clear()
       began = seconds()
       do taken = 1, size(whole, 2)
         call source%add_row(time%time(self%next), whole, count, err)
