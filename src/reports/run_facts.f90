@@ -38,7 +38,7 @@ contains
   !> List the facts about a driven motion.
   subroutine list_driven(plan, outcome, driven, facts)
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    type(run_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
+    type(run_outcome_type), intent(in) :: outcome         !< number of rows, and the times for solving and writing
     type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
     type(facts_type), intent(inout) :: facts              !< named numbers and texts about the run
     type(work_count_type) :: work
@@ -66,7 +66,7 @@ contains
 
   !> Newton iterations for each position.
   pure real(wp) function iterations_each(outcome, driven)
-    type(run_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
+    type(run_outcome_type), intent(in) :: outcome         !< number of rows, and the times for solving and writing
     type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
 
     iterations_each = real(driven%iterations, wp)/max(1, outcome%rows)
@@ -76,7 +76,7 @@ contains
   subroutine list_free(model, plan, outcome, simulation, facts)
     type(model_type), intent(in) :: model                     !< the model
     type(plan_type), intent(in) :: plan                       !< the plan of the mechanism
-    type(run_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
+    type(run_outcome_type), intent(in) :: outcome             !< number of rows, and the times for solving and writing
     type(free_simulation_type), intent(inout) :: simulation   !< the motion, as far as it went
     type(facts_type), intent(inout) :: facts                  !< named numbers and texts about the run
     type(integration_statistics_type) :: counts
