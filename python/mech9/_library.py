@@ -296,7 +296,6 @@ class _Watch:
         self._is_resting = True
         self._wake = threading.Event()
         self._thread: threading.Thread | None = None
-        os.register_at_fork(after_in_child=self.__init__)   # type: ignore[misc]
 
     def begin(self, stop: c_int) -> None:
         """A call begins that another number than 0 in `stop` stops."""
@@ -328,6 +327,15 @@ class _Watch:
 
 
 _watch = _Watch()
+
+
+def _forget_watch() -> None:
+    """A process that was made by fork has no thread that watches."""
+    global _watch
+    _watch = _Watch()
+
+
+os.register_at_fork(after_in_child=_forget_watch)
 
 
 def call_with_pauses(function: Callable[..., int], stop: c_int, *arguments: Any) -> None:

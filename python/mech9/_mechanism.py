@@ -208,9 +208,6 @@ class Mechanism:
         """The names of the parameters."""
         return tuple(lib.mechanism_parameter(self._handle, i).decode() for i in range(lib.mechanism_parameters(self._handle)))
 
-    def _list_parameters(self) -> tuple[str, ...]:
-        return self.parameters
-
     def copy(self) -> Mechanism:
         """An independent copy."""
         handle = Handle(procedures=self._handle.procedures)
@@ -326,9 +323,9 @@ class Mechanism:
         try:
             failure = call_stoppable(function, lambda stop: arguments(stop, ctypes.byref(handle)), (self, handle))
         except KeyboardInterrupt as interrupt:
-            interrupt.results = Results(handle.value, self._list_parameters) if handle.value else None   # type: ignore[attr-defined]
+            interrupt.results = Results(handle.value, lambda: self.parameters) if handle.value else None   # type: ignore[attr-defined]
             raise
-        results = Results(handle.value, self._list_parameters) if handle.value else None
+        results = Results(handle.value, lambda: self.parameters) if handle.value else None
         if failure is not None:
             failure.results = results
             raise failure

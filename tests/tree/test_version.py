@@ -15,5 +15,6 @@ def test_version(checks, build, mech9k, mech9d):
     wanted = f"find_package(mech9 {'.'.join(version.split('.')[:2])} REQUIRED)"
     asking = ('docs/how-to/user-procedures.md', 'docs/how-to/library.md', 'examples/library/CMakeLists.txt',
               'examples/c/CMakeLists.txt', 'tests/user/user_project/CMakeLists.txt')
+    checks.true(f'mech9-{version}-py3-none-' in text_of(os.path.join(TREE, 'README.md')), 'README.md names the wheel of this version')
     for name in asking:
         checks.true(wanted in text_of(os.path.join(TREE, name)), f'{name} asks for this version')
