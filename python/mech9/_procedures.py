@@ -80,24 +80,25 @@ class Motion:
 class Loads:
     """The forces of a call, to which a procedure adds its own, in SI units along the axes of link 1."""
 
-    def __init__(self, address: int, motion: Motion):
-        self._address, self._motion = address, motion
+    def __init__(self, motion: Motion):
+        self._motion = motion
+        self._added: list[tuple[Callable[..., None], tuple[Any, ...]]] = []   # what the library gets when the procedure has returned
 
-    def _open(self) -> int:
+    def _add(self, function: Callable[..., None], *arguments: Any) -> None:
         self._motion._open()
-        return self._address
+        self._added.append((function, arguments))
 
     def add_force(self, link: int, point: Any, force: Any) -> None:
         """Add a force [N] at a point of a link, which is given in its system [m]."""
-        lib.loads_add_force(self._open(), self._motion._open(), _number(link), _three(point), _three(force))
+        self._add(lib.loads_add_force, self._motion._open(), _number(link), _three(point), _three(force))
 
     def add_torque(self, link: int, torque: Any) -> None:
         """Add a torque [N m] on a link."""
-        lib.loads_add_torque(self._open(), _number(link), _three(torque))
+        self._add(lib.loads_add_torque, _number(link), _three(torque))
 
     def add_generalized(self, coordinate: int, value: float) -> None:
         """Add a torque or force [N m, N] on a coordinate: on its moving link, and the opposite on its reference link."""
-        lib.loads_add_generalized(self._open(), _number(coordinate), value)
+        self._add(lib.loads_add_generalized, _number(coordinate), float(value))
 
 
 class Procedure:
@@ -116,23 +117,22 @@ class Procedure:
         self.address = ctypes.cast(self._thunk, c_void_p).value
 
 
-def _answered(raised: list[BaseException], work: Callable[[], None]) -> int:
-    """Do the work of a call. An exception must not leave it: it is kept, and the library learns that there are no values."""
+def _answered(raised: list[BaseException], work: Callable[[], Any], give: Callable[[Any], None]) -> int:
+    """Do the work of a call, and give its values to the library. An exception must not leave it: it is kept, and the library learns
+    that there are no values. Ctrl-C comes amid a procedure, whose work is then done again, so that the motion can go on after the
+    pause."""
     try:
-        work()
-        return 0
-    except KeyboardInterrupt as reason:
-        # Ctrl-C comes in the middle of a procedure: do its work again, so that the motion can go on after the pause
         try:
-            work()
-            code = 0
-        except BaseException:
-            code = 1
-        raised[:] = [reason]
-        pause()
-        return code
+            values = work()
+        except KeyboardInterrupt as reason:
+            raised[:] = [reason]
+            pause()
+            values = work()
+        give(values)
+        return 0
     except BaseException as reason:
-        raised[:] = [reason]
+        if not any(isinstance(earlier, KeyboardInterrupt) for earlier in raised):
+            raised[:] = [reason]
         return 1
 
 
@@ -140,7 +140,7 @@ def _parameters(n: int, address: Any) -> np.ndarray:
     return np.array(address[:n])
 
 
-def _filled(values: Any, shape: tuple[int, ...], address: Any) -> None:
+def _fill(values: Any, shape: tuple[int, ...], address: Any) -> None:
     """Give values back, with or without two derivatives."""
     if values is None:
         raise UsageError('the procedure returned None; it must return its values', 2)
@@ -154,28 +154,33 @@ def _filled(values: Any, shape: tuple[int, ...], address: Any) -> None:
     ctypes.memmove(address, np.ascontiguousarray(array).ctypes.data, array.nbytes)
 
 
-def _nothing(answer: Any) -> None:
-    """Refuse an answer of a procedure for forces, whose user may think that it counts."""
-    if answer is not None:
-        raise UsageError(f'a procedure for forces adds to the loads and returns nothing, not {answer!r}', 2)
-
-
 def _pair(function: Callable[..., Any], raised: list[BaseException]) -> Any:
     def call(coordinate: int, q: float, n: int, parameters: Any, points: Any, data: Any) -> int:
-        return _answered(raised, lambda: _filled(function(coordinate, q, _parameters(n, parameters)), (3, 3), points))
+        return _answered(raised, lambda: function(coordinate, q, _parameters(n, parameters)), lambda values: _fill(values, (3, 3), points))
     return _PAIR(call)
 
 
 def _curve(function: Callable[..., Any], raised: list[BaseException]) -> Any:
     def call(number: int, x: float, n: int, parameters: Any, values: Any, data: Any) -> int:
-        return _answered(raised, lambda: _filled(function(number, x, _parameters(n, parameters)), (), values))
+        return _answered(raised, lambda: function(number, x, _parameters(n, parameters)), lambda found: _fill(found, (), values))
     return _CURVE(call)
 
 
 def _force(function: Callable[..., Any], raised: list[BaseException]) -> Any:
     def call(t: float, motion: int, n: int, parameters: Any, loads: int, data: Any) -> int:
         seen = Motion(motion)
-        code = _answered(raised, lambda: _nothing(function(t, seen, _parameters(n, parameters), Loads(loads, seen))))
+
+        def work() -> Loads:
+            added = Loads(seen)
+            answer = function(t, seen, _parameters(n, parameters), added)
+            if answer is not None:
+                raise UsageError(f'a procedure for forces adds to the loads and returns nothing, not {answer!r}', 2)
+            return added
+
+        def give(added: Loads) -> None:
+            for add, arguments in added._added:
+                add(loads, *arguments)
+        code = _answered(raised, work, give)
         seen._address = None
         return code
     return _FORCE(call)
