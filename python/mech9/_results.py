@@ -83,8 +83,20 @@ class Results(Mapping[str, np.ndarray]):
 
     @property
     def events(self) -> list[dict[str, Any]]:
-        """What happened at single times of a run under forces, in their order: changes of the independent coordinates."""
+        """What happened at single times of a run under forces, in their order: impacts, and stops that close and open.
+
+        Each has `time` [s], `kind` ('impact', 'close', 'open'), `group` ('stop'), `number` (of the group in the data file), and
+        `impulse` on the coordinate [N m s, N s], positive while it grows; None where there is none.
+        """
         return list(self.report.get('events', []))
+
+    @property
+    def coordinate_changes(self) -> list[dict[str, Any]]:
+        """Changes of the independent coordinates of a run under forces, in their order.
+
+        Each has `t` [s], `independent` (the coordinates from then on) and `replaced` (angles for which others are integrated).
+        """
+        return list(self.report.get('coordinate_changes', []))
 
     def _of_run(self, mechanism: Mechanism, with_forces: bool) -> None:
         """Remember the run, for pictures of it."""

@@ -17,6 +17,8 @@
 !>   1001 to 1099   src/simulation/simulation_failures.f90
 !>   1101 to 1199   src/analyses/reactions/reaction_failures.f90
 !>   1201 to 1299   src/analyses/equilibrium/equilibrium_failures.f90
+!>   1301 to 1399   src/simulation/integration/integration_failures.f90
+!>   1401 to 1499   src/simulation/events/event_failures.f90
 module mech9_failure
   use mech9_kinds, only: wp
   implicit none

@@ -127,6 +127,11 @@ contains
     else if (allocated(view%motor)) then
       deallocate (view%motor, view%limited)
     end if
+    if (allocated(state%pressed)) then
+      view%pressed = state%pressed
+    else if (allocated(view%pressed)) then
+      deallocate (view%pressed)
+    end if
     do i = 1, plan%n_coordinates
       view%q(i) = state%q(i)
       view%dq(i) = state%dq(i)

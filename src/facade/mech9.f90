@@ -11,6 +11,7 @@ module mech9
   use mech9_error, only: error_type, exit_usage, exit_data, exit_structure, exit_assembly, exit_singular, exit_integrator, &
     exit_file, exit_interrupted
   use mech9_simulation, only: interruption_type, simulation_statistics_type, coordinate_change_type
+  use mech9_motion_event, only: motion_event_type
   use mech9_motion_view, only: motion_view_type
   use mech9_force_sum, only: force_sum_type
   use mech9_findings, only: finding_type
@@ -33,7 +34,7 @@ module mech9
   public :: mechanism_type, finding_type, read_file, read_text, parse_file, parse_text, design_type
   public :: motion_type, run_type, study_type, rest_type, optimum_type, positions_type, linear_system_type
   public :: motion_view_type, force_sum_type
-  public :: interruption_type, simulation_statistics_type, coordinate_change_type
+  public :: interruption_type, simulation_statistics_type, coordinate_change_type, motion_event_type
   public :: judge_mobility, list_assemblies, list_ranges, name_coordinates, find_linear_system, find_cam, draw_sketch, draw_film
   public :: error_type, exit_usage, exit_data, exit_structure, exit_assembly, exit_singular, exit_integrator, exit_file, &
     exit_interrupted

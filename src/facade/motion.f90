@@ -12,6 +12,7 @@ module mech9_motion
   use mech9_frame_motion, only: point_motion
   use mech9_simulation, only: simulation_type, simulation_statistics_type, interruption_type, &
     coordinate_change_type, judge_error
+  use mech9_motion_event, only: motion_event_type
   use mech9_free_simulation, only: free_simulation_type
   use mech9_motion_coefficients, only: find_coefficients
   use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan, is_made_for
@@ -37,7 +38,7 @@ module mech9_motion
     integer :: n_free = 0                                   !< how many of them have no drive
     type(reaction_plan_type) :: reaction_plan               !< of forces, once they are asked for
     class(reactions_type), allocatable :: reactions         !< of the last position whose forces were asked for
-    integer :: planned = -1                                 !< changes of coordinates until the plan was made; -1: never
+    integer :: planned = -1                                 !< plans of the motion before the one for which it was made; -1: none was
   contains
     procedure :: start_kinematics
     procedure :: start_dynamics
@@ -58,6 +59,7 @@ module mech9_motion
     procedure :: coupling_force
     procedure :: energies
     procedure :: closure
+    procedure :: coordinate_changes
     procedure :: events
     procedure :: statistics
     procedure :: close => close_motion
@@ -504,11 +506,11 @@ contains
       call raise(err, exit_usage, 'forces are known only where they are asked for; give &output reactions=.true. /')
     end if
     if (allocated(err)) return
-    if (self%planned /= size(self%simulation%events) .or. .not. is_made_for(self%reaction_plan, plan)) then
+    if (self%planned /= self%simulation%plans() .or. .not. is_made_for(self%reaction_plan, plan)) then
       call make_reaction_plan(self%model%mechanism, plan, self%reaction_plan)
       if (allocated(self%reactions)) deallocate (self%reactions)
       allocate (self%reactions, source=new_reactions(plan, self%reaction_plan))
-      self%planned = size(self%simulation%events)
+      self%planned = self%simulation%plans()
     end if
     call find_reactions(self%model%mechanism, plan, self%reaction_plan, state, self%reactions, err)
     if (allocated(err)) then
@@ -538,15 +540,27 @@ contains
   end function closure
 
   !> The changes of the independent coordinates so far, in the order of time.
-  subroutine events(self, list)
+  subroutine coordinate_changes(self, list)
     class(motion_type), intent(in) :: self                                !< the motion
     type(coordinate_change_type), allocatable, intent(out) :: list(:)     !< none of a driven motion
 
     if (allocated(self%simulation)) then
-      list = self%simulation%events
+      list = self%simulation%coordinate_changes
     else
       allocate (list(0))
     end if
+  end subroutine coordinate_changes
+
+  !> The impacts so far, and the stops that closed and opened, in the order of time.
+  subroutine events(self, list)
+    class(motion_type), intent(in) :: self                             !< the motion
+    type(motion_event_type), allocatable, intent(out) :: list(:)       !< none of a driven motion
+    integer :: n
+
+    n = 0
+    if (allocated(self%simulation)) n = self%simulation%events%count
+    allocate (list(n))
+    if (n > 0) list = self%simulation%events%items(:n)
   end subroutine events
 
   !> The work that the motion took so far.

@@ -7,6 +7,7 @@ module mech9_mechanism
   use mech9_body, only: body_type
   use mech9_load, only: load_slot_type
   use mech9_motor, only: motor_slot_type
+  use mech9_stop, only: stop_type
   use mech9_coupling, only: coupling_slot_type
   use mech9_registered_procedures, only: registered_procedures_type
   implicit none
@@ -25,8 +26,9 @@ module mech9_mechanism
     type(coupling_slot_type), allocatable :: couplings(:)   !< in the order of the data file; none where not allocated
     type(point_type), allocatable :: points(:)
     type(body_type), allocatable :: bodies(:)
-    type(load_slot_type), allocatable :: loads(:)     !< in the order of the data file
+    type(load_slot_type), allocatable :: loads(:)     !< in the order of the data file; then one for each compliant stop
     type(motor_slot_type), allocatable :: motors(:)   !< in the order of the data file; their forces act beside those of the loads
+    type(stop_type), allocatable :: stops(:)          !< in the order of the data file
     real(wp) :: gravity(3) = 0.0_wp                 !< in the axes of link 1 [m/s^2]
     real(wp), allocatable :: parameters(:)          !< numbers for the user's procedures
     type(registered_procedures_type) :: procedures  !< the user's procedures that are not linked
@@ -35,6 +37,7 @@ module mech9_mechanism
     procedure :: has_forces
     procedure :: mark_loaded_links
     procedure :: mark_loaded_coordinates
+    procedure :: has_rigid_stops
   end type mechanism_type
 
 contains
@@ -70,7 +73,14 @@ contains
     end do
   end subroutine mark_loaded_links
 
-  !> Mark the coordinates on which loads and motors depend or act.
+  !> Whether any stop is rigid.
+  pure logical function has_rigid_stops(self)
+    class(mechanism_type), intent(in) :: self   !< the mechanism
+
+    has_rigid_stops = any(self%stops%is_rigid)
+  end function has_rigid_stops
+
+  !> Mark the coordinates on which loads and motors depend or act, and those that stops bound.
   pure subroutine mark_loaded_coordinates(self, loaded)
     class(mechanism_type), intent(in) :: self   !< the mechanism
     logical, intent(inout) :: loaded(:)         !< (M) becomes true for these coordinates; others stay
@@ -81,6 +91,9 @@ contains
     end do
     do i = 1, size(self%motors)
       call self%motors(i)%motor%mark_coordinates(loaded)
+    end do
+    do i = 1, size(self%stops)
+      loaded(self%stops(i)%coordinate) = .true.
     end do
   end subroutine mark_loaded_coordinates
 end module mech9_mechanism

@@ -3,7 +3,7 @@ module mech9_hermite
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: hermite_type, build_hermite
+  public :: hermite_type, build_hermite, cubic_between
 
   !> Newton's form with every abscissa three times over.
   type :: hermite_type
@@ -64,4 +64,16 @@ contains
       y = y*(x - self%x(i)) + self%d(:, i)
     end do
   end subroutine evaluate
+
+  !> The cubic polynomial with given values and derivatives at 0 and 1.
+  pure real(wp) function cubic_between(start, slope, end, end_slope, x)
+    real(wp), intent(in) :: start       !< value at 0
+    real(wp), intent(in) :: slope       !< derivative at 0
+    real(wp), intent(in) :: end         !< value at 1
+    real(wp), intent(in) :: end_slope   !< derivative at 1
+    real(wp), intent(in) :: x           !< from 0 to 1
+
+    cubic_between = start + x*(slope + x*(3.0_wp*(end - start) - 2.0_wp*slope - end_slope &
+                                          + x*(2.0_wp*(start - end) + slope + end_slope)))
+  end function cubic_between
 end module mech9_hermite

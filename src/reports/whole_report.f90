@@ -1,5 +1,6 @@
 !> The report of a run, as JSON: how it ended and the work that it took (docs/reference/results.md).
 module mech9_whole_report
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
   use mech9_json, only: json_type
   use mech9_facts, only: facts_type
@@ -7,6 +8,7 @@ module mech9_whole_report
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_driven_simulation, only: driven_simulation_type
+  use mech9_motion_event, only: motion_events_type
   use mech9_free_simulation, only: free_simulation_type
   use mech9_model_motion, only: model_motion_type
   use mech9_quantity_record, only: quantity_record_type
@@ -55,7 +57,8 @@ contains
     type(free_simulation_type), intent(in) :: simulation   !< its simulation
 
     call add_coefficients(json, motion%plan, simulation%coefficients)
-    call add_events(json, simulation)
+    call add_coordinate_changes(json, simulation)
+    call add_events(json, simulation%events)
   end subroutine add_free
 
   !> Add the coefficients of motion: [{"p": 1, "r": 5, "value": ...}, ...]
@@ -79,26 +82,48 @@ contains
   end subroutine add_coefficients
 
   !> Add the changes of the independent coordinates, and of the angles that are integrated.
-  subroutine add_events(json, simulation)
+  subroutine add_coordinate_changes(json, simulation)
     type(json_type), intent(inout) :: json                 !< the report, inside its object
     type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
     integer :: i, k
 
-    call json%begin_array('events')
-    do i = 1, size(simulation%events)
+    call json%begin_array('coordinate_changes')
+    do i = 1, size(simulation%coordinate_changes)
       call json%begin_object()
-      call json%add('t', simulation%events(i)%t)
+      call json%add('t', simulation%coordinate_changes(i)%t)
       call json%begin_array('independent')
-      do k = 1, size(simulation%events(i)%independent)
-        call json%add(simulation%events(i)%independent(k))
+      do k = 1, size(simulation%coordinate_changes(i)%independent)
+        call json%add(simulation%coordinate_changes(i)%independent(k))
       end do
       call json%end_array()
       call json%begin_array('replaced')
-      do k = 1, size(simulation%events(i)%replaced)
-        call json%add(simulation%events(i)%replaced(k))
+      do k = 1, size(simulation%coordinate_changes(i)%replaced)
+        call json%add(simulation%coordinate_changes(i)%replaced(k))
       end do
       call json%end_array()
       call json%end_object()
+    end do
+    call json%end_array()
+  end subroutine add_coordinate_changes
+
+  !> Add the events: [{"time": 0.45, "kind": "impact", "group": "stop", "number": 1, "impulse": 0.9}, ...]. An event without an impulse
+  !> has null there.
+  subroutine add_events(json, events)
+    type(json_type), intent(inout) :: json           !< the report, inside its object
+    type(motion_events_type), intent(in) :: events   !< of the motion, as far as it went
+    integer :: i
+
+    call json%begin_array('events')
+    do i = 1, events%count
+      associate (event => events%items(i))
+        call json%begin_object()
+        call json%add('time', event%t)
+        call json%add('kind', trim(event%kind))
+        call json%add('group', trim(event%group))
+        call json%add('number', event%number)
+        call json%add('impulse', merge(event%impulse, ieee_value(event%impulse, ieee_quiet_nan), event%has_impulse))
+        call json%end_object()
+      end associate
     end do
     call json%end_array()
   end subroutine add_events

@@ -35,6 +35,7 @@ module mech9_columns
     integer :: motors = 0                   !< how many columns belong to motors, after those of forces
     real(wp), allocatable :: motor_factors(:)   !< (motors) factors from the program's units to those of the results
     integer :: energies = 0                 !< how many columns belong to energies, after those of motors
+    integer :: stops = 0                    !< how many columns belong to stops, after those of energies
     integer :: varied = 0                   !< how many columns, from the second one on, have derivatives by parameters
     integer :: sensitivities = 0            !< how many columns, the last ones, are derivatives by parameters
     type(derivative_columns_type) :: derived    !< those of the motion
@@ -50,6 +51,8 @@ module mech9_columns
     procedure :: fill_forces
     procedure :: append_motors
     procedure :: fill_motors
+    procedure :: append_stops
+    procedure :: fill_stops
     procedure :: append_energies
     procedure :: append_sensitivities
     procedure :: find_unit_per
@@ -211,6 +214,44 @@ contains
       row(at) = action%force
     end do
   end subroutine fill_motors
+
+  !> Append the columns of stops: the force of each.
+  subroutine append_stops(self, mechanism)
+    class(columns_type), intent(inout) :: self     !< the columns
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    integer :: i
+
+    self%stops = size(mechanism%stops)
+    do i = 1, self%stops
+      associate (k => mechanism%stops(i)%coordinate)
+        call self%append('S'//to_text(i), force_unit_name(mechanism, k), &
+                         'force of stop '//to_text(i)//' on coordinate '//to_text(k))
+      end associate
+    end do
+  end subroutine append_stops
+
+  !> Fill the columns of stops in a row.
+  pure subroutine fill_stops(self, mechanism, state, row)
+    class(columns_type), intent(in) :: self             !< the columns
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(state_type), intent(in) :: state               !< motion of the mechanism, with the forces of rigid stops
+    real(wp), intent(inout) :: row(:)                   !< numbers of one row, one for each column
+    integer :: at, i
+
+    at = self%motion + self%forces() + self%motors + self%energies
+    do i = 1, self%stops
+      associate (stop => mechanism%stops(i))
+        row(at + i) = 0.0_wp
+        if (allocated(state%pressed) .and. .not. stop%is_rigid) then
+          row(at + i) = stop%force(state%q(stop%coordinate), state%dq(stop%coordinate), state%pressed(:, i))
+        else if (.not. stop%is_rigid) then
+          row(at + i) = stop%force(state%q(stop%coordinate), state%dq(stop%coordinate))
+        else if (allocated(state%stop_force)) then
+          row(at + i) = state%stop_force(i)
+        end if
+      end associate
+    end do
+  end subroutine fill_stops
 
   !> Append the columns of energies.
   pure subroutine append_energies(self)

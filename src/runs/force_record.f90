@@ -19,7 +19,7 @@ module mech9_force_record
     type(uniqueness_type), allocatable :: unique   !< of forces; not allocated: no reactions are recorded
     class(reactions_type), allocatable :: reactions        !< of the present state
     type(reaction_plan_type), private :: plan
-    integer, private :: events = -1          !< changes of coordinates of the simulation until the plan was made; -1: there is none
+    integer, private :: plans = -1           !< plans of the simulation before the one for which the plan was made; -1: there is none
   contains
     procedure :: begin
     procedure :: judge
@@ -83,11 +83,11 @@ contains
     type(state_type), intent(in) :: state               !< its present state
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    if (self%events /= size(simulation%events) .or. .not. is_made_for(self%plan, plan)) then
+    if (self%plans /= simulation%plans() .or. .not. is_made_for(self%plan, plan)) then
       call make_reaction_plan(simulation%model%mechanism, plan, self%plan)
       deallocate (self%reactions)
       allocate (self%reactions, source=new_reactions(plan, self%plan))
-      self%events = size(simulation%events)
+      self%plans = simulation%plans()
     end if
     call find_reactions(simulation%model%mechanism, plan, self%plan, state, self%reactions, err)
   end subroutine find

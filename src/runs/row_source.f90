@@ -74,6 +74,7 @@ contains
     call forces%begin(model, columns)
     call columns%append_motors(model%mechanism)
     if (with_energies) call columns%append_energies()
+    call columns%append_stops(model%mechanism)
     call columns%append('closure', 'm', 'largest error of a closed chain')
     if (model%request%output%conditioning) call columns%append('conditioning', '1', 'least singular value of the worst chains')
     if (with_error) call columns%append('error', 'rad,m', 'estimated error of the coordinates and points')
@@ -341,7 +342,8 @@ contains
         row(next + 3) = simulation%kinetic_energy + simulation%potential_energy
         next = next + 3
       end if
-      next = next + 1
+      call self%columns%fill_stops(simulation%model%mechanism, state, row)
+      next = next + self%columns%stops + 1
       row(next) = simulation%closure
       if (simulation%with_conditioning) then
         next = next + 1

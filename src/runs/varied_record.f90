@@ -28,7 +28,7 @@ module mech9_varied_record
     class(varied_forces_type), allocatable, private :: forces        !< of the present state
     class(varied_reactions_type), allocatable, private :: reactions  !< of the present state
     type(varied_energy_type), private :: energy       !< of the present state
-    integer, private :: events = -1                   !< changes of coordinates of the simulation until room was made; -1: none was
+    integer, private :: plans = -1                    !< plans of the simulation before the one for which room was made; -1: none was
   contains
     procedure :: begin
     procedure :: find
@@ -91,7 +91,7 @@ contains
 
     call simulation%show_varied_motion(motion, err)
     if (allocated(err)) return
-    if (self%events /= size(simulation%events)) call make_room(self, simulation, motion, err)
+    if (self%plans /= simulation%plans()) call make_room(self, simulation, motion, err)
     if (allocated(err)) return
     if (self%with_forces) then
       call find_varied_forces(simulation%model, motion, self%forces, err)
@@ -121,7 +121,7 @@ contains
     if (self%with_energies) call new_varied_energy(simulation%model, motion, self%energy)
     if (self%with_forces) call new_varied_forces(simulation%model, motion, self%forces, self%with_reactions)
     if (self%with_reactions) call new_varied_reactions(simulation%model, motion, self%reactions, err)
-    self%events = size(simulation%events)
+    self%plans = simulation%plans()
   end subroutine make_room
 
   !> Put the derivatives of the motors' states and forces in the order of their columns.

@@ -11,6 +11,7 @@ module mech9_dynamic_report
   use mech9_run_outcome, only: run_outcome_type
   use mech9_integrator, only: integration_statistics_type
   use mech9_simulation, only: coordinate_change_type
+  use mech9_motion_event, only: motion_events_type, event_impact, event_close
   use mech9_free_simulation, only: free_simulation_type
   use mech9_run_words, only: duration, each
   use mech9_run_facts, only: method_of
@@ -25,6 +26,9 @@ module mech9_dynamic_report
     procedure, nopass :: write_start
     procedure, nopass :: write_end
   end type dynamic_report_type
+
+  !> Events that are printed before the last one.
+  integer, parameter :: printed_events = 10
 
 contains
 
@@ -54,9 +58,11 @@ contains
     write (unit, '(a)') ''
     if (simulation%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
       to_text(simulation%conditioning%least, 3)//' at t = '//to_text(simulation%conditioning%t, 6)//' s'
-    do i = 1, size(simulation%events)
-      write (unit, '(a)') 't = '//to_text(simulation%events(i)%t, 8)//' s: '//event_words(simulation%events, i)
+    do i = 1, size(simulation%coordinate_changes)
+      write (unit, '(a)') 't = '//to_text(simulation%coordinate_changes(i)%t, 8)//' s: '// &
+        change_words(simulation%coordinate_changes, i)
     end do
+    call print_events(unit, simulation%events)
     call print_jumps(unit, simulation%model)
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
   end subroutine print_report
@@ -71,9 +77,33 @@ contains
       words = ' ('//to_text(counts%implicit_steps)//' by bdf; changes of the method: '//to_text(counts%method_changes)//')'
   end function by_bdf
 
-  !> An event in words.
-  pure function event_words(events, i) result(words)
-    type(coordinate_change_type), intent(in) :: events(:)   !< all events, in the order of time
+  !> Print the first and the last events, and how many there are.
+  subroutine print_events(unit, events)
+    integer, intent(in) :: unit                       !< Fortran unit to write to
+    type(motion_events_type), intent(in) :: events    !< of the motion
+    integer :: i
+
+    do i = 1, events%count
+      if (i > printed_events .and. i < events%count) cycle
+      if (i == events%count .and. i > printed_events + 1) &
+        write (unit, '(a)') counted(i - printed_events - 1, 'more event')//'; the option --report writes all of them'
+      associate (event => events%items(i))
+        write (unit, '(a)', advance='no') 't = '//to_text(event%t, 8)//' s: '//trim(event%group)//' '//to_text(event%number)
+        select case (event%kind)
+        case (event_impact)
+          write (unit, '(a)') ' is hit, impulse '//to_text(event%impulse, 4)
+        case (event_close)
+          write (unit, '(a)') ' closes'
+        case default
+          write (unit, '(a)') ' opens'
+        end select
+      end associate
+    end do
+  end subroutine print_events
+
+  !> A change of coordinates in words.
+  pure function change_words(events, i) result(words)
+    type(coordinate_change_type), intent(in) :: events(:)   !< all changes, in the order of time
     integer, intent(in) :: i                                !< number of the one that is meant
     character(len=:), allocatable :: words
     integer, allocatable :: before(:)
@@ -87,7 +117,7 @@ contains
       words = 'coordinates '//to_text(before)//' are integrated themselves again'
     end if
     if (same_numbers(before, events(i)%replaced)) words = 'independent coordinates are now '//to_text(events(i)%independent)
-  end function event_words
+  end function change_words
 
   !> Print the coefficients of motion a(p,r) at the start, p and r the numbers of the independent coordinates.
   subroutine print_coefficients(unit, plan, coefficients)
@@ -152,13 +182,13 @@ contains
   subroutine write_events(hdf5, simulation)
     type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
     type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
-    integer :: independent(size(simulation%motion%system%plan%independent), size(simulation%events)), k, i
+    integer :: independent(size(simulation%motion%system%plan%independent), size(simulation%coordinate_changes)), k, i
     logical :: replaced(size(independent, 1), size(independent, 2))
 
-    do i = 1, size(simulation%events)
-      independent(:, i) = simulation%events(i)%independent
-      replaced(:, i) = [(any(simulation%events(i)%replaced == independent(k, i)), k=1, size(independent, 1))]
+    do i = 1, size(simulation%coordinate_changes)
+      independent(:, i) = simulation%coordinate_changes(i)%independent
+      replaced(:, i) = [(any(simulation%coordinate_changes(i)%replaced == independent(k, i)), k=1, size(independent, 1))]
     end do
-    call hdf5%write_events(simulation%events%t, independent, replaced)
+    call hdf5%write_events(simulation%coordinate_changes%t, independent, replaced)
   end subroutine write_events
 end module mech9_dynamic_report

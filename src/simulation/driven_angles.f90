@@ -16,7 +16,7 @@ module mech9_driven_angles
   use mech9_ball_angles, only: ball_angles_type
   implicit none
   private
-  public :: begin_with_angles, advance_with_angles
+  public :: begin_with_angles, advance_with_angles, copy_driven_motion
 
   !> Most halvings of a step over which angles cannot be continued.
   integer, parameter :: most_halvings = 60

@@ -7,7 +7,7 @@ module mech9_driven_simulation
   use mech9_plan, only: plan_type, copy_plan
   use mech9_state, only: state_type, copy_state
   use mech9_start_path, only: start_way_type, assemble_start
-  use mech9_requested, only: requested_by_results, add_forces, leave_out_unrequested
+  use mech9_requested, only: requested_by_results, add_forces, add_stops, leave_out_unrequested
   use mech9_driven_motion, only: driven_motion_type, set_inputs
   use mech9_driven_counts, only: driven_counts_type, keep_counts, return_to_counts
   use mech9_batch_products, only: batch_size
@@ -17,6 +17,8 @@ module mech9_driven_simulation
   use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_generalized_forces, only: show_state
   use mech9_energy, only: kinetic_energy, potential_energy
+  use mech9_stop_contacts, only: stop_contacts_type, find_contacts
+  use mech9_driven_stops, only: check_stops
   use mech9_simulation, only: simulation_type, simulation_statistics_type, standing_type
   implicit none
   private
@@ -30,6 +32,7 @@ module mech9_driven_simulation
     type(ball_angles_type) :: angles                  !< of ball joints, as in the data file
     class(dynamics_plan_type), allocatable, private :: dynamics  !< made when energies are asked for first
     type(motion_view_type), allocatable, private :: view         !< of the present state, as loads see it
+    type(stop_contacts_type), private :: contacts                !< ends of stops, with the motion at the last output
     type(driven_counts_type), private :: kept_work(batch_size)   !< of positions that wait for their derivatives
   contains
     procedure :: begin
@@ -79,9 +82,10 @@ contains
     simulation%requested = requested_by_results(model%mechanism, model%request%output, pictures)
     if (present(with_masses)) simulation%with_energies = with_masses .and. model%request%output%energies
     if (simulation%with_energies) call add_forces(model%mechanism, simulation%requested)
+    call add_stops(model%mechanism, simulation%requested)
     call leave_out_unrequested(simulation%plan, simulation%requested)
     simulation%with_conditioning = model%request%output%conditioning
-    allocate (simulation%events(0))
+    allocate (simulation%coordinate_changes(0))
   end subroutine new_driven_simulation
 
   !> The position at the start.
@@ -94,6 +98,12 @@ contains
     call copy_state(self%assembled, start)
     start%t = t
     call begin_with_angles(self%model, self%requested, self%plan, start, self%driven, self%angles, err)
+    if (allocated(err)) return
+    call find_contacts(self%model%mechanism%stops, self%contacts)
+    if (self%model%mechanism%has_rigid_stops()) then
+      call self%contacts%note(self%driven%state)
+      call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, t, self%contacts, err)
+    end if
   end subroutine begin
 
   !> The position at time t, on the same branch. Whether the motion shall stop is asked after many steps, too.
@@ -101,14 +111,19 @@ contains
     class(driven_simulation_type), intent(inout) :: self   !< the simulation
     real(wp), intent(in) :: t                              !< time to go to [s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    real(wp) :: before
     logical :: reached
 
+    before = self%driven%state%t
     do
       call advance_with_angles(self%model, self%plan, t, self%driven, self%angles, reached, err)
-      if (reached .or. allocated(err)) return
+      if (allocated(err)) return
+      if (reached) exit
       call self%stop_if_interrupted(self%driven%predictor%t, err)
       if (allocated(err)) return
     end do
+    if (self%model%mechanism%has_rigid_stops()) &
+      call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, before, self%contacts, err)
   end subroutine go_to
 
   !> The plan and the present state.

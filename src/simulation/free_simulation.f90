@@ -8,6 +8,8 @@ module mech9_free_simulation
   use mech9_simulation_failures, only: failure_no_initial_position, failure_lost_angles
   use mech9_partition, only: free_coordinate
   use mech9_model, only: model_type
+  use mech9_stop_contacts, only: find_contacts
+  use mech9_contact_events, only: begin_contacts
   use mech9_plan, only: plan_type, copy_plan
   use mech9_state, only: state_type, copy_state
   use mech9_block_equations, only: largest_gap
@@ -22,7 +24,7 @@ module mech9_free_simulation
   use mech9_held_angles, only: copy_drives
   use mech9_motion_coefficients, only: find_coefficients
   use mech9_integrated_motion, only: integrated_motion_type
-  use mech9_limit_passing, only: stop_at_limits
+  use mech9_event_passing, only: stop_at_events
   use mech9_stopped_motion, only: name_cause, name_cause_at_start, stall_watch_type, name_singular_chains
   use mech9_variable_model, only: variable_model_type
   use mech9_sensitivity, only: sensitivity_type, new_given_sensitivity
@@ -55,6 +57,7 @@ module mech9_free_simulation
     procedure :: energies
     procedure :: count_work
     procedure :: standing
+    procedure :: plans
     procedure :: close => close_simulation
     procedure, private :: step
     procedure, private :: change_coordinates
@@ -109,7 +112,7 @@ contains
     simulation%with_error = model%request%solver%accuracy > 0.0_wp
     simulation%motion%t = model%request%time%start
     simulation%end = model%request%time%end
-    allocate (simulation%events(0))
+    allocate (simulation%coordinate_changes(0))
     simulation%requested = requested_by_results(model%mechanism, model%request%output, pictures)
     call add_forces(model%mechanism, simulation%requested)
     call copy_plan(plan, used)
@@ -136,7 +139,7 @@ contains
     ! with other angles held, those of the data file may be singular; the coefficients do not depend on which is held
     if (all(simulation%motion%angles%held%rods%is_free)) &
       call keep_coefficients(model, given, assembled, simulation%coefficients, err)
-    if (.not. allocated(err)) call add_event(simulation)
+    if (.not. allocated(err)) call add_coordinate_change(simulation)
   end subroutine new_free_simulation
 
   !> Keep the coefficients of motion in the angles of the data file. In closed chains those may be singular at the start: then the ones
@@ -164,9 +167,29 @@ contains
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
 
     self%motion%t = t
+    call find_contacts(self%model%mechanism%stops, self%motion%contacts)
     call self%motion%begin(err)
+    if (size(self%motion%contacts%ends) > 0 .and. .not. allocated(err)) then
+      call begin_contacts(self%motion%system, self%motion%contacts, err)
+      if (.not. allocated(err)) call pass_event(self, .true., err)
+    end if
     if (.not. allocated(err)) call self%motion%show_angles(err)
   end subroutine begin
+
+  !> Pass what ended the last step: a joint of a law, the limit of a motor, or an event of a contact. At the start, contacts are met alone.
+  subroutine pass_event(self, at_start, err)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation
+    logical, intent(in) :: at_start                      !< there was no step yet
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    integer :: before
+
+    before = self%motion%systems
+    if (at_start) call self%motion%meet_stops(0, self%events, err)
+    if (.not. at_start) call self%motion%pass_joint(self%events, err)
+    if (allocated(err)) return
+    call self%stall%forget()
+    if (self%motion%systems > before .and. .not. same_independent(self)) call add_coordinate_change(self)
+  end subroutine pass_event
 
   !> The motion at time t, by steps up to there or beyond.
   subroutine go_to(self, t, err)
@@ -186,7 +209,8 @@ contains
         end do
         if (.not. abs(t - motion%t) > 0.0_wp) then
           ! a time that lies before the joint by more than round-off is asked for to see this side
-          if (motion%system%interval%is_end(t) .and. .not. motion%system%interval%is_before_end(t)) call motion%pass_joint(err)
+          if (motion%system%interval%is_end(t) .and. .not. motion%system%interval%is_before_end(t)) &
+            call pass_event(self, .false., err)
           if (allocated(err)) return
           exit
         end if
@@ -283,7 +307,7 @@ contains
     real(wp) :: target, farthest, from
     logical :: changed, is_regular, stalls
 
-    if (self%motion%system%interval%is_end(self%motion%t)) call self%motion%pass_joint(err)
+    if (self%motion%system%interval%is_end(self%motion%t)) call pass_event(self, .false., err)
     if (.not. allocated(err)) call self%change_angles(err)
     if (allocated(err)) return
     associate (motion => self%motion)
@@ -309,7 +333,7 @@ contains
       if (.not. allocated(failure)) then
         motion%conditioning_here = motion%system%conditioning()
         call motion%dense_output%add(motion%system, motion%t, motion%y)
-        call stop_at_limits(motion, err)
+        call stop_at_events(motion, err)
         associate (time => self%model%request%time)
           call self%stall%note(abs(motion%t - from), abs(time%end - time%start), motion%conditioning_here, stalls)
         end associate
@@ -343,7 +367,7 @@ contains
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
 
     call self%motion%change_coordinates(changed, err)
-    if (changed) call add_event(self)
+    if (changed) call add_coordinate_change(self)
   end subroutine change_coordinates
 
   !> Go on with other angles in ball joints that are near gimbal lock; that is an event.
@@ -362,7 +386,7 @@ contains
       call motion%change_angles(changed, err)
     end associate
     if (changed) changed = .not. (same_replaced(self) .and. same_independent(self))
-    if (changed) call add_event(self)
+    if (changed) call add_coordinate_change(self)
   end subroutine change_angles
 
   !> The coordinates of hinges whose angles are replaced. The angles of joints with several freedoms are the program's own matter.
@@ -387,8 +411,8 @@ contains
 
     now = replaced_hinges(self)
     same_replaced = size(now) == 0
-    if (size(self%events) == 0) return
-    same_replaced = same_numbers(now, self%events(size(self%events))%replaced)
+    if (size(self%coordinate_changes) == 0) return
+    same_replaced = same_numbers(now, self%coordinate_changes(size(self%coordinate_changes))%replaced)
   end function same_replaced
 
   !> Whether the same coordinates were independent at the last event, or at the start, beside the angles of joints with several freedoms.
@@ -398,9 +422,9 @@ contains
     integer :: k
 
     before = self%model%problem%partition%independent()
-    if (size(self%events) > 0) then
+    if (size(self%coordinate_changes) > 0) then
       before = .false.
-      before(self%events(size(self%events))%independent) = .true.
+      before(self%coordinate_changes(size(self%coordinate_changes))%independent) = .true.
     end if
     now = .false.
     now(self%motion%system%plan%independent) = .true.
@@ -410,24 +434,24 @@ contains
     end do
   end function same_independent
 
-  !> One more event: the present choice of coordinates. By hand: an array constructor of them would leak (gfortran 12).
-  subroutine add_event(self)
+  !> One more change: the present choice of coordinates. By hand: an array constructor of them would leak (gfortran 12).
+  subroutine add_coordinate_change(self)
     class(free_simulation_type), intent(inout) :: self   !< the simulation
     type(coordinate_change_type), allocatable :: grown(:)
     integer :: i, n
 
-    n = size(self%events)
+    n = size(self%coordinate_changes)
     allocate (grown(n + 1))
     do i = 1, n
-      grown(i)%t = self%events(i)%t
-      call move_alloc(self%events(i)%independent, grown(i)%independent)
-      call move_alloc(self%events(i)%replaced, grown(i)%replaced)
+      grown(i)%t = self%coordinate_changes(i)%t
+      call move_alloc(self%coordinate_changes(i)%independent, grown(i)%independent)
+      call move_alloc(self%coordinate_changes(i)%replaced, grown(i)%replaced)
     end do
     grown(n + 1)%t = self%motion%t
     grown(n + 1)%independent = self%motion%system%plan%independent
     grown(n + 1)%replaced = replaced_hinges(self)
-    call move_alloc(grown, self%events)
-  end subroutine add_event
+    call move_alloc(grown, self%coordinate_changes)
+  end subroutine add_coordinate_change
 
   !> The plan in the present independent coordinates and the present state, in the angles of the data file.
   subroutine present(self, plan, state)
@@ -542,6 +566,13 @@ contains
     statistics%evaluations = counts%rate_evaluations
     statistics%newton_iterations = self%motion%iterations()
   end subroutine count_work
+
+  !> How many plans the motion had before the present one: one for each choice of coordinates.
+  pure integer function plans(self)
+    class(free_simulation_type), intent(in) :: self   !< the simulation
+
+    plans = self%motion%systems
+  end function plans
 
   !> The end of the last step, and the coordinate that moves fastest there.
   type(standing_type) function standing(self)

@@ -2,9 +2,10 @@
 !> change to other coordinates.
 module mech9_integrated_motion
   use mech9_kinds, only: wp, long
-  use mech9_simulation_tolerances, only: doubtful_conditioning, worthwhile_improvement, third_derivative_step
-  use mech9_error, only: error_type, raise, exit_singular
-  use mech9_simulation_failures, only: failure_angles_sensitivity
+  use mech9_integration_tolerances, only: worthwhile_improvement
+  use mech9_simulation_tolerances, only: doubtful_conditioning, third_derivative_step
+  use mech9_error, only: error_type, raise, exit_singular, exit_integrator
+  use mech9_simulation_failures, only: failure_angles_sensitivity, failure_many_events, failure_unheld_stop
   use mech9_variable_model, only: variable_model_type
   use mech9_partition, only: partition_type
   use mech9_plan, only: copy_plan
@@ -15,13 +16,17 @@ module mech9_integrated_motion
   use mech9_ode_system, only: is_recoverable
   use mech9_integrator, only: integrator_type, integration_statistics_type
   use mech9_coordinate_choice, only: best_independent, carry_over, worth_taking
-  use mech9_integrated_vector, only: pack_rates
+  use mech9_integrated_vector, only: pack_rates, pack_state
   use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_joint_passing, only: pass_law_joint => pass_joint
   use mech9_held_angles, only: copy_drives
   use mech9_ball_angles, only: ball_angles_type
   use mech9_dense_output, only: dense_output_type
   use mech9_limit_watch, only: limit_watch_type
+  use mech9_stop_contacts, only: stop_contacts_type
+  use mech9_contact_events, only: meet_contacts
+  use mech9_held_stops, only: choose_held, hold_by_drives
+  use mech9_motion_event, only: motion_events_type
   use mech9_side_steps, only: side_steps_type, begin_integration
   implicit none
   private
@@ -35,19 +40,24 @@ module mech9_integrated_motion
     type(integrator_type) :: integrator
     type(dense_output_type) :: dense_output       !< motion within the last step
     type(limit_watch_type) :: limits              !< demands on the motors there
+    type(stop_contacts_type) :: contacts          !< ends of stops, with their motion there
     type(side_steps_type) :: aside                !< steps to times at which dense output is not certain
     real(wp) :: t = 0.0_wp                        !< end of the last step [s]
     real(wp), allocatable :: y(:)                 !< the integrated vector there
     real(wp) :: conditioning_here = 0.0_wp        !< worst pivot ratio there
+    integer :: systems = 0                        !< how many systems in other coordinates there were before the present one
     real(wp) :: look_below = doubtful_conditioning             !< conditioning at which other coordinates are looked for
     type(integration_statistics_type), private :: before   !< of the integrators before the present one
     type(work_count_type), private :: work_before          !< for the blocks of the systems before the present one
   contains
     procedure :: begin
+    procedure :: meet_stops
+    procedure :: note_start
     procedure :: begin_sensitivity
     procedure :: change_coordinates
     procedure :: change_angles
     procedure :: show_angles
+    procedure, private :: hold_stops
     procedure, private :: insert
     procedure :: look_between
     procedure :: step_back
@@ -71,7 +81,7 @@ contains
     call self%dense_output%begin()
     call self%dense_output%add(self%system, self%t, self%y)
     call begin_integration(self%integrator, self%system, self%t, self%y, err)
-    if (.not. allocated(err)) call self%limits%note(self%system, err)
+    if (.not. allocated(err)) call self%note_start(err)
   end subroutine begin
 
   !> Integrate the derivatives by all parameters as well, from the start on. Fails where they are not known.
@@ -95,6 +105,7 @@ contains
     type(motion_system_type), pointer :: other
     type(ball_angles_type) :: angles
     type(error_type), allocatable :: failure
+    type(wanted_type) :: wanted
     logical :: independent(self%system%plan%n_coordinates), made
 
     changed = .false.
@@ -110,7 +121,8 @@ contains
     end if
     allocate (other)
     call other%make_room()
-    call take_coordinates(self, independent, other, angles, made, err)
+    wanted = worth_taking(self%system%conditioning(), self%system%work%blocks)
+    call take_partition(self, self%system%partition%in_same_order(independent), wanted, other, angles, made, err)
     if (made) changed = other%conditioning() >= worthwhile_improvement*self%system%conditioning()
     if (changed) then
       call hand_on_sensitivity(self, angles, other, err)
@@ -156,24 +168,23 @@ contains
     err%failure%t = t
   end subroutine refuse_angles
 
-  !> Make the system in other independent coordinates, at the present state. What belongs to frames and blocks that do not change
-  !> is copied. The system is not made where these coordinates cannot serve, or the change is not worthwhile.
-  subroutine take_coordinates(self, independent, other, angles, made, err)
+  !> Make the system with another partition of the coordinates, at the present state. What belongs to frames and blocks that do not
+  !> change is copied. The system is not made where these coordinates cannot serve, or the change is not worthwhile.
+  subroutine take_partition(self, partition, worth, other, angles, made, err)
     class(integrated_motion_type), intent(inout) :: self       !< the motion
-    logical, intent(in) :: independent(:)                      !< (M) the coordinate is independent
+    type(partition_type), intent(in) :: partition              !< the partition
+    type(wanted_type), intent(in) :: worth                     !< conditioning for which the change is worth making
     type(motion_system_type), intent(inout) :: other           !< the system in these coordinates
     type(ball_angles_type), intent(inout) :: angles            !< of ball joints, for this system
     logical, intent(out) :: made                               !< the system was made
     type(error_type), allocatable, intent(out) :: err          !< allocated if the motion ends
     type(error_type), allocatable :: failure
-    type(partition_type) :: partition
     type(wanted_type) :: wanted
     type(replanning_type) :: carried
     logical :: same_frames
 
     made = .false.
-    partition = self%system%partition%in_same_order(independent)
-    wanted = worth_taking(self%system%conditioning(), self%system%work%blocks)
+    wanted = worth
     wanted%requested = self%angles%requested
     wanted%from_known_only = self%angles%in_use()
     call self%show_angles(err)
@@ -194,8 +205,10 @@ contains
       call angles%restart(self%system%model, partition, other%plan, other%state, failure)
     end if
     if (gives_up(failure, err)) return
-    same_frames = carried%serves .and. .not. angles%in_use() .and. all(angles%held%partition%kind == partition%kind)
+    same_frames = carried%serves .and. .not. angles%in_use() .and. all(angles%held%partition%kind == partition%kind) &
+                  .and. all(partition%driven() .eqv. self%system%plan%driven)
     call copy_drives(angles%held%drives, other%drives)
+    if (allocated(self%system%held_stops)) other%held_stops = self%system%held_stops
     ! they may have no inertia in this position; what fails in any coordinates will do so in the present ones, too
     if (same_frames) then
       call set_motion_system(self%system%model, angles%held%partition, other, failure, self%system)
@@ -203,7 +216,7 @@ contains
       call set_motion_system(self%system%model, angles%held%partition, other, failure)
     end if
     made = .not. allocated(failure)
-  end subroutine take_coordinates
+  end subroutine take_partition
 
   !> Go on with other angles in the ball joints whose present ones are near gimbal lock, or with other angles of rods held.
   subroutine change_angles(self, changed, err)
@@ -259,6 +272,7 @@ contains
     end if
     if (allocated(failure) .or. angles%move_as(self%angles)) return
     call copy_drives(angles%held%drives, other%drives)
+    if (allocated(self%system%held_stops)) other%held_stops = self%system%held_stops
     call set_motion_system(self%system%model, angles%held%partition, other, failure)
   end subroutine take_angles
 
@@ -273,6 +287,7 @@ contains
     dddq = 0.0_wp
     if (self%angles%in_lock()) call find_third_derivatives(self%system, dddq, err)
     if (.not. allocated(err)) call self%angles%show(self%system%state, dddq, err)
+    if (allocated(self%system%state%stop_force)) self%angles%state%stop_force = self%system%state%stop_force
   end subroutine show_angles
 
   !> The third derivatives of the independent coordinates at the present state, to about 1e-10, by a central difference of the
@@ -319,6 +334,7 @@ contains
     self%work_before = self%work_done()
     deallocate (self%system)
     self%system => other
+    self%systems = self%systems + 1
     self%look_below = min(doubtful_conditioning, self%system%conditioning()/worthwhile_improvement)
   end subroutine replace_system
 
@@ -385,17 +401,93 @@ contains
     self%conditioning_here = self%system%conditioning()
     call self%dense_output%begin()
     call self%dense_output%add(self%system, self%t, self%y)
-    call self%limits%note(self%system, err)
+    call self%note_start(err)
   end subroutine step_back
 
-  !> Pass a joint of the laws of time, or the limit of a motor, at the end of the last step.
-  subroutine pass_joint(self, err)
+  !> Pass a joint of the laws of time, the limit of a motor, or an event of a contact, at the end of the last step.
+  subroutine pass_joint(self, events, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion
+    type(motion_events_type), intent(inout) :: events      !< gets impacts, and stops that close and open
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    integer :: met
 
+    met = self%system%interval%contact
     call pass_law_joint(self%system, self%t, self%y, err)
-    if (.not. allocated(err)) call self%restart((self%t), (self%y), err)
+    if (allocated(err)) return
+    if (met > 0 .or. self%contacts%any_held()) then
+      call self%meet_stops(met, events, err)
+    else
+      call self%restart((self%t), (self%y), err)
+    end if
   end subroutine pass_joint
+
+  !> Meet the contacts of stops at the end of the last step, and go on as they leave the motion.
+  subroutine meet_stops(self, met, events, err)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion
+    integer, intent(in) :: met                             !< number of the end that is met, left or released; 0: none
+    type(motion_events_type), intent(inout) :: events      !< gets impacts, and stops that close and open
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    integer :: before
+    logical :: holds_change
+
+    before = events%count
+    self%system%interval%contact = 0
+    call self%system%move_to(self%t, self%y, err)
+    if (.not. allocated(err)) call meet_contacts(self%system, met, self%contacts, holds_change, events, err)
+    if (allocated(err)) return
+    if (events%makes_no_progress(before)) then
+      call raise(err, exit_integrator, failure_many_events)
+      err%failure%t = self%t
+      err%failure%limit = events%count
+      return
+    end if
+    if (holds_change) then
+      call self%hold_stops(err)
+    else
+      call pack_state(self%system%plan, self%system%state, self%y)
+      call self%restart((self%t), (self%y), err)
+    end if
+  end subroutine meet_stops
+
+  !> Go on with the coordinates held whose stops are closed, and with all others released, at the present state.
+  subroutine hold_stops(self, err)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion, whose system has the rates of all coordinates
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(motion_system_type), pointer :: other
+    type(ball_angles_type) :: angles
+    type(partition_type) :: partition
+    logical :: made
+
+    call choose_held(self%system, self%contacts, partition)
+    call hold_by_drives(self%contacts, self%angles%held%drives, self%system%held_stops)
+    allocate (other)
+    call other%make_room()
+    call take_partition(self, partition, wanted_type(), other, angles, made, err)
+    if (made) then
+      self%angles = angles
+      call replace_system(self, other)
+      self%y = self%system%vector()
+      call self%system%project(self%t, self%y, err)
+      if (.not. allocated(err)) call self%system%pass_limits(err)
+      if (.not. allocated(err)) call self%system%present(err)
+      if (.not. allocated(err)) call self%begin(err)
+    else
+      deallocate (other)
+      if (allocated(err)) return
+      call raise(err, exit_singular, failure_unheld_stop)
+      err%failure%t = self%t
+      err%failure%coordinates = pack(self%contacts%ends%coordinate, self%contacts%ends%held)
+    end if
+  end subroutine hold_stops
+
+  !> Note the demands on motors and the motion of contacts from which the next step begins.
+  subroutine note_start(self, err)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion at the start of a step
+    type(error_type), allocatable, intent(out) :: err      !< allocated if the law of a motor has no value
+
+    call self%limits%note(self%system, err)
+    if (size(self%contacts%ends) > 0) call self%contacts%note(self%system%state)
+  end subroutine note_start
 
   !> Go on from a state as if nothing had been before it.
   subroutine restart(self, t, y, err)
@@ -415,7 +507,7 @@ contains
     self%conditioning_here = self%system%conditioning()
     call self%dense_output%begin()
     call self%dense_output%add(self%system, self%t, self%y)
-    call self%limits%note(self%system, err)
+    call self%note_start(err)
   end subroutine restart
 
   !> Counts of all integrators of the motion together.

@@ -8,6 +8,7 @@ module mech9_simulation
   use mech9_state, only: state_type
   use mech9_requested, only: requested_type
   use mech9_closure_guard, only: check_closure
+  use mech9_motion_event, only: motion_events_type
   use mech9_variable_model, only: variable_model_type
   use mech9_batch_products, only: batch_size
   use mech9_sensitivity, only: sensitivity_type, new_sensitivity, take_position
@@ -45,7 +46,7 @@ module mech9_simulation
     real(wp) :: conditioning = 1.0_wp   !< least pivot ratio of all blocks
   end type standing_type
 
-  !> An event: a change of the independent coordinates, or of the angles that are integrated for ball joints.
+  !> A change of the independent coordinates, or of the angles that are integrated for ball joints.
   type :: coordinate_change_type
     real(wp) :: t = 0.0_wp                   !< time of the change [s]
     integer, allocatable :: independent(:)   !< the independent coordinates from then on, ascending
@@ -92,7 +93,8 @@ module mech9_simulation
     real(wp) :: potential_energy = 0.0_wp          !< of gravity and springs, with_energies [J]
     real(wp) :: energy_at_start = 0.0_wp           !< sum of both energies, with_energies [J]
     real(wp) :: largest_energy_change = 0.0_wp     !< of this sum, against the start, with_energies [J]
-    type(coordinate_change_type), allocatable :: events(:)   !< changes of the independent coordinates so far
+    type(coordinate_change_type), allocatable :: coordinate_changes(:)   !< those of the independent coordinates so far
+    type(motion_events_type) :: events             !< impacts, and stops that closed and opened so far
     integer(long), private :: positions = 0        !< positions that were worked out
     type(position_counts_type), private :: kept(batch_size)   !< of positions that wait for their derivatives
     real(wp), private :: direction = 1.0_wp        !< 1, or -1 where time runs backwards
@@ -105,6 +107,7 @@ module mech9_simulation
     procedure :: stop_if_interrupted
     procedure :: statistics
     procedure :: standing => standing_at_output
+    procedure :: plans => no_other_plans
     procedure :: keep_counts
     procedure :: return_to_counts
     procedure :: keep_work => keep_no_work
@@ -341,6 +344,13 @@ contains
 
     standing%t = self%t
   end function standing_at_output
+
+  !> How many plans the motion had before the present one. It has one, unless a simulation says otherwise.
+  pure integer function no_other_plans(self) result(plans)
+    class(simulation_type), intent(in) :: self   !< the simulation
+
+    plans = 0
+  end function no_other_plans
 
   !> Keep the counts of the present position, which is one of several that wait for their derivatives.
   subroutine keep_counts(self, place)

@@ -3,10 +3,10 @@ module mech9_simulation_failures
   implicit none
   private
   public :: failure_not_started, failure_backwards, failure_interrupted, failure_accuracy, failure_open_position, &
-    failure_lost_link, failure_no_initial_position, failure_singular_start_block, failure_singular_step, &
-    failure_unclosed_step, failure_other_branch, failure_drive_jumps, failure_driven_dead_point, failure_gimbal_lock, &
-    failure_lost_angles, failure_jump_sensitivity, failure_angles_sensitivity, &
-    failure_loaded_lock, failure_singular_passing, last_simulation_failure
+    failure_lost_link, failure_no_initial_position, failure_singular_start_block, failure_driven_dead_point, &
+    failure_gimbal_lock, failure_lost_angles, failure_angles_sensitivity, failure_loaded_lock, &
+    failure_singular_passing, failure_many_events, failure_unheld_stop, failure_stop_passed, &
+    last_simulation_failure
 
   !> A motion is to advance before its start.
   integer, parameter :: failure_not_started = 1001
@@ -27,29 +27,26 @@ module mech9_simulation_failures
   integer, parameter :: failure_no_initial_position = 1007
   !> The same as failure_singular_block, at the start.
   integer, parameter :: failure_singular_start_block = 1008
-  !> A position inside a step is too near to a singular one for the independent coordinates.
-  integer, parameter :: failure_singular_step = 1009
-  !> A block cannot be closed after a step: chains, t.
-  integer, parameter :: failure_unclosed_step = 1010
-  !> A coordinate would jump with other independent coordinates: coordinates.
-  integer, parameter :: failure_other_branch = 1011
-  !> A drive is elsewhere than its rates lead: coordinates (the driven one), t.
-  integer, parameter :: failure_drive_jumps = 1012
   !> The same as failure_dead_point in a motion with free coordinates; others and values are those of driven coordinates.
-  integer, parameter :: failure_driven_dead_point = 1013
+  integer, parameter :: failure_driven_dead_point = 1009
   !> The rates of some coordinates no longer determine a motion of the links: coordinates, t.
-  integer, parameter :: failure_gimbal_lock = 1014
+  integer, parameter :: failure_gimbal_lock = 1010
   !> The angles of a ball joint could not be followed through gimbal lock: coordinates, t.
-  integer, parameter :: failure_lost_angles = 1015
-  !> Rates jump at a joint of laws whose time a parameter sets: name, t.
-  integer, parameter :: failure_jump_sensitivity = 1016
+  integer, parameter :: failure_lost_angles = 1011
   !> Other angles are integrated in place of those of the data file, whose derivatives are not known: t.
-  integer, parameter :: failure_angles_sensitivity = 1017
+  integer, parameter :: failure_angles_sensitivity = 1012
   !> A ball joint comes to gimbal lock in angles that cannot be replaced: coordinates, others (those of them that loads read or
   !> move; none: a drive or a coupling does), t.
-  integer, parameter :: failure_loaded_lock = 1018
+  integer, parameter :: failure_loaded_lock = 1013
   !> Closed chains come to a singular position that the motion does not pass, whatever coordinates are independent: chains,
   !> coordinates, t.
-  integer, parameter :: failure_singular_passing = 1019
-  integer, parameter :: last_simulation_failure = failure_singular_passing
+  integer, parameter :: failure_singular_passing = 1014
+  !> A motion has more events than are allowed: limit, t.
+  integer, parameter :: failure_many_events = 1015
+  !> No independent coordinates serve with those held whose stops are closed: coordinates (that are held), t.
+  integer, parameter :: failure_unheld_stop = 1016
+  !> A driven motion passes an end of a stop: number (of the stop), coordinates, values (the limit, the coordinate at t_stop), name (of
+  !> their unit), t (of the passing), t_stop (of the position behind it).
+  integer, parameter :: failure_stop_passed = 1017
+  integer, parameter :: last_simulation_failure = failure_stop_passed
 end module mech9_simulation_failures

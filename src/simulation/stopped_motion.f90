@@ -44,6 +44,7 @@ module mech9_stopped_motion
     integer, private :: n_short = 0         !< short steps in a row
   contains
     procedure :: note
+    procedure :: forget
     procedure :: name_stall
   end type stall_watch_type
 
@@ -63,6 +64,13 @@ contains
     stalls = self%n_short >= many_short
     if (stalls) self%n_short = 0
   end subroutine note
+
+  !> Forget the short steps so far: they led to an event, behind which the motion goes on in another way.
+  pure subroutine forget(self)
+    class(stall_watch_type), intent(inout) :: self   !< the steps so far
+
+    self%n_short = 0
+  end subroutine forget
 
   !> Name the cause of many short steps; none is named where the steps may become longer again.
   subroutine name_stall(self, system, t, y, err)

@@ -20,16 +20,19 @@ module mech9_explanation
   use mech9_ode_failures, only: failure_infinite_rate, failure_infinite_jacobian
   use mech9_dynamics_failures, only: failure_singular_block, failure_no_inertia
   use mech9_force_gradient_failures, only: failure_lost_inertia
-  use mech9_simulation_failures, only: failure_singular_start_block, failure_singular_step, failure_unclosed_step, &
-    failure_other_branch, failure_open_position, failure_no_initial_position, failure_not_started, failure_backwards, &
-    failure_interrupted, failure_accuracy, failure_gimbal_lock, failure_lost_angles, failure_drive_jumps, &
-    failure_driven_dead_point, failure_lost_link, failure_loaded_lock, failure_singular_passing
+  use mech9_integration_failures, only: failure_singular_step, failure_unclosed_step, failure_other_branch, &
+    failure_drive_jumps
+  use mech9_simulation_failures, only: failure_singular_start_block, failure_open_position, &
+    failure_no_initial_position, failure_not_started, failure_backwards, failure_interrupted, failure_accuracy, &
+    failure_gimbal_lock, failure_lost_angles, failure_driven_dead_point, failure_lost_link, failure_loaded_lock, &
+    failure_singular_passing
   use mech9_reaction_failures, only: failure_unbalanced
   use mech9_equilibrium_failures, only: failure_no_equilibrium, failure_interrupted_starts
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_coupling_words, only: explain_coupling
   use mech9_choice_words, only: explain_choice, longest_list
   use mech9_sensitivity_words, only: explain_sensitivity
+  use mech9_stop_words, only: explain_stop_failure
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
   implicit none
   private
@@ -68,6 +71,7 @@ contains
     call explain_no_plane(failure, text)
     call explain_coupling(failure, text)
     call explain_sensitivity(failure, text)
+    call explain_stop_failure(failure, text)
   end subroutine explain_failure
 
   !> Chains that do not close or do not move, and independent coordinates that do not determine the others.

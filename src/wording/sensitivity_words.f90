@@ -5,7 +5,9 @@ module mech9_sensitivity_words
   use mech9_sensitivity_failures, only: failure_no_neighbours, failure_unknown_derivative, &
     failure_singular_sensitivity, failure_opening_parameter
   use mech9_force_gradient_failures, only: failure_jumping_force
-  use mech9_simulation_failures, only: failure_jump_sensitivity, failure_angles_sensitivity
+  use mech9_integration_failures, only: failure_jump_sensitivity
+  use mech9_event_failures, only: failure_event_sensitivity
+  use mech9_simulation_failures, only: failure_angles_sensitivity
   use mech9_reaction_failures, only: failure_shared_force
   use mech9_block_names, only: chain_names
   implicit none
@@ -36,6 +38,10 @@ contains
       text = 'derivatives by the parameter '''//failure%name//''' are not computed beyond t = '//to_text(failure%t, 10)// &
              ' s: it sets this time, at which the rates of drives jump. Give drives without jumps of their rates, end the run '// &
              'before, leave out the parameter, or sensitivities and gradients'
+    case (failure_event_sensitivity)
+      text = 'derivatives by the parameters are not computed beyond t = '//to_text(failure%t, 10)//' s, where stop '// &
+             to_text(failure%number)//' is hit. End the run before, make the stop compliant by stiffness=, or leave out '// &
+             'sensitivities and gradients'
     case (failure_angles_sensitivity)
       text = 'derivatives by the parameters are not computed at t = '//to_text(failure%t, 10)//' s, where the motion goes on '// &
              'in other angles of a ball joint or of a rod than those of the data file. End the run before, or leave out '// &

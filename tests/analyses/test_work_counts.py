@@ -309,7 +309,7 @@ def test_counts_over_changes_of_coordinates(case):
     """Counts go on where other coordinates become the independent ones."""
     checks = case.checks
     report = table_and_report(case.dynamics, FIVE_BAR, '--set', 'time.end=5')[1]
-    checks.true(len(report['events']) > 3, 'it changes coordinates', report['events'])
+    checks.true(len(report['coordinate_changes']) > 3, 'it changes coordinates', report['coordinate_changes'])
     checks.true(report['factorizations'] >= report['evaluations'], 'its block is factorized in each evaluation',
                 [report['factorizations'], report['evaluations']])
     # five coordinates make five frames, those of one loop
@@ -334,7 +334,7 @@ def test_conditioning_jumps_at_changes(case):
     table, report_of_second = table_and_report(case.dynamics, FIVE_BAR, '--set', 'time.end=1', '--set', 'time.intervals=4000',
                                                '--set', 'output.conditioning=.true.')
     jumps = np.flatnonzero(table['conditioning'][1:] > 2*table['conditioning'][:-1])
-    times = np.array([event['t'] for event in report_of_second['events']])
+    times = np.array([event['t'] for event in report_of_second['coordinate_changes']])
     if checks.equal(len(jumps), len(times), 'the conditioning jumps at each change'):
         checks.true(np.all(table['t'][jumps] <= times + 1e-12) and np.all(times < table['t'][jumps + 1]),
                     'changes are told when they happen', [list(table['t'][jumps]), list(times)])
@@ -362,7 +362,7 @@ def test_chain_beside_a_five_bar(case):
     settings = ('--set', 'time.end=5')
     whole, report = table_and_report(case.dynamics, path, *settings)
     less, report_of_less = table_and_report(case.dynamics, path, *settings, '--set', 'output.coordinates=1,2,3,4,5')
-    case.checks.true(len(report['events']) > 3 and len(report_of_less['events']) > 3, 'it changes coordinates')
+    case.checks.true(len(report['coordinate_changes']) > 3 and len(report_of_less['coordinate_changes']) > 3, 'it changes coordinates')
     # the same steps; alone it takes others, and in 5 s this whirling motion makes errors of 1e-11 some 1e6 times larger
     case.same(less, whole, (1e-4, 1e-3, 1e-1), 'a chain beside a five-bar')
     alone = table_of(case.dynamics, FIVE_BAR, *settings, '--set', 'solver.relative_tolerance=1e-11',

@@ -1,7 +1,8 @@
 !> The library's motions: bad calls are answered by values, energies of a driven motion, motions one after the other.
 module test_library
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-  use mech9, only: wp, mechanism_type, motion_type, error_type, read_text, coordinate_change_type, simulation_statistics_type, &
+  use mech9, only: wp, mechanism_type, motion_type, error_type, read_text, coordinate_change_type, &
+    motion_event_type, simulation_statistics_type, &
     interruption_type, exit_usage, exit_file, exit_integrator, exit_interrupted, read_file
   use mech9_testing, only: tester_type
   implicit none
@@ -41,7 +42,8 @@ contains
     type(mechanism_type) :: mechanism
     type(motion_type) :: motion
     type(error_type), allocatable :: err
-    type(coordinate_change_type), allocatable :: events(:)
+    type(coordinate_change_type), allocatable :: changes(:)
+    type(motion_event_type), allocatable :: events(:)
     real(wp) :: kinetic, potential, t, q, closure
 
     call read_file('no such file', mechanism, err)
@@ -53,12 +55,13 @@ contains
     call motion%point('P', err)
     call test%has_error(err, exit_usage, 'no point is found while no motion was started')
     call motion%energies(kinetic, potential)
+    call motion%coordinate_changes(changes)
     call motion%events(events)
     t = motion%t()
     q = motion%q(1)
     closure = motion%closure()
     call test%is_true(all(ieee_is_nan([t, q, closure, kinetic, potential])), 'a motion that was not started has no numbers')
-    call test%is_true(motion%coordinates() == 0 .and. size(events) == 0, &
+    call test%is_true(motion%coordinates() == 0 .and. size(changes) == 0 .and. size(events) == 0, &
                       'a motion that was not started has no coordinates and no events')
     call motion%close()
   end subroutine check_nothing_started

@@ -32,7 +32,7 @@ contains
     m = size(links, 2)
     model%mechanism%title = 'sample'
     allocate (model%mechanism%pairs(m), model%mechanism%points(0), model%mechanism%bodies(0), model%mechanism%loads(0), &
-              model%mechanism%motors(0))
+              model%mechanism%motors(0), model%mechanism%stops(0))
     allocate (model%problem%drives(0))
     allocate (model%problem%initial%position(m), model%problem%initial%velocity(m), source=0.0_wp)
     allocate (model%problem%initial%position_given(m), model%problem%initial%velocity_given(m), source=.false.)

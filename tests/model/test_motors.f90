@@ -63,7 +63,7 @@ contains
     type(error_type), allocatable :: err
     logical :: links(2), coordinates(3)
 
-    allocate (mechanism%loads(0), mechanism%motors(2))
+    allocate (mechanism%loads(0), mechanism%motors(2), mechanism%stops(0))
     allocate (mechanism%motors(1)%motor, source=new_dc(0.05_wp))
     allocate (mechanism%motors(2)%motor, source=new_pid())
     mechanism%motors(2)%motor%coordinate = 3

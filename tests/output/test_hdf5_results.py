@@ -237,7 +237,7 @@ def test_events(session):
     checks = session.checks
     table, path = session.both(session.mech9d, FIVE_BAR, '--set', 'time.end=5', '--report', 'run.json')
     with open(session.path('run.json'), encoding='utf-8') as report:
-        events = json.load(report)['events']
+        events = json.load(report)['coordinate_changes']
     sets = {tuple(event['independent']) for event in events}
     if not checks.true(len(sets) > 1, 'it changes to different coordinates', events):
         return
@@ -261,7 +261,7 @@ def test_replaced_angles(session):
             file.write(f"&pair coordinate={k}, links={k},{k + 1}, kind='revolute', axis={axis} /\n")
     table, path = session.both(session.mech9d, 'ball.nml', '--report', 'run.json')
     with open(session.path('run.json'), encoding='utf-8') as report:
-        events = json.load(report)['events']
+        events = json.load(report)['coordinate_changes']
     checks.true(len(events) > 1 and events[0]['replaced'] == [1, 2, 3] and events[1]['replaced'] == [], 'forth and back', events)
     with h5py.File(path, 'r') as file:
         check_rows(checks, table, file, 'past gimbal lock')

@@ -408,10 +408,10 @@ def test_reports(checks, build, mech9, four_bar):
 
     free = os.path.join(TREE, 'examples', 'pendulum_four_bar', 'pendulum_four_bar.nml')
     theirs, run = report_of(build.program('mech9d'), free), mech9.read(free).dynamics()
-    for name in ('outputs', 'steps', 'evaluations', 'coefficients', 'events', 'exit_code', 'largest_energy_change'):
+    for name in ('outputs', 'steps', 'evaluations', 'coefficients', 'coordinate_changes', 'exit_code', 'largest_energy_change'):
         checks.equal(run.report[name], theirs[name], f'{name} in the report of a free motion')
 
-    checks.true(len(run.events) > 0 and run.events == theirs['events'], 'its events are those of the report')
+    checks.true(len(run.coordinate_changes) > 0 and run.coordinate_changes == theirs['coordinate_changes'], 'changes of coordinates are those of the report')
     stuck = m.with_(**{'pair(2).point(1)': 0.65})
     with pytest.raises(mech9.Error) as caught:
         stuck.kinematics()

@@ -3,7 +3,7 @@ module test_driven_coordinates
   use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, exit_singular
-  use mech9_simulation_failures, only: failure_drive_jumps
+  use mech9_integration_failures, only: failure_drive_jumps
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type

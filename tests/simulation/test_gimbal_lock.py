@@ -109,7 +109,7 @@ def test_ways_past_the_lock(session, spin):
     if report is None or not checks.equal(len(table['t']), 201, f'{why}: all rows are there'):
         return
     checks.true(report['steps'] <= 600, f'{why}: few steps', report['steps'])
-    checks.true(any(event['replaced'] == [1, 2, 3] for event in report['events']), f'{why}: the report tells of it')
+    checks.true(any(event['replaced'] == [1, 2, 3] for event in report['coordinate_changes']), f'{why}: the report tells of it')
     # 200 steps, each with an error of the tolerance of rates up to 20 a second in motions that part by e per 0.1 s at most
     check_integrals(checks, table, 1e-6, why)
     start = {f'{name}{k + 1}': values[[k]] for name, values in (('q', q), ('dq', dq)) for k in range(3)}
@@ -134,7 +134,7 @@ def test_against_own_angles(session, q, dq):
     why = f'from {q}, {dq}'
     table, report = session.run(top(q, dq, end=1.0), why)
     own, steady = session.run(top(q, dq, end=1.0, extra=STEADY), f'{why}, in its own angles')
-    checks.true(report['events'] != [] and steady['events'] == [], f'{why}: with and without other angles')
+    checks.true(report['coordinate_changes'] != [] and steady['coordinate_changes'] == [], f'{why}: with and without other angles')
     for column in ANGLES:
         # 1e-9 over the square of the distance for rates, and over its cube for accelerations
         limit = {'q': 1e-7, 'dq': 1e-6, 'ddq': 1e-5}[column[:-1]]
@@ -150,7 +150,7 @@ def test_through_the_lock_in_a_plane(session):
             f'centre=0,0,{ARM}, inertia={ACROSS},{ACROSS},{ALONG},0,0,0 /\n&time end=2, intervals=200 /\n'
             '&solver relative_tolerance=1e-11, absolute_tolerance=1e-11 /\n')
     hinge, _ = session.run(data, 'the same on one hinge')
-    checks.true(np.max(table['q2']) > 4.0 and len(report['events']) > 0, 'it swings beyond the lock', np.max(table['q2']))
+    checks.true(np.max(table['q2']) > 4.0 and len(report['coordinate_changes']) > 0, 'it swings beyond the lock', np.max(table['q2']))
     for order, limit in (('q', 1e-6), ('dq', 1e-5), ('ddq', 1e-4)):   # errors grow tenfold by the pendulum's rate with each order
         checks.near(table[f'{order}2'], hinge[f'{order}1'], limit, f'{order}2 is that of one hinge', scale=1.0)
         for k in (1, 3):
@@ -164,7 +164,7 @@ def test_outputs_in_the_lock(session, q, dq):
     step = 2.5e-4
     table, report = session.run(top(q, dq, end=4 * step, intervals=4), f'a start in gimbal lock, {q}, {dq}')
     checks.near(table['q1'][0], q[0], 1e-14, 'the start is the given one')
-    checks.equal(report['events'][0]['t'], 0.0, 'other angles from the start')
+    checks.equal(report['coordinate_changes'][0]['t'], 0.0, 'other angles from the start')
     for k in (1, 2, 3):
         value, rate, acceleration = (table[f'{order}{k}'] for order in ('q', 'dq', 'ddq'))
         # Hermite's formula: the value after a step follows from rates and accelerations, but for step**5/720 times the fifth
@@ -194,7 +194,7 @@ def test_random_turns(session, data):
     checks = session.checks
     why = 'random turns'
     table, report = session.run(data, why)
-    replaced = [len(event['replaced']) > 0 for event in report['events']]
+    replaced = [len(event['replaced']) > 0 for event in report['coordinate_changes']]
     checks.true(replaced.count(True) > 1 and replaced.count(False) > 1, f'{why}: it went forth and back', replaced)
     change = np.max(np.abs(table['E.total'] - table['E.total'][0]))
     checks.true(change <= 1e-6, f'{why}: energy', change)
@@ -210,7 +210,7 @@ def test_random_turns(session, data):
         # the trapezoidal rule errs by a twelfth of the cube of the step times the third derivative
         errors = np.abs(step - 0.002 * (rates[1:] + rates[:-1]) / 2)[slow]
         checks.true(np.max(errors) < 1e-3, f'{why}: dq{k} is the rate of q{k}', np.max(errors))
-    print(f'{why}: {report["steps"]} steps, {len(report["events"])} changes, energy {change:.1e} J')
+    print(f'{why}: {report["steps"]} steps, {len(report["coordinate_changes"])} changes, energy {change:.1e} J')
 
 
 def chain(independent, start, rate):
@@ -239,11 +239,11 @@ def test_two_ball_joints_and_a_four_bar(session):
     crank, report = session.run(chain(7, 2.0, 9.0), 'a chain with a four-bar')
     rocker, other = session.run(chain(10, crank['q10'][0], crank['dq10'][0]), 'the same by its rocker')
     own, _ = session.run(chain(7, 2.0, 9.0) + STEADY + STEADY.replace('coordinate=1', 'coordinate=4'), 'the same in its own angles')
-    for events, why in ((report['events'], 'by the crank'), (other['events'], 'by the rocker')):
+    for events, why in ((report['coordinate_changes'], 'by the crank'), (other['coordinate_changes'], 'by the rocker')):
         checks.equal({k for event in events for k in event['replaced']}, set(range(1, 7)), f'{why}: both joints')
-    both = [before for before, after in zip(other['events'], other['events'][1:])
+    both = [before for before, after in zip(other['coordinate_changes'], other['coordinate_changes'][1:])
             if before['replaced'] and before['independent'] != after['independent']]
-    checks.true(both != [], 'the independent coordinate changes while angles are replaced', other['events'])
+    checks.true(both != [], 'the independent coordinate changes while angles are replaced', other['coordinate_changes'])
     early = crank['t'] <= 1.0
     for column in [f'q{k}' for k in range(1, 11)] + POINT:
         for table, why in ((rocker, 'by the rocker'), (own, 'in its own angles')):
@@ -274,4 +274,4 @@ def test_gimbals_with_inertia_have_no_lock(session):
     checks = session.checks
     gimbals = '&body link=2, mass=0, inertia=1e-4,1e-4,1e-4,0,0,0 /\n'
     table, report = session.run(top((0, 1.2, 0), (0, 3, 1e-6), extra=gimbals), 'gimbals with inertia')
-    checks.equal(report['events'], [], 'they keep their angles')
+    checks.equal(report['coordinate_changes'], [], 'they keep their angles')

@@ -224,8 +224,8 @@ contains
     end do
     call test%no_error(err, 'a four-bar described by its rocker moves')
     call test%is_true(grow, 'no count of the work falls')
-    call test%is_true(size(simulation%events) > 0, 'another coordinate takes the place of the rocker')
-    call test%is_true(all(simulation%events%t > 0.0_wp) .and. all(simulation%events%t < 2.0_wp), &
+    call test%is_true(size(simulation%coordinate_changes) > 0, 'another coordinate takes the place of the rocker')
+    call test%is_true(all(simulation%coordinate_changes%t > 0.0_wp) .and. all(simulation%coordinate_changes%t < 2.0_wp), &
                       'the change of coordinates happens within the motion')
     ! each accepted step of the method takes several evaluations, and 2 s at this tolerance are more than 20 steps
     call test%is_true(now%evaluations > now%steps .and. now%newton_iterations > 0 .and. now%steps > 20_long, &

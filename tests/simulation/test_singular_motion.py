@@ -163,10 +163,10 @@ def by_crank(mech9d, by_rocker, tmp_path_factory):
 def test_four_bar_through_the_dead_point_of_its_coordinate(checks, by_rocker, by_crank):
     """The same motion by its rocker and by its crank."""
     (by_rocker, report), (by_crank, crank_report) = by_rocker, by_crank
-    checks.true(len(report['events']) >= 1, 'the independent coordinates were changed', report['events'])
-    for event in report['events']:
+    checks.true(len(report['coordinate_changes']) >= 1, 'the independent coordinates were changed', report['coordinate_changes'])
+    for event in report['coordinate_changes']:
         checks.true(4 not in event['independent'] and 0 < event['t'] < 10, 'another took the place of the rocker', event)
-    checks.equal(crank_report['events'], [], 'by the crank there is no need to')
+    checks.equal(crank_report['coordinate_changes'], [], 'by the crank there is no need to')
     # dead points of the rocker beside those where all stand still
     turns = np.flatnonzero(np.diff(np.sign(by_crank['dq4'])) != 0)
     swings = np.flatnonzero(np.diff(np.sign(by_crank['dq1'])) != 0)
@@ -182,7 +182,7 @@ def test_four_bar_through_the_dead_point_of_its_coordinate(checks, by_rocker, by
         change = np.max(np.abs(table['E.total'] - table['E.total'][0]))
         # each step errs by the tolerance in the rates, whose squares the energy holds
         checks.true(change <= 2 * told['steps'] * TIGHT * np.max(table['E.kinetic']), f'energy by the {which}', change)
-        print(f'by the {which}: energy {change:.1e} J, {told["steps"]} steps, events {told["events"]}')
+        print(f'by the {which}: energy {change:.1e} J, {told["steps"]} steps, events {told["coordinate_changes"]}')
 
 
 # of the methods that take the same number for every trial of a step
@@ -195,8 +195,8 @@ def test_counts_go_on_over_changes_of_coordinates(checks, mech9d, method, each):
     trials that are refused before their end."""
     _, report = run_with(mech9d, PENDULUM_FOUR_BAR, 1e-8, f"solver.method='{method}'", 'time.intervals=1')
     tried = report['steps'] + report['error_test_failures'] + report['refusals']
-    checks.true(len(report['events']) >= 1, f'{method}: in other coordinates', report['events'])
-    checks.true(abs(report['evaluations'] - each * tried) <= 20 * (len(report['events']) + 1),
+    checks.true(len(report['coordinate_changes']) >= 1, f'{method}: in other coordinates', report['coordinate_changes'])
+    checks.true(abs(report['evaluations'] - each * tried) <= 20 * (len(report['coordinate_changes']) + 1),
                 f'{method}: evaluations belong to steps', (report['steps'], tried, report['evaluations']))
 
 
@@ -209,5 +209,5 @@ def test_dead_point_by_any_method(checks, mech9d, by_crank, method, tolerance):
     error = max(np.max(np.abs(table[f'q{k}'] - right[f'q{k}'][::10])) for k in range(1, 5))
     # a thousand steps and more for the two of low order, and bdf errs by several times its tolerance
     checks.true(error <= 1e4 * tolerance, f'{method}, {tolerance:.0e}: the same motion', error)
-    checks.true(len(report['events']) >= 1, f'{method}, {tolerance:.0e}: in other coordinates', report['events'])
+    checks.true(len(report['coordinate_changes']) >= 1, f'{method}, {tolerance:.0e}: in other coordinates', report['coordinate_changes'])
     print(f'{method}, {tolerance:.0e}: error {error:.1e}, {report["steps"]} steps')

@@ -18,8 +18,10 @@ module test_explanation
   use mech9_dynamics_failures, only: last_dynamics_failure, failure_singular_block, failure_no_inertia
   use mech9_sensitivity_failures, only: last_sensitivity_failure
   use mech9_force_gradient_failures, only: last_force_gradient_failure, failure_lost_inertia
-  use mech9_simulation_failures, only: last_simulation_failure, failure_singular_start_block, failure_other_branch, &
-    failure_not_started, failure_backwards, failure_interrupted, failure_lost_angles, failure_drive_jumps
+  use mech9_integration_failures, only: last_integration_failure, failure_other_branch, failure_drive_jumps
+  use mech9_event_failures, only: last_event_failure
+  use mech9_simulation_failures, only: last_simulation_failure, failure_singular_start_block, failure_not_started, &
+    failure_backwards, failure_interrupted, failure_lost_angles
   use mech9_reaction_failures, only: last_reaction_failure
   use mech9_equilibrium_failures, only: last_equilibrium_failure, failure_interrupted_starts
   use mech9_integration_methods, only: integration_methods
@@ -54,7 +56,8 @@ contains
     !> The last kind of each module of kinds, whose numbers begin behind a multiple of 100.
     integer, parameter :: lasts(*) = [last_shared_failure, last_spline_failure, last_curve_failure, last_assembly_failure, &
       last_planning_failure, last_tracking_failure, last_ode_failure, last_dynamics_failure, last_sensitivity_failure, &
-      last_force_gradient_failure, last_simulation_failure, last_reaction_failure, last_equilibrium_failure]
+      last_force_gradient_failure, last_simulation_failure, last_reaction_failure, last_equilibrium_failure, &
+      last_integration_failure, last_event_failure]
     integer :: i, kind
 
     do i = 1, size(lasts)

@@ -3,7 +3,8 @@
 module mech9_resting_mechanism
   use mech9_kinds, only: wp
   use mech9_tolerances, only: singular_conditioning
-  use mech9_simulation_tolerances, only: doubtful_conditioning, worthwhile_improvement
+  use mech9_integration_tolerances, only: worthwhile_improvement
+  use mech9_simulation_tolerances, only: doubtful_conditioning
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_simulation_failures, only: failure_singular_start_block
   use mech9_mechanism, only: mechanism_type

@@ -3,7 +3,7 @@ module mech9_force_explanations
   use mech9_name_explanation, only: explanation_type
   implicit none
   private
-  public :: body_texts, load_texts, motor_texts
+  public :: body_texts, load_texts, motor_texts, stop_texts
 
   type(explanation_type), parameter :: body_texts(*) = [ &
     explanation_type('body', 'link', '', &
@@ -165,4 +165,23 @@ module mech9_force_explanations
                   'values are the same. One law serves for all segments.', 'cycloidal, dwell (two segments)'), &
     explanation_type('motor', 'period', 'law:segments', &
                   'With a period the segments repeat. It is the time from the first to the last of the times.', '1')]
+
+  type(explanation_type), parameter :: stop_texts(*) = [ &
+    explanation_type('stop', 'coordinate', '', &
+                  'A stop bounds any coordinate, independent or not. Name it by its number. Enter goes on without a further '// &
+                  'stop.', '4'), &
+    explanation_type('stop', 'low', '', &
+                  'The coordinate comes no lower than this. Enter: the stop has no low end.', '0 (no lower than 0)'), &
+    explanation_type('stop', 'high', '', &
+                  'The coordinate comes no higher than this. Enter: the stop has no high end.', '0.1 (no higher than 0.1)'), &
+    explanation_type('stop', 'restitution', '', &
+                  'After an impact the coordinate goes back with this part of its rate: 0 stops it, 1 loses no energy.', '0.6'), &
+    explanation_type('stop', 'stiffness', '', &
+                  'A stop with a stiffness gives way instead of being hit: its force grows with the penetration.', &
+                  '1e5 (1e5 N for each m)', '1e3 (1e3 N m for each rad)', '1e5 (1e5 N for each m)'), &
+    explanation_type('stop', 'damping', '', &
+                  'The force of a compliant stop grows by this for each rad/s or m/s of penetration, times the penetration to '// &
+                  'the power of the exponent.', '200'), &
+    explanation_type('stop', 'exponent', '', &
+                  'The force of a compliant stop grows with this power of the penetration: 1 for springs, 1.5 for balls.', '1.5')]
 end module mech9_force_explanations

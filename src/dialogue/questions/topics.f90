@@ -32,6 +32,8 @@ module mech9_topics
                'A load begun by mistake is left out by remove.'), &
     topic_type('Motors', 'motor', 'A motor moves a coordinate without a drive: by direct current, or by a controller. '// &
                'A motor begun by mistake is left out by remove.'), &
+    topic_type('Stops', 'stop', 'A stop bounds a coordinate, which bounces off it or comes to rest there. '// &
+               'A stop begun by mistake is left out by remove.'), &
     topic_type('Points', 'point', 'Positions, velocities and accelerations of these points are recorded.'), &
     topic_type('Cams', 'cam', 'A cam whose profile follows from the motion of its follower, for the option --cam. '// &
                'A cam begun by mistake is left out by remove.'), &

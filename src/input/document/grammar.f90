@@ -35,6 +35,8 @@ module mech9_grammar
     group_row_type('load', .true., '', for_forces, 'a force, torque, spring or damper, or a user''s procedure'), &
     group_row_type('motor', .true., '', dynamics, &
                    'a motor on an independent coordinate without a drive: direct current, or set by a PID controller'), &
+    group_row_type('stop', .true., '', both, &
+                   'one or two ends of the range of a coordinate, independent or not: rigid, with impacts, or compliant'), &
     group_row_type('cam', .true., '', kinematics, &
                    'a cam whose profile mech9k computes from the motion of its follower (option --cam)'), &
     group_row_type('parameter', .true., 'name', both, &
@@ -435,9 +437,26 @@ module mech9_grammar
     item_row_type('user', 'parameters', 'real', 1, unlimited, '', optional, '(none)', '', '', '', &
                   'numbers that every user procedure receives', '0.1, 2.0')]
 
+  type(item_row_type), parameter :: stop_items(*) = [ &
+    item_row_type('stop', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
+                  'number of the coordinate', '4'), &
+    item_row_type('stop', 'low', 'real', 1, 1, 'q', optional, '(no end)', '', '', '', &
+                  'least value of the coordinate', '0'), &
+    item_row_type('stop', 'high', 'real', 1, 1, 'q', optional, '(no end)', '', '', '', &
+                  'greatest value of the coordinate', '0.1'), &
+    item_row_type('stop', 'restitution', 'real', 1, 1, '', optional, '0', '>=0', '', '', &
+                  'of a rigid stop: rate after an impact over the rate before it, from 0 to 1', '0.6'), &
+    item_row_type('stop', 'stiffness', 'real', 1, 1, 'N m/rad, N/m', optional, '(rigid)', '>0', '', '', &
+                  'makes the stop compliant: force = d^exponent (stiffness + damping dd/dt) for a penetration d', '1e5', &
+                  seldom=.true.), &
+    item_row_type('stop', 'damping', 'real', 1, 1, 'N m s, N s/m', optional, '0', '>=0', '', '', &
+                  'of a compliant stop: force per rate, for a penetration d of 1', '200', seldom=.true.), &
+    item_row_type('stop', 'exponent', 'real', 1, 1, '', optional, '1', '>=1', '', '', &
+                  'of a compliant stop: power of the penetration; 1.5 for balls (Hertz)', '1.5', seldom=.true.)]
+
   type(item_row_type), parameter :: item_table(*) = &
-    [general_items, pair_items, coupling_items, motion_items, body_items, load_items, motor_items, cam_items, study_items, &
-     run_items]
+    [general_items, pair_items, coupling_items, motion_items, body_items, load_items, motor_items, stop_items, cam_items, &
+     study_items, run_items]
 
 contains
 

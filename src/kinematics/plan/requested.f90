@@ -6,7 +6,7 @@ module mech9_requested
   use mech9_plan, only: plan_type, block_type
   implicit none
   private
-  public :: requested_type, requested_by_results, add_forces, requested_blocks, leave_out_unrequested, request_planned
+  public :: requested_type, requested_by_results, add_forces, add_stops, requested_blocks, leave_out_unrequested, request_planned
 
   !> The requested part of the motion.
   type :: requested_type
@@ -64,6 +64,18 @@ contains
     call mechanism%mark_loaded_links(requested%links)
     call mechanism%mark_loaded_coordinates(requested%coordinates)
   end subroutine add_forces
+
+  !> Request the coordinates that stops bound, with their rates.
+  pure subroutine add_stops(mechanism, requested)
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(requested_type), intent(inout) :: requested   !< the requested coordinates and links
+    integer :: i
+
+    do i = 1, size(mechanism%stops)
+      requested%coordinates(mechanism%stops(i)%coordinate) = .true.
+      requested%derivatives = max(1, requested%derivatives)
+    end do
+  end subroutine add_stops
 
   !> The blocks on which a requested coordinate or link depends.
   pure function requested_blocks(plan, requested) result(needed)

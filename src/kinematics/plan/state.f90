@@ -28,6 +28,8 @@ module mech9_state
                                                  !< have come to rest
     real(wp), allocatable :: motor_rate(:)       !< derivatives of these states in time
     integer, allocatable :: limited(:)           !< limits at which the motors work: -1, 0 for none, 1
+    real(wp), allocatable :: stop_force(:)       !< forces of rigid stops on their coordinates; not allocated: none holds [N m, N]
+    logical, allocatable :: pressed(:, :)        !< (2,stops) ends of compliant stops that push; not allocated: their penetration tells
     real(wp), allocatable :: curve(:, :)         !< (0:2,couplings) functions of couplings and their derivatives; not allocated:
                                                  !< all couplings are linear
     real(wp), allocatable :: angle(:)            !< (M) angle by which each step turns [rad]

@@ -5,12 +5,12 @@
 !> accepted step: half the cost of closing them in every evaluation, at the same error (docs/explanation/design-decisions.md).
 module mech9_motion_system
   use mech9_kinds, only: wp, long
-  use mech9_simulation_tolerances, only: trusted_between_steps, trusted_closing
+  use mech9_integration_tolerances, only: trusted_between_steps, trusted_closing
   use mech9_error, only: error_type, raise, add_place, exit_singular, exit_integrator
   use mech9_ode_failures, only: failure_infinite_rate
   use mech9_dynamics_failures, only: failure_no_inertia
   use mech9_force_gradient_failures, only: failure_lost_inertia
-  use mech9_simulation_failures, only: failure_singular_step, failure_unclosed_step, failure_drive_jumps
+  use mech9_integration_failures, only: failure_singular_step, failure_unclosed_step, failure_drive_jumps
   use mech9_law, only: drive_slot_type
   use mech9_partition, only: partition_type
   use mech9_motor, only: motor_action_type
@@ -31,6 +31,7 @@ module mech9_motion_system
   use mech9_branch_stepping, only: set_inputs
   use mech9_held_angles, only: copy_drives
   use mech9_smooth_interval, only: smooth_interval_type
+  use mech9_stop_forces, only: held_stop_type, find_stop_forces
   use mech9_variable_model, only: variable_model_type
   use mech9_motion_sensitivity, only: motion_sensitivity_type, new_motion_sensitivity
   implicit none
@@ -53,6 +54,7 @@ module mech9_motion_system
     logical, private :: just_projected = .false.
     logical, private :: has_inertia = .false.        !< all free coordinates had inertia in the position with which it was made
     type(smooth_interval_type) :: interval           !< in which the present steps lie
+    type(held_stop_type), allocatable :: held_stops(:)          !< rigid stops that hold their coordinates; not allocated: none
     type(motion_sensitivity_type), allocatable :: sensitivity   !< derivatives by parameters, where they are integrated, too
   contains
     procedure :: make_room
@@ -426,7 +428,9 @@ contains
     call accelerate(self, err)
     if (allocated(err)) return
     call complete_accelerations(self%plan, self%dynamics, self%work, self%state)
-    call find_motor_rates(self%model%mechanism, self%state, err)
+    if (allocated(self%held_stops)) &
+      call find_stop_forces(self%model%mechanism, self%plan, self%dynamics, self%held_stops, self%state, self%work, err)
+    if (.not. allocated(err)) call find_motor_rates(self%model%mechanism, self%state, err)
     if (.not. allocated(err)) call show_state(self%plan, self%dynamics, self%state, self%work%view)
     if (allocated(self%sensitivity) .and. .not. allocated(err)) call vary_accelerations(self, err)
   end subroutine show_present

@@ -1,7 +1,7 @@
-!> The interval of time in which the laws of a motion are smooth and its motors work as they do now.
+!> The interval of time in which the laws of a motion are smooth, its motors work as they do now, and its stops stay closed or open.
 !>
-!> Laws of time have joints, where their derivatives may jump, and the forces of motors have kinks at their limits. Steps of the
-!> integration end there, so that no step contains such a place.
+!> Laws of time have joints, where their derivatives may jump, the forces of motors have kinks at their limits, and rates jump at
+!> stops. Steps of the integration end there, so that no step contains such a place.
 module mech9_smooth_interval
   use mech9_kinds, only: wp
   use mech9_law, only: law_type, from_inside
@@ -12,16 +12,17 @@ module mech9_smooth_interval
 
   !> The interval around the present time.
   type :: smooth_interval_type
-    logical :: ends = .false.     !< a law of time has a joint, or a motor passes its limit ahead
+    logical :: ends = .false.     !< a law of time has a joint, or an event lies ahead
     real(wp) :: behind = 0.0_wp   !< beginning of the interval, which was passed last [s]
     real(wp) :: ahead = 0.0_wp    !< its end, which comes next; the largest number, with the direction's sign, if none comes [s]
     integer :: motor = 0          !< number of the motor that passes its limit at the end; 0: none does
+    integer :: contact = 0        !< number of the end of a stop that is met or left at the end; 0: none is
   contains
     procedure :: begin
     procedure :: time_inside
     procedure :: is_end
     procedure :: is_before_end
-    procedure :: end_at_limit
+    procedure :: end_at_event
   end type smooth_interval_type
 
 contains
@@ -95,14 +96,16 @@ contains
     is_before_end = 0.5_wp*(from_inside(t, direction) - t)*direction <= (self%ahead - t)*direction
   end function is_before_end
 
-  !> End the interval where a motor passes its limit.
-  pure subroutine end_at_limit(self, t, motor)
+  !> End the interval where a motor passes its limit, or an end of a stop is met or left.
+  pure subroutine end_at_event(self, t, motor, contact)
     class(smooth_interval_type), intent(inout) :: self   !< the interval
-    real(wp), intent(in) :: t                            !< time of the passage, ahead [s]
-    integer, intent(in) :: motor                         !< number of the motor
+    real(wp), intent(in) :: t                            !< time of the event, ahead [s]
+    integer, intent(in) :: motor                         !< number of the motor; 0: none
+    integer, intent(in) :: contact                       !< number of the end; 0: none
 
     self%ends = .true.
     self%ahead = t
     self%motor = motor
-  end subroutine end_at_limit
+    self%contact = contact
+  end subroutine end_at_event
 end module mech9_smooth_interval

@@ -6,7 +6,7 @@
 !> method, and accelerations are worked out anew: every position is one of closed chains that satisfies (19).
 module mech9_dense_output
   use mech9_kinds, only: wp
-  use mech9_simulation_tolerances, only: steepest_slope
+  use mech9_integration_tolerances, only: steepest_slope
   use mech9_error, only: error_type
   use mech9_hermite, only: hermite_type, build_hermite
   use mech9_motor, only: motor_action_type

@@ -5,9 +5,9 @@
 !> is treated as by QR of all its closures.
 module mech9_coordinate_choice
   use mech9_kinds, only: wp
-  use mech9_simulation_tolerances, only: worthwhile_improvement
+  use mech9_integration_tolerances, only: worthwhile_improvement
   use mech9_error, only: error_type, raise, exit_structure, exit_assembly, exit_singular
-  use mech9_simulation_failures, only: failure_other_branch
+  use mech9_integration_failures, only: failure_other_branch
   use mech9_lapack, only: dgeqp3
   use mech9_householder, only: householder
   use mech9_partition, only: partition_type
@@ -259,6 +259,7 @@ contains
     if (allocated(err)) return
     carried%state%t = state%t
     carried%state%dq = state%dq
+    if (allocated(state%pressed)) carried%state%pressed = state%pressed
     if (.not. allocated(state%motor)) return
     carried%state%motor = state%motor
     carried%state%motor_rate = state%motor_rate

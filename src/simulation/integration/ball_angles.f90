@@ -7,7 +7,7 @@
 module mech9_ball_angles
   use mech9_kinds, only: wp
   use mech9_tracking_tolerances, only: doubtful_margin
-  use mech9_simulation_tolerances, only: short_way
+  use mech9_integration_tolerances, only: short_way
   use mech9_error, only: error_type
   use mech9_three_turns, only: swing_type, heading_type, three_turns_type
   use mech9_partition, only: partition_type

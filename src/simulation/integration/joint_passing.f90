@@ -7,9 +7,9 @@
 !> and H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, Springer 2004.
 module mech9_joint_passing
   use mech9_kinds, only: wp
-  use mech9_simulation_tolerances, only: round_off_of_jumps
+  use mech9_integration_tolerances, only: round_off_of_jumps
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_simulation_failures, only: failure_jump_sensitivity
+  use mech9_integration_failures, only: failure_jump_sensitivity
   use mech9_state, only: state_type, copy_state
   use mech9_lagrange, only: find_equations, complete_accelerations
   use mech9_frame_motion, only: place_all

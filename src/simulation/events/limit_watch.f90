@@ -6,8 +6,9 @@
 module mech9_limit_watch
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_hermite, only: cubic_between
   use mech9_motor, only: motor_action_type
-  use mech9_simulation_tolerances, only: round_off_of_limit
+  use mech9_event_tolerances, only: round_off_of_limit
   use mech9_motor_states, only: find_action, has_limits
   use mech9_motion_system, only: motion_system_type
   implicit none
@@ -84,7 +85,7 @@ contains
     do k = 1, looks
       x = real(k, wp)/looks
       do i = 1, size(demand)
-        if (excess(system%state%limited(i), between(self%demand(i), h*self%rate(i), demand(i), h*rate(i), x)) &
+        if (excess(system%state%limited(i), cubic_between(self%demand(i), h*self%rate(i), demand(i), h*rate(i), x)) &
             <= round_off_of_limit) cycle
         motor = i
         part = x
@@ -92,18 +93,6 @@ contains
       end do
     end do
   end subroutine find_passing
-
-  !> The cubic polynomial with given values and derivatives at 0 and 1.
-  pure real(wp) function between(start, slope, end, end_slope, x)
-    real(wp), intent(in) :: start       !< value at 0
-    real(wp), intent(in) :: slope       !< derivative at 0
-    real(wp), intent(in) :: end         !< value at 1
-    real(wp), intent(in) :: end_slope   !< derivative at 1
-    real(wp), intent(in) :: x           !< from 0 to 1
-
-    between = start + x*(slope + x*(3.0_wp*(end - start) - 2.0_wp*slope - end_slope &
-                                    + x*(2.0_wp*(start - end) + slope + end_slope)))
-  end function between
 
   !> How far a demand is beyond the range of the present limit: above zero where the motor should work at another one.
   pure real(wp) function excess(limited, demand)

@@ -1,0 +1,123 @@
+!> Stops from the groups &stop of a checked document.
+module mech9_stop_reader
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_mechanism, only: mechanism_type
+  use mech9_stop, only: stop_type
+  use mech9_stop_load, only: stop_load_type
+  use mech9_load, only: load_slot_type
+  use mech9_document, only: document_type, group_type
+  use mech9_lookup, only: groups_named, has_name, get_integer, get_real, span_of
+  use mech9_drive_reader, only: unit_of_coordinate
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_load_reader, only: check_coordinate
+  implicit none
+  private
+  public :: read_stops
+
+contains
+
+  !> All stops, in the order of the file, and a load for each compliant one.
+  subroutine read_stops(document, mechanism, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(mechanism_type), intent(inout) :: mechanism      !< with its pairs and loads; gets the stops
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    integer, allocatable :: numbers(:)
+    integer :: i
+
+    numbers = groups_named(document, 'stop')
+    allocate (mechanism%stops(size(numbers)))
+    do i = 1, size(numbers)
+      associate (group => document%groups(numbers(i)), stop => mechanism%stops(i))
+        call check_coordinate(group, size(mechanism%pairs), diagnostics)
+        call read_stop(group, unit_of_coordinate(group, mechanism%pairs, mechanism%angle_unit), stop)
+        stop%place = diagnostics%place(group%span)
+        call check_stop(group, stop, diagnostics)
+        call check_others(group, i, mechanism%stops, diagnostics)
+      end associate
+    end do
+    call add_loads(mechanism%stops, mechanism%loads)
+  end subroutine read_stops
+
+  !> The stop of one group.
+  pure subroutine read_stop(group, unit, stop)
+    type(group_type), intent(in) :: group   !< the group of the data file
+    real(wp), intent(in) :: unit            !< unit of the coordinate in the file [rad or m]
+    type(stop_type), intent(inout) :: stop  !< gets its numbers
+
+    stop%coordinate = get_integer(group, 'coordinate')
+    if (has_name(group, 'low')) stop%ends(1) = unit*get_real(group, 'low')
+    if (has_name(group, 'high')) stop%ends(2) = unit*get_real(group, 'high')
+    stop%restitution = get_real(group, 'restitution')
+    stop%is_rigid = .not. has_name(group, 'stiffness')
+    if (.not. stop%is_rigid) stop%stiffness = get_real(group, 'stiffness')
+    stop%damping = get_real(group, 'damping')
+    stop%exponent = get_real(group, 'exponent')
+  end subroutine read_stop
+
+  !> Report a stop without ends, with ends in the wrong order, or with numbers of both kinds.
+  pure subroutine check_stop(group, stop, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(stop_type), intent(in) :: stop                   !< the stop
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+
+    if (.not. (stop%has_end(1) .or. stop%has_end(2))) &
+      call diagnostics%add(group%span, 'the stop has no end; give low=, high= or both')
+    if (.not. stop%ends(1) < stop%ends(2)) &
+      call diagnostics%add(span_of(group, 'high', 1), 'the high end is not above the low one; exchange them, or move one')
+    if (stop%restitution > 1.0_wp) &
+      call diagnostics%add(span_of(group, 'restitution', 1), 'a restitution above 1 would make energy; it is from 0 to 1')
+    if (has_name(group, 'restitution') .and. .not. stop%is_rigid) &
+      call diagnostics%add(span_of(group, 'restitution', 1), 'a stop with stiffness= is compliant and has no restitution; '// &
+                           'give damping= for its losses, or leave stiffness= out')
+    if (stop%is_rigid .and. has_name(group, 'damping')) &
+      call diagnostics%add(span_of(group, 'damping', 1), 'damping= belongs to a compliant stop; give stiffness= too, or leave '// &
+                           'it out')
+    if (stop%is_rigid .and. has_name(group, 'exponent')) &
+      call diagnostics%add(span_of(group, 'exponent', 1), 'exponent= belongs to a compliant stop; give stiffness= too, or '// &
+                           'leave it out')
+  end subroutine check_stop
+
+  !> Report a stop that shares no range with an earlier rigid one of the same coordinate, and one whose rigid end an earlier one has.
+  pure subroutine check_others(group, number, stops, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    integer, intent(in) :: number                         !< of the stop
+    type(stop_type), intent(in) :: stops(:)               !< all stops, up to this one
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    integer :: i, end
+
+    if (.not. stops(number)%is_rigid) return
+    do i = 1, number - 1
+      if (stops(i)%coordinate /= stops(number)%coordinate .or. .not. stops(i)%is_rigid) cycle
+      if (max(stops(i)%ends(1), stops(number)%ends(1)) >= min(stops(i)%ends(2), stops(number)%ends(2))) &
+        call diagnostics%add(group%span, 'stop '//to_text(number)//' leaves no range that stop '//to_text(i)// &
+                             ' of the same coordinate leaves, too; move an end of one of them')
+      do end = 1, 2
+        if (stops(i)%has_end(end) .and. stops(number)%has_end(end)) &
+          call diagnostics%add(span_of(group, merge('low ', 'high', end == 1), 1), 'stop '//to_text(i)// &
+                               ' bounds coordinate '//to_text(stops(i)%coordinate)//' on this side already; leave one out')
+      end do
+    end do
+  end subroutine check_others
+
+  !> Append a load for each compliant stop.
+  subroutine add_loads(stops, loads)
+    type(stop_type), intent(in) :: stops(:)                     !< all stops
+    type(load_slot_type), allocatable, intent(inout) :: loads(:)   !< the loads of the data file; gets those of stops
+    type(load_slot_type), allocatable :: all(:)
+    integer :: i, n
+
+    if (count(.not. stops%is_rigid) == 0) return
+    n = size(loads)
+    allocate (all(n + count(.not. stops%is_rigid)))
+    do i = 1, n
+      call move_alloc(loads(i)%load, all(i)%load)
+    end do
+    do i = 1, size(stops)
+      if (stops(i)%is_rigid) cycle
+      n = n + 1
+      allocate (all(n)%load, source=stop_load_type(stop=stops(i), number=i, place=stops(i)%place))
+    end do
+    call move_alloc(all, loads)
+  end subroutine add_loads
+end module mech9_stop_reader

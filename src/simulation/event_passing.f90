@@ -1,0 +1,386 @@
+!> The time within a step at which a motor passes the limit of its force, or an end of a stop is met or left. The motion goes back to
+!> the start of the step and stops there, as at a joint of a law of time.
+!>
+!> A coordinate comes to an end of its stop where the way that is left is zero; a polynomial of the fifth degree through the ends of the
+!> step shows where it may come near, also where it turns back within the step. What counts is the motion itself there.
+module mech9_event_passing
+  use mech9_kinds, only: wp
+  use mech9_event_tolerances, only: touching, round_off_of_impacts
+  use mech9_simulation_tolerances, only: round_off_of_gaps
+  use mech9_error, only: error_type
+  use mech9_hermite, only: hermite_type, build_hermite, cubic_between
+  use mech9_limit_watch, only: find_excess
+  use mech9_integrated_motion, only: integrated_motion_type
+  implicit none
+  private
+  public :: stop_at_events
+
+  !> Trials of the search for a time.
+  integer, parameter :: most_trials = 100
+  !> Points within a step at which the way to a stop is looked at; the last one is its end.
+  integer, parameter :: looks = 16
+
+  !> Corrections of a time by Newton's method, and the largest one in parts of the step.
+  integer, parameter :: most_corrections = 3
+  real(wp), parameter :: largest_correction = 0.5_wp
+
+  !> Values that are zero at a time that is searched: the excess of a motor, the passing of an end of a stop, the rate of its coordinate.
+  integer, parameter :: of_motor = 1, of_contact = 2, of_rate = 3
+
+contains
+
+  !> Judge the last step: where a motor passed its limit or a contact changed within it, the motion is at the start of the step
+  !> afterwards, and a stop lies at that time.
+  subroutine stop_at_events(motion, err)
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp) :: from, t, t_contact, y(size(motion%y))
+    integer :: motor, contact, met
+    logical :: motors, contacts
+
+    motors = motion%limits%is_needed(motion%system)
+    contacts = size(motion%contacts%ends) > 0
+    if (.not. (motors .or. contacts)) return
+    call motion%dense_output%start_of_step(from, y)
+    if (contacts) contacts = motion%contacts%any_held() .or. &
+                             motion%contacts%in_doubt(motion%system%plan, motion%system%state, motion%t - from)
+    if (motors .or. contacts .or. motion%system%interval%contact > 0) call motion%system%move_to(motion%t, motion%y, err)
+    if (allocated(err)) return
+    motor = 0
+    contact = 0
+    associate (interval => motion%system%interval)
+      if (interval%is_end(motion%t)) then
+        motors = .false.
+        ! the step was judged before it was made anew up to the event
+        contacts = contacts .and. interval%motor == 0 .and. interval%contact == 0
+        met = interval%contact
+        if (met > 0) call correct_landing(motion, from, met, err)
+      end if
+    end associate
+    if (allocated(err)) return
+    if (motors) call find_motor(motion, from, motor, t, err)
+    if (contacts .and. .not. allocated(err)) call find_contact(motion, from, y, contact, t_contact, err)
+    if (allocated(err)) return
+    if (motor > 0 .and. contact > 0) then
+      if (abs(t_contact - from) < abs(t - from)) then
+        motor = 0
+      else
+        contact = 0
+      end if
+    end if
+    if (contact > 0) t = t_contact
+    if (motor > 0 .or. contact > 0) then
+      call motion%step_back(t, err)
+      call motion%system%interval%end_at_event(t, motor, contact)
+      motion%contacts%corrections = 0
+    else
+      if (motors .or. contacts) call motion%system%move_to(motion%t, motion%y, err)
+      if (.not. allocated(err)) call motion%note_start(err)
+    end if
+  end subroutine stop_at_events
+
+  !> Correct the time of a step that was made onto a rigid end, by Newton's method: dense output is as exact as the tolerances of the
+  !> integration, and steps are more exact than that. Where the end is not met there, because dense output was wrong, there is no event.
+  subroutine correct_landing(motion, from, contact, err)
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step, where the system stands
+    real(wp), intent(in) :: from                            !< start of the step [s]
+    integer, intent(in) :: contact                          !< number of the end
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp) :: gap, rate, unit, change
+
+    associate (end => motion%contacts%ends(contact), system => motion%system, corrections => motion%contacts%corrections)
+      if (end%held .or. .not. end%is_rigid) return
+      unit = system%plan%unit_of(end%coordinate)
+      gap = end%gap(system%state%q(end%coordinate))
+      rate = end%direction*system%state%dq(end%coordinate)*sign(1.0_wp, motion%t - from)
+      if (abs(gap) <= epsilon(gap)*max(unit, abs(end%limit)) .and. rate < 0.0_wp) return
+      change = huge(change)
+      if (rate < 0.0_wp) change = -gap/rate
+      if (corrections < most_corrections .and. abs(change) < largest_correction*abs(motion%t - from)) then
+        change = sign(change, (motion%t - from)*change)
+        if (abs(change) <= spacing(motion%t)) return
+        corrections = corrections + 1
+
+        change = motion%t + change
+        call motion%step_back(change, err)
+        call system%interval%end_at_event(change, 0, contact)
+      else if (gap > touching*unit .or. rate > 0.0_wp) then
+        call system%interval%begin(system%model, motion%t)
+        call motion%note_start(err)
+      end if
+    end associate
+  end subroutine correct_landing
+
+  !> Find the motor that passes its limit first, and the time.
+  subroutine find_motor(motion, from, motor, t, err)
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
+    real(wp), intent(in) :: from                            !< start of the step [s]
+    integer, intent(out) :: motor                           !< its number; 0: none passes its limit
+    real(wp), intent(out) :: t                              !< time of the passing [s]
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp) :: part, value
+    logical :: passed
+
+    t = motion%t
+    call motion%limits%find_passing(motion%system, motion%t - from, motor, part, err)
+    if (motor == 0 .or. allocated(err)) return
+    if (part < 1.0_wp) then
+      t = from + part*(motion%t - from)
+      call value_at(motion, of_motor, motor, t, value, err)
+      if (allocated(err)) return
+      if (.not. value > 0.0_wp) t = motion%t
+    end if
+    call locate(motion, of_motor, motor, from, t, passed, err)
+    if (.not. passed) motor = 0
+  end subroutine find_motor
+
+  !> Find the end of a stop that is met or left first, and the time.
+  subroutine find_contact(motion, from, y, contact, t, err)
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
+    real(wp), intent(in) :: from                            !< start of the step [s]
+    real(wp), intent(in) :: y(:)                            !< the vector there
+    integer, intent(out) :: contact                         !< number of the end; 0: none
+    real(wp), intent(out) :: t                              !< time of the passing [s]
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp), dimension(size(motion%contacts%ends), 2) :: q, dq, ddq
+    real(wp) :: found_at
+    integer :: i
+    logical :: passed
+
+    contact = 0
+    t = motion%t
+    call keep(2)
+    call motion%system%move_to(from, y, err)
+    if (allocated(err)) return
+    call keep(1)
+    do i = 1, size(motion%contacts%ends)
+      if (motion%contacts%ends(i)%held) then
+        call find_release(motion, i, from, found_at, passed, err)
+      else
+        call find_meeting(motion, i, from, q(i, :), dq(i, :), ddq(i, :), found_at, passed, err)
+      end if
+      if (allocated(err)) return
+      if (.not. passed) cycle
+      if (contact > 0 .and. abs(found_at - from) >= abs(t - from)) cycle
+      contact = i
+      t = found_at
+    end do
+  contains
+    !> Keep the motion of the coordinates at one end of the step.
+    subroutine keep(place)
+      integer, intent(in) :: place   !< 1: at the start, 2: at the end
+
+      do i = 1, size(motion%contacts%ends)
+        associate (k => motion%contacts%ends(i)%coordinate)
+          q(i, place) = motion%system%state%q(k)
+          dq(i, place) = motion%system%state%dq(k)
+          ddq(i, place) = motion%system%state%ddq(k)
+        end associate
+      end do
+    end subroutine keep
+  end subroutine find_contact
+
+  !> Find the time at which a held end no longer pushes. Its force is looked at in the middle of the step where it changes as much as it is.
+  subroutine find_release(motion, i, from, t, passed, err)
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
+    integer, intent(in) :: i                                !< number of the end
+    real(wp), intent(in) :: from                            !< start of the step [s]
+    real(wp), intent(out) :: t                              !< time of the release [s]
+    logical, intent(out) :: passed                          !< it is released within the step
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp) :: at_end, middle
+
+    t = motion%t
+    call value_at(motion, of_contact, i, t, at_end, err)
+    if (allocated(err)) return
+    passed = at_end > 0.0_wp
+    if (max(at_end, -motion%contacts%force(i)) > -abs(at_end + motion%contacts%force(i))) then
+      call value_at(motion, of_contact, i, 0.5_wp*(from + motion%t), middle, err)
+      if (allocated(err)) return
+      if (middle > 0.0_wp) t = 0.5_wp*(from + motion%t)
+      passed = passed .or. middle > 0.0_wp
+    end if
+    if (passed) call locate(motion, of_contact, i, from, t, passed, err)
+  end subroutine find_release
+
+  !> Find the time at which an end that is not held is met, or a compliant one is left.
+  subroutine find_meeting(motion, i, from, q, dq, ddq, t, passed, err)
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
+    integer, intent(in) :: i                                !< number of the end
+    real(wp), intent(in) :: from                            !< start of the step [s]
+    real(wp), intent(in) :: q(2)                            !< the coordinate at both ends of the step [rad, m]
+    real(wp), intent(in) :: dq(2)                           !< its rates there [rad/s, m/s]
+    real(wp), intent(in) :: ddq(2)                          !< its accelerations there [rad/s^2, m/s^2]
+    real(wp), intent(out) :: t                              !< time of the meeting [s]
+    logical, intent(out) :: passed                          !< it is met within the step
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(hermite_type) :: polynomial
+    real(wp), dimension(1) :: at, rate, acceleration
+    real(wp) :: h, before, before_rate, value, margin, sign_of_way, turn
+    integer :: look
+    logical :: leaves
+
+    passed = .false.
+    t = motion%t
+    h = motion%t - from
+    associate (end => motion%contacts%ends(i))
+      ! the way is positive on the side where the motion is
+      sign_of_way = real(end%direction, wp)
+      if (end%closed) sign_of_way = -sign_of_way
+      call build_hermite([from, motion%t], reshape(q, [1, 2]), reshape(dq, [1, 2]), reshape(ddq, [1, 2]), polynomial)
+      before = from
+      before_rate = sign_of_way*dq(1)*sign(1.0_wp, h)
+      leaves = sign_of_way*(q(1) - end%limit) < 0.0_wp .and. before_rate > 0.0_wp
+      do look = 1, looks
+        t = from + real(look, wp)/looks*h
+        if (look == looks) t = motion%t
+        call polynomial%evaluate(t, at, rate, acceleration)
+        margin = abs(at(1) - cubic_between(q(1), h*dq(1), q(2), h*dq(2), (t - from)/h))
+        at = sign_of_way*(at - end%limit)
+        rate = sign_of_way*rate*sign(1.0_wp, h)
+        if (before_rate < 0.0_wp .and. rate(1) > 0.0_wp .and. at(1) - abs(rate(1)*(t - before)) < margin) then
+          ! it turns back between these times: near the end of its way, perhaps beyond it
+          call locate_turn(motion, i, before, t, turn, err)
+          if (allocated(err)) return
+          call value_at(motion, of_contact, i, turn, value, err)
+          if (allocated(err)) return
+          if (value > 0.0_wp) t = turn
+        else
+          value = -1.0_wp
+          if (at(1) < margin + round_off_of_gaps*motion%system%plan%unit_of(end%coordinate)) &
+            call value_at(motion, of_contact, i, t, value, err)
+          if (allocated(err)) return
+        end if
+        ! round-off may leave the start a little behind the end that it moves away from
+        if (leaves) leaves = at(1) < 0.0_wp .and. rate(1) > 0.0_wp
+        passed = value > 0.0_wp .and. .not. leaves
+        if (passed) exit
+        before = t
+        before_rate = rate(1)
+      end do
+    end associate
+    if (.not. passed) return
+    ! a motion that just left the end turns before it comes back
+    call value_at(motion, of_contact, i, before, value, err)
+    if (allocated(err)) return
+    if (value > -touching*motion%system%plan%unit_of(motion%contacts%ends(i)%coordinate)) then
+      call locate_turn(motion, i, before, t, turn, err)
+      if (allocated(err)) return
+      before = turn
+    end if
+    call locate(motion, of_contact, i, before, t, passed, err)
+  end subroutine find_meeting
+
+  !> Find the time between two times at which the rate of a contact's coordinate changes its sign; the first one where it does not.
+  subroutine locate_turn(motion, i, from, to, t, err)
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
+    integer, intent(in) :: i                                !< number of the end
+    real(wp), intent(in) :: from                            !< time before [s]
+    real(wp), intent(in) :: to                              !< time behind [s]
+    real(wp), intent(out) :: t                              !< the time [s]
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp) :: first, last
+    logical :: passed
+
+    t = from
+    call value_at(motion, of_rate, i, from, first, err)
+    if (allocated(err)) return
+    call value_at(motion, of_rate, i, to, last, err)
+    if (allocated(err) .or. first*last >= 0.0_wp) return
+    t = to
+    call locate(motion, sign(of_rate, nint(sign(1.0_wp, last))), i, from, t, passed, err)
+  end subroutine locate_turn
+
+  !> Find the time at which a value passes zero upward, by false position with halved values (Illinois) on the motion within the step.
+  subroutine locate(motion, what, i, from, t, passed, err)
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
+    integer, intent(in) :: what                             !< the value: one of the constants above; negative: minus it
+    integer, intent(in) :: i                                !< number of the motor, or of the end of a stop
+    real(wp), intent(in) :: from                            !< a time before the passing [s]
+    real(wp), intent(inout) :: t                            !< a time behind it; then the time of the passing [s]
+    logical, intent(out) :: passed                          !< the value there is above zero
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp) :: a, b, value_a, value_b, value
+    integer :: trial, side
+
+    a = from
+    b = t
+    call value_at(motion, what, i, b, value_b, err)
+    passed = value_b > 0.0_wp
+    if (.not. passed .or. allocated(err)) return
+    call value_at(motion, what, i, a, value_a, err)
+    if (allocated(err)) return
+    t = a
+    side = 0
+    do trial = 1, most_trials
+      if (value_a >= 0.0_wp .or. abs(b - a) <= 4.0_wp*spacing(b)) exit
+      t = b - value_b*(b - a)/(value_b - value_a)
+      if (.not. (t - a)*(b - t) > 0.0_wp) exit
+      call value_at(motion, what, i, t, value, err)
+      if (allocated(err) .or. abs(value) <= epsilon(value)) return
+      if (value > 0.0_wp) then
+        b = t
+        value_b = value
+        if (side > 0) value_a = 0.5_wp*value_a
+        side = 1
+      else
+        a = t
+        value_a = value
+        if (side < 0) value_b = 0.5_wp*value_b
+        side = -1
+      end if
+    end do
+  end subroutine locate
+
+  !> A value at a time within the last step. Where the motion there cannot be found, it is that of the end of the step.
+  subroutine value_at(motion, what, i, t, value, err)
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
+    integer, intent(in) :: what                             !< the value: one of the constants above; negative: minus it
+    integer, intent(in) :: i                                !< number of the motor, or of the end of a stop
+    real(wp), intent(in) :: t                               !< time within the last step [s]
+    real(wp), intent(out) :: value                          !< of a motor in parts of its limit
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp) :: from, y(size(motion%y))
+    logical :: found
+
+    call motion%dense_output%start_of_step(from, y)
+    found = .false.
+    if (.not. abs(t - from) > 0.0_wp) then
+      call motion%system%move_to(from, y, err)
+      found = .true.
+    else if (abs(t - motion%t) > 0.0_wp) then
+      call motion%look_between(t, found)
+    end if
+    if (.not. found) call motion%system%move_to(motion%t, motion%y, err)
+    if (allocated(err)) return
+    select case (abs(what))
+    case (of_motor)
+      call find_excess(motion%system, i, value, err)
+    case (of_contact)
+      value = passing_of_contact(motion, i)
+    case default
+      value = motion%system%state%dq(motion%contacts%ends(i)%coordinate)
+    end select
+    if (what < 0) value = -value
+  end subroutine value_at
+
+  !> How far a contact has passed, in the state of the system: above zero where it should be met, left or released.
+  pure real(wp) function passing_of_contact(motion, i) result(value)
+    type(integrated_motion_type), intent(in) :: motion   !< the motion
+    integer, intent(in) :: i                             !< number of the end
+    integer :: j
+
+    associate (end => motion%contacts%ends(i), system => motion%system)
+      if (end%held) then
+        value = -end%direction*system%state%stop_force(end%stop)
+        do j = 1, size(system%held_stops)
+          if (system%held_stops(j)%stop == end%stop) value = value - round_off_of_impacts*system%held_stops(j)%size_of_terms
+        end do
+      else
+        value = -end%gap(system%state%q(end%coordinate))
+        if (end%closed) value = -value
+        if (end%is_rigid) value = value - round_off_of_gaps*max(system%plan%unit_of(end%coordinate), abs(end%limit))
+      end if
+    end associate
+  end function passing_of_contact
+end module mech9_event_passing

@@ -1,0 +1,197 @@
+!> The events of contacts at one time: impacts, and which ends of stops are closed and hold their coordinates afterwards.
+!>
+!> A contact that falls back after each impact touches for good in finite time: with the rate u after an impact and the acceleration -a, the
+!> flights last 2u/a, e 2u/a, e^2 2u/a, ..., together 2u/(a (1 - e)).
+module mech9_contact_events
+  use mech9_kinds, only: wp
+  use mech9_event_tolerances, only: touching, drawn_behind_stop, least_rebound, endless_part
+  use mech9_error, only: error_type, raise, exit_data, exit_singular
+  use mech9_event_failures, only: failure_event_sensitivity, failure_stop_start
+  use mech9_result_units, only: unit_of, unit_name
+  use mech9_motion_event, only: motion_event_type, motion_events_type, event_impact, event_close, event_open
+  use mech9_motion_system, only: motion_system_type
+  use mech9_stop_contacts, only: stop_contact_type, stop_contacts_type
+  use mech9_contact_equations, only: contact_equations_type, find_contact_equations, find_impact, find_pushing
+  implicit none
+  private
+  public :: begin_contacts, meet_contacts
+
+contains
+
+  !> Close the compliant ends that are pressed in at the start. Fails where a rigid one is passed already.
+  subroutine begin_contacts(system, contacts, err)
+    class(motion_system_type), intent(inout) :: system     !< the system at the start; its state shows the ends that push
+    type(stop_contacts_type), intent(inout) :: contacts    !< all ends, open
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    integer :: i
+
+    do i = 1, size(contacts%ends)
+      associate (end => contacts%ends(i), q => system%state%q(contacts%ends(i)%coordinate))
+        if (end%gap(q) >= -drawn_behind_stop*system%plan%unit_of(end%coordinate)) cycle
+        end%closed = .not. end%is_rigid
+        if (end%closed) cycle
+        call raise(err, exit_data, failure_stop_start)
+        err%failure%number = end%stop
+        err%failure%coordinates = [end%coordinate]
+        err%failure%values = reshape([q, end%limit], [1, 2])/unit_of(system%model%mechanism, end%coordinate)
+        err%failure%name = trim(unit_name(system%model%mechanism, end%coordinate))
+        err%place = system%model%mechanism%stops(end%stop)%place
+        return
+      end associate
+    end do
+    call contacts%show_pressed(system%state)
+  end subroutine begin_contacts
+
+  !> Meet all contacts at the present state of the system, whose independent rates change at impacts. A compliant end that is met or left is
+  !> noted alone. Fails where drives move a coordinate beyond its stop.
+  subroutine meet_contacts(system, met, contacts, holds_change, events, err)
+    class(motion_system_type), intent(inout) :: system                     !< the system, moved to the time, with all rates
+    integer, intent(in) :: met                                             !< number of the end that is met or left; 0: none
+    type(stop_contacts_type), intent(inout) :: contacts                    !< all ends; those that are closed and held change
+    logical, intent(out) :: holds_change                                   !< other coordinates are to be held
+    type(motion_events_type), intent(inout) :: events                      !< gets the events
+    type(error_type), allocatable, intent(out) :: err                      !< allocated if it failed
+    integer, allocatable :: touch(:)
+    real(wp), allocatable :: impulses(:), ends_after(:)
+    logical, allocatable :: holds(:)
+    integer :: i
+
+    holds_change = .false.
+    if (met > 0) call pass_compliant_end(system%state%t, contacts%ends(met), events)
+    call contacts%show_pressed(system%state)
+    touch = pack([(i, i=1, size(contacts%ends))], [(touches(system, contacts%ends(i)) .or. i == met, i=1, size(contacts%ends))] &
+                 .and. contacts%ends%is_rigid)
+    if (size(touch) == 0) return
+    call settle(system, contacts, touch, err)
+    if (.not. allocated(err)) call find_outcome(system, contacts, touch, impulses, ends_after, holds, err)
+    if (allocated(err)) return
+    if (any(impulses > 0.0_wp) .and. allocated(system%sensitivity)) then
+      call raise(err, exit_singular, failure_event_sensitivity)
+      err%failure%t = system%state%t
+      err%failure%number = contacts%ends(touch(maxloc(impulses, dim=1)))%stop
+      return
+    end if
+    do i = 1, size(touch)
+      associate (end => contacts%ends(touch(i)))
+        holds_change = holds_change .or. (holds(i) .neqv. end%held)
+        call note_events(system%state%t, end, impulses(i), ends_after(i), holds(i), events)
+        end%closed = holds(i)
+        end%held = holds(i)
+      end associate
+    end do
+  end subroutine meet_contacts
+
+  !> Whether a rigid end touches.
+  pure logical function touches(system, end)
+    class(motion_system_type), intent(in) :: system   !< the system
+    type(stop_contact_type), intent(in) :: end        !< the end
+
+    touches = end%held
+    if (.not. touches) touches = end%gap(system%state%q(end%coordinate)) <= touching*system%plan%unit_of(end%coordinate)
+  end function touches
+
+  !> Move the contacts that touch onto their ends, from which the integration leaves them a little: by the least motion, weighed by mass.
+  subroutine settle(system, contacts, touch, err)
+    class(motion_system_type), intent(inout) :: system     !< the system; its position changes by the errors of integration
+    type(stop_contacts_type), intent(in) :: contacts       !< all ends
+    integer, intent(in) :: touch(:)                        !< numbers of the rigid ones that touch
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(contact_equations_type) :: equations
+    real(wp) :: gap, t, y(system%size_of_vector())
+    integer :: i
+
+    if (all(contacts%ends(touch)%held)) return
+    call find_contact_equations(system, contacts%held_coordinates(system%plan%n_coordinates), contacts%ends(touch), equations, err)
+    if (allocated(err)) return
+    associate (q => system%state%q, moved => system%plan%independent(equations%free))
+      do i = 1, size(touch)
+        associate (end => contacts%ends(touch(i)))
+          gap = end%gap(q(end%coordinate))
+          if (end%held .or. .not. equations%g(i, i) > 0.0_wp) cycle
+          q(moved) = q(moved) - gap/equations%g(i, i)*equations%answers(:, i)
+        end associate
+      end do
+    end associate
+    t = system%state%t
+    y = system%vector()
+    call system%project(t, y, err)
+    if (.not. allocated(err)) call system%present(err)
+  end subroutine settle
+
+  !> Note that a compliant end is met or left. Does nothing to a rigid one.
+  pure subroutine pass_compliant_end(t, end, events)
+    real(wp), intent(in) :: t                                          !< time [s]
+    type(stop_contact_type), intent(inout) :: end                      !< the end
+    type(motion_events_type), intent(inout) :: events                  !< gets the event
+
+    if (end%is_rigid) return
+    end%closed = .not. end%closed
+    call events%add(motion_event_type(t, merge(event_close, event_open, end%closed), 'stop', end%stop))
+  end subroutine pass_compliant_end
+
+  !> Find impulses and the contacts that push afterwards. Where endless impacts would end at once, they are left out.
+  subroutine find_outcome(system, contacts, touch, impulses, ends_after, holds, err)
+    class(motion_system_type), intent(inout) :: system             !< the system; its independent rates change
+    type(stop_contacts_type), intent(in) :: contacts               !< all ends
+    integer, intent(in) :: touch(:)                                !< numbers of the rigid ones that touch
+    real(wp), allocatable, intent(out) :: impulses(:)              !< (touch) of impacts [N m s, N s]
+    real(wp), allocatable, intent(out) :: ends_after(:)            !< (touch) time until endless impacts end; negative: there are none [s]
+    logical, allocatable, intent(out) :: holds(:)                  !< (touch) it pushes afterwards
+    type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
+    type(contact_equations_type) :: equations
+    logical :: held(system%plan%n_coordinates)
+    real(wp), dimension(size(touch)) :: restitution, rates, accelerations
+    real(wp) :: before(size(system%plan%independent)), duration, time
+    integer :: i
+
+    allocate (impulses(size(touch)), holds(size(touch)))
+    allocate (ends_after(size(touch)), source=-1.0_wp)
+    held = contacts%held_coordinates(size(held))
+    duration = abs(system%model%request%time%end - system%model%request%time%start)
+    associate (ends => contacts%ends(touch))
+      call find_contact_equations(system, held, ends, equations, err)
+      if (allocated(err)) return
+      restitution = ends%restitution
+      before = system%state%dq(system%plan%independent)
+      call meet(err)
+      if (allocated(err)) return
+      do i = 1, size(touch)
+        if (.not. (impulses(i) > 0.0_wp .and. rates(i) > 0.0_wp .and. accelerations(i) < 0.0_wp)) cycle
+        if (restitution(i) >= 1.0_wp) cycle
+        time = 2.0_wp*rates(i)/(-accelerations(i)*(1.0_wp - restitution(i)))
+        if (rates(i)**2 > -2.0_wp*accelerations(i)*least_rebound*system%plan%unit_of(ends(i)%coordinate) .or. &
+            time > endless_part*duration) cycle
+        ends_after(i) = time
+      end do
+      if (.not. any(ends_after >= 0.0_wp)) return
+      where (ends_after >= 0.0_wp) restitution = 0.0_wp
+      system%state%dq(system%plan%independent) = before
+      call meet(err)
+    end associate
+  contains
+    !> Find the impact, and the contacts that push after it.
+    subroutine meet(err)
+      type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+
+      call find_impact(system, contacts%ends(touch), equations, restitution, impulses, rates, err)
+      if (.not. allocated(err)) &
+        call find_pushing(system, contacts%ends(touch), equations, .not. abs(rates) > 0.0_wp, accelerations, holds, err)
+    end subroutine meet
+  end subroutine find_outcome
+
+  !> Note the events of one rigid end.
+  pure subroutine note_events(t, end, impulse, ends_after, holds, events)
+    real(wp), intent(in) :: t                                          !< time [s]
+    type(stop_contact_type), intent(in) :: end                         !< the end, as it was
+    real(wp), intent(in) :: impulse                                    !< of an impact; 0: there is none [N m s, N s]
+    real(wp), intent(in) :: ends_after                                 !< time until endless impacts end; negative: there are none [s]
+    logical, intent(in) :: holds                                       !< it is closed from now on
+    type(motion_events_type), intent(inout) :: events                  !< gets the events
+
+    if (impulse > 0.0_wp .and. .not. ends_after >= 0.0_wp) &
+      call events%add(motion_event_type(t, event_impact, 'stop', end%stop, .true., end%direction*impulse))
+    if (holds .and. .not. end%held) &
+      call events%add(motion_event_type(t + max(ends_after, 0.0_wp), event_close, 'stop', end%stop))
+    if (end%held .and. .not. holds) call events%add(motion_event_type(t, event_open, 'stop', end%stop))
+  end subroutine note_events
+end module mech9_contact_events

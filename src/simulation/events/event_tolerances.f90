@@ -1,0 +1,35 @@
+!> Tolerances of events of a motion, each with its reason.
+!>
+!> Rotations count in rad, translations in lengths of the mechanism, coordinates in their units (1 rad, or that length).
+module mech9_event_tolerances
+  use mech9_kinds, only: wp
+  implicit none
+  private
+  public :: round_off_of_limit, touching, drawn_behind_stop, round_off_of_impacts, least_rebound, endless_part, most_events, &
+    most_events_at_once
+
+  ! Drives and outputs.
+
+  !> Excess of a motor's force over its limit that is round-off, in parts of the limit.
+  real(wp), parameter :: round_off_of_limit = 1.0e-12_wp
+
+  ! Stops.
+
+  !> An end of a stop touches where its coordinate is at most so far away or behind it, in its unit: a hundred times the round-off of
+  !> closed positions, far below the tolerances of integration.
+  real(wp), parameter :: touching = 1.0e-12_wp
+  !> A coordinate may start so far behind its stop, in its unit: positions in a data file have ten digits and more, and chains are closed
+  !> to round-off.
+  real(wp), parameter :: drawn_behind_stop = 1.0e-10_wp
+  !> Part of the sum of its terms that is round-off in the acceleration or in the force of a contact: inertia times acceleration is
+  !> eliminated there.
+  real(wp), parameter :: round_off_of_impacts = 1.0e-12_wp
+  !> A coordinate rebounds no higher than this, in its unit, where endless impacts are cut off: below the tolerances of integration, far
+  !> above the round-off of the way ...
+  real(wp), parameter :: least_rebound = 1.0e-12_wp
+  !> ... and if they would end within this part of the duration of the motion. Their end is worked out; the contact pushes as much
+  !> until then as the impacts that are left out.
+  real(wp), parameter :: endless_part = 1.0e-6_wp
+  !> Most events of a motion, and most at one time: more mean that the motion makes no progress.
+  integer, parameter :: most_events = 1000000, most_events_at_once = 1000
+end module mech9_event_tolerances

@@ -1,0 +1,19 @@
+!> Failures of the integration of a motion: steps, other coordinates, and joints of laws.
+module mech9_integration_failures
+  implicit none
+  private
+  public :: failure_singular_step, failure_unclosed_step, failure_other_branch, failure_drive_jumps, &
+    failure_jump_sensitivity, last_integration_failure
+
+  !> A position inside a step is too near to a singular one for the independent coordinates.
+  integer, parameter :: failure_singular_step = 1301
+  !> A block cannot be closed after a step: chains, t.
+  integer, parameter :: failure_unclosed_step = 1302
+  !> A coordinate would jump with other independent coordinates: coordinates.
+  integer, parameter :: failure_other_branch = 1303
+  !> A drive is elsewhere than its rates lead: coordinates (the driven one), t.
+  integer, parameter :: failure_drive_jumps = 1304
+  !> Rates jump at a joint of laws whose time a parameter sets: name, t.
+  integer, parameter :: failure_jump_sensitivity = 1305
+  integer, parameter :: last_integration_failure = failure_jump_sensitivity
+end module mech9_integration_failures
