@@ -55,6 +55,8 @@ int mech9_mechanism_set(mech9_mechanism *mechanism, const char *name, double val
 int mech9_mechanism_number(const mech9_mechanism *mechanism, const char *name, double *value, mech9_error *error);
 /* The text of a data file that makes the same mechanism. */
 const char *mech9_mechanism_text(mech9_mechanism *mechanism);
+/* The data file, or a file that its groups name, where a path means it, and null for all other paths: who writes a file asks first. */
+const char *mech9_mechanism_reads(mech9_mechanism *mechanism, const char *path);
 /* Names of the parameters. */
 int mech9_mechanism_parameters(const mech9_mechanism *mechanism);
 const char *mech9_mechanism_parameter(mech9_mechanism *mechanism, int i);
@@ -108,8 +110,9 @@ double mech9_results_number(const mech9_results *results, int i);
 int mech9_results_parameters(const mech9_results *results);       /* 0: no derivatives */
 /* Parameters come in the order of mech9_mechanism_parameter. */
 double mech9_results_derivative(const mech9_results *results, int i, int parameter);
-/* The report: of a run and a cam as JSON, as the option --report writes it, of a check in words; null: there is none. */
-const char *mech9_results_text(const mech9_results *results);
+/* The report: of a run and a cam as JSON, as the option --report writes it, of a check in words; null: there is none. That of a run
+ * with &output reactions may call user procedures. */
+const char *mech9_results_text(mech9_results *results);
 /* Matrices, with names and units for their rows and columns. */
 int mech9_results_matrices(const mech9_results *results);
 const char *mech9_results_matrix_name(const mech9_results *results, int i);
@@ -120,6 +123,28 @@ const char *mech9_results_matrix_row_name(const mech9_results *results, int i, i
 const char *mech9_results_matrix_row_unit(const mech9_results *results, int i, int row);
 const char *mech9_results_matrix_column_name(const mech9_results *results, int i, int column);
 const char *mech9_results_matrix_column_unit(const mech9_results *results, int i, int column);
+
+/* The HDF5 file of a run, as the programs write it (docs/reference/results.md), for who writes files: data sets and attributes in the
+ * order in which they are made. `mechanism` is that of the run, as it was then: its text becomes a data set. Paths have no slash at
+ * their beginning; missing groups of a path are made. */
+int mech9_results_lay_out(mech9_results *results, const mech9_mechanism *mechanism, mech9_error *error);
+int mech9_results_data_sets(const mech9_results *results);                      /* 0 before mech9_results_lay_out */
+const char *mech9_results_data_set_path(mech9_results *results, int i);
+int mech9_results_data_set_kind(const mech9_results *results, int i);           /* 1 double, 2 int32_t, 3 int64_t, 4 text of any length */
+int mech9_results_data_set_rank(const mech9_results *results, int i);           /* 0: a single value */
+int mech9_results_data_set_extent(const mech9_results *results, int i, int dimension);   /* the slowest dimension first */
+/* Rows of a chunk, where the data set can grow along its slowest dimension, whose steps are its rows; 0: it cannot. */
+int mech9_results_data_set_chunk(const mech9_results *results, int i);
+int mech9_results_data_set_compression(const mech9_results *results, int i);    /* 0 none, to 9: shuffled and deflated */
+int mech9_results_data_set_is_scale(const mech9_results *results, int i);       /* a dimension scale with the last word of its path */
+const char *mech9_results_data_set_scale(mech9_results *results, int i, int dimension);  /* path; null: none is attached */
+const char *mech9_results_data_set_text(mech9_results *results, int i, int k);  /* of kind 4 */
+/* Numbers of n rows from `first` on, in the kind of the data set; of a single value first = 0, n = 1. */
+int mech9_results_data_set_take(const mech9_results *results, int i, int first, int n, void *numbers, mech9_error *error);
+int mech9_results_attributes(const mech9_results *results);                     /* texts */
+const char *mech9_results_attribute_path(mech9_results *results, int i);        /* of the data set or group; empty: of the file */
+const char *mech9_results_attribute_name(mech9_results *results, int i);
+const char *mech9_results_attribute_text(mech9_results *results, int i);
 
 /* Analyses. `stop` is null, or the address of a number that stops the call soon after another thread or a signal handler
  * makes it other than 0. Results may be there after a failure: what was computed before it. */

@@ -304,8 +304,15 @@ class Mechanism:
 
     def _run(self, function: Any, words: dict[str, Any]) -> Results:
         run = self._with_words(words)
-        results = run._results(function, lambda stop, out: (run._handle, stop, out))
-        results._of_run(run if run is not self else self.copy(), function is lib.dynamics)
+        results = None
+        try:
+            results = run._results(function, lambda stop, out: (run._handle, stop, out))
+        except (Error, KeyboardInterrupt) as reason:
+            results = getattr(reason, 'results', None)
+            raise
+        finally:
+            if results is not None:
+                results._of_run(run if run is not self else self.copy(), function is lib.dynamics)
         return results
 
     def _with_words(self, words: dict[str, Any]) -> Mechanism:

@@ -4,12 +4,14 @@ from __future__ import annotations
 import ctypes
 import html
 import json
+import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping
 
 import numpy as np
 
 from ._errors import UsageError
+from ._files import write_run
 from ._library import lib
 
 if TYPE_CHECKING:
@@ -61,11 +63,11 @@ class Results(Mapping[str, np.ndarray]):
 
     def __init__(self, handle: int, list_parameters: Callable[[], tuple[str, ...]] = tuple):
         memory = _Memory(handle)
+        self._memory = memory
         self.names: tuple[str, ...] = tuple(lib.results_name(handle, i).decode() for i in range(lib.results_columns(handle)))
         self.units: dict[str, str] = {name: lib.results_unit(handle, i).decode() for i, name in enumerate(self.names)}
         self.table: np.ndarray = (np.asarray(memory) if hasattr(memory, '__array_interface__')
                                   else np.empty((0, len(self.names))))
-        self._report_text: bytes = lib.results_text(handle) or b''
         self._columns = {name: i for i, name in enumerate(self.names)}
         numbers = [lib.results_number_name(handle, i).decode() for i in range(lib.results_numbers(handle))]
         self.quantities: dict[str, float] = {name: lib.results_number(handle, i) for i, name in enumerate(numbers)}
@@ -79,7 +81,7 @@ class Results(Mapping[str, np.ndarray]):
     @property
     def report(self) -> dict[str, Any]:
         """How a run ended and the work that it took, or what was found of a cam, as the option --report writes it; empty for other analyses."""
-        return dict(json.loads(self._report_text)) if self._report_text else {}
+        return dict(json.loads(lib.results_text(self._memory.handle) or b'{}'))
 
     @property
     def events(self) -> list[dict[str, Any]]:
@@ -110,10 +112,16 @@ class Results(Mapping[str, np.ndarray]):
         """The run as a moving picture of a kind: 'html', 'svg' or 'gif'. The run is made again."""
         return self._run_mechanism().animate(kind=kind, view=view, dynamics=self._with_forces)
 
-    def _run_mechanism(self) -> Mechanism:
+    def _run_mechanism(self, refusal: str = 'only the results of kinematics and dynamics have pictures') -> Mechanism:
         if not hasattr(self, '_mechanism'):
-            raise UsageError('only the results of kinematics and dynamics have pictures', 2)
+            raise UsageError(refusal, 2)
         return self._mechanism
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Write a run to an HDF5 file, as the programs write theirs (needs h5py). A file of this name is replaced when the new one is
+        whole; a file that the mechanism reads is not."""
+        mechanism = self._run_mechanism('only the results of kinematics and dynamics can be written')
+        write_run(self._memory.handle, mechanism, path)
 
     def plot(self, *columns: str) -> Any:
         """Columns over the time, or, of two columns, the second over the first: a matplotlib Figure."""

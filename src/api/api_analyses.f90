@@ -70,13 +70,14 @@ contains
     type(c_ptr), intent(in) :: error       !< handle of errors, or null
     type(mechanism_type), pointer :: moved
     type(results_type), pointer :: found
-    type(run_type) :: run
+    type(run_type), pointer :: run
     type(flag_interruption_type) :: interruption
     type(error_type), allocatable :: err
 
     call begin_call(error)
     results = c_null_ptr
     call new_interruption(stop, interruption)
+    allocate (run)
     call find_mechanism(mechanism, moved, err)
     if (.not. allocated(err)) then
       if (program == kinematics) then
@@ -88,9 +89,12 @@ contains
     if (.not. allocated(err)) then
       allocate (found)
       call take_run(run, found, err)
+      found%run => run
       results = show_results(found)
+    else
+      call run%close()
+      deallocate (run)
     end if
-    call run%close()
     code = end_analysis(error, err, moved, program)
   end function make_run
 
@@ -99,26 +103,24 @@ contains
     type(run_type), intent(inout) :: run                   !< the run, begun
     type(results_type), intent(inout) :: found             !< gets them
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    character(len=:), allocatable :: names(:), units(:), text
+    character(len=:), allocatable :: names(:), units(:)
     integer :: status
 
     call run%columns(names, units)
     call put_texts(names, found%names)
     call put_texts(units, found%units)
-    allocate (found%rows(size(names), run%outputs()), stat=status)
+    allocate (found%rows(size(names), run%outputs()), found%poses(run%pose_columns(), run%outputs()), stat=status)
     if (status /= 0) then
       allocate (err)
       err%code = exit_file
       err%message = 'there is not enough memory for all rows; ask for fewer outputs'
       return
     end if
-    call run%take_rows(found%rows, found%count, err)
+    call run%take_rows(found%rows, found%count, err, found%poses)
     call run%quantities(names, found%numbers, units)
     call put_texts(names, found%number_names)
     call put_texts(units, found%number_units)
     call run%gradients(found%derivatives)
-    call run%report(text)
-    call found%text%put(text)
   end subroutine take_run
 
   !> Find the equilibrium to which the start leads, or those of many random starts.

@@ -3,6 +3,7 @@ module mech9_api_mechanism
   use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_null_ptr, c_f_pointer, c_loc
   use mech9, only: error_type, finding_type, mechanism_type, parse_file, parse_text, string_type, name_coordinates, kinematics, &
     dynamics
+  use mech9_same_file, only: same_file
   use mech9_api_handle, only: is_live, mechanism_mark, no_mark
   use mech9_api_text, only: c_text_type, read_c_text
   use mech9_api_error, only: begin_call, end_call, refuse
@@ -202,6 +203,30 @@ contains
     call handle%text%put(text)
     text_of = handle%text%address()
   end function text_of
+
+  !> The file that a path means among those of a mechanism; null where the mechanism reads no such file.
+  type(c_ptr) function file_read(mechanism, path) bind(c, name='mech9_mechanism_reads')
+    type(c_ptr), value, intent(in) :: mechanism   !< the handle
+    type(c_ptr), value, intent(in) :: path        !< any name of a file
+    type(mechanism_handle_type), pointer :: handle
+    character(len=:), allocatable :: name
+    type(string_type), allocatable :: files(:)
+    type(error_type), allocatable :: err
+    integer :: i
+
+    file_read = c_null_ptr
+    call find_handle(mechanism, handle, err)
+    if (allocated(err)) return
+    call read_c_text(path, name)
+    call handle%mechanism%list_files(files)
+    do i = 1, size(files)
+      if (files(i)%text == '') cycle
+      if (.not. same_file(files(i)%text, name)) cycle
+      call handle%text%put(files(i)%text)
+      file_read = handle%text%address()
+      return
+    end do
+  end function file_read
 
   !> Number of parameters.
   integer(c_int) function parameters(mechanism) bind(c, name='mech9_mechanism_parameters')

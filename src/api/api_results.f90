@@ -3,12 +3,13 @@
 module mech9_api_results
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_null_ptr, c_f_pointer, c_loc
-  use mech9, only: wp
+  use mech9, only: wp, run_type
+  use mech9_data_set_table, only: data_set_table_type
   use mech9_api_handle, only: is_live, results_mark, no_mark
   use mech9_api_text, only: c_text_type
   implicit none
   private
-  public :: results_type, show_results, put_texts, put_matrix
+  public :: results_type, show_results, find_results, put_texts, put_matrix
 
   !> A matrix with names for its rows and columns.
   type :: matrix_type
@@ -30,7 +31,12 @@ module mech9_api_results
     real(wp), allocatable :: numbers(:)                  !< (numbers)
     real(wp), allocatable :: derivatives(:, :)           !< (parameters,numbers) of the numbers by the parameters
     type(matrix_type), allocatable :: matrices(:)        !< (matrices)
+    type(run_type), pointer :: run => null()             !< owned: of a run, for its report and its data sets
+    type(data_set_table_type) :: layout                  !< of a run: the data sets of its HDF5 file, once they were asked for
+    real(wp), pointer :: poses(:, :) => null()           !< (columns,rows) of these, behind the columns of `rows`; owned
+    type(c_text_type) :: shown                           !< a text of the layout, which the caller asked for last
     type(c_text_type) :: text                            !< a report: of a run as JSON, of a check in words
+    logical :: has_report = .false.                      !< the report of the run has been composed
   end type results_type
 
 contains
@@ -76,7 +82,13 @@ contains
       call clear_matrix(results%matrices(i))
     end do
     call results%text%clear()
+    call results%shown%clear()
     deallocate (results%rows)
+    if (associated(results%poses)) deallocate (results%poses)
+    if (associated(results%run)) then
+      call results%run%close()
+      deallocate (results%run)
+    end if
     results%mark = no_mark
     deallocate (results)
   end subroutine destroy
@@ -363,10 +375,17 @@ contains
   type(c_ptr) function text_of(address) bind(c, name='mech9_results_text')
     type(c_ptr), value, intent(in) :: address   !< of the results
     type(results_type), pointer :: results
+    character(len=:), allocatable :: text
 
     text_of = c_null_ptr
     call find_results(address, results)
-    if (associated(results)) text_of = results%text%address()
+    if (.not. associated(results)) return
+    if (associated(results%run) .and. .not. results%has_report) then
+      call results%run%report(text)
+      call results%text%put(text)
+      results%has_report = .true.
+    end if
+    text_of = results%text%address()
   end function text_of
 
   !> Address of one of several texts; null where there is none.

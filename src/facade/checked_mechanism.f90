@@ -27,6 +27,7 @@ module mech9_checked_mechanism
   use mech9_findings, only: finding_type, fail_as
   use mech9_numbers_of_parameters, only: refuse_set_by_parameter, refuse_override
   use mech9_parser, only: read_document, parse_document
+  use mech9_drive_reader, only: files_of_groups
   use mech9_reader, only: read_model
   implicit none
   private
@@ -47,6 +48,7 @@ module mech9_checked_mechanism
     procedure :: put_number
     procedure :: number
     procedure :: text
+    procedure :: list_files
     procedure :: list_findings
     procedure :: find_error_place
     procedure :: order_as_given
@@ -375,6 +377,24 @@ contains
     written = ''
     if (self%is_read) call text_of_document(self%document, written)
   end subroutine text
+
+  !> List the files that the mechanism reads: the data file first, empty where there is none, and those that its groups name.
+  subroutine list_files(self, paths)
+    class(checked_mechanism_type), intent(in) :: self         !< the mechanism
+    type(string_type), allocatable, intent(out) :: paths(:)   !< as the programs know them
+    type(string_type), allocatable :: of_groups(:)
+    integer :: i
+
+    call files_of_groups(self%document, of_groups)
+    allocate (paths(1 + size(of_groups)))
+    paths(1)%text = ''
+    if (self%is_read) then
+      if (self%document%source%is_file) paths(1)%text = self%document%source%name
+    end if
+    do i = 1, size(of_groups)
+      paths(1 + i)%text = of_groups(i)%text
+    end do
+  end subroutine list_files
 
   !> Fail where there is no mechanism.
   subroutine require(self, err)

@@ -16,12 +16,18 @@ module mech9_recorded_run
   use mech9_run_outcome, only: run_outcome_type
   use mech9_run_facts, only: list_run_facts
   use mech9_whole_report, only: compose_report
+  use mech9_provenance_layout, only: origin_type, set_present_time
+  use mech9_data_set_table, only: data_set_table_type
+  use mech9_run_layout, only: lay_out_run
   use mech9_mechanism_pictures, only: mechanism_pictures_type
   use mech9_varied_document, only: varied_document_type
   use mech9_checked_mechanism, only: checked_mechanism_type
   implicit none
   private
   public :: recorded_run_type
+
+  !> Name of the library in files of results, in place of a program.
+  character(len=*), parameter :: library_name = 'libmech9'
 
   !> It must not be copied.
   type :: recorded_run_type
@@ -34,6 +40,7 @@ module mech9_recorded_run
     type(run_outcome_type) :: outcome                            !< rows that were taken, and the time for them
     integer :: next = 0                                          !< number of the next output, from 0 on
     logical :: has_failed = .false.                              !< the run ended before its last output
+    character(len=:), allocatable :: began                       !< time when the run began
   contains
     procedure :: begin_kinematics
     procedure :: begin_dynamics
@@ -41,10 +48,12 @@ module mech9_recorded_run
     procedure :: draw
     procedure :: outputs
     procedure :: columns
+    procedure :: pose_columns
     procedure :: take_rows
     procedure :: quantities
     procedure :: gradients
     procedure :: report
+    procedure :: lay_out
     procedure :: close => close_run
   end type recorded_run_type
 
@@ -103,6 +112,7 @@ contains
     logical, intent(in), optional :: pictures                        !< the run is drawn; not unless given
 
     call self%close()
+    call set_present_time(self%began)
     allocate (self%model, self%variable, self%run)
     if (present(interruption)) allocate (self%interruption, source=interruption)
     call mechanism%begin_diagnostics(self%diagnostics)
@@ -157,14 +167,27 @@ contains
     end if
   end subroutine columns
 
+  !> Number of the columns behind those of the table that only an HDF5 file has: of poses, and of their derivatives.
+  pure integer function pose_columns(self)
+    class(recorded_run_type), intent(in) :: self   !< the run
+
+    pose_columns = 0
+    if (associated(self%run)) then
+      associate (found => self%run%source%columns)
+        pose_columns = found%width() - found%count - found%unrecorded
+      end associate
+    end if
+  end function pose_columns
+
   !> Take the next rows. Fewer rows than there is room for are the last ones. Fails with exit_singular where the motion cannot go
   !> on, with exit_integrator where the integration cannot, and with exit_usage where no run is begun or the run failed before. The
   !> rows before the failure are then there. An interrupted run goes on with the next call.
-  subroutine take_rows(self, rows, count, err)
+  subroutine take_rows(self, rows, count, err, poses)
     class(recorded_run_type), intent(inout) :: self       !< the run
     real(wp), intent(inout) :: rows(:, :)                 !< (columns,most rows) in the units of the columns
     integer, intent(out) :: count                         !< rows that were taken
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    real(wp), intent(inout), optional :: poses(:, :)      !< (pose_columns,most rows) gets the columns of poses of these rows
     real(wp), allocatable :: whole(:, :)
     real(wp) :: began
     integer :: taken, status
@@ -196,6 +219,7 @@ contains
       end do
       if (.not. allocated(err)) call source%complete(whole, count, err)
       rows(:, :count) = whole(:size(rows, 1), :count)
+      if (present(poses)) poses(:, :count) = whole(size(rows, 1) + 1:size(rows, 1) + size(poses, 1), :count)
       self%outcome%rows = self%outcome%rows + count
       self%outcome%seconds_solving = self%outcome%seconds_solving + seconds() - began
     end associate
@@ -263,10 +287,42 @@ contains
 
     text = ''
     if (.not. associated(self%run)) return
+    call judge_forces(self)
     call list_run_facts(self%run%motion, self%outcome, facts)
     call compose_report(json, self%model, self%diagnostics, '', facts, self%run)
     call json%take_text(text)
   end subroutine report
+
+  !> Find which forces equilibrium determines, where reactions are recorded.
+  subroutine judge_forces(self)
+    type(recorded_run_type), intent(inout) :: self   !< the run
+
+    associate (run => self%run)
+      if (.not. allocated(run%source%forces%unique)) call run%source%forces%judge(self%model, run%motion%plan, run%motion%start)
+    end associate
+  end subroutine judge_forces
+
+  !> Lay out the run as the data sets of an HDF5 file, in the form of the programs. There are none where no run is begun.
+  subroutine lay_out(self, mechanism, table)
+    class(recorded_run_type), intent(inout) :: self              !< the run, over
+    type(checked_mechanism_type), intent(in) :: mechanism        !< of the run
+    type(data_set_table_type), intent(out) :: table              !< the data sets
+    type(facts_type) :: facts
+    type(origin_type) :: origin
+    type(string_type), allocatable :: files(:)
+
+    if (.not. associated(self%run)) return
+    call judge_forces(self)
+    origin%program = library_name
+    origin%command_line = ''
+    call mechanism%list_files(files)
+    origin%data_file = files(1)%text
+    call mechanism%text(origin%data)
+    origin%began = self%began
+    origin%storage = ''
+    call list_run_facts(self%run%motion, self%outcome, facts)
+    call lay_out_run(self%model, self%run, facts, self%diagnostics%code(), origin, table)
+  end subroutine lay_out
 
   !> End the run and free its memory. Another one can then be begun.
   subroutine close_run(self)

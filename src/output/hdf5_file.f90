@@ -15,10 +15,11 @@ module mech9_hdf5_file
                   h5lexists_f, h5dcreate_f, h5dopen_f, h5dwrite_f, h5dclose_f, &
                   h5acreate_by_name_f, h5awrite_f, h5aclose_f
   use h5ds, only: h5dsset_scale_f, h5dsattach_scale_f
-  use mech9_kinds, only: wp, long
+  use mech9_kinds, only: long
   use mech9_error, only: error_type, raise, exit_file
   use mech9_text, only: string_type, to_text
   use mech9_replacement, only: replacement_type, begin_replacement
+  use mech9_data_set_store, only: data_set_store_type, real_values, whole_values
   use mech9_hdf5_reason, only: last_reason
   implicit none
   private
@@ -27,10 +28,10 @@ module mech9_hdf5_file
   !> Size of the block for metadata at the beginning of the file [bytes]. A flush writes the block at once, so that
   !> a run that is killed leaves either the old state or the new one.
   integer(hsize_t), parameter :: metadata_block = 131072
-  !> Extents of a data set that is a single value.
-  integer(hsize_t), parameter :: no_extents(0) = [integer(hsize_t) ::]
+  !> Kind of whole numbers of 32 bits.
+  integer, parameter :: kind_of_whole = kind(1)
 
-  type :: hdf5_file_type
+  type, extends(data_set_store_type) :: hdf5_file_type
     character(len=:), allocatable :: path
     integer(hid_t) :: id = -1
     type(error_type), allocatable :: failure     !< the first failure
@@ -45,15 +46,12 @@ module mech9_hdf5_file
     procedure :: link_properties
     procedure :: check
     procedure :: fail
-    !> A data set with its values: put(name, values, long_name [, unit]). One that exists already gets the new values.
-    generic :: put => put_text, put_texts, put_real, put_reals, put_matrix, put_block, put_integer, put_integers, &
-      put_integer_matrix, put_long
+    procedure :: put_numbers
+    procedure :: put_text_values
     procedure :: add_attribute
-    procedure :: describe
     procedure :: make_scale
     procedure :: attach_scales
-    procedure, private :: put_text, put_texts, put_real, put_reals, put_matrix, put_block, put_integer, put_integers, &
-      put_integer_matrix, put_long, put_values
+    procedure, private :: put_values
   end type hdf5_file_type
 
 contains
@@ -164,136 +162,52 @@ contains
     call self%replacement%abandon()
   end subroutine close_file
 
-  subroutine put_text(self, name, text, long_name)
-    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
-    character(len=*), intent(in) :: name          !< path of the data set
-    character(len=*), intent(in) :: text          !< the text
-    character(len=*), intent(in) :: long_name     !< a few words that describe it
-    type(string_type) :: texts(1)
+  !> Write numbers as a data set.
+  subroutine put_numbers(self, name, kind, extents, values, is_new)
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
+    character(len=*), intent(in) :: name           !< path of the data set
+    integer, intent(in) :: kind                    !< real_values, whole_values or long_values
+    integer, intent(in) :: extents(:)              !< extents of the data set, in Fortran order; empty for a single value
+    type(c_ptr), intent(in) :: values              !< address of the first value
+    logical, intent(out) :: is_new                 !< the data set was made; it has no description yet
 
-    texts(1)%text = text
-    call put_text_values(self, name, texts, no_extents, long_name)
-  end subroutine put_text
+    select case (kind)
+    case (real_values)
+      call self%put_values(name, [h5t_ieee_f64le, h5t_native_double], extents, values, is_new)
+    case (whole_values)
+      call self%put_values(name, [h5t_std_i32le, h5kind_to_type(kind_of_whole, h5_integer_kind)], extents, values, is_new)
+    case default
+      call self%put_values(name, [h5t_std_i64le, h5kind_to_type(long, h5_integer_kind)], extents, values, is_new)
+    end select
+  end subroutine put_numbers
 
-  subroutine put_texts(self, name, texts, long_name)
-    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
-    character(len=*), intent(in) :: name          !< path of the data set
-    character(len=*), intent(in) :: long_name     !< a few words that describe it
-    type(string_type), intent(in) :: texts(:)     !< the texts, in their order
-
-    call put_text_values(self, name, texts, [size(texts, kind=hsize_t)], long_name)
-  end subroutine put_texts
-
-  !> Write texts as a data set of the given extents.
-  subroutine put_text_values(self, name, texts, extents, long_name)
-    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
-    character(len=*), intent(in) :: name          !< path of the data set
-    character(len=*), intent(in) :: long_name     !< a few words that describe it
-    type(string_type), intent(in) :: texts(:)     !< the texts, in their order
-    integer(hsize_t), intent(in) :: extents(:)    !< extents of the data set, in Fortran order; empty for a single value
+  !> Write texts as a data set.
+  subroutine put_text_values(self, name, texts, extents, is_new)
+    class(hdf5_file_type), intent(inout) :: self   !< the HDF5 file
+    character(len=*), intent(in) :: name           !< path of the data set
+    type(string_type), intent(in) :: texts(:)      !< the texts, in their order
+    integer, intent(in) :: extents(:)              !< extents of the data set, in Fortran order; empty for a single value
+    logical, intent(out) :: is_new                 !< the data set was made; it has no description yet
     character(kind=c_char), allocatable, target :: letters(:)
     type(c_ptr), allocatable, target :: starts(:)
 
     call lay_out(texts, letters, starts)
-    call self%put_values(name, [self%text_type, self%text_type], extents, c_loc(starts), long_name)
+    call self%put_values(name, [self%text_type, self%text_type], extents, c_loc(starts), is_new)
   end subroutine put_text_values
 
-  subroutine put_real(self, name, value, long_name, unit)
+  !> Write a data set of any type.
+  subroutine put_values(self, name, types, extents, values, is_new)
     class(hdf5_file_type), intent(inout) :: self    !< the HDF5 file
     character(len=*), intent(in) :: name            !< path of the data set
-    character(len=*), intent(in) :: long_name       !< a few words that describe it
-    real(wp), intent(in), target :: value           !< the number
-    character(len=*), intent(in), optional :: unit  !< unit of the numbers; absent for none
-
-    call self%put_values(name, [h5t_ieee_f64le, h5t_native_double], no_extents, c_loc(value), long_name, unit)
-  end subroutine put_real
-
-  subroutine put_reals(self, name, values, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self           !< the HDF5 file
-    character(len=*), intent(in) :: name                   !< path of the data set
-    character(len=*), intent(in) :: long_name              !< a few words that describe it
-    real(wp), intent(in), contiguous, target :: values(:)  !< the numbers
-    character(len=*), intent(in), optional :: unit         !< unit of the numbers; absent for none
-
-    call self%put_values(name, [h5t_ieee_f64le, h5t_native_double], [size(values, kind=hsize_t)], c_loc(values), &
-                         long_name, unit)
-  end subroutine put_reals
-
-  subroutine put_matrix(self, name, values, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self              !< the HDF5 file
-    character(len=*), intent(in) :: name                      !< path of the data set
-    character(len=*), intent(in) :: long_name                 !< a few words that describe it
-    real(wp), intent(in), contiguous, target :: values(:, :)  !< the numbers; their dimensions are those of the data set in reverse
-    character(len=*), intent(in), optional :: unit            !< unit of the numbers; absent for none
-
-    call self%put_values(name, [h5t_ieee_f64le, h5t_native_double], shape(values, kind=hsize_t), c_loc(values), &
-                         long_name, unit)
-  end subroutine put_matrix
-
-  subroutine put_block(self, name, values, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self                 !< the HDF5 file
-    character(len=*), intent(in) :: name                         !< path of the data set
-    character(len=*), intent(in) :: long_name                    !< a few words that describe it
-    real(wp), intent(in), contiguous, target :: values(:, :, :)  !< the numbers; dimensions are those of the data set in reverse
-    character(len=*), intent(in), optional :: unit               !< unit of the numbers; absent for none
-
-    call self%put_values(name, [h5t_ieee_f64le, h5t_native_double], shape(values, kind=hsize_t), c_loc(values), &
-                         long_name, unit)
-  end subroutine put_block
-
-  subroutine put_integer(self, name, value, long_name)
-    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
-    character(len=*), intent(in) :: name          !< path of the data set
-    character(len=*), intent(in) :: long_name     !< a few words that describe it
-    integer, intent(in), target :: value          !< the number
-
-    call self%put_values(name, [h5t_std_i32le, h5kind_to_type(kind(value), h5_integer_kind)], no_extents, &
-                         c_loc(value), long_name)
-  end subroutine put_integer
-
-  subroutine put_integers(self, name, values, long_name)
-    class(hdf5_file_type), intent(inout) :: self          !< the HDF5 file
-    character(len=*), intent(in) :: name                  !< path of the data set
-    character(len=*), intent(in) :: long_name             !< a few words that describe it
-    integer, intent(in), contiguous, target :: values(:)  !< the numbers
-
-    call self%put_values(name, [h5t_std_i32le, h5kind_to_type(kind(values), h5_integer_kind)], &
-                         [size(values, kind=hsize_t)], c_loc(values), long_name)
-  end subroutine put_integers
-
-  subroutine put_integer_matrix(self, name, values, long_name)
-    class(hdf5_file_type), intent(inout) :: self             !< the HDF5 file
-    character(len=*), intent(in) :: name                     !< path of the data set
-    character(len=*), intent(in) :: long_name                !< a few words that describe it
-    integer, intent(in), contiguous, target :: values(:, :)  !< the numbers; their dimensions are those of the data set in reverse
-
-    call self%put_values(name, [h5t_std_i32le, h5kind_to_type(kind(values), h5_integer_kind)], &
-                         shape(values, kind=hsize_t), c_loc(values), long_name)
-  end subroutine put_integer_matrix
-
-  subroutine put_long(self, name, value, long_name)
-    class(hdf5_file_type), intent(inout) :: self  !< the HDF5 file
-    character(len=*), intent(in) :: name          !< path of the data set
-    character(len=*), intent(in) :: long_name     !< a few words that describe it
-    integer(long), intent(in), target :: value    !< the number
-
-    call self%put_values(name, [h5t_std_i64le, h5kind_to_type(kind(value), h5_integer_kind)], no_extents, &
-                         c_loc(value), long_name)
-  end subroutine put_long
-
-  !> Write a data set of any type with its attributes.
-  subroutine put_values(self, name, types, extents, values, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self    !< the HDF5 file
-    character(len=*), intent(in) :: name            !< path of the data set
-    character(len=*), intent(in) :: long_name       !< a few words that describe it
-    integer(hid_t), intent(in) :: types(2)          !< types of the numbers in the file and in memory
-    integer(hsize_t), intent(in) :: extents(:)      !< extents of the data set, in Fortran order; empty for a single value
+    integer(hid_t), intent(in) :: types(2)          !< types of the values in the file and in memory
+    integer, intent(in) :: extents(:)               !< extents of the data set, in Fortran order; empty for a single value
     type(c_ptr), intent(in) :: values               !< address of the first value
-    character(len=*), intent(in), optional :: unit  !< unit of the numbers; absent for none
+    logical, intent(out) :: is_new                  !< the data set was made
     integer(hid_t) :: space, data_set
     integer :: status
     logical :: exists
 
+    is_new = .false.
     if (allocated(self%failure)) return
     ! this call fails if the group of the data set does not exist either
     call h5lexists_f(self%id, name, exists, status)
@@ -307,7 +221,7 @@ contains
     if (size(extents) == 0) then
       call h5screate_f(h5s_scalar_f, space, status)
     else
-      call h5screate_simple_f(size(extents), extents, space, status)
+      call h5screate_simple_f(size(extents), int(extents, hsize_t), space, status)
     end if
     call h5dcreate_f(self%id, name, types(1), space, data_set, status, lcpl_id=self%make_groups)
     call self%check(status)
@@ -316,19 +230,8 @@ contains
     if (all(extents > 0)) call h5dwrite_f(data_set, types(2), values, status)
     call self%check(status)
     call h5dclose_f(data_set, status)
-    call self%describe(name, long_name, unit)
+    is_new = .true.
   end subroutine put_values
-
-  !> Set the description of a data set, and its unit.
-  subroutine describe(self, name, long_name, unit)
-    class(hdf5_file_type), intent(inout) :: self    !< the HDF5 file
-    character(len=*), intent(in) :: name            !< path of the data set
-    character(len=*), intent(in) :: long_name       !< a few words that describe it
-    character(len=*), intent(in), optional :: unit  !< unit of the numbers; absent for none
-
-    call self%add_attribute(name, 'long_name', long_name)
-    if (present(unit)) call self%add_attribute(name, 'units', unit)
-  end subroutine describe
 
   !> Add an attribute that is a text to a data set or group; `/` is the file itself.
   subroutine add_attribute(self, name, attribute, text)

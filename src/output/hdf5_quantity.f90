@@ -10,25 +10,18 @@ module mech9_hdf5_quantity
                   h5dopen_f, h5dwrite_f, h5dread_f, h5dclose_f, h5sget_simple_extent_ndims_f, h5sget_simple_extent_dims_f, &
                   h5t_ieee_f64le, h5t_std_i32le, h5t_native_double, h5t_native_integer
   use mech9_kinds, only: wp
+  use mech9_column_sets, only: column_set_type
   use mech9_hdf5_file, only: hdf5_file_type
   implicit none
   private
-  public :: quantity_type, new_quantity, scale_length
+  public :: quantity_type
 
-  !> Longest path of a dimension scale.
-  integer, parameter :: scale_length = 20
   !> Columns that are copied as one piece, on the average.
   integer, parameter :: shortest_piece = 8
 
   !> A data set over the rows of a series, which takes some of their columns.
-  type :: quantity_type
+  type, extends(column_set_type) :: quantity_type
     integer(hid_t) :: data_set = -1
-    character(len=:), allocatable :: name, long_name, unit
-    logical :: whole = .false.                   !< whether its numbers are whole
-    !> Paths of the dimension scales, time first; none: the quantity is a scale itself.
-    character(len=scale_length), allocatable :: scales(:)
-    integer, allocatable :: columns(:)           !< numbers of its columns in a row
-    integer(hsize_t), allocatable :: extents(:)  !< extents of its part of a row, Fortran order; empty: one number
     integer, allocatable, private :: pieces(:, :)     !< (2,pieces) first column and number of columns that stand side by side; none:
                                                       !< the pieces would be short
     real(wp), allocatable, private :: buffer(:, :)    !< (columns, rows) numbers of rows that wait
@@ -44,26 +37,6 @@ module mech9_hdf5_quantity
   end type quantity_type
 
 contains
-
-  !> A quantity without a data set.
-  pure function new_quantity(name, columns, extents, long_name, unit, scales, whole) result(quantity)
-    character(len=*), intent(in) :: name        !< path of the data set
-    integer, intent(in) :: columns(:)           !< numbers of its columns in a row
-    integer, intent(in) :: extents(:)           !< extents of its part of a row, Fortran order; empty: one number
-    character(len=*), intent(in) :: long_name   !< a few words that describe it
-    character(len=*), intent(in) :: unit        !< unit of its numbers
-    character(len=*), intent(in) :: scales(:)   !< paths of the dimension scales, time first; none: the quantity is a scale itself
-    logical, intent(in), optional :: whole      !< whether its numbers are whole; false if absent
-    type(quantity_type) :: quantity
-
-    quantity%name = name
-    quantity%columns = columns
-    quantity%extents = extents
-    quantity%long_name = long_name
-    quantity%unit = unit
-    quantity%scales = scales
-    if (present(whole)) quantity%whole = whole
-  end function new_quantity
 
   !> Make room for rows that wait to be written.
   pure subroutine reserve(self, capacity)
@@ -109,9 +82,9 @@ contains
 
     if (allocated(file%failure)) return
     rank = size(none)
-    none = [self%extents, 0_hsize_t]
-    most = [self%extents, h5s_unlimited_f]
-    chunk = [self%extents, int(chunk_rows, hsize_t)]
+    none = [int(self%extents, hsize_t), 0_hsize_t]
+    most = [int(self%extents, hsize_t), h5s_unlimited_f]
+    chunk = [int(self%extents, hsize_t), int(chunk_rows, hsize_t)]
     call h5pcreate_f(h5p_dataset_create_f, creation, status)
     call h5pset_chunk_f(creation, rank, chunk, status)
     call file%check(status)
@@ -148,7 +121,7 @@ contains
     call h5pset_alloc_time_f(creation, h5d_alloc_time_early_f, status)
     call h5pset_fill_time_f(creation, h5d_fill_time_never_f, status)
     call file%check(status)
-    call h5screate_simple_f(size(self%extents) + 1, [self%extents, rows], space, status)
+    call h5screate_simple_f(size(self%extents) + 1, [int(self%extents, hsize_t), rows], space, status)
     call h5dcreate_anon_f(file%id, type_in_file(self), space, self%data_set, status, dcpl_id=creation)
     call file%check(status)
     call h5sclose_f(space, status)
@@ -180,7 +153,7 @@ contains
     allocate (extents(rank), most(rank))
     call h5sget_simple_extent_dims_f(space, extents, most, status)
     call h5sclose_f(space, status)
-    if (.not. has_extents(extents, [self%extents, rows])) &
+    if (.not. has_extents(extents, [int(self%extents, hsize_t), rows])) &
       call file%fail("data set '"//self%name//"' has other dimensions than this study gives it")
   end subroutine open_fixed
 
@@ -264,8 +237,8 @@ contains
     rank = size(self%extents) + 1
     start = 0
     start(rank) = offset
-    block = [self%extents, int(last - first + 1, hsize_t)]
-    if (grows) call h5dset_extent_f(self%data_set, [self%extents, offset + block(rank)], status)
+    block = [int(self%extents, hsize_t), int(last - first + 1, hsize_t)]
+    if (grows) call h5dset_extent_f(self%data_set, [int(self%extents, hsize_t), offset + block(rank)], status)
     call file%check(status)
     call h5dget_space_f(self%data_set, in_file, status)
     call h5sselect_hyperslab_f(in_file, h5s_select_set_f, start, block, status)
@@ -297,7 +270,7 @@ contains
     if (allocated(file%failure)) return
     offset = 0
     offset(size(offset)) = first - 1
-    extents = [self%extents, size(rows, 2, kind=hsize_t)]
+    extents = [int(self%extents, hsize_t), size(rows, 2, kind=hsize_t)]
     call h5dget_space_f(self%data_set, in_file, status)
     call h5sselect_hyperslab_f(in_file, h5s_select_set_f, offset, extents, status)
     call h5screate_simple_f(size(extents), extents, in_memory, status)

@@ -12,17 +12,15 @@ module mech9_hdf5_series
   use hdf5, only: hsize_t, h5olink_f
   use mech9_kinds, only: wp, long
   use mech9_text, only: string_type
+  use mech9_column_sets, only: column_set_type, column_set_list_type, chunk_rows_for, rows_within
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_quantity, only: quantity_type
   implicit none
   private
   public :: hdf5_series_type
 
-  !> Number of chunks of a complete compressed run; each is written as a whole.
-  integer, parameter :: compressed_chunks = 60
-  integer, parameter :: least_chunk_rows = 1024
-  !> Size of the chunks of all quantities together, and of the rows gathered before they are written [bytes].
-  integer(long), parameter :: largest_chunk = 67108864, buffer_size = 8388608
+  !> Size of the rows gathered before they are written [bytes].
+  integer(long), parameter :: buffer_size = 8388608
   integer, parameter :: most_buffered = 4096
 
   !> The quantities of one file.
@@ -42,6 +40,7 @@ module mech9_hdf5_series
     procedure :: start
     procedure :: start_fixed
     procedure :: add
+    procedure :: add_all
     procedure :: create
     procedure :: open => open_series
     procedure :: list_names
@@ -62,15 +61,10 @@ contains
     integer, intent(in) :: n_columns                !< most columns of the rows
     integer, intent(in) :: expected_rows            !< expected number of rows; there may be more or fewer
     integer, intent(in) :: compression              !< compression: from 0, none, to 9, the most
-    integer :: chunks
 
     allocate (self%quantities(n_quantities))
     self%compression = compression
-    ! equal chunks, so that the last one is nearly full
-    chunks = 1 + (max(expected_rows, 1) - 1)/rows_within(largest_chunk, n_columns)
-    self%chunk_rows = 1 + (max(expected_rows, 1) - 1)/chunks
-    if (compression > 0) self%chunk_rows = min(self%chunk_rows, &
-                                               max(least_chunk_rows, 1 + (expected_rows - 1)/compressed_chunks))
+    self%chunk_rows = chunk_rows_for(n_columns, expected_rows, compression)
     self%capacity = min(most_buffered, rows_within(buffer_size, n_columns))
     ! compressed rows are written only once, in whole chunks
     if (compression > 0) self%capacity = self%chunk_rows
@@ -92,23 +86,26 @@ contains
     allocate (self%is_waiting(self%capacity), source=.false.)
   end subroutine start_fixed
 
-  !> The number of rows that fit into a memory of the given size; at least one.
-  pure integer function rows_within(bytes, n_columns) result(rows)
-    integer(long), intent(in) :: bytes  !< size of the memory [bytes]
-    integer, intent(in) :: n_columns    !< numbers in each row, 8 bytes each
-
-    rows = int(max(1_long, bytes/(8_long*n_columns)))
-  end function rows_within
-
   !> Add a quantity.
   pure subroutine add(self, quantity)
     class(hdf5_series_type), intent(inout) :: self  !< the quantities over time
-    type(quantity_type), intent(in) :: quantity     !< a new one, without a data set
+    type(column_set_type), intent(in) :: quantity   !< its name, its columns and its description
 
     self%count = self%count + 1
-    self%quantities(self%count) = quantity
+    self%quantities(self%count)%column_set_type = quantity
     call self%quantities(self%count)%reserve(self%capacity)
   end subroutine add
+
+  !> Add the quantities of a list.
+  pure subroutine add_all(self, list)
+    class(hdf5_series_type), intent(inout) :: self    !< the quantities over time
+    type(column_set_list_type), intent(in) :: list    !< their names, columns and descriptions
+    integer :: i
+
+    do i = 1, list%count
+      call self%add(list%sets(i))
+    end do
+  end subroutine add_all
 
   !> The paths of all data sets.
   pure subroutine list_names(self, names)
@@ -141,8 +138,7 @@ contains
       associate (quantity => self%quantities(i))
         call h5olink_f(quantity%data_set, file%id, quantity%name, status, lcpl_id=file%link_properties())
         call file%check(status)
-        call file%describe(quantity%name, quantity%long_name, quantity%unit)
-        if (size(quantity%scales) == 0) call file%make_scale(quantity%name)
+        call quantity%describe_in(file)
       end associate
     end do
   end subroutine create
@@ -165,8 +161,7 @@ contains
     integer :: i
 
     do i = 1, self%count
-      if (size(self%quantities(i)%scales) > 0) &
-        call file%attach_scales(self%quantities(i)%name, self%quantities(i)%scales)
+      call self%quantities(i)%attach_in(file)
     end do
   end subroutine attach
 

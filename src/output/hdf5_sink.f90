@@ -8,19 +8,15 @@ module mech9_hdf5_sink
   use mech9_columns, only: columns_type
   use mech9_result_sink, only: result_sink_type
   use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_hdf5_quantity, only: new_quantity
   use mech9_hdf5_series, only: hdf5_series_type
-  use mech9_hdf5_columns, only: column_sets_type, most_column_sets
-  use mech9_hdf5_scales, only: put_scales
-  use mech9_hdf5_sensitivities, only: quantities_of_sensitivity, add_sensitivities, put_parameters
+  use mech9_column_sets, only: column_set_list_type
+  use mech9_row_layout, only: list_row_sets, put_row_scales, list_event_sets, put_event_scales, most_events
   implicit none
   private
   public :: hdf5_sink_type
 
   !> Longest time after which readers of the file see new rows [s].
   real(wp), parameter :: longest_wait = 1.0_wp
-  !> Number of events in a chunk of their data sets.
-  integer, parameter :: most_events = 64
 
   type, extends(result_sink_type) :: hdf5_sink_type
     type(hdf5_file_type) :: file
@@ -50,20 +46,16 @@ contains
     type(request_type), intent(in) :: request          !< the times of the rows, and the compression
     type(columns_type), intent(in) :: columns          !< columns of the rows to come
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
-    type(column_sets_type) :: sets
+    type(column_set_list_type) :: list
 
     call self%file%create(path, err)
     if (allocated(err)) return
     self%takes_poses = .true.
-    call self%series%start(1 + most_column_sets(columns) + quantities_of_sensitivity + columns%motors, columns%width(), &
-                           request%time%intervals + 1, request%output%compression)
-    call self%series%add(new_quantity('time', [1], [integer ::], 'time', columns%units(1)%text, [character(len=5) ::]))
-    call sets%add(self%series, mechanism, columns)
-    if (columns%sensitivities > 0) call add_sensitivities(self%series, columns)
+    call list_row_sets(mechanism, columns, list)
+    call self%series%start(list%count, columns%width(), request%time%intervals + 1, request%output%compression)
+    call self%series%add_all(list)
     call self%series%create(self%file)
-    call put_scales(self%file, mechanism, columns)
-    if (columns%sensitivities > 0) call put_parameters(self%file, columns)
-    call self%series%attach(self%file)
+    call put_row_scales(self%file, mechanism, columns, list)
     call self%pacer%start(longest_wait)
     call self%tell(err)
   end subroutine open_sink
@@ -72,36 +64,20 @@ contains
   subroutine begin_events(self, n_independent)
     class(hdf5_sink_type), intent(inout) :: self  !< the HDF5 sink
     integer, intent(in) :: n_independent          !< how many coordinates are independent
-    integer :: i
+    type(column_set_list_type) :: list
 
-    call self%events%start(3, 1 + 2*n_independent, most_events, 0)
-    call self%events%add(new_quantity('events/time', [1], [integer ::], 'when other coordinates were taken', 's', &
-                                      [character(len=5) ::]))
-    call self%events%add(new_quantity('events/independent', [(1 + i, i=1, n_independent)], [n_independent], &
-                                      'the independent coordinates from then on', '1', ['/events/time   ', '/events/freedom'], &
-                                      whole=.true.))
-    call self%events%add(new_quantity('events/replaced', [(1 + n_independent + i, i=1, n_independent)], [n_independent], &
-                                      '1 where another angle is integrated in place of this coordinate, near gimbal lock', '1', &
-                                      ['/events/time   ', '/events/freedom'], whole=.true.))
+    call list_event_sets(n_independent, list)
+    call self%events%start(list%count, 1 + 2*n_independent, most_events, 0)
+    call self%events%add_all(list)
     call self%events%create(self%file)
-    call self%file%put('events/freedom', [(i, i=1, n_independent)], 'number of the degree of freedom')
-    call self%file%make_scale('events/freedom')
-    call self%events%attach(self%file)
+    call put_event_scales(self%file, n_independent, list)
   end subroutine begin_events
 
   !> Write the events of the run.
-  subroutine write_events(self, times, independent, replaced)
-    class(hdf5_sink_type), intent(inout) :: self  !< the HDF5 sink
-    real(wp), intent(in) :: times(:)              !< times of the events [s]
-    integer, intent(in) :: independent(:, :)      !< (degrees of freedom, events) numbers of the independent coordinates then
-    logical, intent(in) :: replaced(:, :)         !< (degrees of freedom, events) another angle is integrated in its place
-    real(wp) :: rows(1 + 2*size(independent, 1), size(times))
-    integer :: n
+  subroutine write_events(self, rows)
+    class(hdf5_sink_type), intent(inout) :: self     !< the HDF5 sink
+    real(wp), intent(in), contiguous :: rows(:, :)   !< (columns, events) as take_events gives them
 
-    n = size(independent, 1)
-    rows(1, :) = times
-    rows(2:1 + n, :) = real(independent, wp)
-    rows(2 + n:, :) = merge(1.0_wp, 0.0_wp, replaced)
     call self%events%append_rows(self%file, rows)
   end subroutine write_events
 

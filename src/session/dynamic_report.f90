@@ -4,6 +4,7 @@ module mech9_dynamic_report
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_number_lists, only: same_numbers
+  use mech9_row_layout, only: write_coefficients, take_events
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_plan, only: plan_type
   use mech9_law_notes, only: print_jumps
@@ -142,53 +143,19 @@ contains
     type(free_simulation_type), pointer :: simulation
 
     simulation => motion%free()
-    call write_coefficients(hdf5, motion%plan, simulation)
+    call write_coefficients(hdf5%file, motion%plan, simulation)
+    call hdf5%begin_events(size(motion%plan%independent))
   end subroutine write_start
-
-  !> Write the coefficients of motion, and make data sets for events.
-  subroutine write_coefficients(hdf5, plan, simulation)
-    type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
-    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
-    type(free_simulation_type), intent(in) :: simulation   !< the motion
-    real(wp) :: coefficients(size(plan%independent), size(plan%independent))
-    integer :: p
-
-    do p = 1, size(plan%independent)
-      coefficients(p:, p) = simulation%coefficients(p:, p)
-      coefficients(p, p:) = simulation%coefficients(p:, p)
-    end do
-    associate (file => hdf5%file)
-      call file%put('dynamics/p', plan%independent, 'number of an independent coordinate at the start')
-      call file%make_scale('dynamics/p')
-      call file%put('dynamics/r', plan%independent, 'number of an independent coordinate at the start')
-      call file%make_scale('dynamics/r')
-      call file%put('dynamics/coefficients', coefficients, 'coefficients of motion a(p,r), the mass matrix, at the start')
-      call file%attach_scales('dynamics/coefficients', ['/dynamics/p', '/dynamics/r'])
-    end associate
-    call hdf5%begin_events(size(plan%independent))
-  end subroutine write_coefficients
 
   !> Write the changes of the independent coordinates as data sets.
   subroutine write_end(hdf5, motion)
     type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
     type(model_motion_type), intent(inout) :: motion       !< the motion, as far as it went
     type(free_simulation_type), pointer :: simulation
+    real(wp), allocatable :: rows(:, :)
 
     simulation => motion%free()
-    call write_events(hdf5, simulation)
+    call take_events(simulation, rows)
+    call hdf5%write_events(rows)
   end subroutine write_end
-
-  !> Write the events of a motion.
-  subroutine write_events(hdf5, simulation)
-    type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
-    type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
-    integer :: independent(size(simulation%motion%system%plan%independent), size(simulation%coordinate_changes)), k, i
-    logical :: replaced(size(independent, 1), size(independent, 2))
-
-    do i = 1, size(simulation%coordinate_changes)
-      independent(:, i) = simulation%coordinate_changes(i)%independent
-      replaced(:, i) = [(any(simulation%coordinate_changes(i)%replaced == independent(k, i)), k=1, size(independent, 1))]
-    end do
-    call hdf5%write_events(simulation%coordinate_changes%t, independent, replaced)
-  end subroutine write_events
 end module mech9_dynamic_report

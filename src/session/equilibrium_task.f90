@@ -19,7 +19,8 @@ module mech9_equilibrium_task
   use mech9_heading, only: heading_of
   use mech9_kept_rows, only: kept_rows_type
   use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_hdf5_record, only: write_provenance, write_structure, write_coordinates
+  use mech9_structure_layout, only: write_structure, write_coordinates
+  use mech9_hdf5_record, only: write_provenance
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_rest, only: rest_type, is_interruption
   use mech9_equilibrium_rows, only: columns_of_equilibria, rows_of_equilibria, columns_of_modes, rows_of_modes

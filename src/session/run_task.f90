@@ -17,7 +17,8 @@ module mech9_run_task
   use mech9_facts, only: facts_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_hdf5_sink, only: hdf5_sink_type
-  use mech9_hdf5_record, only: write_uniqueness
+  use mech9_force_layout, only: write_uniqueness
+  use mech9_quantity_layout, only: write_quantities
   use mech9_structure_text, only: print_structure, print_mobility
   use mech9_held_text, only: print_held
   use mech9_parameter_text, only: print_parameter_notes
@@ -26,7 +27,7 @@ module mech9_run_task
   use mech9_start_way_text, only: print_start_way
   use mech9_picture_requests, only: picture_requests_type
   use mech9_results, only: results_type
-  use mech9_quantity_results, only: write_quantities, print_quantities
+  use mech9_quantity_results, only: print_quantities
   use mech9_signal_interruption, only: signal_interruption_type
   use mech9_run_outcome, only: run_outcome_type
   use mech9_run_facts, only: list_run_facts

@@ -83,7 +83,7 @@ int main(void)
   mech9_mechanism *mechanism = NULL, *copy = NULL;
   mech9_results *results = NULL;
   mech9_positions *positions = NULL;
-  double value = 0, q[4];
+  double value = 0, q[4], point[3] = {0, 0, 0};
   int stop = 1, codes[1];
   expect(mech9_kinematics(NULL, NULL, &results, error) == 2 && results == NULL, "no mechanism");
   expect(strstr(mech9_error_message(error), "this is no mechanism") != NULL, "no mechanism is told");
@@ -107,6 +107,31 @@ int main(void)
   expect(mech9_mechanism_add(copy, "&point name='Q', link=3 /", error) == 0, "a point is added");
   expect(strstr(mech9_mechanism_text(copy), "'Q'") != NULL, "and written");
   expect(mech9_kinematics(copy, &stop, &results, error) == 130, "a run that is to stop stops");
+  expect(mech9_results_data_set_kind(results, -1) == 0 && mech9_results_data_set_path(results, 100000) == NULL, "no such data set");
+  mech9_results_destroy(results);
+  expect(mech9_check(mechanism, &results, error) == 0 && mech9_results_lay_out(results, mechanism, error) == 2, "a check has no file");
+  mech9_results_destroy(results);
+  expect(mech9_mechanism_reads(mechanism, "./four_bar.nml") != NULL, "the data file is known");
+  expect(mech9_mechanism_reads(mechanism, "other.nml") == NULL && mech9_mechanism_reads(NULL, "a") == NULL, "no other file is");
+  expect(mech9_kinematics(mechanism, NULL, &results, error) == 0 && mech9_results_data_sets(results) == 0, "a run");
+  expect(mech9_results_lay_out(results, NULL, error) == 2 && mech9_results_lay_out(NULL, mechanism, error) == 2, "of no mechanism");
+  expect(mech9_results_lay_out(results, mechanism, error) == 0 && mech9_results_data_sets(results) > 30, "has data sets");
+  for (int i = 0; i < mech9_results_data_sets(results); i++) {
+    int steps = mech9_results_data_set_rank(results, i) > 0 ? mech9_results_data_set_extent(results, i, 0) : 1;
+    if (strcmp(mech9_results_data_set_path(results, i), "position") == 0) {
+      expect(mech9_results_data_set_kind(results, i) == 1 && mech9_results_data_set_rank(results, i) == 3, "numbers over three dimensions");
+      expect(strcmp(mech9_results_data_set_scale(results, i, 1), "point") == 0, "with scales");
+      expect(mech9_results_data_set_take(results, i, 12, 1, point, error) == 0 && point[0] != 0, "the last row");
+      expect(mech9_results_data_set_take(results, i, 12, 2, point, error) == 2, "none behind it");
+    }
+    if (strcmp(mech9_results_data_set_path(results, i), "diagnostics/exit_code") == 0)
+      expect(mech9_results_data_set_take(results, i, 0, 1, codes, error) == 0 && codes[0] == 0, "a single whole number");
+    if (mech9_results_data_set_kind(results, i) == 4)
+      expect(mech9_results_data_set_text(results, i, 0) != NULL && mech9_results_data_set_take(results, i, 0, 1, q, error) == 2, "texts");
+    expect(mech9_results_data_set_take(results, i, 0, steps + 1, q, error) == 2, "too many rows");
+    expect(mech9_results_data_set_take(results, i, 2147483647, 1, q, error) == 2, "rows far behind");
+  }
+  expect(mech9_results_attribute_text(results, mech9_results_attributes(results)) == NULL, "no other attribute");
   mech9_results_destroy(results);
   expect(mech9_positions_create(mechanism, &positions, error) == 0, "positions");
   expect(mech9_positions_find(positions, 1, NULL, NULL, NULL, NULL, q, NULL, NULL, codes, error) == 2, "need values");

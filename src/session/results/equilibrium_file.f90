@@ -4,8 +4,8 @@ module mech9_equilibrium_file
   use mech9_mechanism, only: mechanism_type
   use mech9_columns, only: columns_type
   use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_hdf5_scales, only: put_force_scales, common_unit
-  use mech9_hdf5_record, only: write_uniqueness
+  use mech9_scale_layout, only: put_force_scales, common_unit
+  use mech9_force_layout, only: write_uniqueness
   use mech9_force_record, only: force_record_type
   use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_mode_shapes, only: energy_shares

@@ -11,11 +11,12 @@ module mech9_results
   use mech9_plot, only: plot_type, picture_of_plot
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_facts, only: facts_type
-  use mech9_hdf5_facts, only: put_facts
+  use mech9_fact_layout, only: put_diagnostics
   use mech9_xdmf, only: new_xdmf
   use mech9_command_line, only: command_line_type
   use mech9_written_files, only: result_paths_type, find_result_paths
-  use mech9_hdf5_record, only: write_provenance, write_structure
+  use mech9_structure_layout, only: write_structure
+  use mech9_hdf5_record, only: write_provenance
   use mech9_version, only: name_and_version
   implicit none
   private
@@ -218,14 +219,9 @@ contains
     type(facts_type), intent(in) :: facts             !< named numbers and texts about the run
     integer, intent(in), optional :: exit_code        !< of the run; not given before its end is known
     type(hdf5_sink_type), pointer :: hdf5
-    integer :: code
 
     hdf5 => self%hdf5()
-    if (.not. associated(hdf5)) return
-    call put_facts(facts, hdf5%file, 'diagnostics', again=present(exit_code))
-    code = -1
-    if (present(exit_code)) code = exit_code
-    call hdf5%file%put('diagnostics/exit_code', code, 'what the program answered to the shell; -1: the run did not end')
+    if (associated(hdf5)) call put_diagnostics(facts, hdf5%file, exit_code)
   end subroutine write_facts
 
   !> Print which files were written, after all are closed; with `quiet`, only those that could not be made.

@@ -10,10 +10,10 @@ module mech9_study_columns
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type
   use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_hdf5_quantity, only: new_quantity, scale_length
+  use mech9_column_sets, only: column_set_list_type, new_column_set, scale_length
   use mech9_hdf5_series, only: hdf5_series_type
-  use mech9_hdf5_columns, only: column_sets_type, most_column_sets
-  use mech9_hdf5_scales, only: put_scales, names_of_scales
+  use mech9_column_layout, only: column_layout_type
+  use mech9_scale_layout, only: put_scales, names_of_scales
   use mech9_hdf5_copying, only: copy_data_sets, extents_of, scales_of, attribute_of
   use mech9_study_filling, only: fill_rows
   implicit none
@@ -147,13 +147,15 @@ contains
     type(columns_type), intent(in) :: columns          !< of a run
     type(model_type), intent(in) :: model              !< the model with the values of the data file
     integer, intent(in) :: runs                        !< how many the file has
-    type(column_sets_type) :: sets
+    type(column_layout_type) :: layout
+    type(column_set_list_type) :: list
 
-    sets%times = model%request%time%intervals + 1
-    self%numbers = columns%width()*sets%times
+    layout%times = model%request%time%intervals + 1
+    self%numbers = columns%width()*layout%times
     self%runs = runs
-    call self%series%start_fixed(most_column_sets(columns), self%numbers, runs, .true.)
-    call sets%add(self%series, model%mechanism, columns)
+    call layout%add(list, model%mechanism, columns)
+    call self%series%start_fixed(list%count, self%numbers, runs, .true.)
+    call self%series%add_all(list)
   end subroutine begin
 
   !> Prepare the data sets that a file has. Their numbers stand in a row one data set after the other.
@@ -179,9 +181,9 @@ contains
       end do
       ! the last extent is that of the runs
       n = product(extents(:size(extents) - 1))
-      call self%series%add(new_quantity(names(i)%text, [(self%numbers + k, k=1, n)], extents(:size(extents) - 1), &
-                                        attribute_of(file, names(i)%text, 'long_name'), &
-                                        attribute_of(file, names(i)%text, 'units'), paths))
+      call self%series%add(new_column_set(names(i)%text, [(self%numbers + k, k=1, n)], extents(:size(extents) - 1), &
+                                          attribute_of(file, names(i)%text, 'long_name'), &
+                                          attribute_of(file, names(i)%text, 'units'), paths))
       self%numbers = self%numbers + n
       deallocate (paths)
     end do

@@ -9,7 +9,7 @@ module mech9_study_file
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type
   use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_hdf5_quantity, only: new_quantity
+  use mech9_column_sets, only: new_column_set
   use mech9_hdf5_series, only: hdf5_series_type
   use mech9_hdf5_reading, only: open_existing
   use mech9_run_maker, only: made_run_type
@@ -70,8 +70,8 @@ contains
     call self%file%create(path, err)
     if (allocated(err)) return
     call numbers%start_fixed(1, 1, layout%runs_of_part(), .false.)
-    call numbers%add(new_quantity('run', [1], [integer ::], 'number of the run in the whole study', '1', [character(len=4) ::], &
-                                  whole=.true.))
+    call numbers%add(new_column_set('run', [1], [integer ::], 'number of the run in the whole study', '1', [character(len=4) ::], &
+                                    whole=.true.))
     call self%begin_outcomes(.false.)
     call numbers%create(self%file)
     call self%outcomes%create(self%file)
@@ -138,17 +138,17 @@ contains
       columns = n + size(layout%quantities) + 1
       call self%outcomes%start_fixed(columns, columns, layout%runs_of_part(), only_read)
       do i = 1, n
-        call self%outcomes%add(new_quantity('parameters/'//layout%parameters(i)%text, [i], [integer ::], &
-                                            'parameter '//layout%parameters(i)%text, '', ['/run']))
+        call self%outcomes%add(new_column_set('parameters/'//layout%parameters(i)%text, [i], [integer ::], &
+                                              'parameter '//layout%parameters(i)%text, '', ['/run']))
       end do
       do i = 1, size(layout%quantities)
-        call self%outcomes%add(new_quantity('quantities/'//layout%quantities(i)%text, [n + i], [integer ::], &
-                                            layout%meanings(i)%text, layout%units(i)%text, ['/run']))
+        call self%outcomes%add(new_column_set('quantities/'//layout%quantities(i)%text, [n + i], [integer ::], &
+                                              layout%meanings(i)%text, layout%units(i)%text, ['/run']))
       end do
     end associate
-    call self%outcomes%add(new_quantity('exit_code', [columns], [integer ::], &
-                                        'exit code of a single run with these values; -1: not made yet', '1', ['/run'], &
-                                        whole=.true.))
+    call self%outcomes%add(new_column_set('exit_code', [columns], [integer ::], &
+                                          'exit code of a single run with these values; -1: not made yet', '1', ['/run'], &
+                                          whole=.true.))
     allocate (self%row(columns), source=0.0_wp)
     allocate (self%block(columns, max(1, min(most_together, self%layout%runs_of_part()))), source=0.0_wp)
   end subroutine begin_outcomes

@@ -8,10 +8,10 @@ module mech9_starts_file
   use mech9_error, only: error_type
   use mech9_model, only: model_type
   use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_hdf5_quantity, only: new_quantity
+  use mech9_column_sets, only: new_column_set
   use mech9_hdf5_series, only: hdf5_series_type
   use mech9_hdf5_reading, only: open_existing, read_text, read_integer, has_data_set
-  use mech9_hdf5_record, only: write_coordinates
+  use mech9_structure_layout, only: write_coordinates
   use mech9_study_filling, only: fill_rows
   use mech9_study_definition, only: digest_of, tell_difference
   use mech9_design_search, only: found_design_type, most_assemblies
@@ -116,22 +116,22 @@ contains
 
     n = most_assemblies*layout%width() + 1
     call series%start_fixed(layout%parameters + 4, n, starts, .false.)
-    call series%add(new_quantity('starts/value', layout%columns(0, 1), [most_assemblies], &
-                                 'value of a design to which the start led', '', of_design))
+    call series%add(new_column_set('starts/value', layout%columns(0, 1), [most_assemblies], &
+                                   'value of a design to which the start led', '', of_design))
     do i = 1, layout%parameters
       associate (name => model%parameters(synthesis%space%varied(i))%name)
-        call series%add(new_quantity('starts/parameters/'//name, layout%columns(i, 1), [most_assemblies], 'parameter '//name, '', &
-                                     of_design))
+        call series%add(new_column_set('starts/parameters/'//name, layout%columns(i, 1), [most_assemblies], 'parameter '//name, &
+                                       '', of_design))
       end associate
     end do
-    call series%add(new_quantity('starts/coordinates', layout%columns(1 + layout%parameters, layout%coordinates), &
-                                 [layout%coordinates, most_assemblies], 'coordinates of its assembly at the start of the run', &
-                                 'rad,m', [of_design, '/coordinate']))
+    call series%add(new_column_set('starts/coordinates', layout%columns(1 + layout%parameters, layout%coordinates), &
+                                   [layout%coordinates, most_assemblies], 'coordinates of its assembly at the start of the run', &
+                                   'rad,m', [of_design, '/coordinate']))
     if (layout%targets > 0) &
-      call series%add(new_quantity('starts/times', layout%columns(1 + layout%parameters + layout%coordinates, layout%targets), &
-                                   [layout%targets, most_assemblies], 'times of its targets', 's', [of_design, '/target    ']))
-    call series%add(new_quantity('starts/found', [n], [integer ::], 'number of designs to which the start led; -1: not made yet', &
-                                 '1', of_design(:1), whole=.true.))
+      call series%add(new_column_set('starts/times', layout%columns(1 + layout%parameters + layout%coordinates, layout%targets), &
+                                     [layout%targets, most_assemblies], 'times of its targets', 's', [of_design, '/target    ']))
+    call series%add(new_column_set('starts/found', [n], [integer ::], &
+                                   'number of designs to which the start led; -1: not made yet', '1', of_design(:1), whole=.true.))
   end subroutine begin_series
 
   !> Write the scales of the dimensions: start, assembly, coordinate, target.

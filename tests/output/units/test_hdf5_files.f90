@@ -4,13 +4,13 @@ module test_hdf5_files
   use mech9_error, only: error_type, exit_file
   use mech9_text, only: string_type
   use mech9_facts, only: facts_type
-  use mech9_hdf5_facts, only: put_facts
+  use mech9_fact_layout, only: put_facts
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_reading, only: open_existing, read_text, read_texts, read_integer, has_data_set
-  use mech9_hdf5_quantity, only: new_quantity
+  use mech9_column_sets, only: new_column_set
   use mech9_hdf5_series, only: hdf5_series_type
   use mech9_hdf5_copying, only: copy_data_sets, extents_of, scales_of, attribute_of
-  use mech9_hdf5_scales, only: common_unit
+  use mech9_scale_layout, only: common_unit
   use mech9_checks, only: near_matrix, has_message
   use mech9_test_files, only: save_lines, remove_file, text_of_file
   use mech9_testing, only: tester_type
@@ -132,9 +132,9 @@ contains
       numbers = reshape([((real(i, wp)/(k + 2), k=1, 3), real(i, wp), i=1, n)], [4, n])
       call file%create(path, err)
       call series%start(3, 4, n, compression)
-      call series%add(new_quantity('time', [1], [integer ::], 'time', 's', [character(len=5) ::]))
-      call series%add(new_quantity('vector', [2, 3], [2], 'two numbers', 'm', ['/time', '/axis']))
-      call series%add(new_quantity('count', [4], [integer ::], 'a whole number', '1', ['/time'], whole=.true.))
+      call series%add(new_column_set('time', [1], [integer ::], 'time', 's', [character(len=5) ::]))
+      call series%add(new_column_set('vector', [2, 3], [2], 'two numbers', 'm', ['/time', '/axis']))
+      call series%add(new_column_set('count', [4], [integer ::], 'a whole number', '1', ['/time'], whole=.true.))
       call series%create(file)
       call file%put('axis', [1, 2], 'number of the axis')
       call file%make_scale('axis')
@@ -171,8 +171,8 @@ contains
     expected = reshape([(real(i, wp), -0.5_wp*i, i=1, n)], [2, n])
     call file%create(path, err)
     call series%start_fixed(2, 2, n, .false.)
-    call series%add(new_quantity('a', [1], [integer ::], 'first', '1', [character(len=1) ::]))
-    call series%add(new_quantity('b', [2], [integer ::], 'second', '1', [character(len=1) ::]))
+    call series%add(new_column_set('a', [1], [integer ::], 'first', '1', [character(len=1) ::]))
+    call series%add(new_column_set('b', [2], [integer ::], 'second', '1', [character(len=1) ::]))
     call series%create(file)
     do i = 1, n
       place = 1 + modulo(i*7, n)      ! 7 and 50 have no common factor: each place comes once
@@ -185,8 +185,8 @@ contains
     call tester%is_true(.not. allocated(file%failure), 'rows are written')
     call open_existing(path, .false., file, err)
     call again%start_fixed(2, 2, n, .true.)
-    call again%add(new_quantity('a', [1], [integer ::], 'first', '1', [character(len=1) ::]))
-    call again%add(new_quantity('b', [2], [integer ::], 'second', '1', [character(len=1) ::]))
+    call again%add(new_column_set('a', [1], [integer ::], 'first', '1', [character(len=1) ::]))
+    call again%add(new_column_set('b', [2], [integer ::], 'second', '1', [character(len=1) ::]))
     call again%open(file)
     call again%read_rows(file, 1, back)
     call near_matrix(tester, back, expected, 0.0_wp, 'all rows')

@@ -107,7 +107,7 @@ contains
     call tester%no_error(err, 'a file for rows')
     call tester%is_true(file_sink%takes_poses .and. file_sink%words() == 'HDF5 file: '//path, 'its words')
     call file_sink%begin_events(1)
-    call file_sink%write_events([0.5_wp], reshape([2], [1, 1]), reshape([.true.], [1, 1]))
+    call file_sink%write_events(reshape([0.5_wp, 2.0_wp, 1.0_wp], [3, 1]))
     call move_alloc(file_sink, sink)
     call append_sink(slots, sink)
     call tester%is_true(size(slots) == 1 .and. .not. allocated(sink), 'the sink is in the list')

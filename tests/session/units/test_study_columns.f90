@@ -9,7 +9,7 @@ module test_study_columns
   use mech9_hdf5_copying, only: extents_of, attribute_of
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_reading, only: open_existing, read_texts
-  use mech9_hdf5_quantity, only: new_quantity
+  use mech9_column_sets, only: new_column_set
   use mech9_hdf5_series, only: hdf5_series_type
   use mech9_model, only: model_type
   use mech9_study_columns, only: study_columns_type, refuse_varied_times
@@ -121,8 +121,8 @@ contains
 
     call file%create(path, err)
     call series%start_fixed(2, 2, n, .false.)
-    call series%add(new_quantity('a', [1], [integer ::], 'first', '1', [character(len=1) ::]))
-    call series%add(new_quantity('b', [2], [integer ::], 'second', '1', [character(len=1) ::]))
+    call series%add(new_column_set('a', [1], [integer ::], 'first', '1', [character(len=1) ::]))
+    call series%add(new_column_set('b', [2], [integer ::], 'second', '1', [character(len=1) ::]))
     call series%create(file)
     call fill_rows(series, file, 2, n, -1)
     call file%flush()
@@ -131,8 +131,8 @@ contains
     call tester%is_true(.not. allocated(file%failure), 'rows are filled')
     call open_existing(path, .false., file, err)
     call again%start_fixed(2, 2, n, .true.)
-    call again%add(new_quantity('a', [1], [integer ::], 'first', '1', [character(len=1) ::]))
-    call again%add(new_quantity('b', [2], [integer ::], 'second', '1', [character(len=1) ::]))
+    call again%add(new_column_set('a', [1], [integer ::], 'first', '1', [character(len=1) ::]))
+    call again%add(new_column_set('b', [2], [integer ::], 'second', '1', [character(len=1) ::]))
     call again%open(file)
     call again%read_rows(file, n - 2, rows)
     call tester%is_true(all(ieee_is_nan(rows(1, :))) .and. all(abs(rows(2, :) + 1.0_wp) <= 0.0_wp), 'the last rows')

@@ -1,34 +1,23 @@
-!> The columns of results as data sets of an HDF5 file: over time, as a run writes them, or over the runs of a study and time.
-module mech9_hdf5_columns
+!> The columns of results as data sets: over time, as a run writes them, or over the runs of a study and time.
+module mech9_column_layout
   use mech9_mechanism, only: mechanism_type
   use mech9_columns, only: columns_type
-  use mech9_hdf5_quantity, only: quantity_type, new_quantity, scale_length
-  use mech9_hdf5_series, only: hdf5_series_type
-  use mech9_hdf5_scales, only: common_unit
+  use mech9_column_sets, only: column_set_type, column_set_list_type, new_column_set, scale_length
+  use mech9_scale_layout, only: common_unit
   implicit none
   private
-  public :: column_sets_type, most_column_sets
-
-  !> Data sets of coordinates and points with their derivatives, of poses, and of forces.
-  integer, parameter :: sets_of_motion = 6 + 3 + 4
+  public :: column_layout_type
 
   !> How columns become data sets.
-  type :: column_sets_type
-    integer :: times = 0   !< how many times a row of the series holds, one after the other: all those of a run; 0: a row is one time
+  type :: column_layout_type
+    integer :: times = 0   !< how many times a row of the list holds, one after the other: all those of a run; 0: a row is one time
   contains
     procedure :: add => add_all
     procedure, private :: add_one
     procedure, private :: add_of_coordinates, add_of_points, add_forces, add_poses
-  end type column_sets_type
+  end type column_layout_type
 
 contains
-
-  !> The most data sets that columns may need, but for time and sensitivities.
-  pure integer function most_column_sets(columns)
-    type(columns_type), intent(in) :: columns   !< of the rows to come
-
-    most_column_sets = sets_of_motion + scalars_of(columns)
-  end function most_column_sets
 
   !> How many columns belong neither to a coordinate nor to a point, force or parameter.
   pure integer function scalars_of(columns)
@@ -38,9 +27,9 @@ contains
   end function scalars_of
 
   !> Add the data sets of all columns but time and sensitivities, each with a scale for every dimension.
-  subroutine add_all(self, series, mechanism, columns)
-    class(column_sets_type), intent(in) :: self       !< how columns become data sets
-    type(hdf5_series_type), intent(inout) :: series   !< gets the data sets
+  subroutine add_all(self, list, mechanism, columns)
+    class(column_layout_type), intent(in) :: self       !< how columns become data sets
+    type(column_set_list_type), intent(inout) :: list   !< gets the data sets
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     character(len=3), parameter :: names(0:2) = ['q  ', 'dq ', 'ddq']
@@ -50,29 +39,29 @@ contains
     integer :: order, i, at
 
     do order = 0, columns%derivatives
-      call self%add_of_coordinates(series, columns, trim(names(order)), trim(words(order))// &
+      call self%add_of_coordinates(list, columns, trim(names(order)), trim(words(order))// &
                                    merge(' of the pairs      ', ' of the coordinates', order == 0), order)
     end do
     do order = 0, columns%derivatives
       if (size(mechanism%points) > 0) &
-        call self%add_of_points(series, mechanism, columns, trim(of_points(order)), trim(point_units(order)), order)
+        call self%add_of_points(list, mechanism, columns, trim(of_points(order)), trim(point_units(order)), order)
     end do
-    if (columns%forces() > 0) call self%add_forces(series, columns)
+    if (columns%forces() > 0) call self%add_forces(list, columns)
     do i = 1, scalars_of(columns)
       at = columns%motion + columns%forces() + i
-      call self%add_one(series, columns, new_quantity(identifier(columns%names(at)%text), [at], [integer ::], &
+      call self%add_one(list, columns, new_column_set(identifier(columns%names(at)%text), [at], [integer ::], &
                                                       columns%long_names(at)%text, columns%units(at)%text, [character(len=1) ::]))
     end do
-    if (columns%poses%n_links > 0) call self%add_poses(series, columns)
+    if (columns%poses%n_links > 0) call self%add_poses(list, columns)
   end subroutine add_all
 
   !> Add one data set.
-  subroutine add_one(self, series, columns, of_a_time)
-    class(column_sets_type), intent(in) :: self       !< how columns become data sets
-    type(hdf5_series_type), intent(inout) :: series   !< gets the data set
+  subroutine add_one(self, list, columns, of_a_time)
+    class(column_layout_type), intent(in) :: self       !< how columns become data sets
+    type(column_set_list_type), intent(inout) :: list   !< gets the data set
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
-    type(quantity_type), intent(in) :: of_a_time      !< its part of one time, with the scales of its dimensions behind time
-    type(quantity_type) :: quantity
+    type(column_set_type), intent(in) :: of_a_time    !< its part of one time, with the scales of its dimensions behind time
+    type(column_set_type) :: quantity
     character(len=scale_length) :: before(2)
     integer :: i, k
 
@@ -82,16 +71,16 @@ contains
       quantity%scales = [before(2:), of_a_time%scales]
     else
       quantity%columns = [((of_a_time%columns(i) + (k - 1)*columns%width(), i=1, size(of_a_time%columns)), k=1, self%times)]
-      quantity%extents = [of_a_time%extents, int(self%times, kind(of_a_time%extents))]
+      quantity%extents = [of_a_time%extents, self%times]
       quantity%scales = [before, of_a_time%scales]
     end if
-    call series%add(quantity)
+    call list%add(quantity)
   end subroutine add_one
 
   !> Add a quantity of all coordinates.
-  subroutine add_of_coordinates(self, series, columns, name, long_name, order)
-    class(column_sets_type), intent(in) :: self       !< how columns become data sets
-    type(hdf5_series_type), intent(inout) :: series   !< gets the data sets
+  subroutine add_of_coordinates(self, list, columns, name, long_name, order)
+    class(column_layout_type), intent(in) :: self       !< how columns become data sets
+    type(column_set_list_type), intent(inout) :: list   !< gets the data sets
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     character(len=*), intent(in) :: name              !< path of the data set
     character(len=*), intent(in) :: long_name     !< a few words that describe it
@@ -100,14 +89,14 @@ contains
 
     n = size(columns%coordinates)
     before = 1 + order*n
-    call self%add_one(series, columns, new_quantity(name, [(before + i, i=1, n)], [n], trim(long_name), &
+    call self%add_one(list, columns, new_column_set(name, [(before + i, i=1, n)], [n], trim(long_name), &
                                                     common_unit(columns%units(before + 1:before + n)), ['/coordinate']))
   end subroutine add_of_coordinates
 
   !> Add a quantity of all points, with three components.
-  subroutine add_of_points(self, series, mechanism, columns, name, unit, order)
-    class(column_sets_type), intent(in) :: self       !< how columns become data sets
-    type(hdf5_series_type), intent(inout) :: series   !< gets the data sets
+  subroutine add_of_points(self, list, mechanism, columns, name, unit, order)
+    class(column_layout_type), intent(in) :: self       !< how columns become data sets
+    type(column_set_list_type), intent(inout) :: list   !< gets the data sets
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     character(len=*), intent(in) :: name              !< path of the data set
@@ -120,54 +109,54 @@ contains
     if (name == 'velocity') plural = 'velocities'
     each = 3*(columns%derivatives + 1)
     before = 1 + (columns%derivatives + 1)*size(columns%coordinates) + 3*order
-    call self%add_one(series, columns, new_quantity(name, [((before + each*(i - 1) + k, k=1, 3), i=1, size(mechanism%points))], &
+    call self%add_one(list, columns, new_column_set(name, [((before + each*(i - 1) + k, k=1, 3), i=1, size(mechanism%points))], &
                                                     [3, size(mechanism%points)], plural//' of the points in the fixed frame', &
                                                     unit, ['/point', '/axis ']))
   end subroutine add_of_points
 
   !> Add the forces of drives and the wrenches of pairs.
-  subroutine add_forces(self, series, columns)
-    class(column_sets_type), intent(in) :: self       !< how columns become data sets
-    type(hdf5_series_type), intent(inout) :: series   !< gets the data sets
+  subroutine add_forces(self, list, columns)
+    class(column_layout_type), intent(in) :: self       !< how columns become data sets
+    type(column_set_list_type), intent(inout) :: list   !< gets the data sets
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     integer :: n, at, i, k
 
     n = size(columns%drives)
     at = columns%motion
-    if (n > 0) call self%add_one(series, columns, new_quantity('drive_force', [(at + i, i=1, n)], [n], &
+    if (n > 0) call self%add_one(list, columns, new_column_set('drive_force', [(at + i, i=1, n)], [n], &
                                                                'forces that the drives need', &
                                                                common_unit(columns%units(at + 1:at + n)), ['/driven']))
     at = at + n
     n = size(columns%reacting)
     if (n == 0) return
-    call self%add_one(series, columns, new_quantity('reaction_force', [((at + 6*(i - 1) + k, k=1, 3), i=1, n)], [3, n], &
+    call self%add_one(list, columns, new_column_set('reaction_force', [((at + 6*(i - 1) + k, k=1, 3), i=1, n)], [3, n], &
                                                     'forces that the reference links pass to the moving links through the '// &
                                                     'pairs, in the fixed frame', 'N', ['/pair', '/axis']))
-    call self%add_one(series, columns, new_quantity('reaction_moment', [((at + 6*(i - 1) + 3 + k, k=1, 3), i=1, n)], [3, n], &
+    call self%add_one(list, columns, new_column_set('reaction_moment', [((at + 6*(i - 1) + 3 + k, k=1, 3), i=1, n)], [3, n], &
                                                     'moments that they pass, about the origins of the pairs'' frames in the '// &
                                                     'moving links', 'N m', ['/pair', '/axis']))
     at = at + 6*n
     n = columns%couplings
-    if (n > 0) call self%add_one(series, columns, new_quantity('coupling_force', [(at + i, i=1, n)], [n], &
+    if (n > 0) call self%add_one(list, columns, new_column_set('coupling_force', [(at + i, i=1, n)], [n], &
                                                                'forces of the couplings on their second coordinates', &
                                                                common_unit(columns%units(at + 1:at + n)), ['/coupling']))
   end subroutine add_forces
 
   !> Add poses of links, and the vertices of their drawing.
-  subroutine add_poses(self, series, columns)
-    class(column_sets_type), intent(in) :: self       !< how columns become data sets
-    type(hdf5_series_type), intent(inout) :: series   !< gets the data sets
+  subroutine add_poses(self, list, columns)
+    class(column_layout_type), intent(in) :: self       !< how columns become data sets
+    type(column_set_list_type), intent(inout) :: list   !< gets the data sets
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     integer :: n, vertices, i
 
     n = columns%poses%n_links
     vertices = size(columns%poses%vertex_link)
-    call self%add_one(series, columns, new_quantity('origin', [(columns%count + i, i=1, 3*n)], [3, n], &
+    call self%add_one(list, columns, new_column_set('origin', [(columns%count + i, i=1, 3*n)], [3, n], &
                                                     'origins U of the links in the fixed frame', 'm', ['/link', '/axis']))
-    call self%add_one(series, columns, new_quantity('rotation', [(columns%count + 3*n + i, i=1, 9*n)], [3, 3, n], &
+    call self%add_one(list, columns, new_column_set('rotation', [(columns%count + 3*n + i, i=1, 9*n)], [3, 3, n], &
                                                     'rotations A of the links: X = A X'' + U', '1', &
                                                     ['/link     ', '/axis     ', '/link_axis']))
-    call self%add_one(series, columns, new_quantity('vertex', [(columns%count + 12*n + i, i=1, 3*vertices)], [3, vertices], &
+    call self%add_one(list, columns, new_column_set('vertex', [(columns%count + 12*n + i, i=1, 3*vertices)], [3, vertices], &
                                                     'vertices of the drawn links in the fixed frame', 'm', &
                                                     ['/vertex_number', '/axis         ']))
   end subroutine add_poses
@@ -183,4 +172,4 @@ contains
       if (name(i:i) == '.') text(i:i) = '_'
     end do
   end function identifier
-end module mech9_hdf5_columns
+end module mech9_column_layout

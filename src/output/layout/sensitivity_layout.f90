@@ -1,21 +1,17 @@
-!> Derivatives by parameters in an HDF5 file: a group of data sets beside those of the motion.
-module mech9_hdf5_sensitivities
+!> Derivatives by parameters in results: a group of data sets beside those of the motion.
+module mech9_sensitivity_layout
   use mech9_columns, only: columns_type
-  use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_hdf5_quantity, only: new_quantity
-  use mech9_hdf5_series, only: hdf5_series_type
+  use mech9_data_set_store, only: data_set_store_type
+  use mech9_column_sets, only: column_set_list_type, new_column_set
   implicit none
   private
-  public :: quantities_of_sensitivity, add_sensitivities, put_parameters
-
-  !> Number of data sets beside those of motors: coordinates and points with their derivatives in time, forces, energies, poses.
-  integer, parameter :: quantities_of_sensitivity = 6 + 4 + 3 + 2
+  public :: add_sensitivities, put_parameters
 
 contains
 
   !> Add the derivatives of coordinates, points, forces, motors and energies. The parameter is the last dimension.
-  subroutine add_sensitivities(series, columns)
-    type(hdf5_series_type), intent(inout) :: series   !< the quantities of the file
+  subroutine add_sensitivities(list, columns)
+    type(column_set_list_type), intent(inout) :: list   !< the data sets over the rows
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     character(len=3), parameter :: names(0:2) = ['q  ', 'dq ', 'ddq']
     character(len=12), parameter :: of_points(0:2) = ['position    ', 'velocity    ', 'acceleration']
@@ -24,12 +20,12 @@ contains
     n = size(columns%coordinates)
     parameters = size(columns%parameters)
     points = (columns%motion - 1)/(columns%derivatives + 1) - n
-    call add_forces(series, columns)
-    call add_scalars(series, columns)
-    if (columns%varied_poses > 0) call add_poses(series, columns)
+    call add_forces(list, columns)
+    call add_scalars(list, columns)
+    if (columns%varied_poses > 0) call add_poses(list, columns)
     do order = 0, columns%derivatives
       before = columns%count - columns%sensitivities + order*n*parameters
-      call series%add(new_quantity('sensitivity/'//trim(names(order)), [(before + i, i=1, parameters*n)], [parameters, n], &
+      call list%add(new_column_set('sensitivity/'//trim(names(order)), [(before + i, i=1, parameters*n)], [parameters, n], &
                                    'derivatives of '//trim(names(order))//' by the parameters', &
                                    unit_of_all(columns, order*n + 2, n), ['/time      ', '/coordinate', '/parameter ']))
     end do
@@ -37,7 +33,7 @@ contains
     each = 3*(columns%derivatives + 1)
     do order = 0, columns%derivatives
       before = columns%count - columns%sensitivities + ((columns%derivatives + 1)*n + 3*order)*parameters
-      call series%add(new_quantity('sensitivity/'//trim(of_points(order)), &
+      call list%add(new_column_set('sensitivity/'//trim(of_points(order)), &
                                    [((before + each*(i - 1)*parameters + k, k=1, 3*parameters), i=1, points/3)], &
                                    [parameters, 3, points/3], 'derivatives of '//trim(of_points(order))//' by the parameters', &
                                    unit_of_all(columns, (columns%derivatives + 1)*n + 3*order + 2, 1), &
@@ -46,8 +42,8 @@ contains
   end subroutine add_sensitivities
 
   !> Add the derivatives of the forces of drives, of those in pairs, and of those of couplings.
-  subroutine add_forces(series, columns)
-    type(hdf5_series_type), intent(inout) :: series   !< the quantities of the file
+  subroutine add_forces(list, columns)
+    type(column_set_list_type), intent(inout) :: list   !< the data sets over the rows
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     integer :: n, parameters, at, i, k
 
@@ -55,21 +51,21 @@ contains
     parameters = size(columns%parameters)
     n = size(columns%drives)
     at = columns%motion
-    if (n > 0) call series%add(new_quantity('sensitivity/drive_force', [(places(columns, at + i), i=1, n)], [parameters, n], &
+    if (n > 0) call list%add(new_column_set('sensitivity/drive_force', [(places(columns, at + i), i=1, n)], [parameters, n], &
                                             'derivatives of drive_force by the parameters', unit_of_all(columns, at + 1, n), &
                                             ['/time     ', '/driven   ', '/parameter']))
     at = at + n
     n = size(columns%reacting)
     if (n == 0) return
-    call series%add(new_quantity('sensitivity/reaction_force', [((places(columns, at + 6*(i - 1) + k), k=1, 3), i=1, n)], &
+    call list%add(new_column_set('sensitivity/reaction_force', [((places(columns, at + 6*(i - 1) + k), k=1, 3), i=1, n)], &
                                  [parameters, 3, n], 'derivatives of reaction_force by the parameters', &
                                  unit_of_all(columns, at + 1, 1), ['/time     ', '/pair     ', '/axis     ', '/parameter']))
-    call series%add(new_quantity('sensitivity/reaction_moment', [((places(columns, at + 6*(i - 1) + 3 + k), k=1, 3), i=1, n)], &
+    call list%add(new_column_set('sensitivity/reaction_moment', [((places(columns, at + 6*(i - 1) + 3 + k), k=1, 3), i=1, n)], &
                                  [parameters, 3, n], 'derivatives of reaction_moment by the parameters', &
                                  unit_of_all(columns, at + 4, 1), ['/time     ', '/pair     ', '/axis     ', '/parameter']))
     at = at + 6*n
     n = columns%couplings
-    if (n > 0) call series%add(new_quantity('sensitivity/coupling_force', [(places(columns, at + i), i=1, n)], [parameters, n], &
+    if (n > 0) call list%add(new_column_set('sensitivity/coupling_force', [(places(columns, at + i), i=1, n)], [parameters, n], &
                                             'derivatives of coupling_force by the parameters', unit_of_all(columns, at + 1, n), &
                                             ['/time     ', '/coupling ', '/parameter']))
   end subroutine add_forces
@@ -84,15 +80,15 @@ contains
   end function places
 
   !> Add the derivatives of motors and energies.
-  subroutine add_scalars(series, columns)
-    type(hdf5_series_type), intent(inout) :: series   !< the quantities of the file
+  subroutine add_scalars(list, columns)
+    type(column_set_list_type), intent(inout) :: list   !< the data sets over the rows
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     integer :: i, point
 
     do i = columns%varied + 2 - columns%energies - columns%motors, columns%varied + 1
       associate (name => columns%names(i)%text)
         point = index(name, '.')
-        call series%add(new_quantity('sensitivity/'//name(:point - 1)//'_'//name(point + 1:), places(columns, i), &
+        call list%add(new_column_set('sensitivity/'//name(:point - 1)//'_'//name(point + 1:), places(columns, i), &
                                      [size(columns%parameters)], &
                                      'derivatives of the '//columns%long_names(i)%text//' by the parameters', &
                                      unit_of_all(columns, i, 1), ['/time     ', '/parameter']))
@@ -101,8 +97,8 @@ contains
   end subroutine add_scalars
 
   !> Add the derivatives of the poses of links.
-  subroutine add_poses(series, columns)
-    type(hdf5_series_type), intent(inout) :: series   !< the quantities of the file
+  subroutine add_poses(list, columns)
+    type(column_set_list_type), intent(inout) :: list   !< the data sets over the rows
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     character(len=*), parameter :: per_unit = ' per unit of the parameter in the data file'
     integer :: before, parameters, n, i
@@ -110,11 +106,11 @@ contains
     before = columns%count + columns%poses%width()
     parameters = size(columns%parameters)
     n = columns%poses%n_links
-    call series%add(new_quantity('sensitivity/origin', [(before + i, i=1, 3*n*parameters)], [parameters, 3, n], &
+    call list%add(new_column_set('sensitivity/origin', [(before + i, i=1, 3*n*parameters)], [parameters, 3, n], &
                                  'derivatives of origin by the parameters', 'm'//per_unit, &
                                  ['/time     ', '/link     ', '/axis     ', '/parameter']))
     before = before + 3*n*parameters
-    call series%add(new_quantity('sensitivity/rotation', [(before + i, i=1, 9*n*parameters)], [parameters, 3, 3, n], &
+    call list%add(new_column_set('sensitivity/rotation', [(before + i, i=1, 9*n*parameters)], [parameters, 3, 3, n], &
                                  'derivatives of rotation by the parameters', '1'//per_unit, &
                                  ['/time     ', '/link     ', '/axis     ', '/link_axis', '/parameter']))
   end subroutine add_poses
@@ -137,11 +133,11 @@ contains
   end function unit_of_all
 
   !> Write the names of the parameters.
-  subroutine put_parameters(file, columns)
-    type(hdf5_file_type), intent(inout) :: file   !< the open file
+  subroutine put_parameters(store, columns)
+    class(data_set_store_type), intent(inout) :: store   !< the open storage
     type(columns_type), intent(in) :: columns     !< with the names of the parameters
 
-    call file%put('parameter', columns%parameters, 'name of the parameter')
-    call file%make_scale('parameter')
+    call store%put('parameter', columns%parameters, 'name of the parameter')
+    call store%make_scale('parameter')
   end subroutine put_parameters
-end module mech9_hdf5_sensitivities
+end module mech9_sensitivity_layout

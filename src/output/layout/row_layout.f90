@@ -1,0 +1,117 @@
+!> All data sets over the outputs of a run, and over its events, with their scales.
+module mech9_row_layout
+  use mech9_kinds, only: wp
+  use mech9_mechanism, only: mechanism_type
+  use mech9_columns, only: columns_type
+  use mech9_plan, only: plan_type
+  use mech9_free_simulation, only: free_simulation_type
+  use mech9_data_set_store, only: data_set_store_type
+  use mech9_column_sets, only: column_set_list_type, new_column_set
+  use mech9_column_layout, only: column_layout_type
+  use mech9_scale_layout, only: put_scales
+  use mech9_sensitivity_layout, only: add_sensitivities, put_parameters
+  implicit none
+  private
+  public :: list_row_sets, put_row_scales, list_event_sets, put_event_scales, take_events, write_coefficients, most_events
+
+  !> Number of events in a chunk of their data sets.
+  integer, parameter :: most_events = 64
+
+contains
+
+  !> List the data sets over the outputs of a run.
+  subroutine list_row_sets(mechanism, columns, list)
+    type(mechanism_type), intent(in) :: mechanism             !< the mechanism
+    type(columns_type), intent(in) :: columns                 !< columns of the rows
+    type(column_set_list_type), intent(out) :: list           !< the data sets
+    type(column_layout_type) :: layout
+
+    call list%add(new_column_set('time', [1], [integer ::], 'time', columns%units(1)%text, [character(len=5) ::]))
+    call layout%add(list, mechanism, columns)
+    if (columns%sensitivities > 0) call add_sensitivities(list, columns)
+  end subroutine list_row_sets
+
+  !> Write the scales of these data sets, which have been made, and attach them.
+  subroutine put_row_scales(store, mechanism, columns, list)
+    class(data_set_store_type), intent(inout) :: store        !< the open storage
+    type(mechanism_type), intent(in) :: mechanism             !< the mechanism
+    type(columns_type), intent(in) :: columns                 !< columns of the rows
+    type(column_set_list_type), intent(in) :: list            !< the data sets over the outputs
+    integer :: i
+
+    call put_scales(store, mechanism, columns)
+    if (columns%sensitivities > 0) call put_parameters(store, columns)
+    do i = 1, list%count
+      call list%sets(i)%attach_in(store)
+    end do
+  end subroutine put_row_scales
+
+  !> List the data sets over the events of a free motion: times at which other coordinates became independent, and their numbers.
+  subroutine list_event_sets(n_independent, list)
+    integer, intent(in) :: n_independent                      !< how many coordinates are independent
+    type(column_set_list_type), intent(out) :: list           !< the data sets
+    integer :: i
+
+    call list%add(new_column_set('events/time', [1], [integer ::], 'when other coordinates were taken', 's', &
+                                 [character(len=5) ::]))
+    call list%add(new_column_set('events/independent', [(1 + i, i=1, n_independent)], [n_independent], &
+                                 'the independent coordinates from then on', '1', ['/events/time   ', '/events/freedom'], &
+                                 whole=.true.))
+    call list%add(new_column_set('events/replaced', [(1 + n_independent + i, i=1, n_independent)], [n_independent], &
+                                 '1 where another angle is integrated in place of this coordinate, near gimbal lock', '1', &
+                                 ['/events/time   ', '/events/freedom'], whole=.true.))
+  end subroutine list_event_sets
+
+  !> Write the scale of these data sets, which have been made, and attach it.
+  subroutine put_event_scales(store, n_independent, list)
+    class(data_set_store_type), intent(inout) :: store        !< the open storage
+    integer, intent(in) :: n_independent                      !< how many coordinates are independent
+    type(column_set_list_type), intent(in) :: list            !< the data sets over the events
+    integer :: i
+
+    call store%put('events/freedom', [(i, i=1, n_independent)], 'number of the degree of freedom')
+    call store%make_scale('events/freedom')
+    do i = 1, list%count
+      call list%sets(i)%attach_in(store)
+    end do
+  end subroutine put_event_scales
+
+  !> Take the rows of the events of a motion.
+  pure subroutine take_events(simulation, rows)
+    type(free_simulation_type), intent(in) :: simulation      !< the motion, as far as it went
+    real(wp), allocatable, intent(out) :: rows(:, :)          !< (columns, events) time, independent coordinates, those replaced
+    integer :: n, k, i
+
+    n = size(simulation%motion%system%plan%independent)
+    allocate (rows(1 + 2*n, size(simulation%events)), source=0.0_wp)
+    do i = 1, size(simulation%events)
+      associate (event => simulation%events(i))
+        rows(1, i) = event%t
+        rows(2:1 + n, i) = real(event%independent, wp)
+        do k = 1, n
+          if (any(event%replaced == event%independent(k))) rows(1 + n + k, i) = 1.0_wp
+        end do
+      end associate
+    end do
+  end subroutine take_events
+
+  !> Write the coefficients of motion at the start.
+  subroutine write_coefficients(store, plan, simulation)
+    class(data_set_store_type), intent(inout) :: store        !< the open storage
+    type(plan_type), intent(in) :: plan                       !< the plan of the mechanism
+    type(free_simulation_type), intent(in) :: simulation      !< the motion
+    real(wp) :: coefficients(size(plan%independent), size(plan%independent))
+    integer :: p
+
+    do p = 1, size(plan%independent)
+      coefficients(p:, p) = simulation%coefficients(p:, p)
+      coefficients(p, p:) = simulation%coefficients(p:, p)
+    end do
+    call store%put('dynamics/p', plan%independent, 'number of an independent coordinate at the start')
+    call store%make_scale('dynamics/p')
+    call store%put('dynamics/r', plan%independent, 'number of an independent coordinate at the start')
+    call store%make_scale('dynamics/r')
+    call store%put('dynamics/coefficients', coefficients, 'coefficients of motion a(p,r), the mass matrix, at the start')
+    call store%attach_scales('dynamics/coefficients', ['/dynamics/p', '/dynamics/r'])
+  end subroutine write_coefficients
+end module mech9_row_layout
