@@ -42,6 +42,14 @@ int mech9_error_finding_column(const mech9_error *error, int i);         /* from
 /* Mechanisms. Each group is held against the grammar when it comes; its sense beside the others is judged by an analysis. */
 int mech9_read_file(const char *path, mech9_mechanism **mechanism, mech9_error *error);
 int mech9_read_text(const char *groups, mech9_mechanism **mechanism, mech9_error *error);   /* "" makes an empty one */
+/* Import a robot from a file in URDF, MJCF or SDF, as the option --import; `loops` is a file of <loop> elements for URDF, or null.
+ * with_forces 0: a drive holds each independent coordinate, as by mech9k; else there are no drives, as by mech9d. Import in one
+ * thread at a time. */
+int mech9_import_file(const char *path, const char *loops, int with_forces, mech9_mechanism **mechanism, mech9_error *error);
+/* Its data file as it was imported, with comments; and a line for each kind of thing that is not taken over, the last line being a
+ * summary. Null for other mechanisms. */
+const char *mech9_mechanism_imported_text(const mech9_mechanism *mechanism);
+const char *mech9_mechanism_import_messages(const mech9_mechanism *mechanism);
 int mech9_mechanism_copy(const mech9_mechanism *mechanism, mech9_mechanism **copy, mech9_error *error);
 void mech9_mechanism_destroy(mech9_mechanism *mechanism);
 /* Add groups, written as in a data file. */

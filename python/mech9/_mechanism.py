@@ -5,6 +5,7 @@ import ctypes
 import html
 import os
 import tempfile
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Sequence, TypeVar
@@ -27,14 +28,37 @@ if TYPE_CHECKING:
 F = TypeVar('F')
 
 
-def read(path: str | os.PathLike[str]) -> Mechanism:
-    """Read a data file, and check its syntax. `check` or a run checks whether the mechanism makes sense."""
-    handle = Handle()
+def _path(path: str | os.PathLike[str]) -> bytes:
     name = os.fsencode(path)
     if b'\0' in name:
         raise UsageError('a path must not have zero bytes', 2)
-    call(lib.read_file, name, ctypes.byref(handle))
+    return name
+
+
+def read(path: str | os.PathLike[str]) -> Mechanism:
+    """Read a data file, and check its syntax. `check` or a run checks whether the mechanism makes sense."""
+    handle = Handle()
+    call(lib.read_file, _path(path), ctypes.byref(handle))
     return Mechanism(_handle=handle)
+
+
+_importing = threading.Lock()   # the library imports one robot at a time
+
+
+def import_robot(path: str | os.PathLike[str], loops: str | os.PathLike[str] | None = None, *, driven: bool = True) -> Mechanism:
+    """Import a robot from a file in URDF, MJCF or SDF, as `mech9k --import` does; loops: a file of <loop> elements for URDF. With
+    driven=False no drive holds the independent coordinates, as by mech9d.
+
+    `imported_text` of the mechanism is the data file as it was imported, with comments; `import_messages` tells in a line each what is
+    not taken over, and last the numbers of links and coordinates.
+    """
+    handle = Handle()
+    with _importing:
+        call(lib.import_file, _path(path), None if loops is None else _path(loops), int(not driven), ctypes.byref(handle))
+    m = Mechanism(_handle=handle)
+    m.imported_text = (lib.mechanism_imported_text(handle) or b'').decode('utf-8', 'replace')
+    m.import_messages = tuple((lib.mechanism_import_messages(handle) or b'').decode('utf-8', 'replace').splitlines())
+    return m
 
 
 def read_text(text: str) -> Mechanism:
@@ -146,6 +170,8 @@ class Mechanism:
 
     Mechanism(title='four-bar') makes an empty one, to which `add` brings groups.
     """
+    imported_text: str = ''                    # of import_robot
+    import_messages: tuple[str, ...] = ()      # of import_robot
 
     def __init__(self, title: str | None = None, *, _handle: Handle | None = None):
         if _handle is None:

@@ -3,6 +3,7 @@ module mech9_api_mechanism
   use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_null_ptr, c_f_pointer, c_loc
   use mech9, only: error_type, finding_type, mechanism_type, parse_file, parse_text, string_type, name_coordinates, kinematics, &
     dynamics
+  use mech9_importing, only: import_as_text
   use mech9_same_file, only: same_file
   use mech9_api_handle, only: is_live, mechanism_mark, no_mark
   use mech9_api_text, only: c_text_type, read_c_text
@@ -15,6 +16,8 @@ module mech9_api_mechanism
     integer(c_int) :: mark = mechanism_mark
     type(mechanism_type) :: mechanism
     type(c_text_type) :: text           !< as the caller asked for it last
+    type(c_text_type) :: imported       !< of an imported robot: its data file
+    type(c_text_type) :: messages       !< of an imported robot: lines of what is not taken over, and a summary
   end type mechanism_handle_type
 
 contains
@@ -53,6 +56,61 @@ contains
     code = end_reading(handle, mechanism, error, err, findings)
   end function read_text
 
+  !> Import a robot from a file in URDF, MJCF or SDF.
+  integer(c_int) function import_file(path, loops, with_forces, mechanism, error) bind(c, name='mech9_import_file') result(code)
+    type(c_ptr), value, intent(in) :: path             !< of the robot
+    type(c_ptr), value, intent(in) :: loops            !< path of a file of loops for URDF; null or empty: there is none
+    integer(c_int), value, intent(in) :: with_forces   !< 0: drives hold the independent coordinates; else there are no drives
+    type(c_ptr), intent(out) :: mechanism              !< the handle; null after a failure
+    type(c_ptr), value, intent(in) :: error            !< handle of errors, or null
+    type(mechanism_handle_type), pointer :: handle
+    type(string_type) :: inputs(2)
+    type(string_type), allocatable :: messages(:)
+    character(len=:), allocatable :: text, lines
+    type(finding_type), allocatable :: findings(:)
+    type(error_type), allocatable :: err
+    integer :: n, i
+
+    call begin_call(error)
+    call read_c_text(path, inputs(1)%text)
+    call read_c_text(loops, inputs(2)%text)
+    allocate (handle, findings(0))
+    n = merge(1, 2, inputs(2)%text == '')
+    call import_as_text(merge(kinematics, dynamics, with_forces == 0), inputs(:n), text, messages, err)
+    if (.not. allocated(err)) then
+      call parse_text(text, handle%mechanism, err, findings)
+      lines = messages(1)%text
+      do i = 2, size(messages)
+        lines = lines//new_line(lines)//messages(i)%text
+      end do
+      call handle%imported%put(text)
+      call handle%messages%put(lines)
+    end if
+    code = end_reading(handle, mechanism, error, err, findings)
+  end function import_file
+
+  !> The data file of an imported robot, as it was imported; null for other mechanisms.
+  type(c_ptr) function imported_text(mechanism) bind(c, name='mech9_mechanism_imported_text')
+    type(c_ptr), value, intent(in) :: mechanism   !< the handle
+    type(mechanism_handle_type), pointer :: handle
+    type(error_type), allocatable :: err
+
+    imported_text = c_null_ptr
+    call find_handle(mechanism, handle, err)
+    if (.not. allocated(err)) imported_text = handle%imported%address()
+  end function imported_text
+
+  !> The messages of an import, a line each; null for other mechanisms.
+  type(c_ptr) function import_messages(mechanism) bind(c, name='mech9_mechanism_import_messages')
+    type(c_ptr), value, intent(in) :: mechanism   !< the handle
+    type(mechanism_handle_type), pointer :: handle
+    type(error_type), allocatable :: err
+
+    import_messages = c_null_ptr
+    call find_handle(mechanism, handle, err)
+    if (.not. allocated(err)) import_messages = handle%messages%address()
+  end function import_messages
+
   !> Give a handle to the caller, or free it after a failure.
   integer(c_int) function end_reading(handle, mechanism, error, err, findings) result(code)
     type(mechanism_handle_type), pointer, intent(inout) :: handle   !< the handle
@@ -63,7 +121,11 @@ contains
 
     mechanism = c_null_ptr
     if (.not. allocated(err)) mechanism = c_loc(handle)
-    if (allocated(err)) deallocate (handle)
+    if (allocated(err)) then
+      call handle%imported%clear()
+      call handle%messages%clear()
+      deallocate (handle)
+    end if
     code = end_call(error, err, findings=findings)
   end function end_reading
 
@@ -95,6 +157,8 @@ contains
     call find_handle(mechanism, handle, err)
     if (allocated(err)) return
     call handle%text%clear()
+    call handle%imported%clear()
+    call handle%messages%clear()
     handle%mark = no_mark
     deallocate (handle)
   end subroutine destroy

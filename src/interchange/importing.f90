@@ -32,7 +32,7 @@ module mech9_importing
   use mech9_robot_draft, only: draft_of_robot
   implicit none
   private
-  public :: import_robot
+  public :: import_robot, import_as_text
 
   character, parameter :: eol = achar(10)
   character(len=*), parameter :: beside_singular = 'The robot''s own position is singular; the start lies beside it.'
@@ -47,9 +47,10 @@ contains
     logical, intent(in) :: quiet                   !< write errors only
     integer, intent(out) :: code                   !< exit code of the program
     type(robot_type) :: robot
-    type(string_type), allocatable :: files(:)
+    type(string_type), allocatable :: files(:), messages(:)
     character(len=:), allocatable :: text, summary
     type(error_type), allocatable :: err
+    integer :: i
 
     call make_data_file(program, inputs, robot, files, text, summary, err)
     if (.not. allocated(err)) call refuse_overwriting(files, output, err)
@@ -65,10 +66,35 @@ contains
       code = err%code
       write (error_unit, '(3a)') program_names(program), ': ', err%message
     else if (.not. quiet) then
-      call print_notes(robot)
+      call list_notes(robot, messages)
+      do i = 1, size(messages)
+        write (error_unit, '(a)') messages(i)%text
+      end do
       write (error_unit, '(3a)') program_names(program), ': ', summary
     end if
   end subroutine import_robot
+
+  !> Import a robot as the text of a data file. Fails with exit_file, exit_data or exit_structure.
+  subroutine import_as_text(program, inputs, text, messages, err)
+    integer, intent(in) :: program                                !< kinematics: drives hold the robot, or dynamics
+    type(string_type), intent(in) :: inputs(:)                    !< path of the robot, and perhaps that of its loops
+    character(len=:), allocatable, intent(out) :: text            !< the data file
+    type(string_type), allocatable, intent(out) :: messages(:)    !< lines of things that are left out, and a summary
+    type(error_type), allocatable, intent(out) :: err             !< allocated if it failed
+    type(robot_type) :: robot
+    type(string_type), allocatable :: files(:), notes(:)
+    character(len=:), allocatable :: summary
+    integer :: i
+
+    call make_data_file(program, inputs, robot, files, text, summary, err)
+    if (allocated(err)) return
+    call list_notes(robot, notes)
+    allocate (messages(size(notes) + 1))
+    do i = 1, size(notes)
+      call move_alloc(notes(i)%text, messages(i)%text)
+    end do
+    messages(size(messages))%text = summary
+  end subroutine import_as_text
 
   !> From the files of the robot to the text of a data file.
   subroutine make_data_file(program, inputs, robot, files, text, summary, err)
@@ -287,15 +313,17 @@ contains
     end do
   end function head_of
 
-  !> Print a line about each thing that is not taken over.
-  subroutine print_notes(robot)
-    type(robot_type), intent(in) :: robot  !< the robot
+  !> List a line about each thing that is not taken over.
+  subroutine list_notes(robot, lines)
+    type(robot_type), intent(in) :: robot                       !< the robot
+    type(string_type), allocatable, intent(out) :: lines(:)     !< the lines, with the places of the things
     integer :: i
 
+    allocate (lines(robot%n_notes))
     do i = 1, robot%n_notes
-      write (error_unit, '(a)') printable(robot%notes(i)%place)//': not taken over: '//note_text(robot, i)
+      lines(i)%text = printable(robot%notes(i)%place)//': not taken over: '//note_text(robot, i)
     end do
-  end subroutine print_notes
+  end subroutine list_notes
 
   !> A note in words, with the number of times.
   function note_text(robot, i) result(text)

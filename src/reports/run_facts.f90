@@ -84,7 +84,7 @@ contains
 
     counts = simulation%motion%statistics()
     call facts%add('outputs', outcome%rows, 'outputs computed')
-    call facts%add('method', method_of(simulation), 'method of integration')
+    call facts%add('method', trim(method_of(simulation)), 'method of integration')
     call facts%add('relative_tolerance', model%request%solver%relative_tolerance, 'relative error allowed in a step', '1')
     call facts%add('absolute_tolerance', model%request%solver%absolute_tolerance, 'absolute error allowed in a step', '1')
     if (simulation%with_error) then
@@ -131,9 +131,9 @@ contains
   !> The method in use.
   pure function method_of(simulation) result(name)
     type(free_simulation_type), intent(in) :: simulation   !< the motion, as far as it went
-    character(len=:), allocatable :: name
+    character(len=len(integration_methods%name)) :: name
 
     name = simulation%motion%system%model%request%solver%method
-    if (name == '') name = trim(integration_methods(1)%name)
+    if (name == '') name = integration_methods(1)%name
   end function method_of
 end module mech9_run_facts

@@ -47,7 +47,7 @@ contains
     counts = simulation%motion%statistics()
     write (unit, '(a)') counted(outcome%rows, 'output')//': '//duration(outcome%seconds_solving)//' to solve, '// &
       duration(outcome%seconds_writing)//' to write'
-    write (unit, '(a)') method_of(simulation)//': '//counted(counts%steps, 'step')//by_bdf(counts)//', '// &
+    write (unit, '(a)') trim(method_of(simulation))//': '//counted(counts%steps, 'step')//by_bdf(counts)//', '// &
       to_text(counts%error_test_failures + counts%convergence_failures + counts%refusals)//' made again, '// &
       counted(counts%rate_evaluations, 'evaluation')//each(outcome%seconds_solving, int(counts%rate_evaluations))
     if (simulation%with_error) write (unit, '(a)') &

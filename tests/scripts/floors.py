@@ -11,11 +11,11 @@ FLOORS = ['base', 'system', 'numerics', 'numerics/minima', 'spatial', 'structure
           'sampling', 'user', 'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
           'ode', 'dynamics', 'dynamics/planning', 'dynamics/variations', 'analyses/sensitivity', 'dynamics/sensitivity', 'simulation/integration',
           'simulation/events', 'simulation',
-          'analyses/reactions', 'analyses/equilibrium', 'analyses/planar_runs', 'analyses', 'wording', 'runs', 'studies', 'synthesis', 'input/document', 'input', 'drafts', 'searches', 'output/layout', 'output', 'reports',
+          'analyses/reactions', 'analyses/equilibrium', 'analyses/planar_runs', 'analyses', 'wording', 'runs', 'studies', 'synthesis', 'input/document', 'input', 'drafts', 'searches', 'output/layout', 'output', 'interchange/xml', 'interchange', 'reports',
           'pictures/plots', 'pictures/scene',
           'pictures/films', 'terminal', 'session/command', 'session/words', 'facade', 'api', 'session/results', 'session/study', 'session/synthesis', 'session',
           'dialogue/questions',
-          'interchange/xml', 'interchange', 'dialogue',
+          'dialogue',
           'programs/mpi', 'programs']
 WITHOUT_WORDS = ('numerics', 'spatial', 'kinematics/', 'ode', 'dynamics', 'simulation', 'analyses/', 'synthesis')   # they fail with numbers, see src/wording
 MODULE = re.compile(r'^\s*module\s+(?!procedure\b|subroutine\b|function\b)(\w+)\s*$', re.I | re.M)

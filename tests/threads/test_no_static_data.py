@@ -7,7 +7,7 @@ import pytest
 
 from mech9_cases import TREE, run
 
-FLOORS = 'base numerics spatial structure model sampling user kinematics ode dynamics simulation analyses wording runs studies input facade'.split()
+FLOORS = 'base numerics spatial structure model sampling user kinematics ode dynamics simulation analyses wording runs studies input output/layout facade'.split()
 SOURCES = os.path.join(TREE, 'src')
 PRINTS_HELP = 'data_help.f90'    # of use to a program's --help only
 

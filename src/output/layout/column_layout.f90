@@ -3,7 +3,7 @@ module mech9_column_layout
   use mech9_mechanism, only: mechanism_type
   use mech9_columns, only: columns_type
   use mech9_column_sets, only: column_set_type, column_set_list_type, new_column_set, scale_length
-  use mech9_scale_layout, only: common_unit
+  use mech9_scale_layout, only: find_common_unit
   implicit none
   private
   public :: column_layout_type
@@ -85,12 +85,14 @@ contains
     character(len=*), intent(in) :: name              !< path of the data set
     character(len=*), intent(in) :: long_name     !< a few words that describe it
     integer, intent(in) :: order                      !< number of derivatives by time: 0, 1 or 2
+    character(len=:), allocatable :: unit
     integer :: before, n, i
 
     n = size(columns%coordinates)
     before = 1 + order*n
-    call self%add_one(list, columns, new_column_set(name, [(before + i, i=1, n)], [n], trim(long_name), &
-                                                    common_unit(columns%units(before + 1:before + n)), ['/coordinate']))
+    call find_common_unit(columns%units(before + 1:before + n), unit)
+    call self%add_one(list, columns, new_column_set(name, [(before + i, i=1, n)], [n], trim(long_name), unit, &
+                                                    ['/coordinate']))
   end subroutine add_of_coordinates
 
   !> Add a quantity of all points, with three components.
@@ -119,13 +121,14 @@ contains
     class(column_layout_type), intent(in) :: self       !< how columns become data sets
     type(column_set_list_type), intent(inout) :: list   !< gets the data sets
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
+    character(len=:), allocatable :: unit
     integer :: n, at, i, k
 
     n = size(columns%drives)
     at = columns%motion
+    call find_common_unit(columns%units(at + 1:at + n), unit)
     if (n > 0) call self%add_one(list, columns, new_column_set('drive_force', [(at + i, i=1, n)], [n], &
-                                                               'forces that the drives need', &
-                                                               common_unit(columns%units(at + 1:at + n)), ['/driven']))
+                                                               'forces that the drives need', unit, ['/driven']))
     at = at + n
     n = size(columns%reacting)
     if (n == 0) return
@@ -137,9 +140,10 @@ contains
                                                     'moving links', 'N m', ['/pair', '/axis']))
     at = at + 6*n
     n = columns%couplings
+    call find_common_unit(columns%units(at + 1:at + n), unit)
     if (n > 0) call self%add_one(list, columns, new_column_set('coupling_force', [(at + i, i=1, n)], [n], &
                                                                'forces of the couplings on their second coordinates', &
-                                                               common_unit(columns%units(at + 1:at + n)), ['/coupling']))
+                                                               unit, ['/coupling']))
   end subroutine add_forces
 
   !> Add poses of links, and the vertices of their drawing.

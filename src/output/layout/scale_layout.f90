@@ -11,7 +11,7 @@ module mech9_scale_layout
   use mech9_data_set_store, only: data_set_store_type
   implicit none
   private
-  public :: put_scales, put_force_scales, common_unit, names_of_scales
+  public :: put_scales, put_force_scales, find_common_unit, names_of_scales
 
   !> Paths of all data sets that `put_scales` may write.
   character(len=18), parameter :: names_of_scales(*) = [character(len=18) :: &
@@ -144,10 +144,10 @@ contains
     call store%attach_scales('point_link', ['/point'])
   end subroutine put_point_scales
 
-  !> The unit if it is the same for all; otherwise the list of units, and `coordinate_unit` tells that of each.
-  pure function common_unit(units) result(text)
-    type(string_type), intent(in) :: units(:)  !< units of the coordinates
-    character(len=:), allocatable :: text
+  !> Find the unit if it is the same for all; otherwise the list of units, and `coordinate_unit` tells that of each.
+  pure subroutine find_common_unit(units, text)
+    type(string_type), intent(in) :: units(:)            !< units of the coordinates
+    character(len=:), allocatable, intent(out) :: text   !< the unit, or the list
     integer :: i, k
 
     text = ''
@@ -156,5 +156,5 @@ contains
       if (i > 1) text = text//' or '
       text = text//units(i)%text
     end do
-  end function common_unit
+  end subroutine find_common_unit
 end module mech9_scale_layout

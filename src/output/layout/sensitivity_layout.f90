@@ -15,6 +15,7 @@ contains
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     character(len=3), parameter :: names(0:2) = ['q  ', 'dq ', 'ddq']
     character(len=12), parameter :: of_points(0:2) = ['position    ', 'velocity    ', 'acceleration']
+    character(len=:), allocatable :: unit
     integer :: order, n, points, each, before, i, k, parameters
 
     n = size(columns%coordinates)
@@ -25,18 +26,20 @@ contains
     if (columns%varied_poses > 0) call add_poses(list, columns)
     do order = 0, columns%derivatives
       before = columns%count - columns%sensitivities + order*n*parameters
+      call find_unit(columns, order*n + 2, n, unit)
       call list%add(new_column_set('sensitivity/'//trim(names(order)), [(before + i, i=1, parameters*n)], [parameters, n], &
                                    'derivatives of '//trim(names(order))//' by the parameters', &
-                                   unit_of_all(columns, order*n + 2, n), ['/time      ', '/coordinate', '/parameter ']))
+                                   unit, ['/time      ', '/coordinate', '/parameter ']))
     end do
     if (points == 0) return
     each = 3*(columns%derivatives + 1)
     do order = 0, columns%derivatives
       before = columns%count - columns%sensitivities + ((columns%derivatives + 1)*n + 3*order)*parameters
+      call find_unit(columns, (columns%derivatives + 1)*n + 3*order + 2, 1, unit)
       call list%add(new_column_set('sensitivity/'//trim(of_points(order)), &
                                    [((before + each*(i - 1)*parameters + k, k=1, 3*parameters), i=1, points/3)], &
                                    [parameters, 3, points/3], 'derivatives of '//trim(of_points(order))//' by the parameters', &
-                                   unit_of_all(columns, (columns%derivatives + 1)*n + 3*order + 2, 1), &
+                                   unit, &
                                    ['/time     ', '/point    ', '/axis     ', '/parameter']))
     end do
   end subroutine add_sensitivities
@@ -45,28 +48,33 @@ contains
   subroutine add_forces(list, columns)
     type(column_set_list_type), intent(inout) :: list   !< the data sets over the rows
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
+    character(len=:), allocatable :: unit
     integer :: n, parameters, at, i, k
 
     if (columns%forces() == 0) return
     parameters = size(columns%parameters)
     n = size(columns%drives)
     at = columns%motion
+    call find_unit(columns, at + 1, n, unit)
     if (n > 0) call list%add(new_column_set('sensitivity/drive_force', [(places(columns, at + i), i=1, n)], [parameters, n], &
-                                            'derivatives of drive_force by the parameters', unit_of_all(columns, at + 1, n), &
+                                            'derivatives of drive_force by the parameters', unit, &
                                             ['/time     ', '/driven   ', '/parameter']))
     at = at + n
     n = size(columns%reacting)
     if (n == 0) return
+    call find_unit(columns, at + 1, 1, unit)
     call list%add(new_column_set('sensitivity/reaction_force', [((places(columns, at + 6*(i - 1) + k), k=1, 3), i=1, n)], &
                                  [parameters, 3, n], 'derivatives of reaction_force by the parameters', &
-                                 unit_of_all(columns, at + 1, 1), ['/time     ', '/pair     ', '/axis     ', '/parameter']))
+                                 unit, ['/time     ', '/pair     ', '/axis     ', '/parameter']))
+    call find_unit(columns, at + 4, 1, unit)
     call list%add(new_column_set('sensitivity/reaction_moment', [((places(columns, at + 6*(i - 1) + 3 + k), k=1, 3), i=1, n)], &
                                  [parameters, 3, n], 'derivatives of reaction_moment by the parameters', &
-                                 unit_of_all(columns, at + 4, 1), ['/time     ', '/pair     ', '/axis     ', '/parameter']))
+                                 unit, ['/time     ', '/pair     ', '/axis     ', '/parameter']))
     at = at + 6*n
     n = columns%couplings
+    call find_unit(columns, at + 1, n, unit)
     if (n > 0) call list%add(new_column_set('sensitivity/coupling_force', [(places(columns, at + i), i=1, n)], [parameters, n], &
-                                            'derivatives of coupling_force by the parameters', unit_of_all(columns, at + 1, n), &
+                                            'derivatives of coupling_force by the parameters', unit, &
                                             ['/time     ', '/coupling ', '/parameter']))
   end subroutine add_forces
 
@@ -83,15 +91,17 @@ contains
   subroutine add_scalars(list, columns)
     type(column_set_list_type), intent(inout) :: list   !< the data sets over the rows
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
+    character(len=:), allocatable :: unit
     integer :: i, point
 
     do i = columns%varied + 2 - columns%energies - columns%motors, columns%varied + 1
       associate (name => columns%names(i)%text)
         point = index(name, '.')
+        call find_unit(columns, i, 1, unit)
         call list%add(new_column_set('sensitivity/'//name(:point - 1)//'_'//name(point + 1:), places(columns, i), &
                                      [size(columns%parameters)], &
                                      'derivatives of the '//columns%long_names(i)%text//' by the parameters', &
-                                     unit_of_all(columns, i, 1), ['/time     ', '/parameter']))
+                                     unit, ['/time     ', '/parameter']))
       end associate
     end do
   end subroutine add_scalars
@@ -115,12 +125,12 @@ contains
                                  ['/time     ', '/link     ', '/axis     ', '/link_axis', '/parameter']))
   end subroutine add_poses
 
-  !> The unit of some columns, per unit of a parameter in the data file.
-  pure function unit_of_all(columns, first, n) result(text)
-    type(columns_type), intent(in) :: columns   !< the columns
-    integer, intent(in) :: first                !< the first of them
-    integer, intent(in) :: n                    !< their number
-    character(len=:), allocatable :: text
+  !> Find the unit of some columns, per unit of a parameter in the data file.
+  pure subroutine find_unit(columns, first, n, text)
+    type(columns_type), intent(in) :: columns            !< the columns
+    integer, intent(in) :: first                         !< the first of them
+    integer, intent(in) :: n                             !< their number
+    character(len=:), allocatable, intent(out) :: text   !< the unit
     integer :: i
 
     text = ''
@@ -130,7 +140,7 @@ contains
       text = text//columns%units(i)%text
     end do
     text = text//' per unit of the parameter in the data file'
-  end function unit_of_all
+  end subroutine find_unit
 
   !> Write the names of the parameters.
   subroutine put_parameters(store, columns)

@@ -4,7 +4,7 @@ module mech9_equilibrium_file
   use mech9_mechanism, only: mechanism_type
   use mech9_columns, only: columns_type
   use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_scale_layout, only: put_force_scales, common_unit
+  use mech9_scale_layout, only: put_force_scales, find_common_unit
   use mech9_force_layout, only: write_uniqueness
   use mech9_force_record, only: force_record_type
   use mech9_linearised_equilibrium, only: equilibrium_type
@@ -58,6 +58,7 @@ contains
     type(columns_type), intent(in) :: columns         !< of the rows
     real(wp), intent(in) :: rows(:, :)                !< (columns, rows)
     type(force_record_type), intent(in) :: forces     !< with the components that are unique
+    character(len=:), allocatable :: unit
     real(wp), allocatable :: wrenches(:, :, :, :), part(:, :, :)
     character(len=12) :: scales(3)
     logical :: has_axes
@@ -70,7 +71,8 @@ contains
     at = columns%motion
     n = size(columns%drives)
     if (n > 0) then
-      call file%put('drive_force', rows(at + 1:at + n, :), 'forces that the drives need', common_unit(columns%units(at + 1:at + n)))
+      call find_common_unit(columns%units(at + 1:at + n), unit)
+      call file%put('drive_force', rows(at + 1:at + n, :), 'forces that the drives need', unit)
       call file%attach_scales('drive_force', [scales(1), '/driven     '])
     end if
     n = size(columns%reacting)
@@ -86,9 +88,9 @@ contains
     call file%attach_scales('reaction_moment', scales)
     at = at + columns%forces() - columns%couplings
     if (columns%couplings > 0) then
+      call find_common_unit(columns%units(at + 1:at + columns%couplings), unit)
       call file%put('coupling_force', rows(at + 1:at + columns%couplings, :), &
-                    'forces of the couplings on their second coordinates', &
-                    common_unit(columns%units(at + 1:at + columns%couplings)))
+                    'forces of the couplings on their second coordinates', unit)
       call file%attach_scales('coupling_force', [scales(1), '/coupling   '])
     end if
     call write_uniqueness(file, columns, forces)

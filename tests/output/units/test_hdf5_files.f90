@@ -10,7 +10,7 @@ module test_hdf5_files
   use mech9_column_sets, only: new_column_set
   use mech9_hdf5_series, only: hdf5_series_type
   use mech9_hdf5_copying, only: copy_data_sets, extents_of, scales_of, attribute_of
-  use mech9_scale_layout, only: common_unit
+  use mech9_scale_layout, only: find_common_unit
   use mech9_checks, only: near_matrix, has_message
   use mech9_test_files, only: save_lines, remove_file, text_of_file
   use mech9_testing, only: tester_type
@@ -268,4 +268,12 @@ contains
     list(2)%text = 'N'
     call tester%is_true(common_unit(list(:2)) == 'N m or N', 'a unit that is a part of another one: '//common_unit(list(:2)))
   end subroutine units
+
+  !> The unit of some coordinates as a text.
+  function common_unit(units) result(text)
+    type(string_type), intent(in) :: units(:)   !< of the coordinates
+    character(len=:), allocatable :: text
+
+    call find_common_unit(units, text)
+  end function common_unit
 end module test_hdf5_files
