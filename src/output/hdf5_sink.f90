@@ -10,7 +10,7 @@ module mech9_hdf5_sink
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_series, only: hdf5_series_type
   use mech9_column_sets, only: column_set_list_type
-  use mech9_row_layout, only: list_row_sets, put_row_scales, list_event_sets, put_event_scales, most_events
+  use mech9_row_layout, only: list_row_sets, put_row_scales, list_change_sets, put_change_scales, most_changes
   implicit none
   private
   public :: hdf5_sink_type
@@ -21,7 +21,7 @@ module mech9_hdf5_sink
   type, extends(result_sink_type) :: hdf5_sink_type
     type(hdf5_file_type) :: file
     type(hdf5_series_type), private :: series
-    type(hdf5_series_type), private :: events
+    type(hdf5_series_type), private :: changes
     logical, private :: begun = .false.  !< whether rows were written
     type(pacer_type), private :: pacer
     logical, private :: reported = .false.  !< whether the failure of the file was reported
@@ -31,8 +31,8 @@ module mech9_hdf5_sink
     procedure :: flush => flush_sink
     procedure :: close => close_sink
     procedure :: words
-    procedure :: begin_events
-    procedure :: write_events
+    procedure :: begin_changes
+    procedure :: write_changes
     procedure :: tell
   end type hdf5_sink_type
 
@@ -60,26 +60,26 @@ contains
     call self%tell(err)
   end subroutine open_sink
 
-  !> Make data sets for the events of a run: the times at which other coordinates became independent, and their numbers.
-  subroutine begin_events(self, n_independent)
+  !> Make data sets for the changes of coordinates of a run: the times at which other coordinates became independent, and their numbers.
+  subroutine begin_changes(self, n_independent)
     class(hdf5_sink_type), intent(inout) :: self  !< the HDF5 sink
     integer, intent(in) :: n_independent          !< how many coordinates are independent
     type(column_set_list_type) :: list
 
-    call list_event_sets(n_independent, list)
-    call self%events%start(list%count, 1 + 2*n_independent, most_events, 0)
-    call self%events%add_all(list)
-    call self%events%create(self%file)
-    call put_event_scales(self%file, n_independent, list)
-  end subroutine begin_events
+    call list_change_sets(n_independent, list)
+    call self%changes%start(list%count, 1 + 2*n_independent, most_changes, 0)
+    call self%changes%add_all(list)
+    call self%changes%create(self%file)
+    call put_change_scales(self%file, n_independent, list)
+  end subroutine begin_changes
 
-  !> Write the events of the run.
-  subroutine write_events(self, rows)
+  !> Write the changes of coordinates of the run.
+  subroutine write_changes(self, rows)
     class(hdf5_sink_type), intent(inout) :: self     !< the HDF5 sink
-    real(wp), intent(in), contiguous :: rows(:, :)   !< (columns, events) as take_events gives them
+    real(wp), intent(in), contiguous :: rows(:, :)   !< (columns, changes) as take_changes gives them
 
-    call self%events%append_rows(self%file, rows)
-  end subroutine write_events
+    call self%changes%append_rows(self%file, rows)
+  end subroutine write_changes
 
   !> Append rows. They are flushed about once a second, and the first ones at once, because the first flush
   !> determines where the later data stand in the file.
@@ -114,7 +114,7 @@ contains
 
     if (.not. self%file%is_open()) return
     call self%series%close(self%file)
-    call self%events%close(self%file)
+    call self%changes%close(self%file)
     call self%file%close()
     call self%tell(err)
   end subroutine close_sink

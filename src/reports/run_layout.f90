@@ -6,8 +6,8 @@ module mech9_run_layout
   use mech9_free_simulation, only: free_simulation_type
   use mech9_run, only: run_type
   use mech9_column_sets, only: column_set_list_type, chunk_rows_for
-  use mech9_row_layout, only: list_row_sets, put_row_scales, list_event_sets, put_event_scales, take_events, write_coefficients, &
-    most_events
+  use mech9_row_layout, only: list_row_sets, put_row_scales, list_change_sets, put_change_scales, take_changes, write_events, &
+    write_coefficients, most_changes
   use mech9_structure_layout, only: write_structure
   use mech9_force_layout, only: write_uniqueness
   use mech9_quantity_layout, only: write_quantities
@@ -48,10 +48,11 @@ contains
     if (.not. associated(free)) return
     call write_coefficients(table, run%motion%plan, free)
     associate (n => size(run%motion%plan%independent))
-      call list_event_sets(n, list)
-      call take_events(free, rows)
-      call table%add_rows(list, rows, most_events)
-      call put_event_scales(table, n, list)
+      call list_change_sets(n, list)
+      call take_changes(free, rows)
+      call table%add_rows(list, rows, most_changes)
+      call put_change_scales(table, n, list)
     end associate
+    call write_events(table, free)
   end subroutine lay_out_run
 end module mech9_run_layout

@@ -4,7 +4,7 @@ module mech9_dynamic_report
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_number_lists, only: same_numbers
-  use mech9_row_layout, only: write_coefficients, take_events
+  use mech9_row_layout, only: write_coefficients, take_changes, write_events
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_plan, only: plan_type
   use mech9_law_notes, only: print_jumps
@@ -136,7 +136,7 @@ contains
     end do
   end subroutine print_coefficients
 
-  !> Write the coefficients of motion as data sets, and make data sets for events.
+  !> Write the coefficients of motion as data sets, and make data sets for changes of coordinates.
   subroutine write_start(hdf5, motion)
     type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
     type(model_motion_type), intent(inout) :: motion       !< the motion, prepared
@@ -144,10 +144,10 @@ contains
 
     simulation => motion%free()
     call write_coefficients(hdf5%file, motion%plan, simulation)
-    call hdf5%begin_events(size(motion%plan%independent))
+    call hdf5%begin_changes(size(motion%plan%independent))
   end subroutine write_start
 
-  !> Write the changes of the independent coordinates as data sets.
+  !> Write the changes of the independent coordinates and the events as data sets.
   subroutine write_end(hdf5, motion)
     type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
     type(model_motion_type), intent(inout) :: motion       !< the motion, as far as it went
@@ -155,7 +155,8 @@ contains
     real(wp), allocatable :: rows(:, :)
 
     simulation => motion%free()
-    call take_events(simulation, rows)
-    call hdf5%write_events(rows)
+    call take_changes(simulation, rows)
+    call hdf5%write_changes(rows)
+    call write_events(hdf5%file, simulation)
   end subroutine write_end
 end module mech9_dynamic_report

@@ -228,7 +228,7 @@ def test_dynamics(session):
         checks.equal(found['energy_at_start'][()], file['E_total'][0], 'the energy at the start')
         checks.equal(found['largest_energy_change'][()], np.max(np.abs(change)), 'its largest change')
         checks.true(np.max(np.abs(change)) > np.max(change), 'the damper takes more than is ever gained')
-        checks.equal(file['events/time'].shape[0], 0, 'no change of coordinates')
+        checks.equal(file['coordinate_changes/time'].shape[0], 0, 'no change of coordinates')
         checks.true(file['diagnostics/steps'][()] > 0 and text(file['diagnostics/method']) != '', 'how it was integrated')
 
 
@@ -243,10 +243,10 @@ def test_events(session):
         return
     with h5py.File(path, 'r') as file:
         check_rows(checks, table, file, 'a five-bar')
-        checks.equal(file['events/time'][:].tolist(), [event['t'] for event in events], 'when coordinates changed')
-        checks.equal(file['events/independent'][:].tolist(), [event['independent'] for event in events], 'and to which')
-        checks.true(np.all(np.diff(file['events/time'][:]) >= 0), 'in their order')
-        checks.true(not np.any(file['events/replaced'][:]), 'all coordinates are integrated themselves')
+        checks.equal(file['coordinate_changes/time'][:].tolist(), [event['t'] for event in events], 'when coordinates changed')
+        checks.equal(file['coordinate_changes/independent'][:].tolist(), [event['independent'] for event in events], 'and to which')
+        checks.true(np.all(np.diff(file['coordinate_changes/time'][:]) >= 0), 'in their order')
+        checks.true(not np.any(file['coordinate_changes/replaced'][:]), 'all coordinates are integrated themselves')
 
 
 def test_replaced_angles(session):
@@ -266,7 +266,7 @@ def test_replaced_angles(session):
     with h5py.File(path, 'r') as file:
         check_rows(checks, table, file, 'past gimbal lock')
         replaced = [[int(k in event['replaced']) for k in (1, 2, 3)] for event in events]
-        checks.equal(file['events/replaced'][:].tolist(), replaced, 'which angles are replaced')
+        checks.equal(file['coordinate_changes/replaced'][:].tolist(), replaced, 'which angles are replaced')
 
 
 def test_dead_point(session):

@@ -7,7 +7,7 @@ module mech9_column_sets
   public :: column_set_type, column_set_list_type, new_column_set, scale_length, chunk_rows_for, rows_within
 
   !> Longest path of a dimension scale.
-  integer, parameter :: scale_length = 20
+  integer, parameter :: scale_length = 27
   !> Number of chunks of a complete compressed run; each is written as a whole.
   integer, parameter :: compressed_chunks = 60
   integer, parameter :: least_chunk_rows = 1024

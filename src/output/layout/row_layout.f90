@@ -1,6 +1,8 @@
-!> All data sets over the outputs of a run, and over its events, with their scales.
+!> All data sets over the outputs of a run, over its changes of coordinates, and over its events, with their scales.
 module mech9_row_layout
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
+  use mech9_text, only: string_type
   use mech9_mechanism, only: mechanism_type
   use mech9_columns, only: columns_type
   use mech9_plan, only: plan_type
@@ -12,10 +14,11 @@ module mech9_row_layout
   use mech9_sensitivity_layout, only: add_sensitivities, put_parameters
   implicit none
   private
-  public :: list_row_sets, put_row_scales, list_event_sets, put_event_scales, take_events, write_coefficients, most_events
+  public :: list_row_sets, put_row_scales, list_change_sets, put_change_scales, take_changes, write_events, &
+    write_coefficients, most_changes
 
-  !> Number of events in a chunk of their data sets.
-  integer, parameter :: most_events = 64
+  !> Number of changes of coordinates in a chunk of their data sets.
+  integer, parameter :: most_changes = 64
 
 contains
 
@@ -46,54 +49,83 @@ contains
     end do
   end subroutine put_row_scales
 
-  !> List the data sets over the events of a free motion: times at which other coordinates became independent, and their numbers.
-  subroutine list_event_sets(n_independent, list)
+  !> List the data sets over the changes of coordinates of a free motion: times at which other coordinates became independent, and their numbers.
+  subroutine list_change_sets(n_independent, list)
     integer, intent(in) :: n_independent                      !< how many coordinates are independent
     type(column_set_list_type), intent(out) :: list           !< the data sets
+    character(len=27), parameter :: scales(2) = [character(len=27) :: '/coordinate_changes/time', '/coordinate_changes/freedom']
     integer :: i
 
-    call list%add(new_column_set('events/time', [1], [integer ::], 'when other coordinates were taken', 's', &
+    call list%add(new_column_set('coordinate_changes/time', [1], [integer ::], 'when other coordinates were taken', 's', &
                                  [character(len=5) ::]))
-    call list%add(new_column_set('events/independent', [(1 + i, i=1, n_independent)], [n_independent], &
-                                 'the independent coordinates from then on', '1', ['/events/time   ', '/events/freedom'], &
-                                 whole=.true.))
-    call list%add(new_column_set('events/replaced', [(1 + n_independent + i, i=1, n_independent)], [n_independent], &
+    call list%add(new_column_set('coordinate_changes/independent', [(1 + i, i=1, n_independent)], [n_independent], &
+                                 'the independent coordinates from then on', '1', scales, whole=.true.))
+    call list%add(new_column_set('coordinate_changes/replaced', [(1 + n_independent + i, i=1, n_independent)], [n_independent], &
                                  '1 where another angle is integrated in place of this coordinate, near gimbal lock', '1', &
-                                 ['/events/time   ', '/events/freedom'], whole=.true.))
-  end subroutine list_event_sets
+                                 scales, whole=.true.))
+  end subroutine list_change_sets
 
   !> Write the scale of these data sets, which have been made, and attach it.
-  subroutine put_event_scales(store, n_independent, list)
+  subroutine put_change_scales(store, n_independent, list)
     class(data_set_store_type), intent(inout) :: store        !< the open storage
     integer, intent(in) :: n_independent                      !< how many coordinates are independent
-    type(column_set_list_type), intent(in) :: list            !< the data sets over the events
+    type(column_set_list_type), intent(in) :: list            !< the data sets over the changes
     integer :: i
 
-    call store%put('events/freedom', [(i, i=1, n_independent)], 'number of the degree of freedom')
-    call store%make_scale('events/freedom')
+    call store%put('coordinate_changes/freedom', [(i, i=1, n_independent)], 'number of the degree of freedom')
+    call store%make_scale('coordinate_changes/freedom')
     do i = 1, list%count
       call list%sets(i)%attach_in(store)
     end do
-  end subroutine put_event_scales
+  end subroutine put_change_scales
 
-  !> Take the rows of the events of a motion.
-  pure subroutine take_events(simulation, rows)
+  !> Take the rows of the changes of coordinates of a motion.
+  pure subroutine take_changes(simulation, rows)
     type(free_simulation_type), intent(in) :: simulation      !< the motion, as far as it went
-    real(wp), allocatable, intent(out) :: rows(:, :)          !< (columns, events) time, independent coordinates, those replaced
+    real(wp), allocatable, intent(out) :: rows(:, :)          !< (columns, changes) time, independent coordinates, those replaced
     integer :: n, k, i
 
     n = size(simulation%motion%system%plan%independent)
-    allocate (rows(1 + 2*n, size(simulation%events)), source=0.0_wp)
-    do i = 1, size(simulation%events)
-      associate (event => simulation%events(i))
-        rows(1, i) = event%t
-        rows(2:1 + n, i) = real(event%independent, wp)
+    allocate (rows(1 + 2*n, size(simulation%coordinate_changes)), source=0.0_wp)
+    do i = 1, size(simulation%coordinate_changes)
+      associate (change => simulation%coordinate_changes(i))
+        rows(1, i) = change%t
+        rows(2:1 + n, i) = real(change%independent, wp)
         do k = 1, n
-          if (any(event%replaced == event%independent(k))) rows(1 + n + k, i) = 1.0_wp
+          if (any(change%replaced == change%independent(k))) rows(1 + n + k, i) = 1.0_wp
         end do
       end associate
     end do
-  end subroutine take_events
+  end subroutine take_changes
+
+  !> Write the events of a motion that has stops; a file without events has none of these data sets.
+  subroutine write_events(store, simulation)
+    class(data_set_store_type), intent(inout) :: store        !< the open storage
+    type(free_simulation_type), intent(in) :: simulation      !< the motion, as far as it went
+    type(string_type), allocatable :: kinds(:), groups(:)
+    integer :: i, n
+
+    n = simulation%events%count
+    if (n == 0) return
+    allocate (kinds(n), groups(n))
+    associate (events => simulation%events%items(:n))
+      do i = 1, n
+        kinds(i)%text = trim(events(i)%kind)
+        groups(i)%text = trim(events(i)%group)
+      end do
+      call store%put('events/time', events%t, 'time of the event', 's')
+      call store%make_scale('events/time')
+      call store%put('events/kind', kinds, 'impact, close or open')
+      call store%put('events/group', groups, 'kind of the group of the data file that the event belongs to')
+      call store%put('events/number', events%number, 'number of this group')
+      call store%put('events/impulse', merge(events%impulse, ieee_value(1.0_wp, ieee_quiet_nan), events%has_impulse), &
+                     'impulse on the coordinate, positive while it grows; not a number where there is none', 'N s, N m s')
+    end associate
+    call store%attach_scales('events/kind', ['/events/time'])
+    call store%attach_scales('events/group', ['/events/time'])
+    call store%attach_scales('events/number', ['/events/time'])
+    call store%attach_scales('events/impulse', ['/events/time'])
+  end subroutine write_events
 
   !> Write the coefficients of motion at the start.
   subroutine write_coefficients(store, plan, simulation)
