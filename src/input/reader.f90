@@ -128,7 +128,7 @@ contains
       call read_bodies(document, m%structure, m%pairs, m%bodies, diagnostics)
       m%gravity = read_gravity(document)
       call read_loads(document, m, diagnostics)
-      call read_stops(document, m, diagnostics)
+      call read_stops(document, request%time, m, diagnostics)
       call read_output(document, m%structure, request%output, diagnostics)
       call read_quantities(document, request%time, request%quantities, diagnostics)
       call read_cams(document, m%structure, m%pairs, request%cams, diagnostics)

@@ -3,6 +3,7 @@ module mech9_stop_reader
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_mechanism, only: mechanism_type
+  use mech9_request, only: time_grid_type
   use mech9_stop, only: stop_type
   use mech9_stop_load, only: stop_load_type
   use mech9_load, only: load_slot_type
@@ -18,8 +19,9 @@ module mech9_stop_reader
 contains
 
   !> All stops, in the order of the file, and a load for each compliant one.
-  subroutine read_stops(document, mechanism, diagnostics)
+  subroutine read_stops(document, time, mechanism, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(time_grid_type), intent(in) :: time              !< the times of the results
     type(mechanism_type), intent(inout) :: mechanism      !< with its pairs and loads; gets the stops
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:)
@@ -34,6 +36,9 @@ contains
         stop%place = diagnostics%place(group%span)
         call check_stop(group, stop, diagnostics)
         call check_others(group, i, mechanism%stops, diagnostics)
+        if (stop%is_rigid .and. time%end < time%start) &
+          call diagnostics%add(group%span, 'a motion back in time does not know where it met a rigid stop; give an end '// &
+                               'after the start, or make the stop compliant by stiffness=')
       end associate
     end do
     call add_loads(mechanism%stops, mechanism%loads)

@@ -1,6 +1,8 @@
 !> Equilibria of a model, from its assembly on: what --equilibrium, --modes and --linear find.
 module mech9_rest
-  use mech9_error, only: error_type, raise, add_place, exit_data, exit_interrupted
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, add_place, exit_data, exit_singular, exit_interrupted
+  use mech9_text, only: to_text
   use mech9_dynamics_failures, only: failure_no_inertia
   use mech9_model, only: model_type
   use mech9_partition, only: free_coordinate, driven_coordinate
@@ -26,6 +28,9 @@ module mech9_rest
     procedure :: assemble
     procedure :: find
   end type rest_type
+
+  !> A position lies behind a stop by more than this [rad, m]: equilibria are found to 1e-9 and better.
+  real(wp), parameter :: behind_stop = 1.0e-9_wp
 
 contains
 
@@ -80,9 +85,55 @@ contains
       allocate (found(1))
       call find_equilibrium(model%mechanism, model%problem%partition, self%plan, self%start, found(1), err)
     end if
+    if (.not. allocated(err) .or. is_interruption(err)) call leave_out_behind_stops(model, found, err)
     if (.not. allocated(err) .and. with_modes) call need_inertia(model, found(1), err)
     if (.not. allocated(err) .or. is_interruption(err)) call move_alloc(found, self%equilibria)
   end subroutine find
+
+  !> Leave out positions of rest that lie behind rigid stops. Fails with exit_singular where none is left: rest against a stop is not
+  !> searched.
+  subroutine leave_out_behind_stops(model, found, err)
+    type(model_type), intent(in) :: model                              !< the model
+    type(equilibrium_type), allocatable, intent(inout) :: found(:)     !< equilibria
+    type(error_type), allocatable, intent(inout) :: err                !< an interruption, or none
+    type(equilibrium_type), allocatable :: kept(:)
+    integer :: behind(size(found)), i, n
+
+    do i = 1, size(found)
+      behind(i) = stop_before(model, found(i)%resting%state%q)
+    end do
+    if (all(behind == 0)) return
+    if (all(behind > 0) .and. .not. allocated(err)) then
+      call raise(err, exit_singular, 'the loads balance behind stop '//to_text(behind(1))//' only, and rest against a stop is '// &
+                 'not searched; make the stop compliant by stiffness=, or run mech9d until the motion rests', &
+                 model%mechanism%stops(behind(1))%place)
+      return
+    end if
+    allocate (kept(count(behind == 0)))
+    n = 0
+    do i = 1, size(found)
+      if (behind(i) > 0) cycle
+      n = n + 1
+      kept(n) = found(i)
+    end do
+    call move_alloc(kept, found)
+  end subroutine leave_out_behind_stops
+
+  !> The rigid stop behind which a position lies; 0: none.
+  pure integer function stop_before(model, q) result(number)
+    type(model_type), intent(in) :: model   !< the model
+    real(wp), intent(in) :: q(:)            !< (M) coordinates [rad, m]
+    integer :: end
+
+    do number = size(model%mechanism%stops), 1, -1
+      associate (stop => model%mechanism%stops(number))
+        if (.not. stop%is_rigid) cycle
+        do end = 1, 2
+          if (stop%gap(end, q(stop%coordinate)) < -behind_stop) return
+        end do
+      end associate
+    end do
+  end function stop_before
 
   !> Fail because modes and linearised equations of motion need the inertia of each free coordinate.
   subroutine need_inertia(model, equilibrium, err)

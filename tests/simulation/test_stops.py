@@ -311,6 +311,7 @@ def test_grazing(checks, mech9d, tmp_path):
     ("coordinate=1, high=0.5 /\n&stop coordinate=1, low=0.7", 'leaves no range'),
     ("coordinate=1, low=0, stiffness=0", 'stiffness'),
     ("coordinate=1, low=nan", 'low'),
+    ("coordinate=1, low=0 /\n&time start=1, end=0, intervals=1 /\n&user", 'back in time'),
 ])
 def test_bad_stops(checks, mech9d, tmp_path, stop, words):
     _, _, told = go(mech9d, tmp_path, SLIDER + f"&stop {stop} /\n", 1.0, code=3)

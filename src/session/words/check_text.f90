@@ -10,6 +10,7 @@ module mech9_check_text
   use mech9_parameter_text, only: print_parameters, print_parameter_notes
   use mech9_check_notes, only: print_notes
   use mech9_start_way_text, only: print_start_way
+  use mech9_stop_text, only: print_stops
   use mech9_force_text, only: print_uniqueness, print_forceless
   use mech9_force_record, only: force_record_type, reacting_pairs
   implicit none
@@ -48,6 +49,7 @@ contains
       write (unit, '(2x,a8,es24.16)') name, &
         start%q(k)/unit_of(model%mechanism, k)
     end do
+    call print_stops(unit, model%mechanism, start)
     call print_forces(unit, model, plan, start)
   end subroutine print_start
 
