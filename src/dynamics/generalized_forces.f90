@@ -26,6 +26,12 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
 
     if (size(dynamics%acting) == 0 .and. size(mechanism%motors) == 0) return
+    if (dynamics%stops_alone .and. allocated(state%pressed)) then
+      if (.not. any(state%pressed)) then
+        if (work%sum%any_generalized) call work%sum%clear()
+        return
+      end if
+    end if
     call sum_forces(mechanism, plan, dynamics%acting, dynamics%loaded, state, work%view, work%sum, err)
   end subroutine collect_loads
 

@@ -66,6 +66,7 @@ module mech9_lagrange_types
     logical, allocatable :: closed(:)                  !< (0:M) the frame belongs to a closed cluster
     logical, allocatable :: carries_columns(:)         !< (0:M) both; columns of other frames are not used in an evaluation
     integer, allocatable :: acting(:)                  !< numbers of the loads that are not idle
+    logical :: stops_alone = .false.                   !< all of them are compliant stops, and there is no motor
     logical, allocatable :: load_links(:)              !< (N) whether a load acts on the link or reads its motion
     integer, allocatable :: loaded(:)                  !< numbers of these links but link 1, which does not move
     integer, allocatable :: support(:)                 !< (M) frame on which the cluster of each step stands

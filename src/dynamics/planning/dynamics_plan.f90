@@ -65,6 +65,7 @@ contains
 
     dynamics%gravity = known%gravity
     dynamics%acting = known%acting
+    dynamics%stops_alone = known%stops_alone
     dynamics%load_links = known%load_links
     dynamics%loaded = known%loaded
     dynamics%bodies = known%bodies
@@ -80,6 +81,8 @@ contains
 
     allocate (dynamics%load_links(plan%n_links), source=.false.)
     dynamics%acting = mechanism%acting_loads()
+    dynamics%stops_alone = size(mechanism%motors) == 0 .and. &
+                           all(dynamics%acting > size(mechanism%loads) - count(.not. mechanism%stops%is_rigid))
     call mechanism%mark_loaded_links(dynamics%load_links)
     dynamics%loaded = pack([(i, i=2, plan%n_links)], dynamics%load_links(2:))
   end subroutine find_loads
