@@ -5,6 +5,7 @@ module mech9_motion
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_error, only: error_type, raise, exit_usage, exit_singular, exit_interrupted
+  use mech9_partition, only: free_coordinate
   use mech9_model, only: model_type
   use mech9_point, only: point_type
   use mech9_plan, only: plan_type
@@ -361,14 +362,18 @@ contains
     if (size(plan%independent) /= size(self%independent)) then
       call raise(err, exit_singular, 'other coordinates are integrated in this position')
     else if (any(plan%independent /= self%independent)) then
-      call raise(err, exit_singular, 'other coordinates than those of cq are integrated near a singular position')
+      call raise(err, exit_singular, 'other coordinates than those of cq are integrated, near a singular position or while a '// &
+                 'stop holds one of them')
     end if
     if (.not. allocated(err)) call find_coefficients(self%model%mechanism, plan, state, found, err)
     if (allocated(err)) then
       call explain(err)
       return
     end if
-    coordinates = plan%free
+    ! a closed stop holds a coordinate that is free all the same: its force is a part of the bias
+    associate (kind => self%model%problem%partition%kind)
+      coordinates = pack([(k, k=1, size(kind))], kind == free_coordinate)
+    end associate
     call self%mechanism%order_as_given(coordinates)
     n = size(coordinates)
     order = [(findloc(plan%independent, coordinates(i), dim=1), i=1, n)]
