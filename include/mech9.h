@@ -91,6 +91,11 @@ int mech9_mechanism_use_pair(mech9_mechanism *mechanism, mech9_pair_function *fu
 int mech9_mechanism_use_drive(mech9_mechanism *mechanism, mech9_drive_function *function, void *data, mech9_error *error);
 int mech9_mechanism_use_coupling(mech9_mechanism *mechanism, mech9_coupling_function *function, void *data, mech9_error *error);
 int mech9_mechanism_use_force(mech9_mechanism *mechanism, mech9_force_function *function, void *data, mech9_error *error);
+/* A function that learns how far mech9_kinematics, _dynamics, _study and _optimize are: it is called in the thread of such a call,
+ * about ten times a second, and at its end with 1. Another answer than 0 stops the call with code 130. Null takes it back. Copies of
+ * the mechanism do not have it. */
+typedef int mech9_progress_function(double done, void *data);   /* from 0 to 1 */
+int mech9_mechanism_use_progress(mech9_mechanism *mechanism, mech9_progress_function *function, void *data, mech9_error *error);
 /* For forces, within a call. Links and coordinates have their numbers, from 1. Points and vectors have three numbers: points and
  * directions that are given in the system of the link, all else along the axes of link 1. SI units. A number that does not exist
  * gives zeros, and ends the analysis. */

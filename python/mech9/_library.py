@@ -45,6 +45,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     'mechanism_use_drive': (_STATUS, [c_void_p, c_void_p, c_void_p]),
     'mechanism_use_coupling': (_STATUS, [c_void_p, c_void_p, c_void_p]),
     'mechanism_use_force': (_STATUS, [c_void_p, c_void_p, c_void_p]),
+    'mechanism_use_progress': (_STATUS, [c_void_p, c_void_p, c_void_p]),
     'motion_position': (None, [c_void_p, c_int, c_void_p, c_void_p]),
     'motion_velocity': (None, [c_void_p, c_int, c_void_p, c_void_p]),
     'motion_turned': (None, [c_void_p, c_int, c_void_p, c_void_p]),

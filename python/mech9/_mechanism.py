@@ -8,7 +8,7 @@ import tempfile
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Sequence, TypeVar
+from typing import TYPE_CHECKING, Any, Callable, Sequence, TypeVar
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from ._errors import DataError, Error, UsageError
 from ._library import Handle, call, call_stoppable, count, lib
 from ._library import text as text_of
 from ._pictures import Picture, drawn
-from ._procedures import Procedure
+from ._procedures import Procedure, Progress
 from ._results import Results
 from ._words import group, run_setting, written
 
@@ -320,20 +320,25 @@ class Mechanism:
         call(lib.mechanism_is_driven, self._handle, ctypes.byref(driven))
         return bool(driven.value)
 
-    def kinematics(self, **words: Any) -> Results:
-        """A driven run, as mech9k makes it. It takes the words of &time, &output and &solver; they hold for this run alone."""
-        return self._run(lib.kinematics, words)
+    def kinematics(self, *, progress: Callable[[float], Any] | None = None, **words: Any) -> Results:
+        """A driven run, as mech9k makes it. It takes the words of &time, &output and &solver; they hold for this run alone.
 
-    def dynamics(self, **words: Any) -> Results:
-        """A run under forces, as mech9d makes it. It takes the words of &time, &output and &solver; they hold for this run alone."""
-        return self._run(lib.dynamics, words)
+        progress(done) is called about ten times a second with the share that is done, from 0 to 1, in the thread of the computation;
+        what it raises stops the run.
+        """
+        return self._run(lib.kinematics, words, progress)
 
-    def _run(self, function: Any, words: dict[str, Any]) -> Results:
+    def dynamics(self, *, progress: Callable[[float], Any] | None = None, **words: Any) -> Results:
+        """A run under forces, as mech9d makes it. It takes the words of &time, &output and &solver; they hold for this run alone.
+        progress as for kinematics."""
+        return self._run(lib.dynamics, words, progress)
+
+    def _run(self, function: Any, words: dict[str, Any], progress: Callable[[float], Any] | None) -> Results:
         run = self._with_words(words)
         results = None
         try:
-            results = run._results(function, lambda stop, out: (run._handle, stop, out))
-        except (Error, KeyboardInterrupt) as reason:
+            results = run._results(function, lambda run, stop, out: (run, stop, out), progress)
+        except BaseException as reason:
             results = getattr(reason, 'results', None)
             raise
         finally:
@@ -350,49 +355,58 @@ class Mechanism:
             call(lib.mechanism_apply, changed._handle, text_of(run_setting(word, value)))
         return changed
 
-    def _results(self, function: Any, arguments: Any) -> Results:
+    def _results(self, function: Any, arguments: Any, progress: Callable[[float], Any] | None = None) -> Results:
         """Call an analysis that may take long; a failure keeps what was computed before it."""
         handle = ctypes.c_void_p()
+        called = self
+        told = None
+        if progress is not None:
+            told = Progress(progress)
+            called = self.copy()
+            call(lib.mechanism_use_progress, called._handle, told.address, None)
+        failure, stopped = None, None
         try:
-            failure = call_stoppable(function, lambda stop: arguments(stop, ctypes.byref(handle)), (self, handle))
+            failure = call_stoppable(function, lambda stop: arguments(called._handle, stop, ctypes.byref(handle)), (called, handle, told))
         except KeyboardInterrupt as interrupt:
-            interrupt.results = Results(handle.value, lambda: self.parameters) if handle.value else None   # type: ignore[attr-defined]
-            raise
+            stopped = interrupt
         results = Results(handle.value, lambda: self.parameters) if handle.value else None
-        if failure is not None:
-            failure.results = results
-            raise failure
+        reason = told.raised[0] if told is not None and told.raised else stopped if stopped is not None else failure
+        if reason is not None:
+            reason.results = results   # type: ignore[attr-defined,union-attr]
+            raise reason
         assert results is not None
         return results
 
     def equilibrium(self, starts: int = 0) -> Results:
         """The equilibrium to which the start leads, or those of many random starts: a row for each."""
-        return self._results(lib.equilibrium, lambda stop, out: (self._handle, count(starts, 'starts'), stop, out))
+        return self._results(lib.equilibrium, lambda m, stop, out: (m, count(starts, 'starts'), stop, out))
 
     def modes(self) -> Results:
         """The modes of vibration about the equilibrium to which the start leads: a row for each."""
-        return self._results(lib.modes, lambda stop, out: (self._handle, out))
+        return self._results(lib.modes, lambda m, stop, out: (m, out))
 
     def assemblies(self, starts: int = 100) -> Results:
         """The assemblies with the independent coordinates of the start: a row of coordinates for each."""
-        return self._results(lib.assemblies, lambda stop, out: (self._handle, count(starts, 'starts'), out))
+        return self._results(lib.assemblies, lambda m, stop, out: (m, count(starts, 'starts'), out))
 
     def range(self) -> Results:
         """How far each independent coordinate can go while the others are held: coordinate, lower, upper; infinite where nothing stops it."""
-        return self._results(lib.range, lambda stop, out: (self._handle, out))
+        return self._results(lib.range, lambda m, stop, out: (m, out))
 
     def cam(self, number: int = 1) -> Results:
         """The profile of a cam, of which &cam describes the follower: the columns of --cam, and its entry of a report as `report`."""
-        return self._results(lib.cam, lambda stop, out: (self._handle, count(number, 'number', 1), out))
+        return self._results(lib.cam, lambda m, stop, out: (m, count(number, 'number', 1), out))
 
-    def study(self, threads: int = 1, dynamics: bool | None = None, **values: Any) -> Any:
+    def study(self, threads: int = 1, dynamics: bool | None = None, *, progress: Callable[[float], Any] | None = None,
+              **values: Any) -> Any:
         """Make all runs of &study, or one for each of the values of parameters or numbers: study(crank=np.linspace(0.2, 0.4, 5)).
 
         Several lists of values have the same length. The answer is an xarray.Dataset over `run`, with parameters, quantities and
         exit codes; without xarray it is Results. dynamics: whether forces move the mechanism; by default where a coordinate has no drive.
+        progress as for kinematics.
         """
         if not values:
-            return self._study(threads, dynamics, {})
+            return self._study(threads, dynamics, {}, progress)
         changed = self.copy()
         names = {}
         for i, name in enumerate(values):
@@ -413,11 +427,11 @@ class Mechanism:
             path = os.path.join(folder, 'values.dat')
             np.savetxt(path, np.column_stack(columns), fmt='%.17g')
             changed.remove('study').add('study', kind='list', file=path)
-            return changed._study(threads, dynamics, names)
+            return changed._study(threads, dynamics, names, progress)
 
-    def _study(self, threads: int, dynamics: bool | None, names: dict[str, str]) -> Any:
+    def _study(self, threads: int, dynamics: bool | None, names: dict[str, str], progress: Callable[[float], Any] | None) -> Any:
         with_forces = not self.is_driven if dynamics is None else dynamics
-        runs = self._results(lib.study, lambda stop, out: (self._handle, int(with_forces), count(threads, 'threads', 1), stop, out))
+        runs = self._results(lib.study, lambda m, stop, out: (m, int(with_forces), count(threads, 'threads', 1), stop, out), progress)
         try:
             import xarray
         except ImportError:
@@ -428,7 +442,7 @@ class Mechanism:
 
     def linear(self) -> Linear:
         """The equations of motion linearised about the equilibrium to which the start leads."""
-        found = self._results(lib.linear, lambda stop, out: (self._handle, out))
+        found = self._results(lib.linear, lambda m, stop, out: (m, out))
         second = {name[-1]: matrix.values for name, matrix in found.matrices.items() if name.startswith('second_order/')}
         space = {name[-1]: matrix for name, matrix in found.matrices.items() if name.startswith('state_space/')}
         return Linear(found.table[0], found.matrices['second_order/M'].rows, SecondOrder(**second), StateSpace(
@@ -436,15 +450,17 @@ class Mechanism:
             states=space['A'].rows, state_units=space['A'].row_units, inputs=space['B'].columns, input_units=space['B'].column_units,
             outputs=space['C'].rows, output_units=space['C'].row_units))
 
-    def optimize(self, *, threads: int = 1, dynamics: bool | None = None, **words: Any) -> Optimum:
-        """Search for the best design. It takes the words of &optimum, as seed=1 and starts=100; they hold for this search alone."""
+    def optimize(self, *, threads: int = 1, dynamics: bool | None = None, progress: Callable[[float], Any] | None = None,
+                 **words: Any) -> Optimum:
+        """Search for the best design. It takes the words of &optimum, as seed=1 and starts=100; they hold for this search alone.
+        progress as for kinematics."""
         with_forces = not self.is_driven if dynamics is None else dynamics
         searched = self
         if words:
             searched = self.copy()
             for word, value in words.items():
                 call(lib.mechanism_apply, searched._handle, text_of(f'optimum.{word}={written(value)}'))
-        found = searched._results(lib.optimize, lambda stop, out: (searched._handle, int(with_forces), count(threads, 'threads', 1), stop, out))
+        found = searched._results(lib.optimize, lambda m, stop, out: (m, int(with_forces), count(threads, 'threads', 1), stop, out), progress)
         return Optimum(searched, with_forces, found)
 
     # pictures

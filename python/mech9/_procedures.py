@@ -186,4 +186,28 @@ def _force(function: Callable[..., Any], raised: list[BaseException]) -> Any:
     return _FORCE(call)
 
 
+_PROGRESS = CFUNCTYPE(c_int, c_double, c_void_p)
+
+
+class Progress:
+    """A function that learns how far a call is. What it raises stops the call, and is kept in `raised`."""
+
+    def __init__(self, function: Callable[[float], Any]):
+        if not callable(function):
+            raise UsageError(f'progress is a function of the share that is done, not {function!r}', 2)
+        self.raised: list[BaseException] = []
+
+        def call(done: float, data: Any) -> int:
+            if self.raised:
+                return 1
+            try:
+                function(done)
+                return 0
+            except BaseException as reason:
+                self.raised.append(reason)
+                return 1
+        self._thunk = _PROGRESS(call)
+        self.address: int | None = ctypes.cast(self._thunk, c_void_p).value
+
+
 _MAKERS: dict[str, Callable[..., Any]] = {'pair': _pair, 'drive': _curve, 'coupling': _curve, 'force': _force}

@@ -6,8 +6,8 @@ module mech9_api_analyses
     draw_film, exit_file, exit_data, exit_structure, exit_interrupted, kinematics, dynamics
   use mech9_api_text, only: c_text_type, read_c_text
   use mech9_api_error, only: begin_call, end_call
-  use mech9_api_interruption, only: flag_interruption_type, new_interruption
-  use mech9_api_mechanism, only: find_mechanism
+  use mech9_api_interruption, only: flag_interruption_type, progress_type, new_interruption, end_progress
+  use mech9_api_mechanism, only: find_mechanism, find_progress
   use mech9_api_results, only: results_type, show_results, put_texts, put_matrix
   implicit none
   private
@@ -72,11 +72,13 @@ contains
     type(results_type), pointer :: found
     type(run_type), pointer :: run
     type(flag_interruption_type) :: interruption
+    type(progress_type), target :: progress
     type(error_type), allocatable :: err
 
     call begin_call(error)
     results = c_null_ptr
-    call new_interruption(stop, interruption)
+    call find_progress(mechanism, progress)
+    call new_interruption(stop, interruption, progress)
     allocate (run)
     call find_mechanism(mechanism, moved, err)
     if (.not. allocated(err)) then
@@ -95,6 +97,7 @@ contains
       call run%close()
       deallocate (run)
     end if
+    call end_progress(progress, err)
     code = end_analysis(error, err, moved, program)
   end function make_run
 
@@ -286,11 +289,13 @@ contains
     type(mechanism_type), pointer :: varied
     type(study_type), allocatable, target :: study
     type(flag_interruption_type) :: interruption
+    type(progress_type), target :: progress
     type(error_type), allocatable :: err
 
     call begin_call(error)
     results = c_null_ptr
-    call new_interruption(stop, interruption)
+    call find_progress(mechanism, progress)
+    call new_interruption(stop, interruption, progress)
     call find_mechanism(mechanism, varied, err)
     if (.not. allocated(err)) then
       allocate (study)
@@ -301,6 +306,7 @@ contains
       end if
       if (has_rows(err)) results = runs_of(study)
     end if
+    call end_progress(progress, err)
     code = end_analysis(error, err, varied, merge(kinematics, dynamics, with_forces == 0))
   end function make_study
 
@@ -382,6 +388,7 @@ contains
     type(mechanism_type), pointer :: searched
     type(optimum_type) :: optimum
     type(flag_interruption_type) :: interruption
+    type(progress_type), target :: progress
     type(error_type), allocatable :: err, unnamed
     character(len=:), allocatable :: names(:), units(:)
     real(wp), allocatable :: sizes(:)
@@ -390,7 +397,8 @@ contains
     call begin_call(error)
     results = c_null_ptr
     program = merge(kinematics, dynamics, with_forces == 0)
-    call new_interruption(stop, interruption)
+    call find_progress(mechanism, progress)
+    call new_interruption(stop, interruption, progress)
     call find_mechanism(mechanism, searched, err)
     if (.not. allocated(err)) then
       call optimum%make(searched, program, threads, interruption, err)
@@ -399,6 +407,7 @@ contains
         results = designs_of(optimum, names, units, sizes)
       end if
     end if
+    call end_progress(progress, err)
     code = end_analysis(error, err, searched, program)
   end function optimize
 

@@ -1,20 +1,23 @@
 !> Mechanisms for C: handles that read, hold and change the groups of a data file (include/mech9.h).
 module mech9_api_mechanism
-  use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_null_ptr, c_f_pointer, c_loc
+  use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_funptr, c_null_ptr, c_null_funptr, c_f_pointer, c_loc
   use mech9, only: error_type, finding_type, mechanism_type, parse_file, parse_text, string_type, name_coordinates, kinematics, &
     dynamics
   use mech9_importing, only: import_as_text
   use mech9_same_file, only: same_file
   use mech9_api_handle, only: is_live, mechanism_mark, no_mark
   use mech9_api_text, only: c_text_type, read_c_text
+  use mech9_api_interruption, only: progress_type
   use mech9_api_error, only: begin_call, end_call, refuse
   implicit none
   private
-  public :: find_mechanism
+  public :: find_mechanism, find_progress
 
   type :: mechanism_handle_type
     integer(c_int) :: mark = mechanism_mark
     type(mechanism_type) :: mechanism
+    type(c_funptr) :: progress = c_null_funptr   !< function that learns how far long calls are; null: none
+    type(c_ptr) :: progress_data = c_null_ptr    !< is given to it
     type(c_text_type) :: text           !< as the caller asked for it last
     type(c_text_type) :: imported       !< of an imported robot: its data file
     type(c_text_type) :: messages       !< of an imported robot: lines of what is not taken over, and a summary
@@ -162,6 +165,37 @@ contains
     handle%mark = no_mark
     deallocate (handle)
   end subroutine destroy
+
+  !> Register a function that learns how far long calls with a mechanism are.
+  integer(c_int) function use_progress(mechanism, function, data, error) bind(c, name='mech9_mechanism_use_progress') result(code)
+    type(c_ptr), value, intent(in) :: mechanism   !< the handle
+    type(c_funptr), value, intent(in) :: function !< address of the function; null takes it back
+    type(c_ptr), value, intent(in) :: data        !< is given to each call
+    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
+    type(mechanism_handle_type), pointer :: handle
+    type(error_type), allocatable :: err
+
+    call begin_call(error)
+    call find_handle(mechanism, handle, err)
+    if (.not. allocated(err)) then
+      handle%progress = function
+      handle%progress_data = data
+    end if
+    code = end_call(error, err)
+  end function use_progress
+
+  !> The function that learns how far a long call is, if one is registered.
+  subroutine find_progress(mechanism, progress)
+    type(c_ptr), intent(in) :: mechanism            !< the handle
+    type(progress_type), intent(out) :: progress    !< gets the function
+    type(mechanism_handle_type), pointer :: handle
+    type(error_type), allocatable :: err
+
+    call find_handle(mechanism, handle, err)
+    if (allocated(err)) return
+    progress%function = handle%progress
+    progress%data = handle%progress_data
+  end subroutine find_progress
 
   !> Add groups, written as in a data file.
   integer(c_int) function add(mechanism, groups, error) bind(c, name='mech9_mechanism_add') result(code)

@@ -27,6 +27,13 @@ module mech9_recorded_optimum
     procedure :: take_design
   end type recorded_optimum_type
 
+  !> Starts that tell how many of them are made.
+  type, extends(search_starts_type) :: told_starts_type
+    class(interruption_type), allocatable :: listener   !< learns it
+  contains
+    procedure :: tell_progress
+  end type told_starts_type
+
 contains
 
   !> Search for the best design. Fails with exit_usage where the mechanism has no &objective, with exit_assembly where no start leads
@@ -41,7 +48,7 @@ contains
     type(model_type) :: model
     type(varied_document_type), target :: variable
     type(optimum_search_type), allocatable, target :: search
-    type(search_starts_type) :: starts
+    type(told_starts_type) :: starts
     integer :: made_by
 
     call forget(self)
@@ -54,6 +61,7 @@ contains
     end if
     if (.not. allocated(err)) then
       allocate (starts%made(model%request%optimum%starts))
+      allocate (starts%listener, source=interruption)
       call starts%begin(interruption)
       ! a user's procedures may keep numbers from call to call
       made_by = max(1, threads)
@@ -63,6 +71,14 @@ contains
     end if
     call mechanism%point_at(err)
   end subroutine make
+
+  !> Tell how far the search is.
+  subroutine tell_progress(self, share)
+    class(told_starts_type), intent(inout) :: self   !< the starts
+    real(wp), intent(in) :: share                    !< of the starts that are made, from 0 to 1
+
+    call self%listener%tell(share)
+  end subroutine tell_progress
 
   !> Forget all designs.
   subroutine forget(self)

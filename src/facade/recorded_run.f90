@@ -216,6 +216,7 @@ contains
         call source%add_row(time%time(self%next), whole, count, err)
         if (allocated(err)) exit
         self%next = self%next + 1
+        if (associated(self%interruption)) call self%interruption%tell(real(self%next, wp)/(time%intervals + 1))
       end do
       if (.not. allocated(err)) call source%complete(whole, count, err)
       rows(:, :count) = whole(:size(rows, 1), :count)

@@ -39,6 +39,7 @@ module mech9_recorded_study
   !> Takes the runs of a study into memory.
   type, extends(study_sink_type) :: memory_sink_type
     type(recorded_study_type), pointer :: study => null()   !< gets the runs; not owned
+    class(interruption_type), allocatable :: interruption   !< learns how far the study is
     integer :: taken = 0                                    !< runs that were taken
   contains
     procedure :: is_made
@@ -124,6 +125,7 @@ contains
     type(study_runs_type) :: runs
 
     sink%study => self
+    allocate (sink%interruption, source=interruption)
     call runs%begin(model, sink, runs_ahead*threads, .false., interruption)
     call make_in_threads(model, variable, threads, interruption, runs)
     call runs%finish(err)
@@ -195,12 +197,14 @@ contains
     self%study%exit_codes(self%taken) = run%exit_code
   end subroutine show_run
 
-  !> Nobody looks on.
+  !> Tell how far the study is.
   subroutine tell_progress(self, done, read, sums)
     class(memory_sink_type), intent(inout) :: self         !< takes the runs
-    real(wp), intent(in) :: done                           !< unused
+    real(wp), intent(in) :: done                           !< share of the runs that are made, from 0 to 1
     real(wp), intent(in) :: read                           !< unused
     type(study_sums_type), intent(in) :: sums              !< unused
+
+    call self%interruption%tell(done)
   end subroutine tell_progress
 
   !> Nothing is to be closed.

@@ -25,6 +25,7 @@ module mech9_simulation
     procedure(wanted_interface), deferred :: is_wanted
     procedure :: begin_run => begin_nothing
     procedure :: watch => watch_nothing
+    procedure :: tell => tell_nothing
   end type interruption_type
 
   !> The work that a motion took since its start. Driven motions have no evaluations, free ones no halvings and crossings.
@@ -328,6 +329,12 @@ contains
     class(interruption_type), intent(inout) :: self         !< the interruption
     class(simulation_type), intent(inout) :: simulation     !< the motion
   end subroutine watch_nothing
+
+  !> Learn how far a call is that makes a motion, or many. Interruptions do not listen unless they say so.
+  subroutine tell_nothing(self, share)
+    class(interruption_type), intent(inout) :: self         !< the interruption
+    real(wp), intent(in) :: share                           !< of the call that is done, from 0 to 1
+  end subroutine tell_nothing
 
   !> The work done so far.
   function statistics(self)

@@ -77,6 +77,8 @@ MISUSE = r'''
 #include <string.h>
 static int failures = 0;
 static void expect(int holds, const char *what) { if (!holds) { failures++; printf("%s\n", what); } }
+static double last = -1;
+static int told(double done, void *data) { last = done; return *(int *)data; }
 int main(void)
 {
   mech9_error *error = mech9_error_create();
@@ -110,6 +112,19 @@ int main(void)
   expect(mech9_mechanism_add(copy, "&point name='Q', link=3 /", error) == 0, "a point is added");
   expect(strstr(mech9_mechanism_text(copy), "'Q'") != NULL, "and written");
   expect(mech9_kinematics(copy, &stop, &results, error) == 130, "a run that is to stop stops");
+  mech9_results_destroy(results);
+  stop = 0;
+  expect(mech9_mechanism_use_progress(NULL, told, &stop, error) == 2, "progress of nothing");
+  expect(mech9_mechanism_use_progress(copy, told, &stop, error) == 0, "a function for progress");
+  expect(mech9_kinematics(copy, NULL, &results, error) == 0 && last == 1, "is told the end");
+  mech9_results_destroy(results);
+  expect(mech9_mechanism_apply(copy, "time.intervals=2000000", error) == 0, "a long run");
+  stop = 1;
+  last = -1;
+  expect(mech9_kinematics(copy, NULL, &results, error) == 130 && last >= 0 && last < 0.9, "is stopped by the function");
+  expect(results != NULL && mech9_results_rows(results) < 2000000, "before its end");
+  expect(mech9_mechanism_use_progress(copy, NULL, NULL, error) == 0, "which is taken back");
+  expect(mech9_mechanism_apply(copy, "time.intervals=12", error) == 0, "a short run");
   expect(mech9_results_data_set_kind(results, -1) == 0 && mech9_results_data_set_path(results, 100000) == NULL, "no such data set");
   mech9_results_destroy(results);
   expect(mech9_check(mechanism, &results, error) == 0 && mech9_results_lay_out(results, mechanism, error) == 2, "a check has no file");
