@@ -29,7 +29,7 @@ import pytest
 from gallery_list import examples
 from mech9_cases import run, table_and_report, text_of
 
-FUNCTIONS = {name: getattr(np, name) for name in 'sin cos tan arcsin arccos arctan arctan2 sqrt exp log pi'.split()}
+FUNCTIONS = {name: getattr(np, name) for name in 'sin cos tan arcsin arccos arctan arctan2 sqrt exp log floor where pi'.split()}
 FUNCTIONS.update(rad=np.radians, deg=np.degrees, first=lambda x: x[0],
                  distance=lambda a, b: np.sqrt(sum((x - y) ** 2 for x, y in zip(a, b))), __builtins__={})
 
