@@ -8,7 +8,7 @@ module mech9_whole_report
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_driven_simulation, only: driven_simulation_type
-  use mech9_motion_event, only: motion_events_type
+  use mech9_impact_watcher, only: impact_watcher_type
   use mech9_free_simulation, only: free_simulation_type
   use mech9_model_motion, only: model_motion_type
   use mech9_quantity_record, only: quantity_record_type
@@ -58,7 +58,7 @@ contains
 
     call add_coefficients(json, motion%plan, simulation%coefficients)
     call add_coordinate_changes(json, simulation)
-    call add_events(json, simulation%events)
+    call add_events(json, simulation)
   end subroutine add_free
 
   !> Add the coefficients of motion: [{"p": 1, "r": 5, "value": ...}, ...]
@@ -107,26 +107,48 @@ contains
   end subroutine add_coordinate_changes
 
   !> Add the events: [{"time": 0.45, "kind": "impact", "group": "stop", "number": 1, "impulse": 0.9}, ...]. An event without an impulse
-  !> has null there.
-  subroutine add_events(json, events)
-    type(json_type), intent(inout) :: json           !< the report, inside its object
-    type(motion_events_type), intent(in) :: events   !< of the motion, as far as it went
+  !> has null there. With reactions, impacts have the impulses of pairs, too: "pairs": [{"pair": 1, "force": [..], "moment": [..]}, ...].
+  subroutine add_events(json, simulation)
+    type(json_type), intent(inout) :: json                   !< the report, inside its object
+    class(free_simulation_type), intent(in) :: simulation    !< the motion, as far as it went
     integer :: i
 
     call json%begin_array('events')
-    do i = 1, events%count
-      associate (event => events%items(i))
+    do i = 1, simulation%events%count
+      associate (event => simulation%events%items(i))
         call json%begin_object()
         call json%add('time', event%t)
         call json%add('kind', trim(event%kind))
         call json%add('group', trim(event%group))
         call json%add('number', event%number)
         call json%add('impulse', merge(event%impulse, ieee_value(event%impulse, ieee_quiet_nan), event%has_impulse))
+        if (event%has_impulse .and. allocated(simulation%impacts)) call add_pairs(json, simulation%impacts, event%t)
         call json%end_object()
       end associate
     end do
     call json%end_array()
   end subroutine add_events
+
+  !> Add the impulses of pairs by the impacts of one time.
+  subroutine add_pairs(json, impacts, t)
+    type(json_type), intent(inout) :: json               !< the report, inside the object of an event
+    class(impact_watcher_type), intent(in) :: impacts    !< the impulses of all impacts
+    real(wp), intent(in) :: t                            !< the time [s]
+    integer, allocatable :: pairs(:)
+    real(wp), allocatable :: wrenches(:, :)
+    integer :: i
+
+    call impacts%show(t, pairs, wrenches)
+    call json%begin_array('pairs')
+    do i = 1, size(pairs)
+      call json%begin_object()
+      call json%add('pair', pairs(i))
+      call json%add('force', wrenches(1:3, i))
+      call json%add('moment', wrenches(4:6, i))
+      call json%end_object()
+    end do
+    call json%end_array()
+  end subroutine add_pairs
 
   !> Write the quantities as a list in a report:
   !> [{"name": "stroke", "value": 0.6, "unit": "m", "gradient": [{"parameter": "crank", "value": 2.0}]}, ...]

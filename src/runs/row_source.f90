@@ -15,7 +15,9 @@ module mech9_row_source
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_result_units, only: unit_of_parameter
   use mech9_film, only: film_type
-  use mech9_force_record, only: force_record_type
+  use mech9_masks, only: numbers_of
+  use mech9_force_record, only: force_record_type, reacting_pairs
+  use mech9_impact_record, only: impact_record_type, new_impact_record
   use mech9_varied_record, only: varied_record_type
   use mech9_quantity_record, only: quantity_record_type
   implicit none
@@ -57,9 +59,15 @@ contains
   subroutine new_row_source(simulation, source)
     class(simulation_type), intent(inout), target :: simulation    !< made, and not started
     type(row_source_type), intent(out) :: source                   !< its rows
+    type(impact_record_type) :: impacts
 
     source%simulation => simulation
     call find_columns(simulation%model, simulation%with_energies, simulation%with_error, source%columns, source%forces)
+    associate (model => simulation%model)
+      if (.not. (model%request%output%reactions .and. model%mechanism%has_rigid_stops())) return
+      call new_impact_record(model, numbers_of(reacting_pairs(model)), impacts)
+      allocate (simulation%impacts, source=impacts)
+    end associate
   end subroutine new_row_source
 
   !> The columns of a run. They are known before the mechanism is assembled.

@@ -184,8 +184,8 @@ contains
     integer :: before
 
     before = self%motion%systems
-    if (at_start) call self%motion%meet_stops(0, self%events, err)
-    if (.not. at_start) call self%motion%pass_joint(self%events, err)
+    if (at_start) call self%motion%meet_stops(0, self%events, self%impacts, err)
+    if (.not. at_start) call self%motion%pass_joint(self%events, self%impacts, err)
     if (allocated(err)) return
     call self%stall%forget()
     if (self%motion%systems > before .and. .not. same_independent(self)) call add_coordinate_change(self)

@@ -27,6 +27,7 @@ module mech9_integrated_motion
   use mech9_contact_events, only: meet_contacts
   use mech9_held_stops, only: choose_held, hold_by_drives
   use mech9_motion_event, only: motion_events_type
+  use mech9_impact_watcher, only: impact_watcher_type
   use mech9_side_steps, only: side_steps_type, begin_integration
   implicit none
   private
@@ -405,9 +406,10 @@ contains
   end subroutine step_back
 
   !> Pass a joint of the laws of time, the limit of a motor, or an event of a contact, at the end of the last step.
-  subroutine pass_joint(self, events, err)
+  subroutine pass_joint(self, events, impacts, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion
     type(motion_events_type), intent(inout) :: events      !< gets impacts, and stops that close and open
+    class(impact_watcher_type), allocatable, intent(inout) :: impacts   !< gets the impulses of pairs; not allocated: nobody wants them
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     integer :: met
 
@@ -415,25 +417,32 @@ contains
     call pass_law_joint(self%system, self%t, self%y, err)
     if (allocated(err)) return
     if (met > 0 .or. self%contacts%any_held()) then
-      call self%meet_stops(met, events, err)
+      call self%meet_stops(met, events, impacts, err)
     else
       call self%restart((self%t), (self%y), err)
     end if
   end subroutine pass_joint
 
   !> Meet the contacts of stops at the end of the last step, and go on as they leave the motion.
-  subroutine meet_stops(self, met, events, err)
+  subroutine meet_stops(self, met, events, impacts, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion
     integer, intent(in) :: met                             !< number of the end that is met, left or released; 0: none
     type(motion_events_type), intent(inout) :: events      !< gets impacts, and stops that close and open
+    class(impact_watcher_type), allocatable, intent(inout) :: impacts   !< gets the impulses of pairs; not allocated: nobody wants them
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    real(wp), dimension(self%system%plan%n_coordinates) :: impulses, changes
     integer :: before
     logical :: holds_change
 
     before = events%count
     self%system%interval%contact = 0
     call self%system%move_to(self%t, self%y, err)
-    if (.not. allocated(err)) call meet_contacts(self%system, met, self%contacts, holds_change, events, err)
+    if (allocated(err)) return
+    call meet_contacts(self%system, met, self%contacts, impulses, changes, holds_change, events, err)
+    if (allocated(err)) return
+    if (allocated(impacts) .and. any(abs(impulses) > 0.0_wp) .and. &
+        (self%angles%give_same_wrenches() .or. .not. self%angles%in_use())) &
+      call impacts%take(self%system%plan, self%system%state, impulses, changes, err)
     if (allocated(err)) return
     if (events%makes_no_progress(before)) then
       call raise(err, exit_integrator, failure_many_events)

@@ -9,6 +9,7 @@ module mech9_simulation
   use mech9_requested, only: requested_type
   use mech9_closure_guard, only: check_closure
   use mech9_motion_event, only: motion_events_type
+  use mech9_impact_watcher, only: impact_watcher_type
   use mech9_variable_model, only: variable_model_type
   use mech9_batch_products, only: batch_size
   use mech9_sensitivity, only: sensitivity_type, new_sensitivity, take_position
@@ -96,6 +97,7 @@ module mech9_simulation
     real(wp) :: largest_energy_change = 0.0_wp     !< of this sum, against the start, with_energies [J]
     type(coordinate_change_type), allocatable :: coordinate_changes(:)   !< those of the independent coordinates so far
     type(motion_events_type) :: events             !< impacts, and stops that closed and opened so far
+    class(impact_watcher_type), allocatable :: impacts   !< keeps the impulses of pairs, where they are wanted
     integer(long), private :: positions = 0        !< positions that were worked out
     type(position_counts_type), private :: kept(batch_size)   !< of positions that wait for their derivatives
     real(wp), private :: direction = 1.0_wp        !< 1, or -1 where time runs backwards

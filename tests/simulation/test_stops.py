@@ -350,3 +350,30 @@ def test_derivatives_end_at_an_impact(checks, mech9d, tmp_path):
     near = [go(mech9d, tmp_path, compliant.replace('sensitivities=.true.', '').replace('position=1 ', f'position={1 + d!r} ') + TIGHT,
                0.8, 8)[0] for d in (-h, h)]
     checks.near(table['d(q1)/d(h)'], (near[1]['q1'] - near[0]['q1']) / (2 * h), 1e-5, 'derivatives through it against differences')
+
+
+@pytest.mark.parametrize('stop', ["coordinate=4, high=-0.3, restitution=0.7", "coordinate=1, high=0.5, restitution=0.5",
+                                  "coordinate=3, low=-0.9, high=-0.1, restitution=0.9"])
+def test_impulses_of_pairs(checks, mech9d, tmp_path, stop):
+    """What link 1 passes to a four-bar at an impact is the change of its momentum, also where a dependent coordinate hits its stop."""
+    start = "&structure cq=1 /\n&initial coordinate=1, position=-1.3 /\n&initial coordinate=4, position=-0.55 /\n"
+    points = ("&point name='A', link=2, position=0,-1,0 /\n&point name='B', link=3, position=0.75,-2,0 /\n"
+              "&point name='C', link=4, position=2.1,-2.2,0 /\n&output reactions=.true. /\n")
+    table, events, _ = go(mech9d, tmp_path, FOUR_BAR + start + points + TIGHT + f"&stop {stop} /\n", 1.5, 3000)
+    first = events[0]
+    pairs = {pair['pair']: pair for pair in first['pairs']}
+    checks.equal(sorted(pairs), [1, 2, 3, 4], 'all pairs have impulses')
+    after = np.searchsorted(table['t'], first['time'])
+    change = np.zeros(3)
+    for name, mass in (('A', 20.0), ('B', 1.0), ('C', 1.0)):
+        for i, axis in enumerate('xyz'):
+            v, a = table[f'{name}.v{axis}'], table[f'{name}.a{axis}']
+            back, on = (v[k] + a[k] * (first['time'] - table['t'][k]) for k in (after - 1, after))
+            change[i] += mass * (on - back)
+    given = np.array(pairs[1]['force']) + np.array(pairs[4]['force'])
+    # tolerance: rates are taken to the impact by their slopes over half a millisecond
+    checks.near(given, change, 1e-4, 'impulses of link 1', scale=float(np.max(np.abs(change))))
+    alone = [k for k in (1, 2, 3, 4) if f'coordinate={k},' not in stop]
+    checks.near([pairs[k]['moment'][2] for k in alone], 0.0, 1e-9, 'pairs without a stop turn freely', scale=1.0)
+    number = int(stop.split(',')[0][-1])
+    checks.near(pairs[number]['moment'][2], first['impulse'], 1e-9, 'the other one passes on the impulse of the stop', scale=1.0)

@@ -125,7 +125,35 @@ contains
     call store%attach_scales('events/group', ['/events/time'])
     call store%attach_scales('events/number', ['/events/time'])
     call store%attach_scales('events/impulse', ['/events/time'])
+    if (allocated(simulation%impacts)) call write_pair_impulses(store, simulation)
   end subroutine write_events
+
+  !> Write the impulses of pairs at the events.
+  subroutine write_pair_impulses(store, simulation)
+    class(data_set_store_type), intent(inout) :: store        !< the open storage
+    type(free_simulation_type), intent(in) :: simulation      !< the motion, with events
+    integer, allocatable :: pairs(:), shown(:)
+    real(wp), allocatable :: wrenches(:, :), all(:, :, :)
+    integer :: i
+
+    associate (events => simulation%events)
+      do i = 1, events%count
+        call simulation%impacts%show(events%items(i)%t, shown, wrenches)
+        if (size(shown) == 0) cycle
+        if (.not. allocated(all)) then
+          pairs = shown
+          allocate (all(6, size(pairs), events%count), source=ieee_value(1.0_wp, ieee_quiet_nan))
+        end if
+        if (events%items(i)%has_impulse) all(:, :, i) = wrenches
+      end do
+    end associate
+    if (.not. allocated(all)) return
+    call store%put('events/pair', pairs, 'pairs whose impulses are recorded, by their coordinates')
+    call store%make_scale('events/pair')
+    call store%put('events/pair_impulse', all, 'impulses of force and moment of the pairs; not a number but at impacts', &
+                   'N s, N m s')
+    call store%attach_scales('events/pair_impulse', ['/events/time', '/events/pair'])
+  end subroutine write_pair_impulses
 
   !> Write the coefficients of motion at the start.
   subroutine write_coefficients(store, plan, simulation)

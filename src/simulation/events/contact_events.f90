@@ -44,37 +44,45 @@ contains
 
   !> Meet all contacts at the present state of the system, whose independent rates change at impacts. A compliant end that is met or left is
   !> noted alone. Fails where drives move a coordinate beyond its stop.
-  subroutine meet_contacts(system, met, contacts, holds_change, events, err)
+  subroutine meet_contacts(system, met, contacts, impulses, changes, holds_change, events, err)
     class(motion_system_type), intent(inout) :: system                     !< the system, moved to the time, with all rates
     integer, intent(in) :: met                                             !< number of the end that is met or left; 0: none
     type(stop_contacts_type), intent(inout) :: contacts                    !< all ends; those that are closed and held change
+    real(wp), intent(out) :: impulses(:)                                   !< (M) on coordinates, positive while they grow [N m s, N s]
+    real(wp), intent(out) :: changes(:)                                    !< (M) of the rates of all coordinates [rad/s, m/s]
     logical, intent(out) :: holds_change                                   !< other coordinates are to be held
     type(motion_events_type), intent(inout) :: events                      !< gets the events
     type(error_type), allocatable, intent(out) :: err                      !< allocated if it failed
     integer, allocatable :: touch(:)
-    real(wp), allocatable :: impulses(:), ends_after(:)
+    real(wp), allocatable :: by_contact(:), ends_after(:)
     logical, allocatable :: holds(:)
     integer :: i
 
     holds_change = .false.
+    impulses = 0.0_wp
+    changes = 0.0_wp
     if (met > 0) call pass_compliant_end(system%state%t, contacts%ends(met), events)
     call contacts%show_pressed(system%state)
     touch = pack([(i, i=1, size(contacts%ends))], [(touches(system, contacts%ends(i)) .or. i == met, i=1, size(contacts%ends))] &
                  .and. contacts%ends%is_rigid)
     if (size(touch) == 0) return
     call settle(system, contacts, touch, err)
-    if (.not. allocated(err)) call find_outcome(system, contacts, touch, impulses, ends_after, holds, err)
     if (allocated(err)) return
-    if (any(impulses > 0.0_wp) .and. allocated(system%sensitivity)) then
+    changes = -system%state%dq
+    call find_outcome(system, contacts, touch, by_contact, ends_after, holds, err)
+    if (allocated(err)) return
+    changes = changes + system%state%dq
+    if (any(by_contact > 0.0_wp) .and. allocated(system%sensitivity)) then
       call raise(err, exit_singular, failure_event_sensitivity)
       err%failure%t = system%state%t
-      err%failure%number = contacts%ends(touch(maxloc(impulses, dim=1)))%stop
+      err%failure%number = contacts%ends(touch(maxloc(by_contact, dim=1)))%stop
       return
     end if
     do i = 1, size(touch)
       associate (end => contacts%ends(touch(i)))
         holds_change = holds_change .or. (holds(i) .neqv. end%held)
-        call note_events(system%state%t, end, impulses(i), ends_after(i), holds(i), events)
+        impulses(end%coordinate) = impulses(end%coordinate) + end%direction*by_contact(i)
+        call note_events(system%state%t, end, by_contact(i), ends_after(i), holds(i), events)
         end%closed = holds(i)
         end%held = holds(i)
       end associate
