@@ -355,7 +355,7 @@ def test_derivatives_end_at_an_impact(checks, mech9d, tmp_path):
 @pytest.mark.parametrize('stop', ["coordinate=4, high=-0.3, restitution=0.7", "coordinate=1, high=0.5, restitution=0.5",
                                   "coordinate=3, low=-0.9, high=-0.1, restitution=0.9"])
 def test_impulses_of_pairs(checks, mech9d, tmp_path, stop):
-    """What link 1 passes to a four-bar at an impact is the change of its momentum, also where a dependent coordinate hits its stop."""
+    """Link 1 passes to a four-bar at an impact the change of its momentum, also where a dependent coordinate hits its stop."""
     start = "&structure cq=1 /\n&initial coordinate=1, position=-1.3 /\n&initial coordinate=4, position=-0.55 /\n"
     points = ("&point name='A', link=2, position=0,-1,0 /\n&point name='B', link=3, position=0.75,-2,0 /\n"
               "&point name='C', link=4, position=2.1,-2.2,0 /\n&output reactions=.true. /\n")

@@ -1,4 +1,4 @@
-!> What impacts do to the pairs, for those who want to know: the interface of what looks at each impact.
+!> The interface of what looks at each impact of a motion, to keep the impulses of pairs.
 module mech9_impact_watcher
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
