@@ -167,8 +167,9 @@ int mech9_dynamics(const mech9_mechanism *mechanism, const volatile int *stop, m
 int mech9_equilibrium(const mech9_mechanism *mechanism, int starts, const volatile int *stop, mech9_results **results,
                       mech9_error *error);
 int mech9_modes(const mech9_mechanism *mechanism, mech9_results **results, mech9_error *error);
-int mech9_assemblies(const mech9_mechanism *mechanism, int starts, mech9_results **results, mech9_error *error);
-int mech9_range(const mech9_mechanism *mechanism, mech9_results **results, mech9_error *error);
+int mech9_assemblies(const mech9_mechanism *mechanism, int starts, const volatile int *stop, mech9_results **results,
+                     mech9_error *error);
+int mech9_range(const mech9_mechanism *mechanism, const volatile int *stop, mech9_results **results, mech9_error *error);
 /* The profile of a cam, from 1 in the order of its groups: a row for each output, and its entry in a report as text. */
 int mech9_cam(const mech9_mechanism *mechanism, int number, mech9_results **results, mech9_error *error);
 int mech9_study(const mech9_mechanism *mechanism, int with_forces, int threads, const volatile int *stop,

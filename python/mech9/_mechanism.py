@@ -387,11 +387,11 @@ class Mechanism:
 
     def assemblies(self, starts: int = 100) -> Results:
         """The assemblies with the independent coordinates of the start: a row of coordinates for each."""
-        return self._results(lib.assemblies, lambda m, stop, out: (m, count(starts, 'starts'), out))
+        return self._results(lib.assemblies, lambda m, stop, out: (m, count(starts, 'starts'), stop, out))
 
     def range(self) -> Results:
         """How far each independent coordinate can go while the others are held: coordinate, lower, upper; infinite where nothing stops it."""
-        return self._results(lib.range, lambda m, stop, out: (m, out))
+        return self._results(lib.range, lambda m, stop, out: (m, stop, out))
 
     def cam(self, number: int = 1) -> Results:
         """The profile of a cam, of which &cam describes the follower: the columns of --cam, and its entry of a report as `report`."""

@@ -2,6 +2,7 @@
 module mech9_motion_range
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_stop_request, only: stop_request_type
   use mech9_law, only: drive_slot_type
   use mech9_polynomial_law, only: polynomial_law_type
   use mech9_plan, only: plan_type, without_periods
@@ -44,29 +45,31 @@ module mech9_motion_range
 contains
 
   !> Move one independent coordinate in both directions from an assembled start.
-  subroutine find_range(plan, start, coordinate, range)
+  subroutine find_range(plan, start, coordinate, range, stop)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start   !< the assembled start
     integer, intent(in) :: coordinate   !< number of the coordinate that moves
     type(motion_range_type), intent(out) :: range   !< the range of the coordinate
+    class(stop_request_type), intent(in), optional :: stop   !< is asked now and then whether the motion ends where it is
 
     range%coordinate = coordinate
     range%start = start%q(coordinate)
-    call find_end(plan, start, coordinate, 1.0_wp, range%upper)
+    call find_end(plan, start, coordinate, 1.0_wp, range%upper, stop)
     if (range%upper%kind == ends_round) then
       range%lower = range%upper
     else
-      call find_end(plan, start, coordinate, -1.0_wp, range%lower)
+      call find_end(plan, start, coordinate, -1.0_wp, range%lower, stop)
     end if
   end subroutine find_range
 
   !> Move a coordinate in one direction, at one unit per second.
-  subroutine find_end(plan, start, coordinate, direction, found)
+  subroutine find_end(plan, start, coordinate, direction, found, stop)
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start   !< the assembled start
     integer, intent(in) :: coordinate   !< number of the coordinate that moves
     real(wp), intent(in) :: direction   !< +1 for the upper end, -1 for the lower one
     type(end_type), intent(out) :: found   !< the end of the range
+    class(stop_request_type), intent(in), optional :: stop   !< is asked before each turn whether the motion ends there
     type(drive_slot_type), allocatable :: drives(:)
     type(driven_motion_type) :: driven
     type(error_type), allocatable :: err
@@ -78,6 +81,9 @@ contains
     period = plan%steps(plan%step_of(coordinate))%period/plan%unit_of(coordinate)
     if (period > 0.0_wp) then
       do turn = 1, most_turns
+        if (present(stop)) then
+          if (stop%is_wanted()) exit
+        end if
         if (.not. allocated(err)) call advance(drives, plan, driven, period*turn, err)
         if (allocated(err)) exit
         if (.not. has_come_round(plan, start, driven%state, coordinate)) cycle

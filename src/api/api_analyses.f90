@@ -186,14 +186,16 @@ contains
   end function table_of
 
   !> Find the assemblies with the independent coordinates of the start: a row of coordinates for each.
-  integer(c_int) function find_assemblies(mechanism, starts, results, error) bind(c, name='mech9_assemblies') result(code)
+  integer(c_int) function find_assemblies(mechanism, starts, stop, results, error) bind(c, name='mech9_assemblies') result(code)
     type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
     integer(c_int), value, intent(in) :: starts   !< number of random starts
-    type(c_ptr), intent(out) :: results           !< the assemblies, that of the mechanism first; null after a failure
+    type(c_ptr), value, intent(in) :: stop        !< address of a number that stops the search once it is not 0, or null
+    type(c_ptr), intent(out) :: results           !< the assemblies, that of the mechanism first; null if there are none
     type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
     type(mechanism_type), pointer :: assembled
     type(results_type), pointer :: found
-    type(error_type), allocatable :: err
+    type(flag_interruption_type) :: interruption
+    type(error_type), allocatable :: err, unnamed
     character(len=:), allocatable :: names(:), units(:)
     real(wp), allocatable :: q(:, :), sizes(:)
     integer :: i
@@ -201,9 +203,10 @@ contains
     call begin_call(error)
     results = c_null_ptr
     call find_mechanism(mechanism, assembled, err)
-    if (.not. allocated(err)) call list_assemblies(assembled, starts, q, err)
-    if (.not. allocated(err)) call name_coordinates(assembled, names, units, sizes, err)
-    if (.not. allocated(err)) then
+    call new_interruption(stop, interruption)
+    if (.not. allocated(err)) call list_assemblies(assembled, starts, q, err, interruption)
+    if (has_rows(err)) then
+      call name_coordinates(assembled, names, units, sizes, unnamed)
       allocate (found)
       call put_texts(names, found%names)
       call put_texts(units, found%units)
@@ -219,12 +222,14 @@ contains
 
   !> Find how far each independent coordinate can go from the start while the others are held there: a row for each, with its number,
   !> its least and its greatest value in the unit of the data file.
-  integer(c_int) function find_ranges(mechanism, results, error) bind(c, name='mech9_range') result(code)
+  integer(c_int) function find_ranges(mechanism, stop, results, error) bind(c, name='mech9_range') result(code)
     type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
+    type(c_ptr), value, intent(in) :: stop        !< address of a number that stops the search once it is not 0, or null
     type(c_ptr), intent(out) :: results           !< the ranges; null after a failure
     type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
     type(mechanism_type), pointer :: assembled
     type(results_type), pointer :: found
+    type(flag_interruption_type) :: interruption
     type(error_type), allocatable :: err
     integer, allocatable :: coordinates(:)
     character(len=:), allocatable :: names(:), units(:)
@@ -233,7 +238,8 @@ contains
     call begin_call(error)
     results = c_null_ptr
     call find_mechanism(mechanism, assembled, err)
-    if (.not. allocated(err)) call list_ranges(assembled, coordinates, lower, upper, err)
+    call new_interruption(stop, interruption)
+    if (.not. allocated(err)) call list_ranges(assembled, coordinates, lower, upper, err, interruption)
     if (.not. allocated(err)) call name_coordinates(assembled, names, units, sizes, err)
     if (.not. allocated(err)) then
       allocate (found)

@@ -3,12 +3,13 @@ module mech9_structure_answers
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
   use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
+  use mech9_error, only: error_type, raise, exit_interrupted
   use mech9_text, only: string_type, texts_of_one_length, to_text
   use mech9_model, only: model_type
   use mech9_result_units, only: unit_of, unit_name
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_simulation, only: interruption_type
   use mech9_explained_assembly, only: assemble_model
   use mech9_start_path, only: start_way_type
   use mech9_structure_text, only: print_mobility_report
@@ -57,11 +58,12 @@ contains
 
   !> Find the assemblies with the independent coordinates of the start, from random starts. The first one is that of the mechanism.
   !> Fails as judge_mobility does.
-  subroutine list_assemblies(mechanism, starts, q, err)
+  subroutine list_assemblies(mechanism, starts, q, err, interruption)
     type(checked_mechanism_type), intent(in) :: mechanism      !< the mechanism
     integer, intent(in) :: starts                              !< number of random starts
     real(wp), allocatable, intent(out) :: q(:, :)              !< (M,assemblies) coordinates [rad, m]
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the search shall stop
     type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: start
@@ -69,7 +71,8 @@ contains
 
     call assemble(mechanism, model, plan, start, err)
     if (.not. allocated(err)) then
-      call find_assemblies(model%mechanism, plan, start, starts, list)
+      call find_assemblies(model%mechanism, plan, start, starts, list, interruption)
+      call fail_if_stopped(interruption, err)
       q = list%q(:, :size(list%found))
     else
       allocate (q(0, 0))
@@ -77,12 +80,13 @@ contains
   end subroutine list_assemblies
 
   !> Find how far each independent coordinate can go from the start while the others are held there. Fails as judge_mobility does.
-  subroutine list_ranges(mechanism, coordinates, lower, upper, err)
+  subroutine list_ranges(mechanism, coordinates, lower, upper, err, interruption)
     type(checked_mechanism_type), intent(in) :: mechanism      !< the mechanism
     integer, allocatable, intent(out) :: coordinates(:)        !< (independent) their numbers
     real(wp), allocatable, intent(out) :: lower(:)             !< (independent) least values [rad, m]; -infinite: there is none
     real(wp), allocatable, intent(out) :: upper(:)             !< (independent) greatest values [rad, m]; infinite: none
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the search shall stop
     type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: start
@@ -97,11 +101,22 @@ contains
     coordinates = plan%independent
     allocate (lower(size(coordinates)), upper(size(coordinates)))
     do i = 1, size(coordinates)
-      call find_range(plan, start, coordinates(i), range)
+      call find_range(plan, start, coordinates(i), range, interruption)
+      call fail_if_stopped(interruption, err)
+      if (allocated(err)) return
       lower(i) = end_of(range%lower, -1.0_wp)
       upper(i) = end_of(range%upper, 1.0_wp)
     end do
   end subroutine list_ranges
+
+  !> Fail with exit_interrupted where a search was to stop.
+  subroutine fail_if_stopped(interruption, err)
+    class(interruption_type), intent(in), optional :: interruption   !< of the search, if it has one
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it was to stop
+
+    if (.not. present(interruption)) return
+    if (interruption%is_wanted()) call raise(err, exit_interrupted, 'interrupted before the answer was found')
+  end subroutine fail_if_stopped
 
   !> Find the names of the coordinates and their units in the data file. Fails with exit_data or exit_structure.
   subroutine name_coordinates(mechanism, names, units, sizes, err)

@@ -1,6 +1,7 @@
 !> A motion in time, driven or free, behind one interface: it starts, advances from time to time, and shows its present position.
 module mech9_simulation
   use mech9_kinds, only: wp, long
+  use mech9_stop_request, only: stop_request_type
   use mech9_error, only: error_type, raise, exit_usage, exit_integrator, exit_interrupted
   use mech9_simulation_failures, only: failure_not_started, failure_backwards, failure_interrupted, failure_accuracy
   use mech9_model, only: model_type
@@ -21,9 +22,8 @@ module mech9_simulation
 
   !> Answers whether a motion shall stop. It is asked before each time, before each step of an integrator, and after many steps of a
   !> driven motion.
-  type, abstract :: interruption_type
+  type, abstract, extends(stop_request_type) :: interruption_type
   contains
-    procedure(wanted_interface), deferred :: is_wanted
     procedure :: begin_run => begin_nothing
     procedure :: watch => watch_nothing
     procedure :: tell => tell_nothing
@@ -131,11 +131,6 @@ module mech9_simulation
   end type simulation_type
 
   abstract interface
-    logical function wanted_interface(self)
-      import :: interruption_type
-      class(interruption_type), intent(in) :: self   !< the interruption
-    end function wanted_interface
-
     !> The position at time t, with its velocities and accelerations: the first one by `begin`, the others by `go_to`.
     subroutine position_interface(self, t, err)
       import :: simulation_type, error_type, wp

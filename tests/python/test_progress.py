@@ -1,4 +1,5 @@
 """Progress of long calls: a function learns the share that is done, and may stop the call by an exception."""
+import _thread
 import os
 import threading
 import time
@@ -106,3 +107,20 @@ def test_threads_of_a_study(long_runs):
     threads = set()
     long_runs['study'](threads=2, progress=lambda done: threads.add(threading.get_ident()))
     assert len(threads) == 1
+
+
+@pytest.mark.parametrize('what', ['assemblies', 'range'])
+def test_answers_about_positions_are_interrupted(mech9, monkeypatch, what):
+    """The search itself ends, and goes on nowhere."""
+    from mech9 import _library
+    monkeypatch.setattr(_library, 'MOST_SECONDS', 20.0)   # a build with checks takes longer between two questions
+    m = mech9.read(os.path.join(TREE, 'examples', 'delta_robot', 'delta_robot.nml'))
+    work = {'assemblies': lambda: m.assemblies(10**6), 'range': m.range}[what]
+    timer = threading.Timer(0.1, _thread.interrupt_main)
+    timer.start()
+    with pytest.raises(KeyboardInterrupt) as caught:
+        work()
+    assert not _library._forgotten
+    if what == 'assemblies':
+        assert len(caught.value.results.table) >= 1 and caught.value.results.names[0] == 'q1'
+    assert len(m.assemblies(5).table) >= 1

@@ -3,6 +3,7 @@
 module mech9_assemblies
   use mech9_kinds, only: wp, pi
   use mech9_error, only: error_type
+  use mech9_stop_request, only: stop_request_type
   use mech9_random, only: random_type
   use mech9_plan, only: plan_type, block_type, within_range, without_periods
   use mech9_state, only: state_type
@@ -38,12 +39,13 @@ contains
   !> Find the assemblies with the independent coordinates of an assembled start, which is the first of them. Positions that differ
   !> in the settings of joints alone are one assembly. The random starts are the same in every run. From the assemblies to which
   !> they lead, others are found along curves on which one independent coordinate is free.
-  subroutine find_assemblies(mechanism, plan, start, n_starts, list)
+  subroutine find_assemblies(mechanism, plan, start, n_starts, list, stop)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: start   !< an assembled position
     integer, intent(in) :: n_starts   !< number of random starts
     type(assembly_list_type), intent(out) :: list   !< the assemblies found
+    class(stop_request_type), intent(in), optional :: stop   !< is asked before each start and each curve whether the search ends there
     type(state_type) :: trial
     type(random_type) :: random
     integer :: i, number
@@ -56,6 +58,9 @@ contains
     call find_in_list(plan, trial, list, number)
     list%starts = n_starts
     do i = 1, n_starts
+      if (present(stop)) then
+        if (stop%is_wanted()) return
+      end if
       trial%q = start%q
       call close_from(plan, plan%blocks, pi, random, trial, closed)
       if (.not. closed) cycle
@@ -64,7 +69,7 @@ contains
       list%found(number) = list%found(number) + 1
     end do
     if (plan%n_coordinates > most_free_coordinates .or. n_starts < 1) return
-    call search_along_curves(plan, start, steps_for_start*min(n_starts, counted_starts), list)
+    call search_along_curves(plan, start, steps_for_start*min(n_starts, counted_starts), list, stop)
   end subroutine find_assemblies
 
   !> Close blocks, the last of which does not close with the others at their present positions, from starts farther and
@@ -119,11 +124,12 @@ contains
 
   !> Search from the assemblies that were found for others, along curves on which one independent coordinate is free: first from
   !> those to which few starts led. `most_steps` steps are made at most.
-  subroutine search_along_curves(plan, start, most_steps, list)
+  subroutine search_along_curves(plan, start, most_steps, list, stop)
     type(plan_type), intent(in) :: plan              !< the plan of the mechanism
     type(state_type), intent(in) :: start            !< any assembly
     integer, intent(in) :: most_steps                !< number of steps on all curves together
     type(assembly_list_type), intent(inout) :: list  !< the assemblies found
+    class(stop_request_type), intent(in), optional :: stop   !< is asked before each curve whether the search ends there
     type(state_type) :: base
     type(curve_type) :: curve
     integer :: from, i, steps_left, direction
@@ -134,6 +140,9 @@ contains
     do while (steps_left > 0)
       call choose_curve(list, from, i)
       if (from == 0) return
+      if (present(stop)) then
+        if (stop%is_wanted()) return
+      end if
       list%walked(i, from) = .true.
       do direction = 1, -1, -2
         base%q = list%q(:, from)
