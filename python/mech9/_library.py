@@ -6,6 +6,7 @@ import operator
 import os
 import threading
 import time
+import warnings
 from ctypes import POINTER, c_char_p, c_double, c_int, c_void_p
 from typing import Any, Callable
 
@@ -215,9 +216,33 @@ def _text(value: bytes | None) -> str:
 def _begin(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
     """Forget what user procedures raised in earlier calls, and return those that this call may call."""
     procedures: tuple[Any, ...] = getattr(arguments[0], 'procedures', ()) if arguments else ()
+    forget_raised(procedures)
+    return procedures
+
+
+def forget_raised(procedures: tuple[Any, ...]) -> None:
+    """Forget what user procedures raised."""
     for procedure in procedures:
         procedure.raised.clear()
-    return procedures
+
+
+def warn_of_raised(procedures: tuple[Any, ...], failed: int, what: str, level: int) -> None:
+    """Warn of what user procedures raised in a call that went on with other runs or motions, of which some failed. The user's call is
+    `level` calls above."""
+    for procedure in procedures:
+        for reason in list(procedure.raised):
+            if failed > 0:
+                told = f'1 {what} has' if failed == 1 else f'{failed} {what}s have'
+                warnings.warn(f'{told} failed; the procedure for groups of {procedure.name} raised {type(reason).__name__}: {reason}'
+                              + _place(reason), RuntimeWarning, stacklevel=level + 1)
+
+
+def _place(reason: BaseException) -> str:
+    """File and line where an exception was raised."""
+    trace = reason.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    return '' if trace is None else f' ({trace.tb_frame.f_code.co_filename}, line {trace.tb_lineno})'
 
 
 def raise_pending(procedures: tuple[Any, ...]) -> None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Callable, Sequence, TypeVar
 import numpy as np
 
 from ._errors import DataError, Error, UsageError
-from ._library import Handle, call, call_stoppable, count, lib
+from ._library import Handle, call, call_stoppable, count, lib, warn_of_raised
 from ._library import text as text_of
 from ._pictures import Picture, drawn
 from ._procedures import Procedure, Progress
@@ -403,7 +403,7 @@ class Mechanism:
 
         Several lists of values have the same length. The answer is an xarray.Dataset over `run`, with parameters, quantities and
         exit codes; without xarray it is Results. dynamics: whether forces move the mechanism; by default where a coordinate has no drive.
-        progress as for kinematics.
+        progress as for kinematics. A warning tells what a procedure raised that made runs fail.
         """
         if not values:
             return self._study(threads, dynamics, {}, progress)
@@ -432,6 +432,7 @@ class Mechanism:
     def _study(self, threads: int, dynamics: bool | None, names: dict[str, str], progress: Callable[[float], Any] | None) -> Any:
         with_forces = not self.is_driven if dynamics is None else dynamics
         runs = self._results(lib.study, lambda m, stop, out: (m, int(with_forces), count(threads, 'threads', 1), stop, out), progress)
+        warn_of_raised(self._handle.procedures, int(np.count_nonzero(runs['exit_code'])), 'run', 3)
         try:
             import xarray
         except ImportError:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Callable
 import numpy as np
 
 from ._errors import INTERRUPTED, UsageError
-from ._library import Handle, call, call_with_pauses, lib, raise_pending, text
+from ._library import Handle, call, call_with_pauses, forget_raised, lib, raise_pending, text, warn_of_raised
 
 if TYPE_CHECKING:
     from ._mechanism import Mechanism
@@ -141,10 +141,10 @@ class Simulation:
 
 
 class Simulations:
-    """Many motions of one mechanism side by side: q, dq, ddq (count, M) in the units of the data file, and `code` (count,).
+    """Many motions of one mechanism side by side: q, dq, ddq (count, M) in the units of the data file, t and `code` (count,).
 
     A motion that cannot go on keeps the exit code of its failure, and its rows are NaN from then on; `advance` of this one alone, many[i],
-    raises the failure.
+    raises the failure. A warning tells what a procedure raised that stopped motions.
     """
 
     def __init__(self, mechanism: Mechanism, count: int, driven: bool, threads: int):
@@ -157,7 +157,19 @@ class Simulations:
         self._pool = ThreadPoolExecutor(max(1, threads))
         threads = max(1, min(threads, count))
         self._bounds = [count*i//threads for i in range(threads + 1)]
-        self.code: np.ndarray = np.zeros(count, dtype=np.intc)
+        self._code = np.zeros(count, dtype=np.intc)
+
+    @property
+    def code(self) -> np.ndarray:
+        """The exit codes (count,), read-only: 0, or why a motion cannot go on."""
+        shown = self._code.view()
+        shown.flags.writeable = False
+        return shown
+
+    @property
+    def t(self) -> np.ndarray:
+        """The present times (count,) [s]; that of a motion that cannot go on is the last one that it reached."""
+        return np.array([one.t for one in self._all])
 
     def __len__(self) -> int:
         return len(self._all)
@@ -184,9 +196,10 @@ class Simulations:
             one._open()
 
         def part(first: int, last: int) -> None:
-            handles = Handle(ctypes.addressof(self._handles) + first*ctypes.sizeof(ctypes.c_void_p), self._procedures)
+            handles = ctypes.c_void_p(ctypes.addressof(self._handles) + first*ctypes.sizeof(ctypes.c_void_p))
             call(function, handles, last - first, *(
                 argument[first:].ctypes.data if isinstance(argument, np.ndarray) else argument for argument in arguments))
+        forget_raised(self._procedures)
         parts = [self._pool.submit(part, *bounds) for bounds in zip(self._bounds, self._bounds[1:])]
         try:
             # Python handles Ctrl-C in the main thread alone, which must not wait without end
@@ -196,7 +209,7 @@ class Simulations:
             self._stop.value = 1
             wait(parts)
             self._stop.value = 0
-            self.code[self.code == INTERRUPTED] = 0
+            self._code[self._code == INTERRUPTED] = 0
             raise
         for done in parts:
             done.result()
@@ -204,18 +217,20 @@ class Simulations:
 
     def advance(self, t: float) -> None:
         """Go on to a time [s] with all motions that can go on."""
-        self._each_part(lib.simulations_advance, float(t), self.code)
+        before = np.count_nonzero(self._code)
+        self._each_part(lib.simulations_advance, float(t), self._code)
+        warn_of_raised(self._procedures, np.count_nonzero(self._code) - before, 'motion', 2)
 
     def set(self, name: str, values: Any) -> None:
         """Give a number of a load or a motor a value in each motion, from now on: one for all, or (count,)."""
         given = np.ascontiguousarray(np.broadcast_to(np.asarray(values, dtype=float), (len(self._all),)))
-        self._each_part(lib.simulations_set, text(name), given, self.code)
+        self._each_part(lib.simulations_set, text(name), given, self._code)
 
     def _take(self, place: int) -> np.ndarray:
         found = np.empty((len(self._all), self._all[0]._n))
         arrays: list[np.ndarray | None] = [None, None, None]
         arrays[place] = found
-        self._each_part(lib.simulations_take, self.code, *arrays)
+        self._each_part(lib.simulations_take, self._code, *arrays)
         return found
 
     @property

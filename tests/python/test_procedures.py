@@ -4,6 +4,7 @@ import math
 import os
 import pickle
 import traceback
+import warnings
 
 import numpy as np
 import pytest
@@ -339,3 +340,50 @@ def test_compiled_procedures(checks, mech9, falling):
     m2 = mech9.read(data_of('cycloidal_drive'))
     m2.drive(cycloid)
     checks.near(m.kinematics()['ddq1'], m2.kinematics()['ddq1'], 1e-9, 'a compiled drive with derivatives', scale=10.0)
+
+
+def test_exceptions_in_studies_are_shown(mech9, falling):
+    """A study goes on with other runs; a warning tells what a procedure raised, and where."""
+    def fail(t, motion, parameters, loads):
+        if parameters[0] > 0.15:
+            raise ZeroDivisionError('too much drag')
+    falling.force(fail)
+    falling.remove('user').add('user', parameters=0.1)
+    falling.add('quantity', name='depth', of='q1', take='max')
+    with pytest.warns(RuntimeWarning, match=r'2 runs have failed; the procedure for groups of force raised ZeroDivisionError: too much '
+                                            r'drag \(.*test_procedures.py, line \d+\)'):
+        s = falling.study(**{'user.parameters': [0.1, 0.2, 0.3]})
+    codes = s['exit_code'] if isinstance(s, mech9.Results) else s['exit_code'].values
+    assert list(codes) == [0, 3, 3]
+    with warnings.catch_warnings():
+        warnings.simplefilter('error')
+        falling.study(**{'user.parameters': [0.1, 0.05]})
+
+
+def test_exceptions_in_simulations_are_shown(mech9, falling):
+    broken = []
+
+    def fail(t, motion, parameters, loads):
+        if broken:
+            raise ZeroDivisionError('late')
+    falling.force(fail)
+    with falling.simulations(3, threads=2) as many:
+        with warnings.catch_warnings():
+            warnings.simplefilter('error')
+            many.advance(0.4)
+        assert many.code.tolist() == [0, 0, 0] and many.t.tolist() == [0.4, 0.4, 0.4]
+        broken.append(True)
+        with pytest.warns(RuntimeWarning, match='3 motions have failed; the procedure for groups of force raised ZeroDivisionError: late'):
+            many.advance(1.0)
+        assert (many.code == 3).all() and np.isnan(many.q).all() and (many.t < 1).all()
+        with warnings.catch_warnings():
+            warnings.simplefilter('error')
+            many.advance(2.0)
+        with pytest.raises(mech9.Error, match='cannot go on'):
+            many[0].advance(2.0)
+        with pytest.raises(ValueError):
+            many.code[0] = 0
+        with pytest.raises(AttributeError):
+            many.code = [0, 0, 0]
+    with pytest.raises(mech9.UsageError):
+        many.t
