@@ -35,7 +35,8 @@ def write_run(handle: int, mechanism: Mechanism, path: str | os.PathLike[str]) -
             with h5py.File(part, 'w') as file:
                 _write(file, handle, h5py)
         except (OSError, RuntimeError, ValueError) as reason:   # h5py has no exceptions of its own
-            raise FileError(f"cannot write to '{name}': {reason}", 8) from reason
+            number = getattr(reason, 'errno', None)
+            raise FileError(f"cannot write to '{name}': {os.strerror(number) if number else reason}", 8) from reason
 
 
 @contextmanager

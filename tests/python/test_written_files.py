@@ -187,7 +187,7 @@ def test_refused_names(mech9, case):
     for name in ('', '-', 'a\0b'):
         with pytest.raises(mech9.FileError, match='is not the name of a file'):
             results.write(name)
-    with pytest.raises(mech9.FileError, match="cannot (open|write to) 'missing/run.h5'"):
+    with pytest.raises(mech9.FileError, match="cannot write to 'missing/run.h5': No such file or directory$"):
         results.write('missing/run.h5')
     os.mkdir('folder')
     with pytest.raises(mech9.FileError, match="cannot open 'folder' for writing"):
