@@ -16,7 +16,7 @@ from ._library import call, lib
 if TYPE_CHECKING:
     from ._mechanism import Mechanism
 
-_NUMBERS = {1: np.dtype('<f8'), 2: np.dtype('<i4'), 3: np.dtype('<i8')}   # by the kinds of the library; others are texts
+_NUMBERS: dict[int, np.dtype[Any]] = {1: np.dtype('<f8'), 2: np.dtype('<i4'), 3: np.dtype('<i8')}   # by the kinds of the library; others are texts
 _TOGETHER = 2**20   # numbers that are written together
 
 

@@ -372,7 +372,7 @@ class Mechanism:
         results = Results(handle.value, lambda: self.parameters) if handle.value else None
         reason = told.raised[0] if told is not None and told.raised else stopped if stopped is not None else failure
         if reason is not None:
-            reason.results = results   # type: ignore[attr-defined,union-attr]
+            reason.results = results   # type: ignore[attr-defined]
             raise reason
         assert results is not None
         return results

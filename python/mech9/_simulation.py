@@ -219,7 +219,7 @@ class Simulations:
         """Go on to a time [s] with all motions that can go on."""
         before = np.count_nonzero(self._code)
         self._each_part(lib.simulations_advance, float(t), self._code)
-        warn_of_raised(self._procedures, np.count_nonzero(self._code) - before, 'motion', 2)
+        warn_of_raised(self._procedures, int(np.count_nonzero(self._code)) - int(before), 'motion', 2)
 
     def set(self, name: str, values: Any) -> None:
         """Give a number of a load or a motor a value in each motion, from now on: one for all, or (count,)."""
