@@ -367,7 +367,7 @@ def test_exceptions_in_simulations_are_shown(mech9, falling):
         if broken:
             raise ZeroDivisionError('late')
     falling.force(fail)
-    with falling.simulations(3, threads=2) as many:
+    with falling.simulations(3) as many:
         with warnings.catch_warnings():
             warnings.simplefilter('error')
             many.advance(0.4)
