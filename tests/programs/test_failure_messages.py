@@ -34,6 +34,7 @@ UNREACHABLE = {
     'points_order': 'the reader of tables refuses the line with its place',
     'drive_jumps': 'drives of the data file are continuous',
     'lost_inertia': 'only steps to positions beyond all sense lose it: tests/simulation/test_simulation.f90',
+    'unheld_stop': 'closed stops are independent of each other, and are exchanged for what moves them most',
     'lost_angles': 'positions within a step that was made are always found',
     'not_started': 'the programs start each motion',
     'backwards': 'the times of a data file are in order',
@@ -120,6 +121,13 @@ TUMBLING = """&structure cq=1,2,3 /
 &body link=4, mass=1, centre=0,0,0.1, inertia=0.002,0.002,0.001,0,0,0 /
 &time end=2, intervals=1 /
 """
+
+
+def falling(stop, *groups, start=initial(1, 1.0), end=1):
+    """A slider of 2 kg that falls onto a stop."""
+    return ("&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /\n&body link=2, mass=2 /\n"
+            f'&gravity acceleration=0,0,-9.81 /\n{start}&stop coordinate=1, {stop} /\n' + ''.join(groups)
+            + ('' if any('&time' in group for group in groups) else f'&time end={end}, intervals=10 /\n'))
 
 
 def sensitive(target, *groups, end=1):
@@ -254,6 +262,8 @@ def driven_cases():
     chain = 'closed chain 1 (coordinates 2, 3, 4)'
     starts = f'the mechanism starts in a singular position of {chain}, '
     return [
+        ('stop_passed', falling('low=0.5', start=drive(1, '1, -1')), (), SINGULAR,
+         ['coordinate 1 passes the end of stop 1 at 0.5 m at t = 0.5 s: at t = 0.', ' m beyond. Change the drives, or move the stop']),
         ('open_chain', four_bar(ROCKER, drive(1, '120')), (), ASSEMBLY,
          ['the mechanism cannot be assembled: closed chain 1 (it closes on link 4 through coordinate 3) stays open by ',
           ' m at best; check its dimensions and the independent coordinates, or give better guesses with &initial']),
@@ -431,6 +441,23 @@ def free_cases():
          ['the motion is not as accurate as was asked for at t = 0 s: with the least tolerances of auto, 1e-14, its error is about ',
           ', and 1e-17 is allowed (rad, m). Round-off makes such an error in many steps, or where the motion enlarges it: it may be '
           'chaotic. End before this time, or ask for a larger accuracy']),
+        ('stop_start', falling('low=1.25'), (), DATA,
+         ['the motion starts behind stop 1: coordinate 1 is 1 m, 0.25 m beyond the end at 1.25 m. Start elsewhere, or move the stop']),
+        # the carriage comes to its stop at 0.5 s, with the free slider beside it
+        ('stop_violated', "&structure cq=1,2 /\n&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /\n&pair coordinate=2, "
+         "links=2,3, kind='prismatic', axis=0,1,0 /\n&body link=2, mass=1 /\n&body link=3, mass=2 /\n" + drive(1, '1, -1')
+         + initial(2, 0.0, ', velocity=1') + '&stop coordinate=1, low=0.5 /\n&time end=1, intervals=10 /\n', (), SINGULAR,
+         ['the drives force coordinate 1 beyond the end of stop 1 at 0.5 m from t = 0.5 s on, with the rate -1 m/s. Change the drives, '
+          'move the stop, or make it compliant by stiffness=']),
+        # t = sqrt(2/9.81)
+        ('event_sensitivity', falling('low=0', "&parameter name='h', sets='initial(1).position' /\n&output sensitivities=.true. /\n"), (),
+         SINGULAR, ['derivatives by the parameters are not computed beyond t = 0.451523641 s, where stop 1 is hit. End the run before, '
+                    'make the stop compliant by stiffness=, or leave out sensitivities and gradients']),
+        # at t = 1e6 s numbers are 1e-10 s apart, in which it would hit five times
+        ('many_events', falling('low=-1e-11, high=1e-11, restitution=1', '&time start=1e6, end=1000001, intervals=1 /\n',
+                                start=initial(1, 0.0, ', velocity=1')), ('--set', 'gravity.acceleration=0,0,0'), INTEGRATOR,
+         ['the motion makes no progress beyond t = 1000000 s: it has had ', ' events at stops. Give a smaller restitution, or a '
+          'compliant stop by stiffness=']),
         # it grows as exp(1000 t), up to 1e308 at 0.71 s
         ('infinite_rate', SPRING.format(-1e6, 0, 0, 10), (), INTEGRATOR,
          [stops, ': the motion of coordinate 1 is not finite: this motion, or a force, grows beyond all bounds. Look for a spring, a '

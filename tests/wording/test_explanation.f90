@@ -21,7 +21,7 @@ module test_explanation
   use mech9_integration_failures, only: last_integration_failure, failure_other_branch, failure_drive_jumps
   use mech9_event_failures, only: last_event_failure
   use mech9_simulation_failures, only: last_simulation_failure, failure_singular_start_block, failure_not_started, &
-    failure_backwards, failure_interrupted, failure_lost_angles
+    failure_backwards, failure_interrupted, failure_lost_angles, failure_unheld_stop
   use mech9_reaction_failures, only: last_reaction_failure
   use mech9_equilibrium_failures, only: last_equilibrium_failure, failure_interrupted_starts
   use mech9_integration_methods, only: integration_methods
@@ -355,6 +355,12 @@ contains
     call says(test, err, &
               'coordinates 1, 2, 3 cannot be continued through gimbal lock at t = 0.25 s; lower the tolerances, or turn '// &
               'about the axes in another order')
+    call raise(err, exit_singular, failure_unheld_stop)
+    err%failure%coordinates = [2, 4]
+    err%failure%t = 0.25_wp
+    call says(test, err, &
+              'the motion ends at t = 0.25 s, because no independent coordinates serve while stops hold coordinates 2, 4. Make '// &
+              'one of these stops compliant by stiffness=')
     call raise(err, exit_singular, failure_drive_jumps)
     err%failure%coordinates = [2]
     err%failure%t = 0.25_wp
