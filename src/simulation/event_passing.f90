@@ -105,7 +105,7 @@ contains
         call motion%step_back(change, err)
         call system%interval%end_at_event(change, 0, contact)
       else if (gap > touching*unit .or. rate > 0.0_wp) then
-        call system%interval%begin(system%model, motion%t)
+        call system%interval%forget_event()
         call motion%note_start(err)
       end if
     end associate

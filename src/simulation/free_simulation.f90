@@ -184,7 +184,7 @@ contains
     integer :: before
 
     before = self%motion%systems
-    if (at_start) call self%motion%meet_stops(0, self%events, self%impacts, err)
+    if (at_start) call self%motion%meet_stops(0, 0.0_wp*self%motion%system%state%dq, self%events, self%impacts, err)
     if (.not. at_start) call self%motion%pass_joint(self%events, self%impacts, err)
     if (allocated(err)) return
     call self%stall%forget()

@@ -411,22 +411,31 @@ contains
     type(motion_events_type), intent(inout) :: events      !< gets impacts, and stops that close and open
     class(impact_watcher_type), allocatable, intent(inout) :: impacts   !< gets the impulses of pairs; not allocated: nobody wants them
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    integer :: met
+    real(wp) :: of_held(self%system%plan%n_coordinates)
+    integer :: met, motor
 
     met = self%system%interval%contact
-    call pass_law_joint(self%system, self%t, self%y, err)
-    if (allocated(err)) return
+    of_held = 0.0_wp
+    if (self%system%interval%is_joint(self%t)) then
+      call pass_law_joint(self%system, self%t, self%y, err, of_held)
+      if (allocated(err)) return
+    else
+      motor = self%system%interval%motor
+      call self%system%interval%forget_event()
+      self%system%interval%motor = motor
+    end if
     if (met > 0 .or. self%contacts%any_held()) then
-      call self%meet_stops(met, events, impacts, err)
+      call self%meet_stops(met, of_held, events, impacts, err)
     else
       call self%restart((self%t), (self%y), err)
     end if
   end subroutine pass_joint
 
   !> Meet the contacts of stops at the end of the last step, and go on as they leave the motion.
-  subroutine meet_stops(self, met, events, impacts, err)
+  subroutine meet_stops(self, met, of_held, events, impacts, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion
     integer, intent(in) :: met                             !< number of the end that is met, left or released; 0: none
+    real(wp), intent(in) :: of_held(:)                     !< (M) rates that held coordinates would have if nothing held them [rad/s, m/s]
     type(motion_events_type), intent(inout) :: events      !< gets impacts, and stops that close and open
     class(impact_watcher_type), allocatable, intent(inout) :: impacts   !< gets the impulses of pairs; not allocated: nobody wants them
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
@@ -438,7 +447,7 @@ contains
     self%system%interval%contact = 0
     call self%system%move_to(self%t, self%y, err)
     if (allocated(err)) return
-    call meet_contacts(self%system, met, self%contacts, impulses, changes, holds_change, events, err)
+    call meet_contacts(self%system, met, of_held, self%contacts, impulses, changes, holds_change, events, err)
     if (allocated(err)) return
     if (allocated(impacts) .and. any(abs(impulses) > 0.0_wp) .and. &
         (self%angles%give_same_wrenches() .or. .not. self%angles%in_use())) &

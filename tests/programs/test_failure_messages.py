@@ -449,6 +449,15 @@ def free_cases():
          + initial(2, 0.0, ', velocity=1') + '&stop coordinate=1, low=0.5 /\n&time end=1, intervals=10 /\n', (), SINGULAR,
          ['the drives force coordinate 1 beyond the end of stop 1 at 0.5 m from t = 0.5 s on, with the rate -1 m/s. Change the drives, '
           'move the stop, or make it compliant by stiffness=']),
+        # a heavy top leaves its stop in gimbal lock, where its first and third turn are one
+        ('singular_contact', "&structure cq=1,2,3 /\n&pair coordinate=1, links=1,2, kind='revolute', axis=1,0,0 /\n&pair coordinate=2, "
+         "links=2,3, kind='revolute', axis=0,1,0 /\n&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1 /\n"
+         + initial(1, 0.0) + initial(2, 1.0, ', velocity=3') + initial(3, 0.0, ', velocity=0.1') +
+         '&body link=4, mass=1, centre=0,0,0.1, inertia=0.002,0.002,0.001,0,0,0 /\n&gravity acceleration=0,0,-9.81 /\n'
+         '&solver relative_tolerance=1e-9, absolute_tolerance=1e-9 /\n&stop coordinate=1, low=-1, high=1.2, restitution=0.6 /\n'
+         '&time end=2, intervals=400 /\n', (), SINGULAR,
+         ['the motion cannot go on from a stop at t = 0.768', ' s: no mass moves with coordinate 3 there, apart from those that other '
+          'independent coordinates move. Start elsewhere, or make the stop compliant by stiffness=']),
         # t = sqrt(2/9.81)
         ('event_sensitivity', falling('low=0', "&parameter name='h', sets='initial(1).position' /\n&output sensitivities=.true. /\n"), (),
          SINGULAR, ['derivatives by the parameters are not computed beyond t = 0.451523641 s, where stop 1 is hit. End the run before, '

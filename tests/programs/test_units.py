@@ -64,7 +64,7 @@ def scaled(groups, s):
               'force': {'position': 1, 'force': 1}, 'torque': {'torque': 2}}
     along = {'initial': {'position': 1, 'velocity': 1},
              'drive': {'coefficients': 1, 'mean': 1, 'amplitude': 1, 'values': 1},
-             'coordinate': {'rest': 1, 'force': 1}}
+             'coordinate': {'rest': 1, 'force': 1}, 'stop': {'low': 1, 'high': 1}}
     for group, items in groups:
         kind = items['kind'][0] if group == 'load' else group
         change = dict(powers.get(kind, {}))
@@ -85,7 +85,7 @@ def in_degrees(groups):
     slides = sliding(groups)
     always = {'drive': ['angular_frequency', 'phase']}
     of_turns = {'initial': ['position', 'velocity'], 'drive': ['coefficients', 'mean', 'amplitude', 'values'],
-                'coordinate': ['rest']}
+                'coordinate': ['rest'], 'stop': ['low', 'high']}
     for group, items in groups:
         kind = items['kind'][0] if group == 'load' else group
         names = list(always.get(kind, []))

@@ -377,3 +377,68 @@ def test_impulses_of_pairs(checks, mech9d, tmp_path, stop):
     checks.near([pairs[k]['moment'][2] for k in alone], 0.0, 1e-9, 'pairs without a stop turn freely', scale=1.0)
     number = int(stop.split(',')[0][-1])
     checks.near(pairs[number]['moment'][2], first['impulse'], 1e-9, 'the other one passes on the impulse of the stop', scale=1.0)
+
+
+def test_drives_that_jump(checks, mech9d, tmp_path):
+    """A carriage whose rate jumps carries a slider of 2 kg, which touches its stop: the jump is an impact, or lets the slider go."""
+    text = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=1,0,0 /
+&body link=2, mass=1 /
+&body link=3, mass=2 /
+&gravity acceleration={pull!r},0,0 /
+&initial coordinate=2, position=0 /
+&drive coordinate=1, kind='segments', times=0,1,2, values=0,0,{way!r}, laws='dwell','constant-velocity' /
+&stop coordinate=2, low=0, high=0.5, restitution=0.3 /
+"""
+    for pull in (-0.01, 0.0):
+        _, events, _ = go(mech9d, tmp_path, text.format(pull=pull, way=1.0), 1.4)
+        hit = [event for event in events if event['kind'] == 'impact']
+        checks.near([event['time'] for event in hit], 1.0, 1e-12, f'{pull}: it is hit where the rate jumps, once')
+        checks.near([event['impulse'] for event in hit], 2 * 1.3, 1e-12, f'{pull}: impulse is m (1 + e) u')
+        table, events, _ = go(mech9d, tmp_path, text.format(pull=pull, way=-1.0), 1.4, 140)
+        checks.equal([event for event in events if event['kind'] == 'impact'], [], f'{pull}: the carriage leaves it behind')
+        t = table['t'][101:]
+        checks.near(table['q2'][101:], (t - 1) + pull * (t - 1)**2 / 2, 1e-9, f'{pull}: the slider keeps its rate')
+
+
+def test_endless_impacts_of_a_stack(checks, mech9d, tmp_path):
+    """Two sliders, one on the other: the impacts of both come to rest, whatever their restitutions are."""
+    for low in (0.0, 0.5, 0.8):
+        for high in (0.0, 0.1, 0.5, 0.9):
+            text = f"""&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=0,0,1 /
+&body link=2, mass=1 /
+&body link=3, mass=1 /
+&gravity acceleration=0,0,-10 /
+&initial coordinate=1, position=1 /
+&initial coordinate=2, position=0.5 /
+&stop coordinate=1, low=0, restitution={low} /
+&stop coordinate=2, low=0, restitution={high} /
+"""
+            table, events, _ = go(mech9d, tmp_path, text, 20.0, 20)
+            checks.true(len(events) < 2000, f'{low}, {high}: the impacts end', len(events))
+            checks.near([table['q1'][-1], table['q2'][-1]], 0.0, 1e-12, f'{low}, {high}: both rest')
+            checks.near([table['S1'][-1], table['S2'][-1]], [20.0, 10.0], 1e-9, f'{low}, {high}: by their weights')
+
+
+def test_a_stop_opens_beside_a_stiff_spring(checks, mech9d, tmp_path):
+    """The force of a closed stop passes zero while a spring of 8e5 N/m swings: the stop opens, and the motion goes on."""
+    text = """&structure cq=1,2,3 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=0,0,1 /
+&pair coordinate=3, links=3,4, kind='prismatic', axis=0,0,1 /
+&body link=3, mass=1 /
+&body link=4, mass=3 /
+&gravity acceleration=0,0,-9.81 /
+&drive coordinate=1, kind='harmonic', amplitude=0.2, angular_frequency=9 /
+&initial coordinate=2, position=0.1 /
+&initial coordinate=3, position=0.2 /
+&load kind='coordinate', coordinate=3, stiffness=8e5, damping=100 /
+&stop coordinate=2, low=0, restitution=0.3 /
+"""
+    table, events, _ = go(mech9d, tmp_path, text, 1.0, 200)
+    checks.true(len(events) < 200, 'it does not chatter', len(events))
+    checks.true(np.min(table['q2']) > -1e-9 and np.min(table['S1']) >= -1e-3, 'the stop keeps the slide and does not pull',
+                (np.min(table['q2']), np.min(table['S1'])))

@@ -10,9 +10,8 @@ module mech9_contact_equations
   use mech9_kinds, only: wp
   use mech9_tolerances, only: round_off_of_rates
   use mech9_event_tolerances, only: round_off_of_impacts
-  use mech9_error, only: error_type, raise, exit_data, exit_singular
-  use mech9_dynamics_failures, only: failure_no_inertia
-  use mech9_event_failures, only: failure_stop_violated
+  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_event_failures, only: failure_stop_violated, failure_singular_contact
   use mech9_result_units, only: unit_of, unit_name
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_complementarity, only: solve_complementarity
@@ -58,7 +57,8 @@ contains
       allocate (equations%factors, source=a(equations%free, equations%free))
       call cholesky_factorize(n, equations%factors, failed_at)
       if (failed_at > 0) then
-        call raise(err, exit_data, failure_no_inertia)
+        call raise(err, exit_singular, failure_singular_contact)
+        err%failure%t = state%t
         err%failure%coordinates = [plan%independent(equations%free(failed_at))]
         return
       end if
@@ -68,7 +68,11 @@ contains
         equations%ways(:, i) = contacts(i)%direction*row(equations%free)
         speed = sum(abs(row*state%dq(plan%independent)))
         equations%rates(i) = contacts(i)%direction*dot_product(row, state%dq(plan%independent))
-        equations%round_off(i) = round_off_of_rates*speed
+        ! a coordinate that would move by round-off in the whole run rests
+        associate (time => system%model%request%time)
+          equations%round_off(i) = round_off_of_rates*speed + epsilon(speed)*plan%unit_of(contacts(i)%coordinate) &
+                                                              /max(abs(time%end - time%start), tiny(speed)/epsilon(speed))
+        end associate
       end do
       equations%answers = equations%ways
       do i = 1, size(contacts)
@@ -129,7 +133,7 @@ contains
     type(stop_contact_type), intent(in) :: contacts(:)         !< the contacts that touch
     type(contact_equations_type), intent(in) :: equations      !< their equations
     logical, intent(in) :: at_rest(:)                          !< (contacts) the way has no rate
-    real(wp), intent(out) :: accelerations(:)                  !< (contacts) of the ways without forces of contacts [rad/s^2, m/s^2]
+    real(wp), intent(out) :: accelerations(:)                  !< (contacts) of the ways under the forces of contacts at rest [rad/s^2, m/s^2]
     logical, intent(out) :: holds(:)                           !< (contacts) it pushes, and no other that pushes implies it
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     real(wp) :: right(size(equations%free)), round_off(size(contacts))
@@ -157,6 +161,7 @@ contains
     call solve_complementarity(size(resting), g, accelerations(resting), round_off(resting), force, pushes, solved)
     if (solved) then
       holds(resting) = pushes .and. force > 0.0_wp
+      accelerations = accelerations + matmul(equations%g(:, resting), force)
     else
       call fail(system, contacts, equations, err)
     end if

@@ -44,9 +44,10 @@ contains
 
   !> Meet all contacts at the present state of the system, whose independent rates change at impacts. A compliant end that is met or left is
   !> noted alone. Fails where drives move a coordinate beyond its stop.
-  subroutine meet_contacts(system, met, contacts, impulses, changes, holds_change, events, err)
+  subroutine meet_contacts(system, met, of_held, contacts, impulses, changes, holds_change, events, err)
     class(motion_system_type), intent(inout) :: system                     !< the system, moved to the time, with all rates
     integer, intent(in) :: met                                             !< number of the end that is met or left; 0: none
+    real(wp), intent(in) :: of_held(:)                                     !< (M) rates that held coordinates would have if nothing held them
     type(stop_contacts_type), intent(inout) :: contacts                    !< all ends; those that are closed and held change
     real(wp), intent(out) :: impulses(:)                                   !< (M) on coordinates, positive while they grow [N m s, N s]
     real(wp), intent(out) :: changes(:)                                    !< (M) of the rates of all coordinates [rad/s, m/s]
@@ -69,10 +70,11 @@ contains
     call settle(system, contacts, touch, err)
     if (allocated(err)) return
     changes = -system%state%dq
-    call find_outcome(system, contacts, touch, by_contact, ends_after, holds, err)
+    system%state%dq = system%state%dq + of_held
+    call find_outcome(system, contacts, touch, met, by_contact, ends_after, holds, err)
     if (allocated(err)) return
     changes = changes + system%state%dq
-    if (any(by_contact > 0.0_wp) .and. allocated(system%sensitivity)) then
+    if (allocated(system%sensitivity) .and. (any(by_contact > 0.0_wp) .or. any(holds .neqv. contacts%ends(touch)%held))) then
       call raise(err, exit_singular, failure_event_sensitivity)
       err%failure%t = system%state%t
       err%failure%number = contacts%ends(touch(maxloc(by_contact, dim=1)))%stop
@@ -95,7 +97,8 @@ contains
     type(stop_contact_type), intent(in) :: end        !< the end
 
     touches = end%held
-    if (.not. touches) touches = end%gap(system%state%q(end%coordinate)) <= touching*system%plan%unit_of(end%coordinate)
+    if (.not. touches) touches = end%gap(system%state%q(end%coordinate)) <= &
+                                 max(touching*system%plan%unit_of(end%coordinate), 4.0_wp*spacing(end%limit))
   end function touches
 
   !> Move the contacts that touch onto their ends, from which the integration leaves them a little: by the least motion, weighed by mass.
@@ -124,6 +127,7 @@ contains
     y = system%vector()
     call system%project(t, y, err)
     if (.not. allocated(err)) call system%present(err)
+    system%state%t = t
   end subroutine settle
 
   !> Note that a compliant end is met or left. Does nothing to a rigid one.
@@ -138,10 +142,11 @@ contains
   end subroutine pass_compliant_end
 
   !> Find impulses and the contacts that push afterwards. Where endless impacts would end at once, they are left out.
-  subroutine find_outcome(system, contacts, touch, impulses, ends_after, holds, err)
+  subroutine find_outcome(system, contacts, touch, met, impulses, ends_after, holds, err)
     class(motion_system_type), intent(inout) :: system             !< the system; its independent rates change
     type(stop_contacts_type), intent(in) :: contacts               !< all ends
     integer, intent(in) :: touch(:)                                !< numbers of the rigid ones that touch
+    integer, intent(in) :: met                                     !< number of the end that is met, or released if it is held; 0: none
     real(wp), allocatable, intent(out) :: impulses(:)              !< (touch) of impacts [N m s, N s]
     real(wp), allocatable, intent(out) :: ends_after(:)            !< (touch) time until endless impacts end; negative: there are none [s]
     logical, allocatable, intent(out) :: holds(:)                  !< (touch) it pushes afterwards
@@ -149,8 +154,9 @@ contains
     type(contact_equations_type) :: equations
     logical :: held(system%plan%n_coordinates)
     real(wp), dimension(size(touch)) :: restitution, rates, accelerations
-    real(wp) :: before(size(system%plan%independent)), duration, time
-    integer :: i
+    real(wp) :: before(size(system%plan%independent)), duration, time, height
+    integer :: i, round
+    logical :: cut
 
     allocate (impulses(size(touch)), holds(size(touch)))
     allocate (ends_after(size(touch)), source=-1.0_wp)
@@ -161,29 +167,39 @@ contains
       if (allocated(err)) return
       restitution = ends%restitution
       before = system%state%dq(system%plan%independent)
-      call meet(err)
-      if (allocated(err)) return
-      do i = 1, size(touch)
-        if (.not. (impulses(i) > 0.0_wp .and. rates(i) > 0.0_wp .and. accelerations(i) < 0.0_wp)) cycle
-        if (restitution(i) >= 1.0_wp) cycle
-        time = 2.0_wp*rates(i)/(-accelerations(i)*(1.0_wp - restitution(i)))
-        if (rates(i)**2 > -2.0_wp*accelerations(i)*least_rebound*system%plan%unit_of(ends(i)%coordinate) .or. &
-            time > endless_part*duration) cycle
-        ends_after(i) = time
+      ! a contact that comes to rest may press others, whose impacts then end, too
+      do round = 0, size(touch)
+        system%state%dq(system%plan%independent) = before
+        call meet(err)
+        if (allocated(err)) return
+        cut = .false.
+        do i = 1, size(touch)
+          if (.not. (impulses(i) > 0.0_wp .and. rates(i) > 0.0_wp .and. accelerations(i) < 0.0_wp)) cycle
+          if (restitution(i) >= 1.0_wp) cycle
+          time = 2.0_wp*rates(i)/(-accelerations(i)*(1.0_wp - restitution(i)))
+          height = -0.5_wp*rates(i)**2/accelerations(i)
+          ! rebounds within the round-off of the coordinate are not impacts
+          if (height > 64.0_wp*spacing(ends(i)%limit) .and. &
+              (height > least_rebound*system%plan%unit_of(ends(i)%coordinate) .or. time > endless_part*duration)) cycle
+          ends_after(i) = time
+          restitution(i) = 0.0_wp
+          cut = .true.
+        end do
+        if (.not. cut) exit
       end do
-      if (.not. any(ends_after >= 0.0_wp)) return
-      where (ends_after >= 0.0_wp) restitution = 0.0_wp
-      system%state%dq(system%plan%independent) = before
-      call meet(err)
     end associate
   contains
     !> Find the impact, and the contacts that push after it.
     subroutine meet(err)
       type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+      logical :: at_rest(size(touch))
 
       call find_impact(system, contacts%ends(touch), equations, restitution, impulses, rates, err)
-      if (.not. allocated(err)) &
-        call find_pushing(system, contacts%ends(touch), equations, .not. abs(rates) > 0.0_wp, accelerations, holds, err)
+      if (allocated(err)) return
+      at_rest = .not. abs(rates) > 0.0_wp
+      ! the force of a released end passes zero: round-off must not close it again
+      if (.not. any(impulses > 0.0_wp)) at_rest = at_rest .and. .not. (touch == met .and. contacts%ends(touch)%held)
+      call find_pushing(system, contacts%ends(touch), equations, at_rest, accelerations, holds, err)
     end subroutine meet
   end subroutine find_outcome
 

@@ -2,7 +2,7 @@
 module mech9_event_failures
   implicit none
   private
-  public :: failure_stop_violated, failure_event_sensitivity, failure_stop_start, last_event_failure
+  public :: failure_stop_violated, failure_event_sensitivity, failure_stop_start, failure_singular_contact, last_event_failure
 
   !> Drives move or press a coordinate beyond a rigid stop: number (of the stop), coordinates, values (the limit, the rate), name (unit
   !> of the limit), t.
@@ -11,5 +11,7 @@ module mech9_event_failures
   integer, parameter :: failure_event_sensitivity = 1402
   !> The start lies behind a rigid stop: number (of the stop), coordinates, values (the coordinate, its limit), name (of their unit).
   integer, parameter :: failure_stop_start = 1403
-  integer, parameter :: last_event_failure = failure_stop_start
+  !> The equations of motion are singular where a stop is met: coordinates (without inertia), t.
+  integer, parameter :: failure_singular_contact = 1404
+  integer, parameter :: last_event_failure = failure_singular_contact
 end module mech9_event_failures

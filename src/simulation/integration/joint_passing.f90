@@ -23,11 +23,12 @@ module mech9_joint_passing
 contains
 
   !> Pass a joint of the laws. Fails where rates jump at a time that depends on a parameter by which derivatives are integrated.
-  subroutine pass_joint(system, t, y, err)
+  subroutine pass_joint(system, t, y, err, of_held)
     class(motion_system_type), intent(inout) :: system  !< the motion system, afterwards in the interval behind the joint
     real(wp), intent(in) :: t                           !< time of the joint [s]
     real(wp), intent(inout) :: y(:)                     !< the vector there; rates and derivatives may change
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp), intent(out) :: of_held(:)                 !< (M) jumps of coordinates that stops hold, as if nothing held them [rad/s, m/s]
     real(wp) :: jumps(system%plan%n_coordinates, 1)
     real(wp), allocatable :: varied(:, :, :)
     real(wp) :: duration
@@ -45,8 +46,18 @@ contains
     if (allocated(err)) return
     jumps(:, 1) = merge(jumps(:, 1) + system%state%dq, 0.0_wp, system%plan%driven)
     rates_jump = any(abs(jumps(:, 1))*duration > round_off_of_jumps*system%plan%unit_of)
-    if (maxval(abs(jumps)) > 0.0_wp) &
-      call find_impulse(system%model, system%plan, system%dynamics, system%state, system%work, jumps, err)
+    of_held = 0.0_wp
+    if (maxval(abs(jumps)) > 0.0_wp) then
+      if (allocated(system%held_stops)) then
+        call find_impulse(system%model, system%plan, system%dynamics, system%state, system%work, jumps, err, &
+                          system%held_stops%coordinate)
+        do i = 1, size(system%held_stops)
+          of_held(system%held_stops(i)%coordinate) = jumps(system%held_stops(i)%coordinate, 1)
+        end do
+      else
+        call find_impulse(system%model, system%plan, system%dynamics, system%state, system%work, jumps, err)
+      end if
+    end if
     if (.not. allocated(err)) call pass_varied(system, varied, jumps(:, 1), rates_jump, y, err)
     if (allocated(err)) return
     associate (n => system%plan%n_coordinates, free => system%plan%free)

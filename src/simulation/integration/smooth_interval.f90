@@ -16,6 +16,8 @@ module mech9_smooth_interval
     real(wp) :: behind = 0.0_wp   !< beginning of the interval, which was passed last [s]
     real(wp) :: ahead = 0.0_wp    !< its end, which comes next; the largest number, with the direction's sign, if none comes [s]
     integer :: motor = 0          !< number of the motor that passes its limit at the end; 0: none does
+    logical :: laws_end = .false.      !< a law of time has a joint
+    real(wp) :: joint = 0.0_wp    !< the next joint of the laws of time; the largest number, with the direction's sign, if none comes [s]
     integer :: contact = 0        !< number of the end of a stop that is met or left at the end; 0: none is
   contains
     procedure :: begin
@@ -23,6 +25,8 @@ module mech9_smooth_interval
     procedure :: is_end
     procedure :: is_before_end
     procedure :: end_at_event
+    procedure :: is_joint
+    procedure :: forget_event
   end type smooth_interval_type
 
 contains
@@ -50,6 +54,8 @@ contains
         if (allocated(motors(i)%motor%law)) call take_law(motors(i)%motor%law)
       end do
     end associate
+    self%joint = self%ahead
+    self%laws_end = self%ends
   contains
     !> Take the next joint of a law into account.
     subroutine take_law(law)
@@ -108,4 +114,22 @@ contains
     self%motor = motor
     self%contact = contact
   end subroutine end_at_event
+
+  !> Whether a joint of the laws lies at a time.
+  pure logical function is_joint(self, t)
+    class(smooth_interval_type), intent(in) :: self   !< the interval
+    real(wp), intent(in) :: t                         !< time [s]
+
+    is_joint = self%laws_end .and. abs(t - self%joint) <= 64.0_wp*spacing(t)
+  end function is_joint
+
+  !> Go on to the next joint of the laws, as if no event lay ahead.
+  pure subroutine forget_event(self)
+    class(smooth_interval_type), intent(inout) :: self   !< the interval
+
+    self%ends = self%laws_end
+    self%ahead = self%joint
+    self%motor = 0
+    self%contact = 0
+  end subroutine forget_event
 end module mech9_smooth_interval
