@@ -37,8 +37,8 @@ contains
         call check_stop(group, stop, diagnostics)
         call check_others(group, i, mechanism%stops, diagnostics)
         if (stop%is_rigid .and. time%end < time%start) &
-          call diagnostics%add(group%span, 'a motion back in time does not know where it met a rigid stop; give an end '// &
-                               'after the start, or make the stop compliant by stiffness=')
+          call diagnostics%add(group%span, 'a rigid stop does not allow a motion back in time; give an end after the '// &
+                               'start, or make the stop compliant by stiffness=')
       end associate
     end do
     call add_loads(mechanism%stops, mechanism%loads)
@@ -71,16 +71,16 @@ contains
     if (.not. stop%ends(1) < stop%ends(2)) &
       call diagnostics%add(span_of(group, 'high', 1), 'the high end is not above the low one; exchange them, or move one')
     if (stop%restitution > 1.0_wp) &
-      call diagnostics%add(span_of(group, 'restitution', 1), 'a restitution above 1 would make energy; it is from 0 to 1')
+      call diagnostics%add(span_of(group, 'restitution', 1), 'a restitution above 1 would add energy; give 0 to 1')
     if (has_name(group, 'restitution') .and. .not. stop%is_rigid) &
       call diagnostics%add(span_of(group, 'restitution', 1), 'a stop with stiffness= is compliant and has no restitution; '// &
                            'give damping= for its losses, or leave stiffness= out')
     if (stop%is_rigid .and. has_name(group, 'damping')) &
       call diagnostics%add(span_of(group, 'damping', 1), 'damping= belongs to a compliant stop; give stiffness= too, or leave '// &
-                           'it out')
+                           'damping= out')
     if (stop%is_rigid .and. has_name(group, 'exponent')) &
       call diagnostics%add(span_of(group, 'exponent', 1), 'exponent= belongs to a compliant stop; give stiffness= too, or '// &
-                           'leave it out')
+                           'leave exponent= out')
   end subroutine check_stop
 
   !> Report a stop that shares no range with an earlier rigid one of the same coordinate, and one whose rigid end an earlier one has.
@@ -95,8 +95,8 @@ contains
     do i = 1, number - 1
       if (stops(i)%coordinate /= stops(number)%coordinate .or. .not. stops(i)%is_rigid) cycle
       if (max(stops(i)%ends(1), stops(number)%ends(1)) >= min(stops(i)%ends(2), stops(number)%ends(2))) &
-        call diagnostics%add(group%span, 'stop '//to_text(number)//' leaves no range that stop '//to_text(i)// &
-                             ' of the same coordinate leaves, too; move an end of one of them')
+        call diagnostics%add(group%span, 'stops '//to_text(i)//' and '//to_text(number)//' leave coordinate '// &
+                             to_text(stops(i)%coordinate)//' no common range; move an end of one of them')
       do end = 1, 2
         if (stops(i)%has_end(end) .and. stops(number)%has_end(end)) &
           call diagnostics%add(span_of(group, merge('low ', 'high', end == 1), 1), 'stop '//to_text(i)// &

@@ -35,6 +35,7 @@ contains
     columns%motion = columns%count
     call forces%begin(model, columns)
     call columns%append_motors(model%mechanism)
+    call columns%append_stops(model%mechanism)
     call columns%append('stable', '', '1 where no small deviation grows, else 0')
     call columns%append('growth', '1/s', 'largest real part of the eigenvalues of the linearised equations of motion')
   end function columns_of_equilibria
@@ -58,6 +59,7 @@ contains
       if (columns%forces() > 0) call fill_forces(model, columns, list(i), rows(:, i), err)
       if (.not. allocated(err)) call columns%fill_motors(model%mechanism, list(i)%resting%state, rows(:, i), err)
       if (allocated(err)) return
+      call columns%fill_stops(model%mechanism, list(i)%resting%state, rows(:, i))
       rows(columns%count - 1, i) = merge(1.0_wp, 0.0_wp, list(i)%is_stable)
       rows(columns%count, i) = list(i)%modes%growth
     end do

@@ -1,8 +1,7 @@
 !> Equilibria of a model, from its assembly on: what --equilibrium, --modes and --linear find.
 module mech9_rest
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, add_place, exit_data, exit_singular, exit_interrupted
-  use mech9_text, only: to_text
+  use mech9_error, only: error_type, raise, add_place, exit_data, exit_assembly, exit_interrupted
   use mech9_dynamics_failures, only: failure_no_inertia
   use mech9_model, only: model_type
   use mech9_partition, only: free_coordinate, driven_coordinate
@@ -14,6 +13,10 @@ module mech9_rest
   use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_equilibria, only: find_equilibrium, find_equilibria
   use mech9_explained_assembly, only: assemble_model
+  use mech9_frame_motion, only: spread_all_accelerations
+  use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
+  use mech9_reactions, only: reactions_type, new_reactions, find_reactions
+  use mech9_rest_on_stops, only: end_type, rigid_ends, hold_ends, next_choice
   implicit none
   private
   public :: rest_type, is_interruption
@@ -31,6 +34,8 @@ module mech9_rest
 
   !> A position lies behind a stop by more than this [rad, m]: equilibria are found to 1e-9 and better.
   real(wp), parameter :: behind_stop = 1.0e-9_wp
+  !> Choices of ends that are tried at most: all of seven ends.
+  integer, parameter :: most_choices = 128
 
 contains
 
@@ -40,9 +45,6 @@ contains
     class(rest_type), intent(inout) :: self             !< gets them; without equilibria
     type(model_type), intent(in) :: model               !< the model
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(plan_type) :: first_plan
-    type(state_type) :: first_start
-    integer :: i, k
 
     if (allocated(self%equilibria)) deallocate (self%equilibria)
     allocate (self%equilibria(0))
@@ -52,6 +54,18 @@ contains
       return
     end if
     if (.not. allocated(self%plan)) allocate (self%plan, self%start)
+    call assemble_at_rest(self, model, err)
+  end subroutine assemble
+
+  !> Find plan and closed position at the start, in space, with the motion of the driven coordinates.
+  subroutine assemble_at_rest(self, model, err)
+    class(rest_type), intent(inout) :: self             !< with room for plan and start; gets them
+    type(model_type), intent(in) :: model               !< the model
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(plan_type) :: first_plan
+    type(state_type) :: first_start
+    integer :: i, k
+
     call assemble_model(model, first_plan, first_start, err, self%way)
     if (.not. allocated(err)) &
       call make_plan(model%mechanism, model%problem%partition, first_start%q, self%plan, self%start, err, &
@@ -66,7 +80,7 @@ contains
         if (allocated(err)) return
       end do
     end associate
-  end subroutine assemble
+  end subroutine assemble_at_rest
 
   !> Find the equilibrium to which the start leads, or those of many starts. Fails with exit_assembly where there is none, and with
   !> exit_interrupted where the search is stopped; the equilibria that were found before are then there.
@@ -84,40 +98,133 @@ contains
     else
       allocate (found(1))
       call find_equilibrium(model%mechanism, model%problem%partition, self%plan, self%start, found(1), err)
+      if (allocated(err)) deallocate (found)
     end if
-    if (.not. allocated(err) .or. is_interruption(err)) call leave_out_behind_stops(model, found, err)
+    if (model%mechanism%has_rigid_stops()) then
+      if (allocated(err)) then
+        if (err%code == exit_assembly .and. .not. allocated(found)) allocate (found(0))
+      end if
+      if (allocated(found)) call leave_out_behind_stops(model, found)
+      if (allocated(found) .and. .not. is_interruption(err)) then
+        if (starts > 0 .or. size(found) == 0) call find_on_stops(model, starts > 0, found)
+        if (size(found) > 0 .and. allocated(err)) deallocate (err)
+        if (size(found) == 0 .and. .not. allocated(err)) call raise(err, exit_assembly, 'the loads balance only behind rigid '// &
+          'stops, and no position of rest against a stop was found from the initial position; give another initial position')
+      end if
+    end if
     if (.not. allocated(err) .and. with_modes) call need_inertia(model, found(1), err)
     if (.not. allocated(err) .or. is_interruption(err)) call move_alloc(found, self%equilibria)
   end subroutine find
 
-  !> Leave out positions of rest that lie behind rigid stops. Fails with exit_singular where none is left: rest against a stop is not
-  !> searched.
-  subroutine leave_out_behind_stops(model, found, err)
+  !> Leave out positions of rest that lie behind rigid stops.
+  subroutine leave_out_behind_stops(model, found)
     type(model_type), intent(in) :: model                              !< the model
     type(equilibrium_type), allocatable, intent(inout) :: found(:)     !< equilibria
-    type(error_type), allocatable, intent(inout) :: err                !< an interruption, or none
     type(equilibrium_type), allocatable :: kept(:)
-    integer :: behind(size(found)), i, n
+    logical :: behind(size(found))
+    integer :: i, n
 
     do i = 1, size(found)
-      behind(i) = stop_before(model, found(i)%resting%state%q)
+      behind(i) = stop_before(model, found(i)%resting%state%q) > 0
     end do
-    if (all(behind == 0)) return
-    if (all(behind > 0) .and. .not. allocated(err)) then
-      call raise(err, exit_singular, 'the loads balance behind stop '//to_text(behind(1))//' only, and rest against a stop is '// &
-                 'not searched; make the stop compliant by stiffness=, or run mech9d until the motion rests', &
-                 model%mechanism%stops(behind(1))%place)
-      return
-    end if
-    allocate (kept(count(behind == 0)))
+    if (.not. any(behind)) return
+    allocate (kept(count(.not. behind)))
     n = 0
     do i = 1, size(found)
-      if (behind(i) > 0) cycle
+      if (behind(i)) cycle
       n = n + 1
       kept(n) = found(i)
     end do
     call move_alloc(kept, found)
   end subroutine leave_out_behind_stops
+
+  !> Find rest against rigid stops, from the start of the model: the first choice of ends that serves, or all of them. The ends are tried
+  !> one by one, then two together, and so on.
+  subroutine find_on_stops(model, all_choices, found)
+    type(model_type), intent(in) :: model                              !< the model
+    logical, intent(in) :: all_choices                                 !< all that serve are wanted
+    type(equilibrium_type), allocatable, intent(inout) :: found(:)     !< equilibria so far; gets more
+    type(end_type), allocatable :: ends(:)
+    type(equilibrium_type), allocatable :: more(:)
+    type(equilibrium_type) :: candidate
+    integer, allocatable :: choice(:)
+    integer :: n_free, trial, i
+    logical :: serves
+
+    call rigid_ends(model, ends)
+    n_free = count(model%problem%partition%kind == free_coordinate)
+    choice = [1]
+    do trial = 1, most_choices
+      if (size(choice) > min(size(ends), n_free)) return
+      call rest_on(model, ends(choice), candidate, serves)
+      if (serves) then
+        allocate (more(size(found) + 1))
+        do i = 1, size(found)
+          more(i) = found(i)
+        end do
+        more(size(more)) = candidate
+        call move_alloc(more, found)
+        if (.not. all_choices) return
+      end if
+      call next_choice(size(ends), choice)
+    end do
+  end subroutine find_on_stops
+
+  !> Find rest against some ends of stops. It does not serve where there is none, an end does not push, or another is passed.
+  subroutine rest_on(model, ends, found, serves)
+    type(model_type), intent(in) :: model              !< the model
+    type(end_type), intent(in) :: ends(:)              !< the ends
+    type(equilibrium_type), intent(out) :: found       !< the equilibrium, with the forces of the stops
+    logical, intent(out) :: serves                     !< it was found
+    type(rest_type) :: rest
+    type(model_type) :: held
+    type(error_type), allocatable :: err
+    integer :: exchange
+
+    serves = .false.
+    do exchange = 1, count(model%problem%partition%kind == free_coordinate)
+      call hold_ends(model, ends, exchange, held, serves)
+      if (.not. serves) return
+      allocate (rest%plan, rest%start)
+      call assemble_at_rest(rest, held, err)
+      if (.not. allocated(err)) &
+        call find_equilibrium(held%mechanism, held%problem%partition, rest%plan, rest%start, found, err)
+      serves = .not. allocated(err)
+      if (serves) exit
+      deallocate (rest%plan, rest%start)
+    end do
+    if (serves) serves = stop_before(model, found%resting%state%q) == 0
+    if (serves) call find_pushing(model, ends, found, serves)
+  end subroutine rest_on
+
+  !> Find the forces of the stops that hold coordinates, and whether all of them push.
+  subroutine find_pushing(model, ends, found, push)
+    type(model_type), intent(in) :: model                !< the model
+    type(end_type), intent(in) :: ends(:)                !< the ends that hold
+    type(equilibrium_type), intent(inout) :: found       !< the equilibrium; gets the forces
+    logical, intent(out) :: push                         !< all of them push
+    type(reaction_plan_type) :: reaction_plan
+    class(reactions_type), allocatable :: reactions
+    type(error_type), allocatable :: err
+    integer :: i
+
+    push = .false.
+    associate (plan => found%resting%plan, state => found%resting%state)
+      call spread_all_accelerations(plan, state)
+      call make_reaction_plan(model%mechanism, plan, reaction_plan)
+      allocate (reactions, source=new_reactions(plan, reaction_plan))
+      call find_reactions(model%mechanism, plan, reaction_plan, state, reactions, err)
+      if (allocated(err)) return
+      allocate (state%stop_force(size(model%mechanism%stops)), source=0.0_wp)
+      push = .true.
+      do i = 1, size(ends)
+        associate (force => reactions%needed(model%mechanism%stops(ends(i)%stop)%coordinate))
+          state%stop_force(ends(i)%stop) = force
+          push = push .and. ends(i)%direction*force > 0.0_wp
+        end associate
+      end do
+    end associate
+  end subroutine find_pushing
 
   !> The rigid stop behind which a position lies; 0: none.
   pure integer function stop_before(model, q) result(number)

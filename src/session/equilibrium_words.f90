@@ -30,12 +30,29 @@ contains
     end if
   end subroutine print_findings
 
-  !> An equilibrium in words.
+  !> An equilibrium in words, with the stops that bear a force.
   function words_about(found) result(words)
     type(equilibrium_type), intent(in) :: found   !< the equilibrium
     character(len=:), allocatable :: words
+    integer :: i
 
-    if (found%without_inertia > 0) then
+    words = words_of_stability(found)
+    if (.not. allocated(found%resting%state%stop_force)) return
+    associate (force => found%resting%state%stop_force)
+      do i = 1, size(force)
+        if (abs(force(i)) > 0.0_wp) words = words//'; stop '//to_text(i)//' bears '//to_text(force(i), 5)
+      end do
+    end associate
+  end function words_about
+
+  !> The stability of an equilibrium in words.
+  function words_of_stability(found) result(words)
+    type(equilibrium_type), intent(in) :: found   !< the equilibrium
+    character(len=:), allocatable :: words
+
+    if (size(found%resting%free) == 0) then
+      words = 'an equilibrium in which stops hold all coordinates'
+    else if (found%without_inertia > 0) then
       words = trim(merge('a stable equilibrium   ', 'an unstable equilibrium', found%is_stable))// &
               ' by its stiffness; coordinate '//to_text(found%without_inertia)//' has no inertia, so that no growth can be told'
     else if (.not. found%is_stable) then
@@ -46,7 +63,7 @@ contains
     else
       words = 'a stable equilibrium; '//words_about_return(found%modes%roots(:found%modes%count))
     end if
-  end function words_about
+  end function words_of_stability
 
   !> How a mechanism comes back to a stable equilibrium in which each direction has stiffness.
   function words_about_return(roots) result(words)

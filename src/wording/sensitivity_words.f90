@@ -40,8 +40,8 @@ contains
              'before, leave out the parameter, or sensitivities and gradients'
     case (failure_event_sensitivity)
       text = 'derivatives by the parameters are not computed beyond t = '//to_text(failure%t, 10)//' s, where stop '// &
-             to_text(failure%number)//' is hit. End the run before, make the stop compliant by stiffness=, or leave out '// &
-             'sensitivities and gradients'
+             to_text(failure%number)//' is hit, closes or opens. End the run before, make the stop '// &
+             'compliant by stiffness=, or leave out sensitivities and gradients'
     case (failure_angles_sensitivity)
       text = 'derivatives by the parameters are not computed at t = '//to_text(failure%t, 10)//' s, where the motion goes on '// &
              'in other angles of a ball joint or of a rod than those of the data file. End the run before, or leave out '// &

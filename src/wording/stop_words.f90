@@ -19,8 +19,9 @@ contains
 
     select case (failure%kind)
     case (failure_stop_start)
-      text = 'the motion starts behind stop '//to_text(failure%number)//': coordinate '//to_text(failure%coordinates)//' is '// &
-             trim(value(1))//', '//trim(depth())//' beyond the end at '//trim(value(2))//'. Start elsewhere, or move the stop'
+      text = 'the motion starts beyond the end of stop '//to_text(failure%number)//': coordinate '// &
+             to_text(failure%coordinates)//' is '//trim(value(1))//', '//trim(depth())//' beyond '// &
+             trim(value(2))//'. Start elsewhere, or move the stop'
     case (failure_stop_violated)
       text = 'the drives force coordinate '//to_text(failure%coordinates)//' beyond the end of stop '//to_text(failure%number)// &
              ' at '//trim(value(1))//' from t = '//to_text(failure%t, 10)//' s on, with the rate '//trim(value(2))// &

@@ -442,7 +442,7 @@ def free_cases():
           ', and 1e-17 is allowed (rad, m). Round-off makes such an error in many steps, or where the motion enlarges it: it may be '
           'chaotic. End before this time, or ask for a larger accuracy']),
         ('stop_start', falling('low=1.25'), (), DATA,
-         ['the motion starts behind stop 1: coordinate 1 is 1 m, 0.25 m beyond the end at 1.25 m. Start elsewhere, or move the stop']),
+         ['the motion starts beyond the end of stop 1: coordinate 1 is 1 m, 0.25 m beyond 1.25 m. Start elsewhere, or move the stop']),
         # the carriage comes to its stop at 0.5 s, with the free slider beside it
         ('stop_violated', "&structure cq=1,2 /\n&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /\n&pair coordinate=2, "
          "links=2,3, kind='prismatic', axis=0,1,0 /\n&body link=2, mass=1 /\n&body link=3, mass=2 /\n" + drive(1, '1, -1')
@@ -460,7 +460,7 @@ def free_cases():
           'independent coordinates move. Start elsewhere, or make the stop compliant by stiffness=']),
         # t = sqrt(2/9.81)
         ('event_sensitivity', falling('low=0', "&parameter name='h', sets='initial(1).position' /\n&output sensitivities=.true. /\n"), (),
-         SINGULAR, ['derivatives by the parameters are not computed beyond t = 0.451523641 s, where stop 1 is hit. End the run before, '
+         SINGULAR, ['derivatives by the parameters are not computed beyond t = 0.451523641 s, where stop 1 is hit, closes or opens. End the run before, '
                     'make the stop compliant by stiffness=, or leave out sensitivities and gradients']),
         # at t = 1e6 s numbers are 1e-10 s apart, in which it would hit five times
         ('many_events', falling('low=-1e-11, high=1e-11, restitution=1', '&time start=1e6, end=1000001, intervals=1 /\n',

@@ -1,5 +1,7 @@
 """Stops against closed forms, and one mechanism described in several ways: rigid stops with restitution on independent and dependent
-coordinates, endless impacts, contacts that close and open, several at once, beside drives; compliant stops; bad ends."""
+coordinates, endless impacts, contacts that close and open, several at once, beside drives; rest; compliant stops; bad ends.
+
+Compares the program with itself: one four-bar by three independent coordinates; few and many outputs; rigid and stiff stops."""
 import json
 from math import cos, pi, sin, sqrt, tan
 
@@ -306,9 +308,9 @@ def test_grazing(checks, mech9d, tmp_path):
     ("coordinate=1, low=0, restitution=0.5, stiffness=10", 'is compliant and has no restitution'),
     ("coordinate=1, low=0, damping=1", 'belongs to a compliant stop'),
     ("coordinate=2, low=0", 'there is no coordinate 2'),
-    ("coordinate=1, low=1.25", 'starts behind stop 1: coordinate 1 is 1 m, 0.25 m beyond the end at 1.25 m'),
+    ("coordinate=1, low=1.25", 'starts beyond the end of stop 1: coordinate 1 is 1 m, 0.25 m beyond 1.25 m'),
     ("coordinate=1, low=0 /\n&stop coordinate=1, low=0.1", 'on this side already'),
-    ("coordinate=1, high=0.5 /\n&stop coordinate=1, low=0.7", 'leaves no range'),
+    ("coordinate=1, high=0.5 /\n&stop coordinate=1, low=0.7", 'no common range'),
     ("coordinate=1, low=0, stiffness=0", 'stiffness'),
     ("coordinate=1, low=nan", 'low'),
     ("coordinate=1, low=0 /\n&time start=1, end=0, intervals=1 /\n&user", 'back in time'),
@@ -442,3 +444,48 @@ def test_a_stop_opens_beside_a_stiff_spring(checks, mech9d, tmp_path):
     checks.true(len(events) < 200, 'it does not chatter', len(events))
     checks.true(np.min(table['q2']) > -1e-9 and np.min(table['S1']) >= -1e-3, 'the stop keeps the slide and does not pull',
                 (np.min(table['q2']), np.min(table['S1'])))
+
+
+def rest(program, folder, text, *options):
+    """The table of equilibria, and what the program says."""
+    path = folder / 'rest.nml'
+    path.write_text(text, encoding='utf-8')
+    done = run(program, path, *options)
+    assert done.returncode == 0, done.stderr
+    return read_table(done.stdout), done.stderr
+
+
+def test_rest_against_stops(checks, mech9d, tmp_path):
+    """Positions of rest lie before stops or against them, where these push; modes are those in contact."""
+    pendulums = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0,-1,0 /
+&body link=2, mass=1, centre=0,-1,0 /
+&body link=3, mass=1, centre=0,-2,0, inertia=0.1,0.1,0.1,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&initial coordinate=1, position=0.9 /
+&initial coordinate=2, position=0.2 /
+&stop coordinate=1, low=0.5 /
+"""
+    table, told = rest(mech9d, tmp_path, pendulums, '--equilibrium')
+    checks.near([table['q1'][0], table['q2'][0]], [0.5, -0.5], 1e-12, 'the lower pendulum hangs, the upper one leans on its stop')
+    checks.near(table['S1'][0], 2 * G * sin(0.5), 1e-12, 'by the moment of both weights')
+    checks.true('stop 1 bears 9.406' in told, 'the stop is named', told)
+    modes, _ = rest(mech9d, tmp_path, pendulums, '--modes')
+    checks.near(modes['eigenvalue.im'], [sqrt(G / 1.1)], 1e-9, 'the lower one swings alone')
+    both = pendulums + "&stop coordinate=2, low=0 /\n"
+    table, _ = rest(mech9d, tmp_path, both, '--equilibrium')
+    checks.near([table['q1'][0], table['q2'][0]], [0.5, 0.0], 1e-12, 'two stops hold both')
+    checks.near(table['S2'][0], G * sin(0.5), 1e-12, 'the lower one leans, too')
+    away = pendulums.replace('low=0.5', 'high=0.5')
+    table, _ = rest(mech9d, tmp_path, away, '--equilibrium')
+    checks.near([table['q1'][0], table['q2'][0], table['S1'][0]], 0.0, 1e-9, 'a stop that is not reached does not count')
+    table, _ = rest(mech9d, tmp_path, pendulums, '--equilibrium', '--starts', '60')
+    checks.true(np.all(table['q1'] > 0.5 - 1e-9), 'no position lies behind the stop', table['q1'])
+    checks.true(len(table['q1']) == 3 and np.sum(table['S1'] > 0) == 1, 'upside down, and against the stop', table)
+    start = "&structure cq=1 /\n&initial coordinate=1, position=-1.3 /\n&initial coordinate=4, position=-0.55 /\n"
+    stopped = FOUR_BAR + start + "&stop coordinate=4, high=-0.3 /\n"
+    table, _ = rest(mech9d, tmp_path, stopped, '--equilibrium')
+    settled, _, _ = go(mech9d, tmp_path, stopped + "&load kind='coordinate', coordinate=1, damping=30 /\n", 30.0, 1)
+    for name in ('q1', 'q2', 'q3', 'q4', 'S1'):
+        checks.near(table[name][0], settled[name][-1], 1e-8, f'{name} of a dependent coordinate against its stop, as the motion ends')

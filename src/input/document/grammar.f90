@@ -446,11 +446,12 @@ module mech9_grammar
                   'greatest value of the coordinate', '0.1'), &
     item_row_type('stop', 'restitution', 'real', 1, 1, '', optional, '0', '>=0', '', '', &
                   'of a rigid stop: rate after an impact over the rate before it, from 0 to 1', '0.6'), &
-    item_row_type('stop', 'stiffness', 'real', 1, 1, 'N m/rad, N/m', optional, '(rigid)', '>0', '', '', &
-                  'makes the stop compliant: force = d^exponent (stiffness + damping dd/dt) for a penetration d', '1e5', &
+    item_row_type('stop', 'stiffness', 'real', 1, 1, '', optional, '(rigid)', '>0', '', '', &
+                  'makes the stop compliant: force (N m, N) = d^exponent (stiffness + damping dd/dt), penetration d in rad or m', &
+                  '1e5', seldom=.true.), &
+    item_row_type('stop', 'damping', 'real', 1, 1, '', optional, '0', '>=0', '', '', &
+                  'of a compliant stop: force per rate of the penetration, at a penetration of 1 rad or 1 m', '200', &
                   seldom=.true.), &
-    item_row_type('stop', 'damping', 'real', 1, 1, 'N m s, N s/m', optional, '0', '>=0', '', '', &
-                  'of a compliant stop: force per rate, for a penetration d of 1', '200', seldom=.true.), &
     item_row_type('stop', 'exponent', 'real', 1, 1, '', optional, '1', '>=1', '', '', &
                   'of a compliant stop: power of the penetration; 1.5 for balls (Hertz)', '1.5', seldom=.true.)]
 
