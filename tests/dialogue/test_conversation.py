@@ -266,7 +266,7 @@ def test_changes(talks, folder):
              ('Removed', 'remove time start'), ('Removed', '?'),
              ('Give the number', '999'), ('no answer that can be changed', 'zero zero zero zero'),
              ('no answer that can be changed', 'add nothing'),
-             ('What can be added: drive, body, load, motor, point, parameter, quantity, study, objective,', ''),
+             ('What can be added: drive, body, load, motor, stop, point, parameter, quantity, study, objective,', ''),
              ('[both]', 'save'), ('data file [p.nml]', '/'),
              ('exists; overwrite it [no]', 'yes'), ('cannot open', '')]
     talks.pipe(talks.mech9d, steps, 'changes', arguments=('--edit', 'p.nml'), folder=folder)
@@ -349,13 +349,15 @@ def test_drives_and_motors(talks, folder):
              ('there is no coordinate 7', '1'), ('kind', 'har'), ('mean', ''), ('amplitude', '0.5'),
              ('angular_frequency', '3'), ('phase', ''), ('all is right', 'add motor'), ('motor 1, coordinate', '1'),
              ('has the drive', '2'), ('kind', 'dc'), ('voltage', '12'), ('resistance', '0'), ("'resistance' must be", '0.6'),
-             ('inductance', '0.01'), ('constant', '0.3'), ('all is right', ''), ('[both]', 'save'),
+             ('inductance', '0.01'), ('constant', '0.3'), ('all is right', 'add stop'), ('stop 1, coordinate', '2'),
+             ('low', '0.2'), ('high', ''), ('restitution', '0.5'), ('all is right', ''), ('[both]', 'save'),
              ('data file [arm.nml]', '')]
     talks.pipe(talks.mech9d, steps, 'drive and motor added', arguments=('--edit', 'arm.nml'), folder=folder)
     text = text_of(path)
     talks.checks.true("&drive coordinate=1, kind='harmonic', amplitude=0.5, angular_frequency=3 /" in text
                       and "&motor coordinate=2, kind='dc', voltage=12, resistance=0.6, inductance=0.01, constant=0.3 /" in text
-                      and '&initial coordinate=1' not in text, 'the file has drive and motor, and no start of coordinate 1', text)
+                      and '&stop coordinate=2, low=0.2, restitution=0.5 /' in text
+                      and '&initial coordinate=1' not in text, 'the file has drive, motor and stop, and no start of coordinate 1', text)
     steps = [('all is right', 'remove drive 1'), ('Removed.', '0.3'), ('velocity', '1'),
              ('all is right', 'remove motor 1'), ('Removed.', ''), ('[both]', 'save'),
              ('data file [arm.nml]', '')]
@@ -490,7 +492,7 @@ def test_forces_of_drives(talks, folder, steps, why):
 
 def test_no_masses_without_forces(talks, folder):
     done = talks.pipe(talks.mech9k, BAR + PLAIN + [
-        ('all is right', 'add body'), ('What can be added: point, parameter, quantity, study, objective, limit, optimum;', 'quit')],
+        ('all is right', 'add body'), ('What can be added: stop, point, parameter, quantity, study, objective, limit, optimum;', 'quit')],
                       'without forces', folder=folder)
     talks.checks.true(not any(word in done.stderr for word in ('Bodies', 'Gravity', 'Loads')), 'no masses without forces',
                       done.stderr)
@@ -516,7 +518,7 @@ def test_new_study(talks, folder):
     talks.checks.true("&study kind='grid' /" in text and 'low=0.5, high=2, count=4' in text, 'a new study: the file has it', text)
     # another kind needs other names; a study can be taken away, and begun by mistake
     steps = [('all is right', 'study kind = latin'), ('runs: ', '20'), ('all is right', 'add study'),
-             ('What can be added: point, parameter, quantity, objective', 'remove study 1'), ('Removed', 'add study'),
+             ('What can be added: stop, point, parameter, quantity, objective', 'remove study 1'), ('Removed', 'add study'),
              ('study, kind [none]', 'latin'), ('runs: ', 'remove'), ('The group &study is left out.', 'none'),
              ('all is right', 'add study'), ('kind [none]', 'random'), ('runs: ', '50'), ('all is right', ''), ('[both]', 'save'),
              ('data file [arm.nml]', '')]

@@ -92,8 +92,8 @@ contains
   pure logical function is_on_request(group_row)
     integer, intent(in) :: group_row  !< row of the group in group_table
 
-    is_on_request = any(group_table(group_row)%name == ['parameter', 'quantity ', 'study    ', 'objective', 'limit    ', &
-                                                        'optimum  '])
+    is_on_request = any(group_table(group_row)%name == ['stop     ', 'parameter', 'quantity ', 'study    ', 'objective', &
+                                                        'limit    ', 'optimum  '])
   end function is_on_request
 
   !> Whether the user begins the groups of a name, and can leave them out. There can be any number of most of them, and one of
