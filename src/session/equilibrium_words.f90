@@ -37,6 +37,7 @@ contains
     integer :: i
 
     words = words_of_stability(found)
+    if (.not. allocated(found%resting%state)) return
     if (.not. allocated(found%resting%state%stop_force)) return
     associate (force => found%resting%state%stop_force)
       do i = 1, size(force)
@@ -50,9 +51,13 @@ contains
     type(equilibrium_type), intent(in) :: found   !< the equilibrium
     character(len=:), allocatable :: words
 
-    if (size(found%resting%free) == 0) then
-      words = 'an equilibrium in which stops hold all coordinates'
-    else if (found%without_inertia > 0) then
+    if (allocated(found%resting%free)) then
+      if (size(found%resting%free) == 0) then
+        words = 'an equilibrium in which stops hold all coordinates'
+        return
+      end if
+    end if
+    if (found%without_inertia > 0) then
       words = trim(merge('a stable equilibrium   ', 'an unstable equilibrium', found%is_stable))// &
               ' by its stiffness; coordinate '//to_text(found%without_inertia)//' has no inertia, so that no growth can be told'
     else if (.not. found%is_stable) then
