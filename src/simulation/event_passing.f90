@@ -1,7 +1,7 @@
 !> The time within a step at which a motor passes the limit of its force, or an end of a stop is met or left. The motion goes back to
 !> the start of the step and stops there, as at a joint of a law of time.
 !>
-!> A coordinate comes to an end of its stop where the way that is left is zero; a polynomial of the fifth degree through the ends of the
+!> A coordinate comes to an end of its stop where the gap is zero; a polynomial of the fifth degree through the ends of the
 !> step shows where it may come near, also where it turns back within the step. What counts is the motion itself there.
 module mech9_event_passing
   use mech9_kinds, only: wp
@@ -17,7 +17,7 @@ module mech9_event_passing
 
   !> Trials of the search for a time.
   integer, parameter :: most_trials = 100
-  !> Points within a step at which the way to a stop is looked at; the last one is its end.
+  !> Points within a step at which the gap to a stop is looked at; the last one is its end.
   integer, parameter :: looks = 16
 
   !> Corrections of a time by Newton's method, and the largest one in parts of the step.
@@ -100,7 +100,6 @@ contains
         change = sign(change, (motion%t - from)*change)
         if (abs(change) <= spacing(motion%t)) return
         corrections = corrections + 1
-
         change = motion%t + change
         call motion%step_back(change, err)
         call system%interval%end_at_event(change, 0, contact)
@@ -216,7 +215,7 @@ contains
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(hermite_type) :: polynomial
     real(wp), dimension(1) :: at, rate, acceleration
-    real(wp) :: h, before, before_rate, value, margin, sign_of_way, turn
+    real(wp) :: h, before, before_rate, value, margin, sign_of_gap, turn
     integer :: look
     logical :: leaves
 
@@ -224,22 +223,22 @@ contains
     t = motion%t
     h = motion%t - from
     associate (end => motion%contacts%ends(i))
-      ! the way is positive on the side where the motion is
-      sign_of_way = real(end%direction, wp)
-      if (end%closed) sign_of_way = -sign_of_way
+      ! the gap is positive on the side where the motion is
+      sign_of_gap = real(end%direction, wp)
+      if (end%closed) sign_of_gap = -sign_of_gap
       call build_hermite([from, motion%t], reshape(q, [1, 2]), reshape(dq, [1, 2]), reshape(ddq, [1, 2]), polynomial)
       before = from
-      before_rate = sign_of_way*dq(1)*sign(1.0_wp, h)
-      leaves = sign_of_way*(q(1) - end%limit) < 0.0_wp .and. before_rate > 0.0_wp
+      before_rate = sign_of_gap*dq(1)*sign(1.0_wp, h)
+      leaves = sign_of_gap*(q(1) - end%limit) < 0.0_wp .and. before_rate > 0.0_wp
       do look = 1, looks
         t = from + real(look, wp)/looks*h
         if (look == looks) t = motion%t
         call polynomial%evaluate(t, at, rate, acceleration)
         margin = abs(at(1) - cubic_between(q(1), h*dq(1), q(2), h*dq(2), (t - from)/h))
-        at = sign_of_way*(at - end%limit)
-        rate = sign_of_way*rate*sign(1.0_wp, h)
+        at = sign_of_gap*(at - end%limit)
+        rate = sign_of_gap*rate*sign(1.0_wp, h)
         if (before_rate < 0.0_wp .and. rate(1) > 0.0_wp .and. at(1) - abs(rate(1)*(t - before)) < margin) then
-          ! it turns back between these times: near the end of its way, perhaps beyond it
+          ! it turns back between these times: near the end of the stop, perhaps beyond it
           call locate_turn(motion, i, before, t, turn, err)
           if (allocated(err)) return
           call value_at(motion, of_contact, i, turn, value, err)

@@ -62,6 +62,6 @@ module mech9_simulation_tolerances
 
   ! Stops.
 
-  !> The same of the way to an end, in the unit of the coordinate or parts of the limit: round-off of positions of well conditioned chains.
+  !> The same of the gap to an end, in the unit of the coordinate or parts of the limit: round-off of positions of well conditioned chains.
   real(wp), parameter :: round_off_of_gaps = 8.0_wp*epsilon(1.0_wp)
 end module mech9_simulation_tolerances

@@ -14,7 +14,7 @@ module mech9_stop
     type(place_type) :: place                      !< place of its group in the data file
     integer :: coordinate = 0                      !< number of the coordinate, independent or not
     real(wp) :: ends(2) = [-huge(1.0_wp), huge(1.0_wp)]   !< least and greatest value of the coordinate; huge: no end [rad, m]
-    logical :: is_rigid = .true.                   !< it gives way by nothing
+    logical :: is_rigid = .true.                   !< it cannot be pressed in
     real(wp) :: restitution = 0.0_wp               !< of a rigid one: rate after an impact over that before it, 0 to 1
     real(wp) :: stiffness = 0.0_wp                 !< of a compliant one [N m/rad^n, N/m^n]
     real(wp) :: damping = 0.0_wp                   !< of a compliant one, force per rate and power of the penetration
@@ -36,7 +36,7 @@ contains
     has_end = abs(self%ends(end)) < huge(1.0_wp)
   end function has_end
 
-  !> The way that is left to an end of the stop; negative: the penetration [rad, m].
+  !> The gap that is left to an end of the stop; negative: the penetration [rad, m].
   pure real(wp) function gap(self, end, q)
     class(stop_type), intent(in) :: self   !< the stop
     integer, intent(in) :: end             !< 1: the low one, 2: the high one

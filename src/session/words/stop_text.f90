@@ -1,4 +1,4 @@
-!> Stops in a check: their ends, and the ways that are left to them at the start.
+!> Stops in a check: their ends, and the gaps that are left to them at the start.
 module mech9_stop_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text

@@ -1,9 +1,9 @@
 !> Impacts on contacts, and which contacts push afterwards, by the equations of motion in the present coordinates.
 !>
-!> With the mass matrix M of all coordinates that no drive of the data file moves, and the derivatives J of the ways that are left to the
+!> With the mass matrix M of all coordinates that no drive of the data file moves, and the derivatives J of the gaps that are left to the
 !> contacts by these coordinates, G = J M^-1 J^T. An impact has impulses L >= 0 with u' + e u >= 0, and one of both zero at each contact
 !> (J. J. Moreau, Unilateral Contact and Dry Friction in Finite Freedom Dynamics, 1988; F. Pfeiffer and C. Glocker, Multibody Dynamics
-!> with Unilateral Contacts, Wiley 1996): u and u' are the rates of the ways before and after it, e is the restitution. Of several
+!> with Unilateral Contacts, Wiley 1996): u and u' are the rates of the gaps before and after it, e is the restitution. Of several
 !> impacts at once, which mechanics does not decide, this law is the one that is used. Forces of contacts at rest follow from the same
 !> problem with accelerations in place of rates.
 module mech9_contact_equations
@@ -24,13 +24,13 @@ module mech9_contact_equations
 
   !> The equations of contacts in one position.
   type :: contact_equations_type
-    integer, allocatable :: free(:)             !< places among the independent coordinates of those that no drive moves
-    real(wp), allocatable :: factors(:, :)      !< Cholesky factors of their mass matrix
-    real(wp), allocatable :: ways(:, :)         !< (free,contacts) J^T: derivatives of the ways
-    real(wp), allocatable :: answers(:, :)      !< (free,contacts) M^-1 J^T: accelerations by unit forces
-    real(wp), allocatable :: g(:, :)            !< G
-    real(wp), allocatable :: rates(:)           !< of the ways [rad/s, m/s]
-    real(wp), allocatable :: round_off(:)       !< of these rates
+    integer, allocatable :: free(:)              !< places among the independent coordinates of those that no drive moves
+    real(wp), allocatable :: factors(:, :)       !< Cholesky factors of their mass matrix
+    real(wp), allocatable :: gap_gradients(:, :) !< (free,contacts) J^T: derivatives of the gaps
+    real(wp), allocatable :: answers(:, :)       !< (free,contacts) M^-1 J^T: accelerations by unit forces
+    real(wp), allocatable :: g(:, :)             !< G
+    real(wp), allocatable :: rates(:)            !< of the gaps [rad/s, m/s]
+    real(wp), allocatable :: round_off(:)        !< of these rates
   end type contact_equations_type
 
 contains
@@ -62,10 +62,10 @@ contains
         err%failure%coordinates = [plan%independent(equations%free(failed_at))]
         return
       end if
-      allocate (equations%ways(n, size(contacts)), equations%rates(size(contacts)), equations%round_off(size(contacts)))
+      allocate (equations%gap_gradients(n, size(contacts)), equations%rates(size(contacts)), equations%round_off(size(contacts)))
       do i = 1, size(contacts)
         call rates_by_independent(system, contacts(i)%coordinate, row)
-        equations%ways(:, i) = contacts(i)%direction*row(equations%free)
+        equations%gap_gradients(:, i) = contacts(i)%direction*row(equations%free)
         speed = sum(abs(row*state%dq(plan%independent)))
         equations%rates(i) = contacts(i)%direction*dot_product(row, state%dq(plan%independent))
         ! a coordinate that would move by round-off in the whole run rests
@@ -74,14 +74,14 @@ contains
                                                               /max(abs(time%end - time%start), tiny(speed)/epsilon(speed))
         end associate
       end do
-      equations%answers = equations%ways
+      equations%answers = equations%gap_gradients
       do i = 1, size(contacts)
         call cholesky_solve(n, equations%factors, equations%answers(:, i))
       end do
       allocate (equations%g(size(contacts), size(contacts)))
       do i = 1, size(contacts)
         do j = 1, i
-          equations%g(i, j) = dot_product(equations%ways(:, i), equations%answers(:, j))
+          equations%g(i, j) = dot_product(equations%gap_gradients(:, i), equations%answers(:, j))
           equations%g(j, i) = equations%g(i, j)
         end do
       end do
@@ -109,7 +109,7 @@ contains
     type(contact_equations_type), intent(in) :: equations      !< their equations, with the rates before the impact
     real(wp), intent(in) :: restitution(:)                     !< (contacts) of each
     real(wp), intent(out) :: impulses(:)                       !< (contacts) of each, positive or zero [N m s, N s]
-    real(wp), intent(out) :: rates(:)                          !< (contacts) of the ways after the impact [rad/s, m/s]
+    real(wp), intent(out) :: rates(:)                          !< (contacts) of the gaps after the impact [rad/s, m/s]
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     logical :: holds(size(contacts)), solved
 
@@ -132,8 +132,8 @@ contains
     class(motion_system_type), intent(inout) :: system         !< the system, with the independent rates after an impact
     type(stop_contact_type), intent(in) :: contacts(:)         !< the contacts that touch
     type(contact_equations_type), intent(in) :: equations      !< their equations
-    logical, intent(in) :: at_rest(:)                          !< (contacts) the way has no rate
-    real(wp), intent(out) :: accelerations(:)                  !< (contacts) of the ways under the forces of contacts at rest [rad/s^2, m/s^2]
+    logical, intent(in) :: at_rest(:)                          !< (contacts) the gap has no rate
+    real(wp), intent(out) :: accelerations(:)                  !< (contacts) of the gaps under the forces of contacts at rest [rad/s^2, m/s^2]
     logical, intent(out) :: holds(:)                           !< (contacts) it pushes, and no other that pushes implies it
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     real(wp) :: right(size(equations%free)), round_off(size(contacts))
@@ -150,8 +150,8 @@ contains
     call cholesky_solve(size(right), equations%factors, right)
     do i = 1, size(contacts)
       associate (given => contacts(i)%direction*system%state%ddq(contacts(i)%coordinate))
-        accelerations(i) = given + dot_product(equations%ways(:, i), right)
-        round_off(i) = round_off_of_impacts*(abs(given) + sum(abs(equations%ways(:, i)*right)))
+        accelerations(i) = given + dot_product(equations%gap_gradients(:, i), right)
+        round_off(i) = round_off_of_impacts*(abs(given) + sum(abs(equations%gap_gradients(:, i)*right)))
       end associate
     end do
     resting = pack([(i, i=1, size(contacts))], at_rest)

@@ -25,7 +25,7 @@ module mech9_event_tolerances
   !> eliminated there.
   real(wp), parameter :: round_off_of_impacts = 1.0e-12_wp
   !> A coordinate rebounds no higher than this, in its unit, where endless impacts are cut off: below the tolerances of integration, far
-  !> above the round-off of the way ...
+  !> above the round-off of the gap ...
   real(wp), parameter :: least_rebound = 1.0e-12_wp
   !> ... and if they would end within this part of the duration of the motion. Their end is worked out; the contact pushes as much
   !> until then as the impacts that are left out.

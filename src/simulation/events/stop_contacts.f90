@@ -1,4 +1,4 @@
-!> Ends of stops as contacts: the way that is left to each, and whether it is closed.
+!> Ends of stops as contacts: the gap that is left to each, and whether it is closed.
 !>
 !> A rigid end that is closed holds its coordinate like a drive that does not move, as long as its force pushes. A compliant end is a
 !> load; its contact begins and ends where its force is not smooth.
@@ -18,7 +18,7 @@ module mech9_stop_contacts
     integer :: direction = 1             !< of the force on the coordinate: 1 at the low end, -1 at the high one
     real(wp) :: limit = 0.0_wp           !< value of the coordinate at the end [rad, m]
     real(wp) :: restitution = 0.0_wp     !< of impacts
-    logical :: is_rigid = .true.         !< it gives way by nothing
+    logical :: is_rigid = .true.         !< it cannot be pressed in
     logical :: closed = .false.          !< a rigid end touches and pushes; a compliant one is pressed in
     logical :: held = .false.            !< the coordinate is driven at the limit; a closed rigid end that is not is held by others
   contains
@@ -45,7 +45,7 @@ module mech9_stop_contacts
 
 contains
 
-  !> The way that is left to the end [rad, m].
+  !> The gap that is left to the end; negative: the penetration [rad, m].
   pure real(wp) function gap(self, q)
     class(stop_contact_type), intent(in) :: self   !< the end
     real(wp), intent(in) :: q                      !< the coordinate [rad, m]
