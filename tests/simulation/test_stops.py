@@ -214,6 +214,10 @@ def test_a_drive_forces_a_stop(checks, mech9d, mech9k, tmp_path):
     go(mech9k, tmp_path, between.replace('low=0.5', 'low=0.5299'), 1.0, 1)
     _, _, told = go(mech9k, tmp_path, between.replace('low=0.5', 'low=0.5301'), 1.0, 1, code=6)
     checks.true('passes the end of stop 1' in told and 't = 0.09' in told, 'it turns back between two outputs', told)
+    two = between.replace('coefficients=0.54,-0.2,1', 'coefficients=0.54,-0.2,2').replace('low=0.5', 'high=0.6') + \
+        "&stop coordinate=1, low=0.537 /\n"      # below 0.537 m from 0.0184 s on, and above 0.6 m from 0.2303 s on
+    _, _, told = go(mech9k, tmp_path, two, 1.0, 1, code=6)
+    checks.true('passes the end of stop 2' in told and 't = 0.018377' in told, 'of two ends the first in time is told', told)
     beside = """&structure cq=1,2 /
 &pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
 &pair coordinate=2, links=2,3, kind='prismatic', axis=0,1,0 /
@@ -234,7 +238,7 @@ def test_compliant_stops(checks, mech9d, tmp_path):
     text = SLIDER.replace('-9.81', '0').replace('position=1', 'position=0.1, velocity=-1')
     table, events, _ = go(mech9d, tmp_path, text + TIGHT + f"&stop coordinate=1, low=0, stiffness={k} /\n", 1.0, 100)
     checks.equal([event['kind'] for event in events], ['close', 'open'], 'it is met and left')
-    checks.near(times(events, 'close'), 0.1, 1e-11, 'where the way ends')
+    checks.near(times(events, 'close'), 0.1, 1e-11, 'where the gap ends')
     checks.near(times(events, 'open'), 0.1 + pi * sqrt(2 / k), 1e-9, 'after half a period')
     checks.near(table['E.total'], 1.0, 1e-9, 'it stores the energy')
     checks.near(table['dq1'][-1], 1.0, 1e-9, 'it goes back as fast as it came')
