@@ -6,9 +6,8 @@ module mech9_equilibrium_rows
   use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
   use mech9_state, only: state_type
-  use mech9_frame_motion, only: spread_all_accelerations
-  use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
-  use mech9_reactions, only: reactions_type, new_reactions, find_reactions
+  use mech9_reactions, only: reactions_type
+  use mech9_single_reactions, only: find_single_reactions
   use mech9_result_units, only: unit_of, unit_name
   use mech9_columns, only: columns_type
   use mech9_force_record, only: force_record_type
@@ -72,19 +71,13 @@ contains
     type(equilibrium_type), intent(in) :: equilibrium       !< the equilibrium
     real(wp), intent(inout) :: row(:)                       !< gets the forces
     type(error_type), allocatable, intent(out) :: err       !< allocated if a load failed, or forces are infinite
-    type(reaction_plan_type) :: reaction_plan
-    type(reactions_type) :: reactions
+    class(reactions_type), allocatable :: reactions
     type(state_type) :: state
 
-    associate (plan => equilibrium%resting%plan)
-      state = equilibrium%resting%state
-      call spread_all_accelerations(plan, state)
-      call make_reaction_plan(model%mechanism, plan, reaction_plan)
-      reactions = new_reactions(plan, reaction_plan)
-      call find_reactions(model%mechanism, plan, reaction_plan, state, reactions, err)
-      if (.not. allocated(err)) &
-        call columns%fill_forces(reactions%needed, reactions%force, reactions%moment, reactions%couplings%values, row)
-    end associate
+    state = equilibrium%resting%state
+    call find_single_reactions(model%mechanism, equilibrium%resting%plan, state, reactions, err)
+    if (.not. allocated(err)) &
+      call columns%fill_forces(reactions%needed, reactions%force, reactions%moment, reactions%couplings%values, row)
   end subroutine fill_forces
 
   !> The columns of a table of modes.

@@ -8,10 +8,10 @@ module mech9_impact_record
   use mech9_coordinate_load, only: coordinate_load_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type, copy_state
-  use mech9_frame_motion, only: spread_all_velocities, spread_all_accelerations
+  use mech9_frame_motion, only: spread_all_velocities
   use mech9_impact_watcher, only: impact_watcher_type
-  use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
-  use mech9_reactions, only: reactions_type, new_reactions, find_reactions
+  use mech9_reactions, only: reactions_type
+  use mech9_single_reactions, only: find_single_reactions
   implicit none
   private
   public :: impact_record_type, new_impact_record
@@ -58,7 +58,6 @@ contains
     real(wp), intent(in) :: impulses(:)                 !< (M) of stops on the coordinates, positive while they grow [N m s, N s]
     real(wp), intent(in) :: changes(:)                  !< (M) of the rates of all coordinates [rad/s, m/s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(reaction_plan_type) :: reaction_plan
     class(reactions_type), allocatable :: reactions
     type(state_type) :: at_rest
     real(wp), allocatable :: times(:), wrenches(:, :, :)
@@ -68,11 +67,8 @@ contains
     at_rest%dq = 0.0_wp
     at_rest%ddq = changes
     call spread_all_velocities(plan, at_rest)
-    call spread_all_accelerations(plan, at_rest)
     call load_with(impulses, self%mechanism)
-    call make_reaction_plan(self%mechanism, plan, reaction_plan)
-    allocate (reactions, source=new_reactions(plan, reaction_plan))
-    call find_reactions(self%mechanism, plan, reaction_plan, at_rest, reactions, err)
+    call find_single_reactions(self%mechanism, plan, at_rest, reactions, err)
     if (allocated(err)) return
     n = self%count
     if (n == size(self%times)) then

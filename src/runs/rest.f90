@@ -13,9 +13,8 @@ module mech9_rest
   use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_equilibria, only: find_equilibrium, find_equilibria
   use mech9_explained_assembly, only: assemble_model
-  use mech9_frame_motion, only: spread_all_accelerations
-  use mech9_reaction_plan, only: reaction_plan_type, make_reaction_plan
-  use mech9_reactions, only: reactions_type, new_reactions, find_reactions
+  use mech9_reactions, only: reactions_type
+  use mech9_single_reactions, only: find_single_reactions
   use mech9_rest_on_stops, only: end_type, rigid_ends, hold_ends, next_choice
   implicit none
   private
@@ -203,17 +202,13 @@ contains
     type(end_type), intent(in) :: ends(:)                !< the ends that hold
     type(equilibrium_type), intent(inout) :: found       !< the equilibrium; gets the forces
     logical, intent(out) :: push                         !< all of them push
-    type(reaction_plan_type) :: reaction_plan
     class(reactions_type), allocatable :: reactions
     type(error_type), allocatable :: err
     integer :: i
 
     push = .false.
-    associate (plan => found%resting%plan, state => found%resting%state)
-      call spread_all_accelerations(plan, state)
-      call make_reaction_plan(model%mechanism, plan, reaction_plan)
-      allocate (reactions, source=new_reactions(plan, reaction_plan))
-      call find_reactions(model%mechanism, plan, reaction_plan, state, reactions, err)
+    associate (state => found%resting%state)
+      call find_single_reactions(model%mechanism, found%resting%plan, state, reactions, err)
       if (allocated(err)) return
       allocate (state%stop_force(size(model%mechanism%stops)), source=0.0_wp)
       push = .true.
