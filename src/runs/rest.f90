@@ -10,6 +10,7 @@ module mech9_rest
   use mech9_planning, only: planning_settings_type, make_plan
   use mech9_start_path, only: start_way_type
   use mech9_simulation, only: interruption_type
+  use mech9_resting_mechanism, only: resting_type
   use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_equilibria, only: find_equilibrium, find_equilibria
   use mech9_explained_assembly, only: assemble_model
@@ -31,7 +32,7 @@ module mech9_rest
     procedure :: find
   end type rest_type
 
-  !> A position lies behind a stop by more than this [rad, m]: equilibria are found to 1e-9 and better.
+  !> A position lies behind a stop by more than this in the unit of the coordinate: equilibria are found to 1e-9 and better.
   real(wp), parameter :: behind_stop = 1.0e-9_wp
   !> Choices of ends that are tried at most: all of seven ends.
   integer, parameter :: most_choices = 128
@@ -124,7 +125,7 @@ contains
     integer :: i, n
 
     do i = 1, size(found)
-      behind(i) = stop_before(model, found(i)%resting%state%q) > 0
+      behind(i) = is_behind_stop(model, found(i)%resting)
     end do
     if (.not. any(behind)) return
     allocate (kept(count(.not. behind)))
@@ -192,7 +193,7 @@ contains
       if (serves) exit
       deallocate (rest%plan, rest%start)
     end do
-    if (serves) serves = stop_before(model, found%resting%state%q) == 0
+    if (serves) serves = .not. is_behind_stop(model, found%resting)
     if (serves) call find_pushing(model, ends, found, serves)
   end subroutine rest_on
 
@@ -221,21 +222,23 @@ contains
     end associate
   end subroutine find_pushing
 
-  !> The rigid stop behind which a position lies; 0: none.
-  pure integer function stop_before(model, q) result(number)
-    type(model_type), intent(in) :: model   !< the model
-    real(wp), intent(in) :: q(:)            !< (M) coordinates [rad, m]
-    integer :: end
+  !> Whether a mechanism rests behind a rigid stop.
+  pure logical function is_behind_stop(model, resting) result(is_behind)
+    type(model_type), intent(in) :: model        !< the model
+    type(resting_type), intent(in) :: resting    !< the mechanism at rest
+    integer :: i, end
 
-    do number = size(model%mechanism%stops), 1, -1
-      associate (stop => model%mechanism%stops(number))
+    is_behind = .true.
+    do i = 1, size(model%mechanism%stops)
+      associate (stop => model%mechanism%stops(i))
         if (.not. stop%is_rigid) cycle
         do end = 1, 2
-          if (stop%gap(end, q(stop%coordinate)) < -behind_stop) return
+          if (stop%gap(end, resting%state%q(stop%coordinate)) < -behind_stop*resting%plan%unit_of(stop%coordinate)) return
         end do
       end associate
     end do
-  end function stop_before
+    is_behind = .false.
+  end function is_behind_stop
 
   !> Fail because modes and linearised equations of motion need the inertia of each free coordinate.
   subroutine need_inertia(model, equilibrium, err)
