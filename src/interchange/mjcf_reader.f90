@@ -9,7 +9,7 @@ module mech9_mjcf_reader
   use mech9_xml_tree, only: xml_tree_type
   use mech9_xml_values, only: get_numbers, get_number, is_true, place_in, one_of
   use mech9_robot, only: robot_type, robot_link_type, robot_joint_type, fixed_joint, revolute_joint, prismatic_joint, &
-                         spherical_joint, free_joint
+                         spherical_joint, free_joint, note_of_ranges
   use mech9_mjcf_settings, only: mjcf_settings_type, read_settings
   use mech9_mjcf_masses, only: mjcf_around_type, read_inertial, add_geom
   use mech9_mjcf_equality, only: read_equalities
@@ -279,8 +279,7 @@ contains
     limited = tree%attribute(settings%holder(tree, element, class, 'limited'), 'limited')
     joint%has_range = settings%holder(tree, element, class, 'range') > 0 .and. &
                       (limited == 'true' .or. (limited /= 'false' .and. settings%autolimits))
-    if (joint%has_range) call robot%note(tree, element, 'ranges of joints, which data files do not have; comments of the data '// &
-                                         'file tell them')
+    if (joint%has_range) call robot%note(tree, element, note_of_ranges)
     if (all(joint%kind /= [revolute_joint, prismatic_joint])) then
       if (joint%stiffness > 0.0_wp .or. joint%damping > 0.0_wp) &
         call robot%note(tree, element, "spring and damper of joint '"//joint%name//"', which has several freedoms")

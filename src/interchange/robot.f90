@@ -12,7 +12,7 @@ module mech9_robot
   use mech9_xml_tree, only: xml_tree_type
   implicit none
   private
-  public :: robot_type, robot_link_type, robot_joint_type, robot_point_type, note_type, most_links, most_joints
+  public :: robot_type, robot_link_type, robot_joint_type, robot_point_type, note_type, note_of_ranges, most_links, most_joints
   public :: fixed_joint, revolute_joint, prismatic_joint, helical_joint, cylindrical_joint, universal_joint, spherical_joint, &
             planar_joint, free_joint
 
@@ -25,6 +25,9 @@ module mech9_robot
 
   !> Axes of a universal joint are parallel below this sine of their angle.
   real(wp), parameter :: least_sine = 1.0e-6_wp
+  !> The note for joints that have ranges.
+  character(len=*), parameter :: note_of_ranges = &
+    'ranges of joints, which comments of the data file tell; write a &stop to keep one'
 
   !> A link.
   type :: robot_link_type

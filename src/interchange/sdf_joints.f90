@@ -7,7 +7,7 @@ module mech9_sdf_joints
   use mech9_xml_tree, only: xml_tree_type
   use mech9_xml_values, only: get_content, get_content_number, is_true, place_in, one_of
   use mech9_robot, only: robot_type, robot_joint_type, fixed_joint, revolute_joint, prismatic_joint, helical_joint, &
-                         universal_joint, spherical_joint
+                         universal_joint, spherical_joint, note_of_ranges
   use mech9_sdf_frames, only: sdf_frames_type
   implicit none
   private
@@ -157,8 +157,7 @@ contains
     joint%has_range = any(abs(joint%range) < no_limit)
     if (joint%has_range) joint%start = min(max(0.0_wp, joint%range(1)), joint%range(2))
     if (all(abs(joint%range) < no_limit) .and. abs(joint%start) > 0.0_wp) joint%start = 0.5_wp*sum(joint%range)
-    if (joint%has_range) call robot%note(tree, axis, 'ranges of joints, which data files do not have; comments of the data '// &
-                                         'file tell them')
+    if (joint%has_range) call robot%note(tree, axis, note_of_ranges)
     if (tree%child(limit, 'effort') > 0 .or. tree%child(limit, 'velocity') > 0) &
       call robot%note(tree, limit, 'limits of efforts and velocities')
     dynamics = tree%child(axis, 'dynamics')

@@ -10,7 +10,7 @@ module mech9_urdf_reader
   use mech9_xml_values, only: get_numbers, get_number, needed_attribute, is_true, place_in, one_of
   use mech9_orientations, only: rotation_of_rpy
   use mech9_robot, only: robot_type, robot_joint_type, fixed_joint, revolute_joint, prismatic_joint, cylindrical_joint, &
-                         universal_joint, spherical_joint, planar_joint, free_joint, most_links, most_joints
+                         universal_joint, spherical_joint, planar_joint, free_joint, note_of_ranges, most_links, most_joints
   implicit none
   private
   public :: read_urdf, read_loops
@@ -314,8 +314,7 @@ contains
         call get_number(tree, e, 'friction', friction, err)
         if (abs(friction) > 0.0_wp) call robot%note(tree, e, "the friction of joint '"//name//"'")
       case ('limit')
-        if (tree%has(e, 'lower') .or. tree%has(e, 'upper')) call robot%note(tree, e, 'ranges of joints, which data files do '// &
-                                                                            'not have; comments of the data file tell them')
+        if (tree%has(e, 'lower') .or. tree%has(e, 'upper')) call robot%note(tree, e, note_of_ranges)
         if (tree%has(e, 'effort') .or. tree%has(e, 'velocity')) call robot%note(tree, e, 'limits of efforts and velocities')
       case default
         call robot%note(tree, e, '<'//tree%name(e)//'> of joints')
