@@ -1,6 +1,5 @@
 """Robots that the package imports: the same data file and messages as those of the programs, which other tests judge."""
 import os
-import threading
 
 import pytest
 
@@ -73,16 +72,3 @@ def test_refusals_are_those_of_the_programs(build, mech9, folder):
     with pytest.raises(TypeError):
         mech9.import_robot(3.5)
     assert mech9.read_text('').import_messages == ()
-
-
-def test_imports_in_threads(mech9, folder):
-    found = []
-
-    def work(name):
-        found.extend(mech9.import_robot(name).imported_text for _ in range(20))
-    threads = [threading.Thread(target=work, args=(name,)) for name in ('arm.urdf', 'arm.sdf', 'arm.urdf')]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert len(found) == 60 and len(set(found)) == 2
