@@ -27,9 +27,9 @@ contains
   subroutine random_contacts(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     type(random_type) :: random
-    real(wp), allocatable :: a(:, :), u(:), b(:), g(:, :), z(:), z2(:), w(:), factors(:, :)
+    real(wp), allocatable :: a(:, :), u(:), b(:), g(:, :), z(:), z2(:), w(:), round_off(:), factors(:, :)
     logical, allocatable :: holds(:), holds2(:)
-    integer, allocatable :: order(:)
+    integer, allocatable :: order(:), holding(:)
     real(wp) :: least_z, least_w, product, difference
     logical :: solved, solved2, independent
     integer :: n, dimensions, trial, i, n_solved, n_trials, n_holding, failed_at
@@ -49,26 +49,30 @@ contains
           if (n > 2) a(n, :) = a(1, :)
           if (n > 3) a(n - 1, :) = -a(2, :)
           if (n > 4) a(n - 2, :) = 0.5_wp*(a(1, :) + a(2, :))
-          u = [(random%symmetric(), i=1, dimensions)]
+          allocate (u(dimensions), b(n), g(n, n), z(n), z2(n), w(n), round_off(n), holds(n), holds2(n))
+          do i = 1, dimensions
+            u(i) = random%symmetric()
+          end do
           g = matmul(a, transpose(a))
           b = matmul(a, u)
-          allocate (z(n), z2(n), holds(n), holds2(n))
-          call solve_complementarity(n, g, b, [(1.0e-13_wp, i=1, n)], z, holds, solved)
+          round_off = 1.0e-13_wp
+          call solve_complementarity(n, g, b, round_off, z, holds, solved)
           n_trials = n_trials + 1
           if (solved) n_solved = n_solved + 1
           w = b + matmul(g, z)
           least_z = min(least_z, minval(z))
           least_w = min(least_w, minval(w))
           product = max(product, maxval(abs(z*w)))
-          factors = g(pack([(i, i=1, n)], holds), pack([(i, i=1, n)], holds))
+          holding = pack([(i, i=1, n)], holds)
+          factors = g(holding, holding)
           call cholesky_factorize(size(factors, 1), factors, failed_at)
           independent = independent .and. failed_at == 0
           n_holding = n_holding + count(holds)
           order = [(i, i=n, 1, -1)]
-          call solve_complementarity(n, g(order, order), b(order), [(1.0e-13_wp, i=1, n)], z2, holds2, solved2)
+          call solve_complementarity(n, g(order, order), b(order), round_off, z2, holds2, solved2)
           difference = max(difference, maxval(abs(matmul(transpose(a), z) - matmul(transpose(a(order, :)), z2))))
           if (.not. solved2) n_solved = n_solved - 1
-          deallocate (z, z2, holds, holds2)
+          deallocate (u, b, g, z, z2, w, round_off, holds, holds2)
         end do
       end do
     end do
@@ -86,7 +90,7 @@ contains
   subroutine several_in_one_corner(test)
     type(tester_type), intent(inout) :: test   !< counts the checks
     integer, parameter :: n = 20
-    real(wp) :: a(n, 3), g(n, n), b(n), z(n), w(n), angle, pi
+    real(wp) :: a(n, 3), g(n, n), b(n), z(n), w(n), round_off(n), angle, pi
     logical :: holds(n), solved
     integer :: i
 
@@ -97,7 +101,8 @@ contains
     end do
     g = matmul(a, transpose(a))
     b = matmul(a, [0.3_wp, 0.1_wp, -1.0_wp])
-    call solve_complementarity(n, g, b, [(1.0e-13_wp, i=1, n)], z, holds, solved)
+    round_off = 1.0e-13_wp
+    call solve_complementarity(n, g, b, round_off, z, holds, solved)
     w = b + matmul(g, z)
     call test%is_true(solved, 'a cone of contacts is solved')
     call test%is_true(all(z >= 0.0_wp) .and. all(w > -1.0e-12_wp), 'no contact pulls or is passed')

@@ -16,7 +16,8 @@ module mech9_complementarity
 
 contains
 
-  !> Solve the problem. Rows with w above -round_off hold already.
+  !> Solve the problem. Rows with w above -round_off hold already; to it comes the round-off that elimination leaves in G z, which is
+  !> large where rows that nearly depend on each other share a large z.
   pure subroutine solve_complementarity(n, g, b, round_off, z, holds, solved)
     integer, intent(in) :: n                  !< number of rows
     real(wp), intent(in) :: g(n, n)           !< G, symmetric and positive semidefinite
@@ -25,7 +26,7 @@ contains
     real(wp), intent(out) :: z(n)             !< the solution
     logical, intent(out) :: holds(n)          !< w of the row is zero, and z may be positive; these rows are independent of each other
     logical, intent(out) :: solved            !< there is a solution, and it was found
-    real(wp) :: w(n), direction(n), change(n), step
+    real(wp) :: w(n), passed(n), direction(n), change(n), step
     integer :: trial, row, first
     logical :: blocked
 
@@ -35,7 +36,9 @@ contains
     row = 0
     do trial = 1, most_pivots*(n + 1)
       w = b + matmul(g, z)
-      if (row == 0) row = worst_row(n, w, round_off, holds)
+      passed = matmul(abs(g), z)
+      passed = -round_off - dependent_part*passed
+      if (row == 0) row = worst_row(n, w, passed, holds)
       if (row == 0) exit
       call find_direction(n, g, holds, row, direction)
       change = matmul(g, direction)
@@ -43,7 +46,11 @@ contains
       step = huge(step)
       if (change(row) > dependent_part*g(row, row)) step = -w(row)/change(row)
       call find_first(n, z, direction, holds, step, first, blocked)
-      if (.not. (blocked .or. step < huge(step))) return
+      if (.not. (blocked .or. step < huge(step))) then
+        if (w(row) < passed(row)) return
+        row = 0
+        cycle
+      end if
       z = z + step*merge(direction, 0.0_wp, holds)
       z(row) = z(row) + step
       if (blocked) then
@@ -58,16 +65,16 @@ contains
   end subroutine solve_complementarity
 
   !> The row that does not hold and whose w is farthest below zero, beyond round-off; 0: there is none.
-  pure integer function worst_row(n, w, round_off, holds) result(row)
+  pure integer function worst_row(n, w, passed, holds) result(row)
     integer, intent(in) :: n                  !< number of rows
     real(wp), intent(in) :: w(n)              !< present w
-    real(wp), intent(in) :: round_off(n)      !< of w in each row
+    real(wp), intent(in) :: passed(n)         !< w below this is below zero, not within round-off
     logical, intent(in) :: holds(n)           !< rows whose w is zero
     integer :: i
 
     row = 0
     do i = 1, n
-      if (holds(i) .or. w(i) >= -round_off(i)) cycle
+      if (holds(i) .or. w(i) >= passed(i)) cycle
       if (row == 0) row = i
       if (w(i) < w(row)) row = i
     end do
