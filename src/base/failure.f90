@@ -15,7 +15,7 @@
 !>    801 to  899   src/analyses/sensitivity/sensitivity_failures.f90
 !>    901 to  999   src/dynamics/sensitivity/force_gradient_failures.f90
 !>   1001 to 1099   src/simulation/simulation_failures.f90
-!>   1101 to 1199   src/analyses/reactions/reaction_failures.f90
+!>   1101 to 1199   src/reactions/reaction_failures.f90
 !>   1201 to 1299   src/analyses/equilibrium/equilibrium_failures.f90
 !>   1301 to 1399   src/simulation/integration/integration_failures.f90
 !>   1401 to 1499   src/simulation/events/event_failures.f90

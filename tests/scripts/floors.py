@@ -9,15 +9,15 @@ from mech9_cases import TREE
 
 FLOORS = ['base', 'system', 'numerics', 'numerics/minima', 'spatial', 'structure', 'model/couplings', 'model/laws', 'model/loads', 'model/request', 'model',
           'sampling', 'user', 'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
-          'ode', 'dynamics', 'dynamics/planning', 'dynamics/variations', 'analyses/sensitivity', 'dynamics/sensitivity', 'simulation/integration',
+          'ode', 'dynamics', 'dynamics/planning', 'dynamics/variations', 'analyses/sensitivity', 'dynamics/sensitivity', 'reactions', 'simulation/integration',
           'simulation/events', 'simulation',
-          'analyses/reactions', 'analyses/equilibrium', 'analyses/planar_runs', 'analyses', 'wording', 'runs', 'studies', 'synthesis', 'input/document', 'input', 'drafts', 'searches', 'output/layout', 'output', 'interchange/xml', 'interchange', 'reports',
+          'analyses/equilibrium', 'analyses/planar_runs', 'analyses', 'wording', 'runs', 'studies', 'synthesis', 'input/document', 'input', 'drafts', 'searches', 'output/layout', 'output', 'interchange/xml', 'interchange', 'reports',
           'pictures/plots', 'pictures/scene',
           'pictures/films', 'terminal', 'session/command', 'session/words', 'facade', 'api', 'session/results', 'session/study', 'session/synthesis', 'session',
           'dialogue/questions',
           'dialogue',
           'programs/mpi', 'programs']
-WITHOUT_WORDS = ('numerics', 'spatial', 'kinematics/', 'ode', 'dynamics', 'simulation', 'analyses/', 'synthesis')   # they fail with numbers, see src/wording
+WITHOUT_WORDS = ('numerics', 'spatial', 'kinematics/', 'ode', 'dynamics', 'reactions', 'simulation', 'analyses/', 'synthesis')   # they fail with numbers, see src/wording
 MODULE = re.compile(r'^\s*module\s+(?!procedure\b|subroutine\b|function\b)(\w+)\s*$', re.I | re.M)
 USE = re.compile(r'^\s*use\b\s*(?:,\s*(?:non_)?intrinsic\s*)?(?:::)?\s*([\w@]+)\s*(,\s*only\s*:)?', re.I | re.M)
 PARENT = re.compile(r'^\s*submodule\s*\(\s*(\w+)', re.I | re.M)
