@@ -15,7 +15,7 @@ program bench_growth
   use mech9_state, only: state_type
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_driven_simulation, only: assemble_driven
-  use mech9_free_simulation, only: assemble_free
+  use mech9_free_start, only: assemble_free
   use mech9_bench_support, only: read_data_file, stop_at, time_evaluations, passes, peak_memory
   use mech9_bench_basics, only: median, argument
   implicit none

@@ -18,7 +18,8 @@ program bench_precision
   use mech9_state, only: state_type
   use mech9_integration_methods, only: integration_methods
   use mech9_integrator, only: integrator_type, integration_statistics_type
-  use mech9_free_simulation, only: free_simulation_type, new_free_simulation, assemble_free
+  use mech9_free_simulation, only: free_simulation_type, new_free_simulation
+  use mech9_free_start, only: assemble_free
   use mech9_row_source, only: row_source_type, new_row_source
   use mech9_closed_andrews, only: closed_andrews_type, andrews_angles
   use mech9_bench_support, only: read_data_file, stop_at

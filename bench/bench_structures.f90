@@ -15,7 +15,7 @@ program bench_structures
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_free_simulation, only: assemble_free
+  use mech9_free_start, only: assemble_free
   use mech9_bench_support, only: read_data_file, stop_at, time_evaluations
   use mech9_bench_basics, only: argument
   implicit none

@@ -138,6 +138,11 @@ contains
     else if (allocated(view%pressed)) then
       deallocate (view%pressed)
     end if
+    if (allocated(state%friction)) then
+      view%friction = state%friction
+    else if (allocated(view%friction)) then
+      deallocate (view%friction)
+    end if
     do i = 1, plan%n_coordinates
       view%q(i) = state%q(i)
       view%dq(i) = state%dq(i)

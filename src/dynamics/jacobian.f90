@@ -8,7 +8,7 @@ module mech9_jacobian
   use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type
   implicit none
   private
-  public :: start_jacobian, find_jacobian
+  public :: start_jacobian, find_jacobian, rates_by_independent
 
 contains
 
@@ -27,6 +27,22 @@ contains
       end do
     end do
   end subroutine start_jacobian
+
+  !> The rate of a coordinate per rate of each independent one.
+  pure subroutine rates_by_independent(plan, dynamics, jacobian, coordinate, row)
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(jacobian_type), intent(in) :: jacobian        !< of all blocks
+    integer, intent(in) :: coordinate                  !< number of the coordinate
+    real(wp), intent(out) :: row(:)                    !< (independent) the rates
+    integer :: e, s
+
+    row = 0.0_wp
+    s = plan%step_of(coordinate)
+    do e = dynamics%first(s), dynamics%first(s + 1) - 1
+      row(dynamics%column(e)) = row(dynamics%column(e)) + jacobian%b(e)
+    end do
+  end subroutine rates_by_independent
 
   !> Find the entries of a block's frames and its part of B = dq/dq_i. The frames must have their poses, the block's Jacobian
   !> must be factorized, and earlier blocks must be done. Where round-off hides the rate of a dependent coordinate, near a

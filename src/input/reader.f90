@@ -22,6 +22,7 @@ module mech9_reader
   use mech9_body_reader, only: read_bodies, read_gravity
   use mech9_load_reader, only: read_loads
   use mech9_stop_reader, only: read_stops
+  use mech9_friction_reader, only: read_frictions
   use mech9_motor_reader, only: read_motors
   use mech9_rod_holding, only: hold_idle_rods
   use mech9_output_reader, only: read_output, check_sensitivities
@@ -128,6 +129,7 @@ contains
       call read_bodies(document, m%structure, m%pairs, m%bodies, diagnostics)
       m%gravity = read_gravity(document)
       call read_loads(document, m, diagnostics)
+      call read_frictions(document, request%time, m, diagnostics)
       call read_stops(document, request%time, m, diagnostics)
       call read_output(document, m%structure, request%output, diagnostics)
       call read_quantities(document, request%time, request%quantities, diagnostics)

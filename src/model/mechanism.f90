@@ -8,6 +8,7 @@ module mech9_mechanism
   use mech9_load, only: load_slot_type
   use mech9_motor, only: motor_slot_type
   use mech9_stop, only: stop_type
+  use mech9_friction, only: friction_type
   use mech9_coupling, only: coupling_slot_type
   use mech9_registered_procedures, only: registered_procedures_type
   implicit none
@@ -26,9 +27,10 @@ module mech9_mechanism
     type(coupling_slot_type), allocatable :: couplings(:)   !< in the order of the data file; none where not allocated
     type(point_type), allocatable :: points(:)
     type(body_type), allocatable :: bodies(:)
-    type(load_slot_type), allocatable :: loads(:)     !< in the order of the data file; then one for each compliant stop
+    type(load_slot_type), allocatable :: loads(:)     !< in the order of the data file; then of frictions, and of compliant stops
     type(motor_slot_type), allocatable :: motors(:)   !< in the order of the data file; their forces act beside those of the loads
     type(stop_type), allocatable :: stops(:)          !< in the order of the data file
+    type(friction_type), allocatable :: frictions(:)  !< in the order of the data file; none where not allocated
     real(wp) :: gravity(3) = 0.0_wp                 !< in the axes of link 1 [m/s^2]
     real(wp), allocatable :: parameters(:)          !< numbers for the user's procedures
     type(registered_procedures_type) :: procedures  !< the user's procedures that are not linked
@@ -38,6 +40,7 @@ module mech9_mechanism
     procedure :: mark_loaded_links
     procedure :: mark_loaded_coordinates
     procedure :: has_rigid_stops
+    procedure :: has_frictions
   end type mechanism_type
 
 contains
@@ -79,6 +82,14 @@ contains
 
     has_rigid_stops = any(self%stops%is_rigid)
   end function has_rigid_stops
+
+  !> Whether any pair has friction.
+  pure logical function has_frictions(self)
+    class(mechanism_type), intent(in) :: self   !< the mechanism
+
+    has_frictions = .false.
+    if (allocated(self%frictions)) has_frictions = size(self%frictions) > 0
+  end function has_frictions
 
   !> Mark the coordinates on which loads and motors depend or act, and those that stops bound.
   pure subroutine mark_loaded_coordinates(self, loaded)

@@ -14,7 +14,7 @@ module mech9_integrator
   use mech9_integration_failure, only: check_method, check_tolerances, fail_by_outcome, fail_by_vanishing_step
   implicit none
   private
-  public :: integrator_type, integration_statistics_type
+  public :: integrator_type, integration_statistics_type, add_statistics
 
   !> Trials that the system refused, in a row, before the integration is given up; each makes the step
   !> a quarter at most, so that all of them together make it 1e-24 of what it was.
@@ -335,4 +335,23 @@ contains
     self%maximum_steps = 1000000
     self%fresh = .true.
   end subroutine destroy
+
+  !> Add the counts of an integrator.
+  pure subroutine add_statistics(counts, goes_on, all)
+    type(integration_statistics_type), intent(in) :: counts   !< of the integrator
+    logical, intent(in) :: goes_on                            !< its steps are those of the motion
+    type(integration_statistics_type), intent(inout) :: all   !< the sums
+
+    all%rate_evaluations = all%rate_evaluations + counts%rate_evaluations
+    all%jacobian_evaluations = all%jacobian_evaluations + counts%jacobian_evaluations
+    all%error_test_failures = all%error_test_failures + counts%error_test_failures
+    all%convergence_failures = all%convergence_failures + counts%convergence_failures
+    all%refusals = all%refusals + counts%refusals
+    if (.not. goes_on) return
+    all%steps = all%steps + counts%steps
+    all%implicit_steps = all%implicit_steps + counts%implicit_steps
+    all%method_changes = all%method_changes + counts%method_changes
+    all%last_order = counts%last_order
+    all%last_step = counts%last_step
+  end subroutine add_statistics
 end module mech9_integrator

@@ -36,6 +36,7 @@ module mech9_columns
     real(wp), allocatable :: motor_factors(:)   !< (motors) factors from the program's units to those of the results
     integer :: energies = 0                 !< how many columns belong to energies, after those of motors
     integer :: stops = 0                    !< how many columns belong to stops, after those of energies
+    integer :: frictions = 0                !< how many columns belong to frictions, after those of stops
     integer :: varied = 0                   !< how many columns, from the second one on, have derivatives by parameters
     integer :: sensitivities = 0            !< how many columns, the last ones, are derivatives by parameters
     type(derivative_columns_type) :: derived    !< those of the motion
@@ -53,6 +54,8 @@ module mech9_columns
     procedure :: fill_motors
     procedure :: append_stops
     procedure :: fill_stops
+    procedure :: append_frictions
+    procedure :: fill_frictions
     procedure :: append_energies
     procedure :: append_sensitivities
     procedure :: find_unit_per
@@ -252,6 +255,45 @@ contains
       end associate
     end do
   end subroutine fill_stops
+
+  !> Append the columns of frictions: force, power and energy of each.
+  subroutine append_frictions(self, mechanism, heats)
+    class(columns_type), intent(inout) :: self     !< the columns
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    logical, intent(in) :: heats                   !< the motion knows their energies
+    integer :: i
+
+    self%frictions = merge(3, 2, heats)*size(mechanism%frictions)
+    do i = 1, size(mechanism%frictions)
+      associate (k => mechanism%frictions(i)%coordinate)
+        call self%append('R'//to_text(k)//'.friction', force_unit_name(mechanism, k), 'friction on coordinate '//to_text(k))
+        call self%append('R'//to_text(k)//'.loss', 'W', 'power that the friction of coordinate '//to_text(k)//' takes')
+        if (heats) call self%append('R'//to_text(k)//'.heat', 'J', &
+                                    'energy that the friction of coordinate '//to_text(k)//' has taken')
+      end associate
+    end do
+  end subroutine append_frictions
+
+  !> Fill the columns of frictions in a row.
+  pure subroutine fill_frictions(self, mechanism, state, row)
+    class(columns_type), intent(in) :: self             !< the columns
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(state_type), intent(in) :: state               !< motion of the mechanism, with the forces of frictions
+    real(wp), intent(inout) :: row(:)                   !< numbers of one row, one for each column
+    integer :: at, i
+
+    at = self%motion + self%forces() + self%motors + self%energies + self%stops
+    row(at + 1:at + self%frictions) = 0.0_wp
+    if (.not. allocated(state%friction)) return
+    do i = 1, size(state%friction)
+      row(at + 1) = state%friction(i)
+      row(at + 2) = -state%friction(i)*state%dq(mechanism%frictions(i)%coordinate)
+      at = at + 2
+      if (.not. allocated(state%heat)) cycle
+      at = at + 1
+      row(at) = state%heat(i)
+    end do
+  end subroutine fill_frictions
 
   !> Append the columns of energies.
   pure subroutine append_energies(self)

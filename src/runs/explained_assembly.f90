@@ -6,7 +6,7 @@ module mech9_explained_assembly
   use mech9_state, only: state_type
   use mech9_start_path, only: start_way_type
   use mech9_driven_simulation, only: assemble_driven
-  use mech9_free_simulation, only: assemble_free
+  use mech9_free_start, only: assemble_free
   use mech9_geometry_words, only: explain_geometry
   implicit none
   private

@@ -83,6 +83,8 @@ contains
     call columns%append_motors(model%mechanism)
     if (with_energies) call columns%append_energies()
     call columns%append_stops(model%mechanism)
+    if (model%mechanism%has_frictions() .and. (model%request%output%with_forces() .or. .not. model%is_driven())) &
+      call columns%append_frictions(model%mechanism, heats=.not. model%is_driven())
     call columns%append('closure', 'm', 'largest error of a closed chain')
     if (model%request%output%conditioning) call columns%append('conditioning', '1', 'least singular value of the worst chains')
     if (with_error) call columns%append('error', 'rad,m', 'estimated error of the coordinates and points')
@@ -351,7 +353,8 @@ contains
         next = next + 3
       end if
       call self%columns%fill_stops(simulation%model%mechanism, state, row)
-      next = next + self%columns%stops + 1
+      call self%columns%fill_frictions(simulation%model%mechanism, state, row)
+      next = next + self%columns%stops + self%columns%frictions + 1
       row(next) = simulation%closure
       if (simulation%with_conditioning) then
         next = next + 1

@@ -12,7 +12,7 @@ module mech9_dynamic_report
   use mech9_run_outcome, only: run_outcome_type
   use mech9_integrator, only: integration_statistics_type
   use mech9_simulation, only: coordinate_change_type
-  use mech9_motion_event, only: motion_events_type, event_impact, event_close
+  use mech9_motion_event, only: motion_events_type, event_impact, event_close, event_stick, event_slip
   use mech9_free_simulation, only: free_simulation_type
   use mech9_run_words, only: duration, each
   use mech9_run_facts, only: method_of
@@ -91,6 +91,10 @@ contains
       associate (event => events%items(i))
         write (unit, '(a)', advance='no') 't = '//to_text(event%t, 8)//' s: '//trim(event%group)//' '//to_text(event%number)
         select case (event%kind)
+        case (event_stick)
+          write (unit, '(a)') ' sticks'
+        case (event_slip)
+          write (unit, '(a)') ' slips'
         case (event_impact)
           write (unit, '(a)') ' is hit, impulse '//to_text(event%impulse, 4)
         case (event_close)

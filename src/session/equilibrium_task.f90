@@ -29,6 +29,7 @@ module mech9_equilibrium_task
   use mech9_report_parts, only: begin_report, add_uniqueness
   use mech9_force_record, only: force_record_type, reacting_pairs
   use mech9_equilibrium_words, only: print_findings
+  use mech9_friction_text, only: print_left_out
   use mech9_force_text, only: print_undetermined, print_forceless
   use mech9_signal_interruption, only: signal_interruption_type
   use mech9_requested, only: requested_by_results
@@ -75,6 +76,7 @@ contains
     if (.not. allocated(err)) then
       if (.not. options%has('quiet')) call print_findings(error_unit, options%number('starts', 0), rest%equilibria, &
                                                             allocated(interruption))
+      if (.not. options%has('quiet')) call print_left_out(error_unit, model%mechanism)
       if (.not. options%has('modes')) call judge_forces(options, model, rest%equilibria(1), forces)
       call write_results(options, model, rest%equilibria, forces, diagnostics%sources(1)%text, err, kept)
     end if

@@ -7,6 +7,7 @@ module mech9_kinematic_report
   use mech9_driven_motion, only: driven_motion_type
   use mech9_block_names, only: words_of_block
   use mech9_law_notes, only: print_jumps
+  use mech9_friction_text, only: print_rest
   use mech9_driven_simulation, only: driven_simulation_type
   use mech9_model_motion, only: model_motion_type
   use mech9_run_outcome, only: run_outcome_type
@@ -34,6 +35,7 @@ contains
 
     simulation => motion%driven()
     call print_motion(unit, simulation%model, simulation%plan, table_path, outcome, simulation%driven)
+    if (allocated(simulation%frictions)) call print_rest(unit, simulation%model%mechanism, simulation%frictions%rest)
   end subroutine print_report
 
   !> Print the lines.

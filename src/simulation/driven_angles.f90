@@ -4,7 +4,7 @@
 !> (mech9_ball_angles). While others are in use, steps are so short that the angles of the data file can be continued.
 module mech9_driven_angles
   use mech9_kinds, only: wp
-  use mech9_simulation_tolerances, only: third_derivative_step
+  use mech9_integration_tolerances, only: third_derivative_step
   use mech9_error, only: error_type
   use mech9_law, only: drive_slot_type
   use mech9_partition, only: partition_type

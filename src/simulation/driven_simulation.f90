@@ -19,6 +19,7 @@ module mech9_driven_simulation
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_stop_contacts, only: stop_contacts_type, find_contacts
   use mech9_driven_stops, only: check_stops
+  use mech9_driven_frictions, only: driven_frictions_type
   use mech9_simulation, only: simulation_type, simulation_statistics_type, standing_type
   implicit none
   private
@@ -33,6 +34,7 @@ module mech9_driven_simulation
     class(dynamics_plan_type), allocatable, private :: dynamics  !< made when energies are asked for first
     type(motion_view_type), allocatable, private :: view         !< of the present state, as loads see it
     type(stop_contacts_type), private :: contacts                !< ends of stops, with the motion at the last output
+    type(driven_frictions_type), allocatable :: frictions        !< not allocated: there are none, or no forces are requested
     type(driven_counts_type), private :: kept_work(batch_size)   !< of positions that wait for their derivatives
   contains
     procedure :: begin
@@ -85,6 +87,7 @@ contains
     call add_stops(model%mechanism, simulation%requested)
     call leave_out_unrequested(simulation%plan, simulation%requested)
     simulation%with_conditioning = model%request%output%conditioning
+    if (model%mechanism%has_frictions() .and. model%request%output%with_forces()) allocate (simulation%frictions)
     allocate (simulation%coordinate_changes(0))
   end subroutine new_driven_simulation
 
@@ -104,6 +107,7 @@ contains
       call self%contacts%note(self%driven%state)
       call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, t, self%contacts, err)
     end if
+    if (allocated(self%frictions) .and. .not. allocated(err)) call find_frictions(self, err)
   end subroutine begin
 
   !> The position at time t, on the same branch. Whether the motion shall stop is asked after many steps, too.
@@ -124,7 +128,21 @@ contains
     end do
     if (self%model%mechanism%has_rigid_stops()) &
       call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, before, self%contacts, err)
+    if (allocated(self%frictions) .and. .not. allocated(err)) call find_frictions(self, err)
   end subroutine go_to
+
+  !> Find the frictions at the present time.
+  subroutine find_frictions(self, err)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    if (self%angles%in_use() .and. .not. self%angles%give_same_wrenches()) then
+      call self%frictions%find(self%model%mechanism, self%angles%plan, self%angles%state, err)
+    else
+      call self%frictions%find(self%model%mechanism, self%plan, self%driven%state, err)
+      if (self%angles%in_use()) self%angles%state%friction = self%driven%state%friction
+    end if
+  end subroutine find_frictions
 
   !> The plan and the present state.
   subroutine present_state(self, plan, state)

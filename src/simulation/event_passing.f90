@@ -1,31 +1,29 @@
-!> The time within a step at which a motor passes the limit of its force, or an end of a stop is met or left. The motion goes back to
+!> The time within a step at which a motor passes the limit of its force, an end of a stop is met or left, or a pair with friction comes
+!> to rest or begins to slip. The motion goes back to
 !> the start of the step and stops there, as at a joint of a law of time.
 !>
 !> A coordinate comes to an end of its stop where the gap is zero; a polynomial of the fifth degree through the ends of the
 !> step shows where it may come near, also where it turns back within the step. What counts is the motion itself there.
 module mech9_event_passing
   use mech9_kinds, only: wp
-  use mech9_event_tolerances, only: touching, round_off_of_impacts
+  use mech9_event_tolerances, only: touching
   use mech9_simulation_tolerances, only: round_off_of_gaps
   use mech9_error, only: error_type
   use mech9_hermite, only: hermite_type, build_hermite, cubic_between
-  use mech9_limit_watch, only: find_excess
   use mech9_integrated_motion, only: integrated_motion_type
+  use mech9_event_search, only: locate, value_at, of_motor, of_contact, of_rate
+  use mech9_friction_passing, only: find_friction
+  use mech9_friction_heat, only: take_heat
   implicit none
   private
   public :: stop_at_events
 
-  !> Trials of the search for a time.
-  integer, parameter :: most_trials = 100
   !> Points within a step at which the gap to a stop is looked at; the last one is its end.
   integer, parameter :: looks = 16
 
   !> Corrections of a time by Newton's method, and the largest one in parts of the step.
   integer, parameter :: most_corrections = 3
   real(wp), parameter :: largest_correction = 0.5_wp
-
-  !> Values that are zero at a time that is searched: the excess of a motor, the passing of an end of a stop, the rate of its coordinate.
-  integer, parameter :: of_motor = 1, of_contact = 2, of_rate = 3
 
 contains
 
@@ -34,47 +32,68 @@ contains
   subroutine stop_at_events(motion, err)
     type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: from, t, t_contact, y(size(motion%y))
-    integer :: motor, contact, met
-    logical :: motors, contacts
+    real(wp) :: from, t, t_contact, t_friction, soonest, y(size(motion%y))
+    integer :: motor, contact, friction, met, rubbing
+    logical :: motors, contacts, frictions
 
     motors = motion%limits%is_needed(motion%system)
     contacts = size(motion%contacts%ends) > 0
-    if (.not. (motors .or. contacts)) return
+    frictions = allocated(motion%system%friction)
+    if (.not. (motors .or. contacts .or. frictions)) return
     call motion%dense_output%start_of_step(from, y)
     if (contacts) contacts = motion%contacts%any_held() .or. &
                              motion%contacts%in_doubt(motion%system%plan, motion%system%state, motion%t - from)
-    if (motors .or. contacts .or. motion%system%interval%contact > 0) call motion%system%move_to(motion%t, motion%y, err)
+    if (motors .or. contacts .or. frictions .or. motion%system%interval%contact > 0) &
+      call motion%system%move_to(motion%t, motion%y, err)
     if (allocated(err)) return
     motor = 0
     contact = 0
+    friction = 0
     associate (interval => motion%system%interval)
       if (interval%is_end(motion%t)) then
+        rubbing = interval%friction
         motors = .false.
         ! the step was judged before it was made anew up to the event
-        contacts = contacts .and. interval%motor == 0 .and. interval%contact == 0
+        contacts = contacts .and. interval%motor == 0 .and. interval%contact == 0 .and. interval%friction == 0
+        frictions = frictions .and. interval%motor == 0 .and. interval%contact == 0 .and. interval%friction == 0
         met = interval%contact
         if (met > 0) call correct_landing(motion, from, met, err)
+        if (rubbing > 0 .and. .not. allocated(err)) call correct_rest(motion, from, rubbing, err)
       end if
     end associate
     if (allocated(err)) return
     if (motors) call find_motor(motion, from, motor, t, err)
     if (contacts .and. .not. allocated(err)) call find_contact(motion, from, y, contact, t_contact, err)
+    if (frictions .and. .not. allocated(err)) call find_friction(motion, from, y, friction, t_friction, err)
     if (allocated(err)) return
-    if (motor > 0 .and. contact > 0) then
-      if (abs(t_contact - from) < abs(t - from)) then
+    soonest = huge(soonest)
+    if (motor > 0) soonest = abs(t - from)
+    if (contact > 0) then
+      if (abs(t_contact - from) < soonest) then
+        soonest = abs(t_contact - from)
+        t = t_contact
         motor = 0
       else
         contact = 0
       end if
     end if
-    if (contact > 0) t = t_contact
-    if (motor > 0 .or. contact > 0) then
+    if (friction > 0) then
+      if (abs(t_friction - from) < soonest) then
+        t = t_friction
+        motor = 0
+        contact = 0
+      else
+        friction = 0
+      end if
+    end if
+    if (motor > 0 .or. contact > 0 .or. friction > 0) then
       call motion%step_back(t, err)
-      call motion%system%interval%end_at_event(t, motor, contact)
+      call motion%system%interval%end_at_event(t, motor, contact, friction)
       motion%contacts%corrections = 0
     else
-      if (motors .or. contacts) call motion%system%move_to(motion%t, motion%y, err)
+      if (allocated(motion%system%friction) .and. abs(motion%t - from) > 0.0_wp) call take_heat(motion, err)
+      if (allocated(err)) return
+      if (motors .or. contacts .or. allocated(motion%system%friction)) call motion%system%move_to(motion%t, motion%y, err)
       if (.not. allocated(err)) call motion%note_start(err)
     end if
   end subroutine stop_at_events
@@ -102,13 +121,35 @@ contains
         corrections = corrections + 1
         change = motion%t + change
         call motion%step_back(change, err)
-        call system%interval%end_at_event(change, 0, contact)
+        call system%interval%end_at_event(change, 0, contact, 0)
       else if (gap > touching*unit .or. rate > 0.0_wp) then
         call system%interval%forget_event()
         call motion%note_start(err)
       end if
     end associate
   end subroutine correct_landing
+
+  !> Correct the time of a step that was made to the rest of a pair that slips, by Newton's method.
+  subroutine correct_rest(motion, from, friction, err)
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step, where the system stands
+    real(wp), intent(in) :: from                            !< start of the step [s]
+    integer, intent(in) :: friction                         !< number of the friction
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp) :: change
+    integer :: k
+
+    associate (system => motion%system, corrections => motion%contacts%corrections)
+      if (.not. system%friction%modes%slips(friction)) return
+      k = system%model%mechanism%frictions(friction)%coordinate
+      if (.not. abs(system%state%ddq(k)) > 0.0_wp .or. corrections >= most_corrections) return
+      change = -system%state%dq(k)/system%state%ddq(k)
+      if (abs(change) <= spacing(motion%t) .or. abs(change) >= largest_correction*abs(motion%t - from)) return
+      corrections = corrections + 1
+      change = motion%t + change
+      call motion%step_back(change, err)
+      call system%interval%end_at_event(change, 0, 0, friction)
+    end associate
+  end subroutine correct_rest
 
   !> Find the motor that passes its limit first, and the time.
   subroutine find_motor(motion, from, motor, t, err)
@@ -290,96 +331,4 @@ contains
     call locate(motion, sign(of_rate, nint(sign(1.0_wp, last))), i, from, t, passed, err)
   end subroutine locate_turn
 
-  !> Find the time at which a value passes zero upward, by false position with halved values (Illinois) on the motion within the step.
-  subroutine locate(motion, what, i, from, t, passed, err)
-    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
-    integer, intent(in) :: what                             !< the value: one of the constants above; negative: minus it
-    integer, intent(in) :: i                                !< number of the motor, or of the end of a stop
-    real(wp), intent(in) :: from                            !< a time before the passing [s]
-    real(wp), intent(inout) :: t                            !< a time behind it; then the time of the passing [s]
-    logical, intent(out) :: passed                          !< the value there is above zero
-    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: a, b, value_a, value_b, value
-    integer :: trial, side
-
-    a = from
-    b = t
-    call value_at(motion, what, i, b, value_b, err)
-    passed = value_b > 0.0_wp
-    if (.not. passed .or. allocated(err)) return
-    call value_at(motion, what, i, a, value_a, err)
-    if (allocated(err)) return
-    t = a
-    side = 0
-    do trial = 1, most_trials
-      if (value_a >= 0.0_wp .or. abs(b - a) <= 4.0_wp*spacing(b)) exit
-      t = b - value_b*(b - a)/(value_b - value_a)
-      if (.not. (t - a)*(b - t) > 0.0_wp) exit
-      call value_at(motion, what, i, t, value, err)
-      if (allocated(err) .or. abs(value) <= epsilon(value)) return
-      if (value > 0.0_wp) then
-        b = t
-        value_b = value
-        if (side > 0) value_a = 0.5_wp*value_a
-        side = 1
-      else
-        a = t
-        value_a = value
-        if (side < 0) value_b = 0.5_wp*value_b
-        side = -1
-      end if
-    end do
-  end subroutine locate
-
-  !> A value at a time within the last step. Where the motion there cannot be found, it is that of the end of the step.
-  subroutine value_at(motion, what, i, t, value, err)
-    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
-    integer, intent(in) :: what                             !< the value: one of the constants above; negative: minus it
-    integer, intent(in) :: i                                !< number of the motor, or of the end of a stop
-    real(wp), intent(in) :: t                               !< time within the last step [s]
-    real(wp), intent(out) :: value                          !< of a motor in parts of its limit
-    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: from, y(size(motion%y))
-    logical :: found
-
-    call motion%dense_output%start_of_step(from, y)
-    found = .false.
-    if (.not. abs(t - from) > 0.0_wp) then
-      call motion%system%move_to(from, y, err)
-      found = .true.
-    else if (abs(t - motion%t) > 0.0_wp) then
-      call motion%look_between(t, found)
-    end if
-    if (.not. found) call motion%system%move_to(motion%t, motion%y, err)
-    if (allocated(err)) return
-    select case (abs(what))
-    case (of_motor)
-      call find_excess(motion%system, i, value, err)
-    case (of_contact)
-      value = passing_of_contact(motion, i)
-    case default
-      value = motion%system%state%dq(motion%contacts%ends(i)%coordinate)
-    end select
-    if (what < 0) value = -value
-  end subroutine value_at
-
-  !> How far a contact has passed, in the state of the system: above zero where it should be met, left or released.
-  pure real(wp) function passing_of_contact(motion, i) result(value)
-    type(integrated_motion_type), intent(in) :: motion   !< the motion
-    integer, intent(in) :: i                             !< number of the end
-    integer :: j
-
-    associate (end => motion%contacts%ends(i), system => motion%system)
-      if (end%held) then
-        value = -end%direction*system%state%stop_force(end%stop)
-        do j = 1, size(system%held_stops)
-          if (system%held_stops(j)%stop == end%stop) value = value - round_off_of_impacts*system%held_stops(j)%size_of_terms
-        end do
-      else
-        value = -end%gap(system%state%q(end%coordinate))
-        if (end%closed) value = -value
-        if (end%is_rigid) value = value - round_off_of_gaps*max(system%plan%unit_of(end%coordinate), abs(end%limit))
-      end if
-    end associate
-  end function passing_of_contact
 end module mech9_event_passing

@@ -4,17 +4,14 @@ module mech9_free_simulation
   use mech9_kinds, only: wp
   use mech9_number_lists, only: same_numbers
   use mech9_simulation_tolerances, only: doubtful_conditioning, refused_conditioning, regular_conditioning
-  use mech9_error, only: error_type, raise, add_place, exit_data, exit_singular, exit_integrator
-  use mech9_simulation_failures, only: failure_no_initial_position, failure_lost_angles
-  use mech9_partition, only: free_coordinate
+  use mech9_error, only: error_type, raise, exit_singular, exit_integrator
+  use mech9_simulation_failures, only: failure_lost_angles
   use mech9_model, only: model_type
   use mech9_stop_contacts, only: find_contacts
   use mech9_contact_events, only: begin_contacts
   use mech9_plan, only: plan_type, copy_plan
   use mech9_state, only: state_type, copy_state
   use mech9_block_equations, only: largest_gap
-  use mech9_start_path, only: start_way_type, assemble_start
-  use mech9_branch_stepping, only: set_inputs
   use mech9_requested, only: requested_by_results, add_forces, leave_out_unrequested, request_planned
   use mech9_conditioning, only: conditioning_type
   use mech9_energy, only: kinetic_energy, potential_energy
@@ -22,17 +19,18 @@ module mech9_free_simulation
   use mech9_integrated_vector, only: unpack_state
   use mech9_motion_system, only: set_motion_system
   use mech9_held_angles, only: copy_drives
-  use mech9_motion_coefficients, only: find_coefficients
+  use mech9_free_start, only: keep_coefficients
   use mech9_integrated_motion, only: integrated_motion_type
   use mech9_event_passing, only: stop_at_events
+  use mech9_friction_heat, only: show_heat
   use mech9_stopped_motion, only: name_cause, name_cause_at_start, stall_watch_type, name_singular_chains
   use mech9_variable_model, only: variable_model_type
   use mech9_sensitivity, only: sensitivity_type, new_given_sensitivity
   use mech9_varied_motion, only: varied_motion_type
-  use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type, standing_type
+  use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type, standing_type, refuse_frictions
   implicit none
   private
-  public :: free_simulation_type, new_free_simulation, assemble_free
+  public :: free_simulation_type, new_free_simulation
 
   type, extends(simulation_type) :: free_simulation_type
     type(integrated_motion_type) :: motion
@@ -65,34 +63,10 @@ module mech9_free_simulation
     procedure, private :: continue_angles
   end type free_simulation_type
 
+  !> Longest step while a pair sticks, in parts of the duration of the motion.
+  real(wp), parameter :: longest_stick = 0.005_wp
+
 contains
-
-  !> The plan, and the closed position at the start: positions and rates of the free coordinates as given, those of driven ones by
-  !> their drives. Free coordinates at rest need no velocity.
-  subroutine assemble_free(model, plan, state, err, way)
-    type(model_type), intent(in) :: model           !< the model
-    type(plan_type), intent(out) :: plan                !< the plan of the mechanism
-    type(state_type), intent(out) :: state              !< the closed position, with the rates of independent coordinates
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(start_way_type), intent(out), optional :: way  !< how the start was reached from the drawn position
-    real(wp), dimension(size(model%mechanism%pairs)) :: q, dq, ddq
-    integer :: k
-
-    do k = 1, size(model%mechanism%pairs)
-      if (model%problem%initial%position_given(k) .or. model%problem%partition%kind(k) /= free_coordinate) cycle
-      call raise(err, exit_data, failure_no_initial_position)
-      err%failure%coordinates = [k]
-      call add_place(err, place=model%mechanism%pairs(k)%pair%place)
-      return
-    end do
-    q = model%problem%initial%position
-    call set_inputs(model%problem%drives, model%request%time%start, q, dq, ddq, err)
-    if (.not. allocated(err)) call assemble_start(model, q, plan, state, err, way)
-    if (allocated(err)) return
-    state%t = model%request%time%start
-    state%dq(plan%free) = model%problem%initial%velocity(plan%free)
-    call set_inputs(model%problem%drives, state%t, state%q, state%dq, state%ddq, err)
-  end subroutine assemble_free
 
   !> A free motion from its assembled start; the accelerations there are worked out. To be closed at the end, also where this
   !> failed.
@@ -142,24 +116,6 @@ contains
     if (.not. allocated(err)) call add_coordinate_change(simulation)
   end subroutine new_free_simulation
 
-  !> Keep the coefficients of motion in the angles of the data file. In closed chains those may be singular at the start: then the ones
-  !> of the integrated motion remain.
-  subroutine keep_coefficients(model, plan, assembled, coefficients, err)
-    type(model_type), intent(in) :: model                       !< the model
-    type(plan_type), intent(in) :: plan                         !< with the angles of the data file
-    type(state_type), intent(in) :: assembled                   !< its closed position
-    real(wp), allocatable, intent(inout) :: coefficients(:, :)  !< of the integrated motion; lower triangle
-    type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
-    real(wp), allocatable :: found(:, :)
-
-    call find_coefficients(model%mechanism, plan, assembled, found, err)
-    if (.not. allocated(err)) then
-      call move_alloc(found, coefficients)
-    else if (size(plan%closures) > 0 .and. err%code == exit_singular) then
-      deallocate (err)
-    end if
-  end subroutine keep_coefficients
-
   !> Begin to integrate. The position at the start is that of the system.
   subroutine begin(self, t, err)
     class(free_simulation_type), intent(inout) :: self   !< the simulation
@@ -168,8 +124,12 @@ contains
 
     self%motion%t = t
     call find_contacts(self%model%mechanism%stops, self%motion%contacts)
+    if (self%model%mechanism%has_frictions()) then
+      allocate (self%motion%heat(size(self%model%mechanism%frictions)), source=0.0_wp)
+      self%motion%heat_before = self%motion%heat
+    end if
     call self%motion%begin(err)
-    if (size(self%motion%contacts%ends) > 0 .and. .not. allocated(err)) then
+    if ((size(self%motion%contacts%ends) > 0 .or. allocated(self%motion%system%friction)) .and. .not. allocated(err)) then
       call begin_contacts(self%motion%system, self%motion%contacts, err)
       if (.not. allocated(err)) call pass_event(self, .true., err)
     end if
@@ -184,7 +144,8 @@ contains
     integer :: before
 
     before = self%motion%systems
-    if (at_start) call self%motion%meet_stops(0, 0.0_wp*self%motion%system%state%dq, self%events, self%impacts, err)
+    if (at_start) call self%motion%meet_events(0, 0, 0.0_wp*self%motion%system%state%dq, .true., self%events, self%impacts, &
+                                                err)
     if (.not. at_start) call self%motion%pass_joint(self%events, self%impacts, err)
     if (allocated(err)) return
     call self%stall%forget()
@@ -215,12 +176,17 @@ contains
           exit
         end if
         call self%motion%look_between(t, found)
-        if (found) exit
+        if (found .and. allocated(motion%system%friction)) call show_heat(motion, t, found, err)
+        if (found .or. allocated(err)) exit
         self%steps_onto = .true.
         call motion%step_back(t, err)
         if (allocated(err)) return
       end do
-      if (.not. found) call motion%system%move_to(t, motion%y, err)
+      if (allocated(err)) return
+      if (.not. found) then
+        call motion%system%move_to(t, motion%y, err)
+        if (allocated(motion%system%friction)) motion%system%state%heat = motion%heat
+      end if
       if (.not. allocated(err)) call self%continue_angles(t, err)
       if (.not. allocated(err)) call motion%show_angles(err)
     end associate
@@ -234,7 +200,15 @@ contains
 
     self%t = self%motion%system%state%t
     self%end = self%t
-    call self%motion%restart(self%t, self%motion%system%vector(), err)
+    if (self%motion%contacts%any_held() .or. allocated(self%motion%system%friction)) then
+      ! stops and frictions hold other coordinates under other loads
+      if (allocated(self%motion%system%friction)) self%motion%heat = self%motion%system%state%heat
+      self%motion%t = self%t
+      self%motion%y = self%motion%system%vector()
+      call self%motion%meet_events(0, 0, 0.0_wp*self%motion%system%state%dq, .false., self%events, self%impacts, err)
+    else
+      call self%motion%restart(self%t, self%motion%system%vector(), err)
+    end if
     if (.not. allocated(err)) call self%motion%show_angles(err)
   end subroutine take_changes
 
@@ -304,7 +278,7 @@ contains
     real(wp), intent(in) :: t                            !< time to go to [s]
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(error_type), allocatable :: failure
-    real(wp) :: target, farthest, from
+    real(wp) :: target, farthest, from, longest
     logical :: changed, is_regular, stalls
 
     if (self%motion%system%interval%is_end(self%motion%t)) call pass_event(self, .false., err)
@@ -325,6 +299,14 @@ contains
       if (motion%conditioning_here > regular_conditioning .and. .not. self%steps_onto .and. &
         (self%end - t)*(t - motion%t) > 0.0_wp) &
         farthest = self%end
+      if (allocated(motion%system%friction)) then
+        ! steps do not see the loads on pairs that stick, which may change with time
+        associate (time => self%model%request%time)
+          longest = longest_stick*(time%end - time%start)
+        end associate
+        if (size(motion%system%friction%held) > 0) target = nearer(target, motion%t + longest, motion%t)
+        if (size(motion%system%friction%held) > 0) farthest = nearer(farthest, motion%t + longest, motion%t)
+      end if
       if (motion%system%interval%ends) then
         target = nearer(target, motion%system%interval%ahead, motion%t)
         farthest = nearer(farthest, motion%system%interval%ahead, motion%t)
@@ -488,7 +470,8 @@ contains
     type(sensitivity_type), intent(out) :: sensitivity                 !< room for the results
     type(error_type), allocatable, intent(out) :: err                  !< allocated if it failed
 
-    call self%motion%begin_sensitivity(variable, err)
+    call refuse_frictions(self%model, err)
+    if (.not. allocated(err)) call self%motion%begin_sensitivity(variable, err)
     if (allocated(err)) return
     call new_given_sensitivity(self%model, highest, sensitivity)
   end subroutine begin_sensitivity

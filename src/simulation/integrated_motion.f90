@@ -3,7 +3,7 @@
 module mech9_integrated_motion
   use mech9_kinds, only: wp, long
   use mech9_integration_tolerances, only: worthwhile_improvement
-  use mech9_simulation_tolerances, only: doubtful_conditioning, third_derivative_step
+  use mech9_simulation_tolerances, only: doubtful_conditioning
   use mech9_error, only: error_type, raise, exit_singular, exit_integrator
   use mech9_simulation_failures, only: failure_angles_sensitivity, failure_many_events, failure_unheld_stop
   use mech9_variable_model, only: variable_model_type
@@ -14,9 +14,10 @@ module mech9_integrated_motion
   use mech9_replanning, only: replanning_type, wanted_type
   use mech9_expectation, only: expectation_type
   use mech9_ode_system, only: is_recoverable
-  use mech9_integrator, only: integrator_type, integration_statistics_type
+  use mech9_integrator, only: integrator_type, integration_statistics_type, add_statistics
   use mech9_coordinate_choice, only: best_independent, carry_over, worth_taking
-  use mech9_integrated_vector, only: pack_rates, pack_state
+  use mech9_integrated_vector, only: pack_state
+  use mech9_third_derivatives, only: find_third_derivatives
   use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_joint_passing, only: pass_law_joint => pass_joint
   use mech9_held_angles, only: copy_drives
@@ -25,7 +26,8 @@ module mech9_integrated_motion
   use mech9_limit_watch, only: limit_watch_type
   use mech9_stop_contacts, only: stop_contacts_type
   use mech9_contact_events, only: meet_contacts
-  use mech9_held_stops, only: choose_held, hold_by_drives
+  use mech9_friction_events, only: choose_modes
+  use mech9_held_coordinates, only: choose_held, hold_by_drives
   use mech9_motion_event, only: motion_events_type
   use mech9_impact_watcher, only: impact_watcher_type
   use mech9_side_steps, only: side_steps_type, begin_integration
@@ -46,19 +48,21 @@ module mech9_integrated_motion
     real(wp) :: t = 0.0_wp                        !< end of the last step [s]
     real(wp), allocatable :: y(:)                 !< the integrated vector there
     real(wp) :: conditioning_here = 0.0_wp        !< worst pivot ratio there
+    real(wp), allocatable :: heat(:)              !< energy that each friction has taken up to there [J]
+    real(wp), allocatable :: heat_before(:)       !< up to the start of the last step [J]
     integer :: systems = 0                        !< how many systems in other coordinates there were before the present one
     real(wp) :: look_below = doubtful_conditioning             !< conditioning at which other coordinates are looked for
     type(integration_statistics_type), private :: before   !< of the integrators before the present one
     type(work_count_type), private :: work_before          !< for the blocks of the systems before the present one
   contains
     procedure :: begin
-    procedure :: meet_stops
+    procedure :: meet_events
     procedure :: note_start
     procedure :: begin_sensitivity
     procedure :: change_coordinates
     procedure :: change_angles
     procedure :: show_angles
-    procedure, private :: hold_stops
+    procedure, private :: hold_coordinates
     procedure, private :: insert
     procedure :: look_between
     procedure :: step_back
@@ -209,7 +213,7 @@ contains
     same_frames = carried%serves .and. .not. angles%in_use() .and. all(angles%held%partition%kind == partition%kind) &
                   .and. all(partition%driven() .eqv. self%system%plan%driven)
     call copy_drives(angles%held%drives, other%drives)
-    if (allocated(self%system%held_stops)) other%held_stops = self%system%held_stops
+    call self%system%hand_on_modes(other)
     ! they may have no inertia in this position; what fails in any coordinates will do so in the present ones, too
     if (same_frames) then
       call set_motion_system(self%system%model, angles%held%partition, other, failure, self%system)
@@ -273,7 +277,7 @@ contains
     end if
     if (allocated(failure) .or. angles%move_as(self%angles)) return
     call copy_drives(angles%held%drives, other%drives)
-    if (allocated(self%system%held_stops)) other%held_stops = self%system%held_stops
+    call self%system%hand_on_modes(other)
     call set_motion_system(self%system%model, angles%held%partition, other, failure)
   end subroutine take_angles
 
@@ -289,31 +293,11 @@ contains
     if (self%angles%in_lock()) call find_third_derivatives(self%system, dddq, err)
     if (.not. allocated(err)) call self%angles%show(self%system%state, dddq, err)
     if (allocated(self%system%state%stop_force)) self%angles%state%stop_force = self%system%state%stop_force
+    if (allocated(self%system%state%friction)) then
+      self%angles%state%friction = self%system%state%friction
+      self%angles%state%heat = self%system%state%heat
+    end if
   end subroutine show_angles
-
-  !> The third derivatives of the independent coordinates at the present state, to about 1e-10, by a central difference of the
-  !> accelerations; those of the others are zero. The system stands at the same state afterwards.
-  subroutine find_third_derivatives(system, dddq, err)
-    type(motion_system_type), intent(inout) :: system  !< the motion system, with the motion of its state
-    real(wp), intent(out) :: dddq(:)                    !< (M) [rad/s^3, m/s^3]
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp), dimension(system%size_of_vector()) :: y, ydot
-    real(wp) :: t, dt
-
-    t = system%state%t
-    y = system%vector()
-    dddq = 0.0_wp
-    call pack_rates(system%plan, system%state, system%state%ddq(system%plan%independent), ydot)
-    dt = third_derivative_step/max(maxval(abs(system%state%dq)/system%plan%unit_of), &
-                                   sqrt(maxval(abs(system%state%ddq)/system%plan%unit_of)), tiny(dt)/epsilon(dt))
-    call system%move_to(t + dt, y + dt*ydot, err)
-    if (allocated(err)) return
-    dddq(system%plan%independent) = system%state%ddq(system%plan%independent)
-    call system%move_to(t - dt, y - dt*ydot, err)
-    if (allocated(err)) return
-    dddq(system%plan%independent) = (dddq(system%plan%independent) - system%state%ddq(system%plan%independent))/(2.0_wp*dt)
-    call system%move_to(t, y, err)
-  end subroutine find_third_derivatives
 
   !> Whether there is a failure. One that has nothing to do with the choice of coordinates is handed on.
   logical function gives_up(failure, err)
@@ -412,9 +396,10 @@ contains
     class(impact_watcher_type), allocatable, intent(inout) :: impacts   !< gets the impulses of pairs; not allocated: nobody wants them
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     real(wp) :: of_held(self%system%plan%n_coordinates)
-    integer :: met, motor
+    integer :: met, motor, friction
 
     met = self%system%interval%contact
+    friction = self%system%interval%friction
     of_held = 0.0_wp
     if (self%system%interval%is_joint(self%t)) then
       call pass_law_joint(self%system, self%t, self%y, err, of_held)
@@ -424,27 +409,30 @@ contains
       call self%system%interval%forget_event()
       self%system%interval%motor = motor
     end if
-    if (met > 0 .or. self%contacts%any_held()) then
-      call self%meet_stops(met, of_held, events, impacts, err)
+    if (met > 0 .or. self%contacts%any_held() .or. allocated(self%system%friction)) then
+      call self%meet_events(met, friction, of_held, .false., events, impacts, err)
     else
       call self%restart((self%t), (self%y), err)
     end if
   end subroutine pass_joint
 
-  !> Meet the contacts of stops at the end of the last step, and go on as they leave the motion.
-  subroutine meet_stops(self, met, of_held, events, impacts, err)
+  !> Meet the contacts of stops and the changes of frictions at the end of the last step, and go on as they leave the motion.
+  subroutine meet_events(self, met, friction, of_held, at_start, events, impacts, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion
     integer, intent(in) :: met                             !< number of the end that is met, left or released; 0: none
+    integer, intent(in) :: friction                        !< number of the friction that changes; 0: none
     real(wp), intent(in) :: of_held(:)                     !< (M) rates that held coordinates would have if nothing held them [rad/s, m/s]
-    type(motion_events_type), intent(inout) :: events      !< gets impacts, and stops that close and open
+    logical, intent(in) :: at_start                        !< there was no step yet
+    type(motion_events_type), intent(inout) :: events      !< gets impacts, stops that close and open, and pairs that stick and slip
     class(impact_watcher_type), allocatable, intent(inout) :: impacts   !< gets the impulses of pairs; not allocated: nobody wants them
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     real(wp), dimension(self%system%plan%n_coordinates) :: impulses, changes
     integer :: before
-    logical :: holds_change
+    logical :: holds_change, stalls
 
     before = events%count
     self%system%interval%contact = 0
+    self%system%interval%friction = 0
     call self%system%move_to(self%t, self%y, err)
     if (allocated(err)) return
     call meet_contacts(self%system, met, of_held, self%contacts, impulses, changes, holds_change, events, err)
@@ -453,31 +441,68 @@ contains
         (self%angles%give_same_wrenches() .or. .not. self%angles%in_use())) &
       call impacts%take(self%system%plan, self%system%state, impulses, changes, err)
     if (allocated(err)) return
-    if (events%makes_no_progress(before)) then
+    if (allocated(self%system%friction)) then
+      call meet_frictions(self, friction, at_start, holds_change, events, err)
+      if (allocated(err)) return
+    end if
+    call events%judge_progress(before, self%t, stalls)
+    if (stalls) then
       call raise(err, exit_integrator, failure_many_events)
       err%failure%t = self%t
       err%failure%limit = events%count
       return
     end if
     if (holds_change) then
-      call self%hold_stops(err)
+      call self%hold_coordinates(err)
     else
       call pack_state(self%system%plan, self%system%state, self%y)
       call self%restart((self%t), (self%y), err)
     end if
-  end subroutine meet_stops
+  end subroutine meet_events
 
-  !> Go on with the coordinates held whose stops are closed, and with all others released, at the present state.
-  subroutine hold_stops(self, err)
+  !> Choose which pairs stick and which slip from now on. Where stops hold other coordinates, these are changed first.
+  subroutine meet_frictions(self, friction, at_start, holds_change, events, err)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion, whose system has the rates of all independent coordinates
+    integer, intent(in) :: friction                        !< number of the friction that changes; 0: none
+    logical, intent(in) :: at_start                        !< there was no step yet
+    logical, intent(inout) :: holds_change                 !< other coordinates are to be held
+    type(motion_events_type), intent(inout) :: events      !< gets pairs that stick and slip
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    integer, allocatable :: sticking(:), group(:)
+    integer :: i
+
+    if (holds_change) then
+      group = self%system%friction%modes%group
+      self%system%friction%modes%group = 0
+      self%system%friction%modes%leader = [integer ::]
+      self%system%friction%held = [integer ::]
+      call self%hold_coordinates(err)
+      if (allocated(err)) return
+      self%system%friction%modes%group = group
+    end if
+    call choose_modes(self%system, friction, at_start, sticking, events, err)
+    if (allocated(err)) return
+    associate (held => self%system%friction%held)
+      holds_change = size(sticking) /= size(held)
+      if (.not. holds_change) holds_change = .not. all([(any(held == sticking(i)), i=1, size(sticking))])
+    end associate
+    self%system%friction%held = sticking
+  end subroutine meet_frictions
+
+  !> Go on with the coordinates held whose stops are closed, or whose pairs stick, and with all others released, at the present state.
+  subroutine hold_coordinates(self, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion, whose system has the rates of all coordinates
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(motion_system_type), pointer :: other
     type(ball_angles_type) :: angles
     type(partition_type) :: partition
+    integer, allocatable :: sticking(:)
     logical :: made
 
-    call choose_held(self%system, self%contacts, partition)
-    call hold_by_drives(self%contacts, self%angles%held%drives, self%system%held_stops)
+    sticking = [integer ::]
+    if (allocated(self%system%friction)) sticking = self%system%friction%held
+    call choose_held(self%system, self%contacts, sticking, partition)
+    call hold_by_drives(self%contacts, sticking, self%system%state%q, self%angles%held%drives, self%system%held)
     allocate (other)
     call other%make_room()
     call take_partition(self, partition, wanted_type(), other, angles, made, err)
@@ -494,9 +519,9 @@ contains
       if (allocated(err)) return
       call raise(err, exit_singular, failure_unheld_stop)
       err%failure%t = self%t
-      err%failure%coordinates = pack(self%contacts%ends%coordinate, self%contacts%ends%held)
+      err%failure%coordinates = [pack(self%contacts%ends%coordinate, self%contacts%ends%held), sticking]
     end if
-  end subroutine hold_stops
+  end subroutine hold_coordinates
 
   !> Note the demands on motors and the motion of contacts from which the next step begins.
   subroutine note_start(self, err)
@@ -537,25 +562,6 @@ contains
     call add_statistics(self%integrator%statistics(), .true., all)
     call add_statistics(self%aside%statistics(), .false., all)
   end function statistics
-
-  !> Add the counts of an integrator.
-  pure subroutine add_statistics(counts, goes_on, all)
-    type(integration_statistics_type), intent(in) :: counts   !< of the integrator
-    logical, intent(in) :: goes_on                            !< its steps are those of the motion
-    type(integration_statistics_type), intent(inout) :: all   !< the sums
-
-    all%rate_evaluations = all%rate_evaluations + counts%rate_evaluations
-    all%jacobian_evaluations = all%jacobian_evaluations + counts%jacobian_evaluations
-    all%error_test_failures = all%error_test_failures + counts%error_test_failures
-    all%convergence_failures = all%convergence_failures + counts%convergence_failures
-    all%refusals = all%refusals + counts%refusals
-    if (.not. goes_on) return
-    all%steps = all%steps + counts%steps
-    all%implicit_steps = all%implicit_steps + counts%implicit_steps
-    all%method_changes = all%method_changes + counts%method_changes
-    all%last_order = counts%last_order
-    all%last_step = counts%last_step
-  end subroutine add_statistics
 
   !> Work for the blocks of all systems of the motion, the present one included.
   pure function work_done(self) result(all)

@@ -2,8 +2,9 @@
 module mech9_simulation
   use mech9_kinds, only: wp, long
   use mech9_stop_request, only: stop_request_type
-  use mech9_error, only: error_type, raise, exit_usage, exit_integrator, exit_interrupted
-  use mech9_simulation_failures, only: failure_not_started, failure_backwards, failure_interrupted, failure_accuracy
+  use mech9_error, only: error_type, raise, add_place, exit_usage, exit_data, exit_integrator, exit_interrupted
+  use mech9_simulation_failures, only: failure_not_started, failure_backwards, failure_interrupted, failure_accuracy, &
+    failure_friction_sensitivity
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -18,7 +19,7 @@ module mech9_simulation
   implicit none
   private
   public :: simulation_type, interruption_type, simulation_statistics_type, coordinate_change_type
-  public :: estimated_errors_type, judge_error, standing_type
+  public :: estimated_errors_type, judge_error, standing_type, refuse_frictions
 
   !> Answers whether a motion shall stop. It is asked before each time, before each step of an integrator, and after many steps of a
   !> driven motion.
@@ -396,9 +397,22 @@ contains
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
 
+    if (self%model%request%output%with_forces()) call refuse_frictions(self%model, err)
+    if (allocated(err)) return
     call self%present(plan, state)
     call new_sensitivity(variable, self%model, plan, highest, sensitivity, err)
   end subroutine begin_sensitivity
+
+  !> Fail where pairs have friction, with which derivatives by parameters are not known.
+  subroutine refuse_frictions(model, err)
+    type(model_type), intent(in) :: model               !< the model
+    type(error_type), allocatable, intent(out) :: err   !< allocated where there is friction
+
+    if (.not. model%mechanism%has_frictions()) return
+    call raise(err, exit_data, failure_friction_sensitivity)
+    err%failure%number = 1
+    call add_place(err, place=model%mechanism%frictions(1)%place)
+  end subroutine refuse_frictions
 
   !> Let the present motion wait for its derivatives by all parameters, which are found for several positions at once.
   subroutine show_sensitivity(self, sensitivity, err)

@@ -6,7 +6,7 @@ module mech9_simulation_failures
     failure_lost_link, failure_no_initial_position, failure_singular_start_block, failure_driven_dead_point, &
     failure_gimbal_lock, failure_lost_angles, failure_angles_sensitivity, failure_loaded_lock, &
     failure_singular_passing, failure_many_events, failure_unheld_stop, failure_stop_passed, &
-    last_simulation_failure
+    failure_self_locking, failure_friction_sensitivity, last_simulation_failure
 
   !> A motion is to advance before its start.
   integer, parameter :: failure_not_started = 1001
@@ -48,5 +48,10 @@ module mech9_simulation_failures
   !> A driven motion passes an end of a stop: number (of the stop), coordinates, values (the limit, the coordinate at t_stop), name (of
   !> their unit), t (of the passing), t_stop (of the position behind it).
   integer, parameter :: failure_stop_passed = 1017
-  integer, parameter :: last_simulation_failure = failure_stop_passed
+  !> Frictions lock a driven motion, so that no drive force moves it this way: coordinates (the pair, the drive), values (the coefficient of
+  !> the pair, the least one at which this is so), number (1 or -1: direction of the drive), limit (1: no force moves it, 2: several do), t.
+  integer, parameter :: failure_self_locking = 1018
+  !> Derivatives by parameters are not known with friction: number (of the first one).
+  integer, parameter :: failure_friction_sensitivity = 1019
+  integer, parameter :: last_simulation_failure = failure_friction_sensitivity
 end module mech9_simulation_failures

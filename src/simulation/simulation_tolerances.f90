@@ -7,7 +7,7 @@ module mech9_simulation_tolerances
   private
   public :: largest_closure, hidden_part, doubtful_conditioning, regular_conditioning, refused_conditioning, locked, &
     locked_together, short_part, long_part, many_short, nearly_singular, surely_singular, least_part, nearly_locked, &
-    third_derivative_step, drawn_near_by, round_off_of_gaps
+    drawn_near_by, round_off_of_gaps
 
   ! The start.
 
@@ -56,9 +56,6 @@ module mech9_simulation_tolerances
 
   ! Drives and outputs.
 
-  !> Distance in time of two evaluations whose difference gives third derivatives, over the time that the motion takes for
-  !> 1 rad: the square of this and round-off over it are both the error, about 1e-10.
-  real(wp), parameter :: third_derivative_step = 1.0e-5_wp
 
   ! Stops.
 

@@ -33,6 +33,8 @@ module mech9_stopped_motion
   use mech9_held_rods, only: held_angle
   use mech9_rotation, only: cross
   use mech9_motion_coefficients, only: find_coefficients
+  use mech9_integration_failures, only: failure_no_friction
+  use mech9_friction_events, only: fail_in_paradox
   implicit none
   private
   public :: name_cause, name_cause_at_start, find_lock, stall_watch_type, name_singular_chains
@@ -154,6 +156,11 @@ contains
     logical :: is_locked(size(system%plan%free))
 
     call name_coordinate(system, failure)
+    if (is_of_kind(failure, failure_no_friction)) then
+      call system%move_to(t, y, err)
+      if (.not. allocated(err)) call fail_in_paradox(system, failure)
+      return
+    end if
     call name_dead_point(system, t, y, failure)
     if (failure%code /= exit_integrator) return
     call system%move_to(t, y, err)

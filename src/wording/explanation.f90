@@ -33,6 +33,7 @@ module mech9_explanation
   use mech9_choice_words, only: explain_choice, longest_list
   use mech9_sensitivity_words, only: explain_sensitivity
   use mech9_stop_words, only: explain_stop_failure
+  use mech9_friction_words, only: explain_friction_failure
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
   implicit none
   private
@@ -72,6 +73,7 @@ contains
     call explain_coupling(failure, text)
     call explain_sensitivity(failure, text)
     call explain_stop_failure(failure, text)
+    call explain_friction_failure(failure, text)
   end subroutine explain_failure
 
   !> Chains that do not close or do not move, and independent coordinates that do not determine the others.

@@ -7,7 +7,7 @@ module mech9_sensitivity_words
   use mech9_force_gradient_failures, only: failure_jumping_force
   use mech9_integration_failures, only: failure_jump_sensitivity
   use mech9_event_failures, only: failure_event_sensitivity
-  use mech9_simulation_failures, only: failure_angles_sensitivity
+  use mech9_simulation_failures, only: failure_angles_sensitivity, failure_friction_sensitivity
   use mech9_reaction_failures, only: failure_shared_force
   use mech9_block_names, only: chain_names
   implicit none
@@ -38,6 +38,9 @@ contains
       text = 'derivatives by the parameter '''//failure%name//''' are not computed beyond t = '//to_text(failure%t, 10)// &
              ' s: it sets this time, at which the rates of drives jump. Give drives without jumps of their rates, end the run '// &
              'before, leave out the parameter, or sensitivities and gradients'
+    case (failure_friction_sensitivity)
+      text = 'derivatives by the parameters are not computed with friction, as of friction '//to_text(failure%number)// &
+             '. Leave out the friction, the parameters, or sensitivities and gradients'
     case (failure_event_sensitivity)
       text = 'derivatives by the parameters are not computed beyond t = '//to_text(failure%t, 10)//' s, where stop '// &
              to_text(failure%number)//' is hit, closes or opens. End the run before, make the stop '// &

@@ -28,10 +28,12 @@ contains
              '/s. Change the drives, move the stop, or make it compliant by stiffness='
     case (failure_many_events)
       text = 'the motion makes no progress beyond t = '//to_text(failure%t, 10)//' s: it has had '//to_text(failure%limit)// &
-             ' events at stops. Give a smaller restitution, or a compliant stop by stiffness='
+             ' events at stops and frictions. Give a smaller restitution, a compliant stop by stiffness=, or friction by '// &
+             'law=''smooth'''
     case (failure_unheld_stop)
-      text = 'the motion ends at t = '//to_text(failure%t, 10)//' s, because no independent coordinates serve while stops hold '// &
-             'coordinates '//to_text(failure%coordinates)//'. Make one of these stops compliant by stiffness='
+      text = 'the motion ends at t = '//to_text(failure%t, 10)//' s, because no independent coordinates serve while stops and '// &
+             'frictions hold coordinates '//to_text(failure%coordinates)//'. Make one of these stops compliant by '// &
+             'stiffness=, or the friction smooth by law=''smooth'''
     case (failure_stop_passed)
       text = 'coordinate '//to_text(failure%coordinates)//' passes the end of stop '//to_text(failure%number)//' at '// &
              trim(value(1))//' at t = '//to_text(failure%t, 10)//' s: at t = '//to_text(failure%t_stop, 10)//' s it would be '// &

@@ -266,7 +266,7 @@ def test_changes(talks, folder):
              ('Removed', 'remove time start'), ('Removed', '?'),
              ('Give the number', '999'), ('no answer that can be changed', 'zero zero zero zero'),
              ('no answer that can be changed', 'add nothing'),
-             ('What can be added: drive, body, load, motor, stop, point, parameter, quantity, study, objective,', ''),
+             ('What can be added: drive, body, load, motor, stop, friction, point, parameter, quantity, study, objective,', ''),
              ('[both]', 'save'), ('data file [p.nml]', '/'),
              ('exists; overwrite it [no]', 'yes'), ('cannot open', '')]
     talks.pipe(talks.mech9d, steps, 'changes', arguments=('--edit', 'p.nml'), folder=folder)

@@ -13,6 +13,7 @@ import pytest
 
 from failures import kinds
 from free_delta import delta
+from friction_cases import FIVE_RUBBING, FOUR_RUBBING, LADDER, RUBBING, WEDGE
 from mech9_cases import TREE, run, text_of
 
 DONE, DATA, STRUCTURE, ASSEMBLY, SINGULAR, INTEGRATOR = 0, 3, 4, 5, 6, 7
@@ -35,6 +36,8 @@ UNREACHABLE = {
     'drive_jumps': 'drives of the data file are continuous',
     'lost_inertia': 'only steps to positions beyond all sense lose it: tests/simulation/test_simulation.f90',
     'unheld_stop': 'closed stops are independent of each other, and are exchanged for what moves them most',
+    'no_friction': 'where frictions have no solution, the paradox is told',
+    'undecided_friction': 'accelerations have the directions of slip as long as frictions have one solution',
     'lost_angles': 'positions within a step that was made are always found',
     'not_started': 'the programs start each motion',
     'backwards': 'the times of a data file are in order',
@@ -262,6 +265,9 @@ def driven_cases():
     chain = 'closed chain 1 (coordinates 2, 3, 4)'
     starts = f'the mechanism starts in a singular position of {chain}, '
     return [
+        ('self_locking', WEDGE, (), SINGULAR,
+         ['coordinate 3 cannot be driven in the negative direction at t = 0 s: the mechanism locks itself by the friction of coordinate 2, '
+          'whose coefficient is 0.6; from 0.5 on no force moves it this way. Lower the coefficient, or drive another coordinate']),
         ('stop_passed', falling('low=0.5', start=drive(1, '1, -1')), (), SINGULAR,
          ['coordinate 1 passes the end of stop 1 at 0.5 m at t = 0.5 s: at t = 0.', ' m beyond. Change the drives, or move the stop']),
         ('open_chain', four_bar(ROCKER, drive(1, '120')), (), ASSEMBLY,
@@ -465,8 +471,21 @@ def free_cases():
         # at t = 1e6 s numbers are 1e-10 s apart, in which it would hit five times
         ('many_events', falling('low=-1e-11, high=1e-11, restitution=1', '&time start=1e6, end=1000001, intervals=1 /\n',
                                 start=initial(1, 0.0, ', velocity=1')), ('--set', 'gravity.acceleration=0,0,0'), INTEGRATOR,
-         ['the motion makes no progress beyond t = 1000000 s: it has had ', ' events at stops. Give a smaller restitution, or a '
-          'compliant stop by stiffness=']),
+         ['the motion makes no progress beyond t = 1000000 s: it has had ', ' events at stops and frictions. Give a smaller '
+          "restitution, a compliant stop by stiffness=, or friction by law='smooth'"]),
+        ('friction_sensitivity', RUBBING + "&parameter name='m', sets='body(1).mass' /\n&output sensitivities=.true. /\n", (), DATA,
+         ['derivatives by the parameters are not computed with friction, as of friction 1. Leave out the friction, the parameters, or '
+          'sensitivities and gradients']),
+        ('shared_bearing', FOUR_RUBBING, (), DATA,
+         ['the friction of coordinate 1 depends on the component fz of the wrench of its pair, which equilibrium does not determine and '
+          'which is not zero at t = 0 s. Leave this friction out, or give the joint more freedoms (--check names the components)']),
+        ('shared_sticking', FIVE_RUBBING, (), SINGULAR,
+         ['the motion ends at t = 0 s: the pair of coordinate 2 sticks together with coordinates 1, 5, and nothing decides how they share '
+          "their forces. Leave out the friction of one of them, or give law='smooth'"]),
+        # mu sin 2a = 1.4 is more than 4/3
+        ('paradox', LADDER, (), SINGULAR,
+         ['the friction of coordinate 1 has no solution from t = 0 s on (the paradox of Painleve): its coefficient is 1.4, and from '
+          '1.3333333 on rigid bodies with dry friction cannot slip this way. Lower the coefficient, or end the motion before']),
         # it grows as exp(1000 t), up to 1e308 at 0.71 s
         ('infinite_rate', SPRING.format(-1e6, 0, 0, 10), (), INTEGRATOR,
          [stops, ': the motion of coordinate 1 is not finite: this motion, or a force, grows beyond all bounds. Look for a spring, a '

@@ -12,7 +12,8 @@ module test_driven_coordinates
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parser, only: parse_document
   use mech9_reader, only: read_model
-  use mech9_free_simulation, only: free_simulation_type, new_free_simulation, assemble_free
+  use mech9_free_simulation, only: free_simulation_type, new_free_simulation
+  use mech9_free_start, only: assemble_free
   use mech9_testing, only: tester_type
   use simulation_doubles, only: jumping_drive_type
   implicit none

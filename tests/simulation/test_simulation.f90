@@ -19,7 +19,8 @@ module test_simulation
   use mech9_explanation, only: explain
   use mech9_simulation, only: simulation_type, simulation_statistics_type, estimated_errors_type
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation, assemble_driven
-  use mech9_free_simulation, only: free_simulation_type, new_free_simulation, assemble_free
+  use mech9_free_simulation, only: free_simulation_type, new_free_simulation
+  use mech9_free_start, only: assemble_free
   use mech9_accuracy, only: find_accuracy
   use mech9_motion_system, only: motion_system_type, set_motion_system
   use mech9_ode_system, only: is_recoverable

@@ -11,7 +11,8 @@ module many_runs
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation, assemble_driven
-  use mech9_free_simulation, only: free_simulation_type, new_free_simulation, assemble_free
+  use mech9_free_simulation, only: free_simulation_type, new_free_simulation
+  use mech9_free_start, only: assemble_free
   use mech9_simulation, only: simulation_type
   use mech9_row_source, only: row_source_type, new_row_source
   use mech9_varied_document, only: varied_document_type, new_varied_document

@@ -18,8 +18,9 @@ module test_explanation
   use mech9_dynamics_failures, only: last_dynamics_failure, failure_singular_block, failure_no_inertia
   use mech9_sensitivity_failures, only: last_sensitivity_failure
   use mech9_force_gradient_failures, only: last_force_gradient_failure, failure_lost_inertia
-  use mech9_integration_failures, only: last_integration_failure, failure_other_branch, failure_drive_jumps
-  use mech9_event_failures, only: last_event_failure
+  use mech9_integration_failures, only: last_integration_failure, failure_other_branch, failure_drive_jumps, &
+    failure_no_friction
+  use mech9_event_failures, only: last_event_failure, failure_undecided_friction
   use mech9_simulation_failures, only: last_simulation_failure, failure_singular_start_block, failure_not_started, &
     failure_backwards, failure_interrupted, failure_lost_angles, failure_unheld_stop
   use mech9_reaction_failures, only: last_reaction_failure
@@ -96,7 +97,7 @@ contains
 
     failure%chains = [2]
     failure%lines = [0]
-    failure%coordinates = [4]
+    failure%coordinates = [4, 6]
     failure%others = [1]
     allocate (failure%idle(0), failure%replaces(6, 1), failure%values(3, 2))
     failure%replaces = .false.
@@ -355,12 +356,24 @@ contains
     call says(test, err, &
               'coordinates 1, 2, 3 cannot be continued through gimbal lock at t = 0.25 s; lower the tolerances, or turn '// &
               'about the axes in another order')
+    call raise(err, exit_singular, failure_no_friction)
+    err%failure%coordinates = [2, 4]
+    err%failure%t = 0.25_wp
+    call says(test, err, &
+              'the frictions of coordinates 2, 4 have no solution at t = 0.25 s: they grow faster than what they resist. '// &
+              'Lower the coefficients of friction')
+    call raise(err, exit_singular, failure_undecided_friction)
+    err%failure%coordinates = [2, 4]
+    err%failure%t = 0.25_wp
+    call says(test, err, &
+              'the motion ends at t = 0.25 s, because no choice of sticking and slipping pairs agrees with the friction of '// &
+              'coordinates 2, 4. Lower the coefficients of friction, or give law=''smooth''')
     call raise(err, exit_singular, failure_unheld_stop)
     err%failure%coordinates = [2, 4]
     err%failure%t = 0.25_wp
     call says(test, err, &
-              'the motion ends at t = 0.25 s, because no independent coordinates serve while stops hold coordinates 2, 4. Make '// &
-              'one of these stops compliant by stiffness=')
+              'the motion ends at t = 0.25 s, because no independent coordinates serve while stops and frictions hold '// &
+              'coordinates 2, 4. Make one of these stops compliant by stiffness=, or the friction smooth by law=''smooth''')
     call raise(err, exit_singular, failure_drive_jumps)
     err%failure%coordinates = [2]
     err%failure%t = 0.25_wp

@@ -3,7 +3,7 @@ module mech9_force_explanations
   use mech9_name_explanation, only: explanation_type
   implicit none
   private
-  public :: body_texts, load_texts, motor_texts, stop_texts
+  public :: body_texts, load_texts, motor_texts, stop_texts, friction_texts
 
   type(explanation_type), parameter :: body_texts(*) = [ &
     explanation_type('body', 'link', '', &
@@ -184,4 +184,29 @@ module mech9_force_explanations
                   'the power of the exponent.', '200'), &
     explanation_type('stop', 'exponent', '', &
                   'The force of a compliant stop grows with this power of the penetration: 1 for springs, 1.5 for balls.', '1.5')]
+
+  type(explanation_type), parameter :: friction_texts(*) = [ &
+    explanation_type('friction', 'coordinate', '', &
+                  'Friction acts in a pair that turns, slides or does both on a thread. Name it by the number of its '// &
+                  'coordinate. Enter goes on without a further friction.', '4'), &
+    explanation_type('friction', 'dynamic', '', &
+                  'While the pair moves, the friction is this part of the force that presses it. Steel on bronze has 0.1 to 0.2.', &
+                  '0.15'), &
+    explanation_type('friction', 'static', '', &
+                  'At rest the friction holds up to this part of the force that presses.', '0.2'), &
+    explanation_type('friction', 'radius', '', &
+                  'In a turning pair the friction acts on this radius, the mean one of the thread in a helical pair.', &
+                  '0.01 (a pin of 20 mm)'), &
+    explanation_type('friction', 'face_radius', '', &
+                  'Forces along the axis of a turning pair press on a face. This is its mean radius.', '0.015'), &
+    explanation_type('friction', 'arm', '', &
+                  'Moments tilt a slider in its guide, which presses at both ends. This is half the distance of the ends.', &
+                  '0.05 (a guide of 100 mm)'), &
+    explanation_type('friction', 'preload', '', &
+                  'Springs and seals press also without a load: give a force in N, for a turning pair a torque in N m.', '5'), &
+    explanation_type('friction', 'law', '', &
+                  'By coulomb the pair sticks and slips. By smooth it creeps in place of sticking, for comparison with '// &
+                  'other programs.', 'coulomb'), &
+    explanation_type('friction', 'transition', '', &
+                  'By the smooth law the friction grows up to about this rate, above which it stays.', '0.01')]
 end module mech9_force_explanations

@@ -34,6 +34,8 @@ module mech9_topics
                'A motor begun by mistake is left out by remove.'), &
     topic_type('Stops', 'stop', 'A stop bounds a coordinate, which bounces off it or comes to rest there. '// &
                'A stop begun by mistake is left out by remove.'), &
+    topic_type('Friction', 'friction', 'Dry friction in pairs, by the forces that these pass on. '// &
+               'A friction begun by mistake is left out by remove.'), &
     topic_type('Points', 'point', 'Positions, velocities and accelerations of these points are recorded.'), &
     topic_type('Cams', 'cam', 'A cam whose profile follows from the motion of its follower, for the option --cam. '// &
                'A cam begun by mistake is left out by remove.'), &
@@ -92,8 +94,8 @@ contains
   pure logical function is_on_request(group_row)
     integer, intent(in) :: group_row  !< row of the group in group_table
 
-    is_on_request = any(group_table(group_row)%name == ['stop     ', 'parameter', 'quantity ', 'study    ', 'objective', &
-                                                        'limit    ', 'optimum  '])
+    is_on_request = any(group_table(group_row)%name == ['stop     ', 'friction ', 'parameter', 'quantity ', 'study    ', &
+                                                        'objective', 'limit    ', 'optimum  '])
   end function is_on_request
 
   !> Whether the user begins the groups of a name, and can leave them out. There can be any number of most of them, and one of

@@ -37,6 +37,8 @@ module mech9_grammar
                    'a motor on an independent coordinate without a drive: direct current, or set by a PID controller'), &
     group_row_type('stop', .true., '', both, &
                    'one or two ends of the range of a coordinate, independent or not: rigid, with impacts, or compliant'), &
+    group_row_type('friction', .true., '', for_forces, &
+                   'dry friction in a turning, sliding or helical pair, by the force that the pair passes on'), &
     group_row_type('cam', .true., '', kinematics, &
                    'a cam whose profile mech9k computes from the motion of its follower (option --cam)'), &
     group_row_type('parameter', .true., 'name', both, &
@@ -455,8 +457,31 @@ module mech9_grammar
     item_row_type('stop', 'exponent', 'real', 1, 1, '', optional, '1', '>=1', '', '', &
                   'of a compliant stop: power of the penetration; 1.5 for balls (Hertz)', '1.5', seldom=.true.)]
 
+  type(item_row_type), parameter :: friction_items(*) = [ &
+    item_row_type('friction', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
+                  'number of the coordinate', '4'), &
+    item_row_type('friction', 'dynamic', 'real', 1, 1, '', needed, '', '>=0', '', '', &
+                  'coefficient of friction while the pair moves', '0.15'), &
+    item_row_type('friction', 'static', 'real', 1, 1, '', optional, '(dynamic)', '>=0', '', '', &
+                  'coefficient of friction at rest, not less than dynamic', '0.2', seldom=.true.), &
+    item_row_type('friction', 'radius', 'real', 1, 1, 'm', optional, '0', '>=0', '', '', &
+                  'of the bearing of a turning pair, on which forces across the axis press; mean one of a thread', '0.01'), &
+    item_row_type('friction', 'face_radius', 'real', 1, 1, 'm', optional, '0', '>=0', '', '', &
+                  'mean radius of the face of a turning pair on which forces along the axis press', '0.015', seldom=.true.), &
+    item_row_type('friction', 'arm', 'real', 1, 1, 'm', optional, '(no moments)', '>0', '', '', &
+                  'half length of the guide of a sliding pair: moments across the axis press with moment/arm', '0.05', &
+                  seldom=.true.), &
+    item_row_type('friction', 'preload', 'real', 1, 1, 'N, N m', optional, '0', '>=0', '', '', &
+                  'what presses without any load, beside the forces: N, in a turning pair N m', '5', seldom=.true.), &
+    item_row_type('friction', 'law', 'text', 1, 1, '', optional, '''coulomb''', '', 'coulomb smooth', '', &
+                  'coulomb: the pair sticks and slips; smooth: it creeps, with the force tanh(rate/transition)', '''coulomb''', &
+                  seldom=.true.), &
+    item_row_type('friction', 'transition', 'real', 1, 1, 'q/s', optional, '(none)', '>0', '', '', &
+                  'of the smooth law: rate at which the friction has 76 % of its force', '0.01', seldom=.true.)]
+
   type(item_row_type), parameter :: item_table(*) = &
-    [general_items, pair_items, coupling_items, motion_items, body_items, load_items, motor_items, stop_items, cam_items, &
+    [general_items, pair_items, coupling_items, motion_items, body_items, load_items, motor_items, stop_items, friction_items, &
+     cam_items, &
      study_items, run_items]
 
 contains

@@ -16,11 +16,12 @@ module mech9_contact_equations
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_complementarity, only: solve_complementarity
   use mech9_stop_contacts, only: stop_contact_type
+  use mech9_jacobian, only: rates_by_independent
   use mech9_lagrange, only: find_equations
   use mech9_motion_system, only: motion_system_type
   implicit none
   private
-  public :: contact_equations_type, find_contact_equations, find_impact, find_pushing, rates_by_independent
+  public :: contact_equations_type, find_contact_equations, find_impact, find_pushing
 
   !> The equations of contacts in one position.
   type :: contact_equations_type
@@ -44,11 +45,15 @@ contains
     type(error_type), allocatable, intent(out) :: err              !< allocated if a load fails, or a coordinate has no inertia
     real(wp) :: a(size(system%plan%independent), size(system%plan%independent)), row(size(system%plan%independent)), speed
     integer :: failed_at, i, j, n
+    logical :: may_move(system%plan%n_coordinates)
 
     call find_equations(system%model%mechanism, system%plan, system%dynamics, system%state, system%work, err)
     if (allocated(err)) return
     associate (plan => system%plan, state => system%state)
-      equations%free = pack([(i, i=1, size(plan%independent))], .not. plan%driven(plan%independent) .or. held(plan%independent))
+      may_move = .not. plan%driven .or. held
+      ! pairs that stick do not resist impacts
+      if (allocated(system%friction)) may_move(system%friction%held) = .true.
+      equations%free = pack([(i, i=1, size(plan%independent))], may_move(plan%independent))
       n = size(equations%free)
       a = system%work%coefficients
       do i = 1, size(a, 1)
@@ -64,7 +69,7 @@ contains
       end if
       allocate (equations%gap_gradients(n, size(contacts)), equations%rates(size(contacts)), equations%round_off(size(contacts)))
       do i = 1, size(contacts)
-        call rates_by_independent(system, contacts(i)%coordinate, row)
+        call rates_by_independent(plan, system%dynamics, system%work%jacobian, contacts(i)%coordinate, row)
         equations%gap_gradients(:, i) = contacts(i)%direction*row(equations%free)
         speed = sum(abs(row*state%dq(plan%independent)))
         equations%rates(i) = contacts(i)%direction*dot_product(row, state%dq(plan%independent))
@@ -87,20 +92,6 @@ contains
       end do
     end associate
   end subroutine find_contact_equations
-
-  !> The rate of a coordinate per rate of each independent one.
-  pure subroutine rates_by_independent(system, coordinate, row)
-    type(motion_system_type), intent(in) :: system   !< the system, with the columns of its frames
-    integer, intent(in) :: coordinate                !< number of the coordinate
-    real(wp), intent(out) :: row(:)                  !< (independent) the rates
-    integer :: e, s
-
-    row = 0.0_wp
-    s = system%plan%step_of(coordinate)
-    do e = system%dynamics%first(s), system%dynamics%first(s + 1) - 1
-      row(system%dynamics%column(e)) = row(system%dynamics%column(e)) + system%work%jacobian%b(e)
-    end do
-  end subroutine rates_by_independent
 
   !> Find the impulses of an impact. Fails where drives move a coordinate beyond its stop.
   subroutine find_impact(system, contacts, equations, restitution, impulses, rates, err)

@@ -66,7 +66,10 @@ contains
     call contacts%show_pressed(system%state)
     touch = pack([(i, i=1, size(contacts%ends))], [(touches(system, contacts%ends(i)) .or. i == met, i=1, size(contacts%ends))] &
                  .and. contacts%ends%is_rigid)
-    if (size(touch) == 0) return
+    if (size(touch) == 0) then
+      system%state%dq = system%state%dq + of_held
+      return
+    end if
     call settle(system, contacts, touch, err)
     if (allocated(err)) return
     changes = -system%state%dq

@@ -2,7 +2,8 @@
 module mech9_event_failures
   implicit none
   private
-  public :: failure_stop_violated, failure_event_sensitivity, failure_stop_start, failure_singular_contact, last_event_failure
+  public :: failure_stop_violated, failure_event_sensitivity, failure_stop_start, failure_singular_contact, &
+    failure_paradox, failure_shared_sticking, failure_undecided_friction, last_event_failure
 
   !> Drives move or press a coordinate beyond a rigid stop: number (of the stop), coordinates, values (the limit, the rate), name (unit
   !> of the limit), t.
@@ -13,5 +14,13 @@ module mech9_event_failures
   integer, parameter :: failure_stop_start = 1403
   !> The equations of motion are singular where a stop is met: coordinates (without inertia), t.
   integer, parameter :: failure_singular_contact = 1404
-  integer, parameter :: last_event_failure = failure_singular_contact
+  !> While pairs slip, frictions have no solution or several (the paradox of Painleve): coordinates, values (the coefficient of the first
+  !> one, the least one at which this is so), number (1: no solution, 2: several), t.
+  integer, parameter :: failure_paradox = 1405
+  !> A pair sticks whose coordinate depends on several others that stick, so that nothing decides how they share their forces:
+  !> coordinates (the pair, then the others), t.
+  integer, parameter :: failure_shared_sticking = 1406
+  !> It was not found which pairs stick, and which slip: coordinates, t.
+  integer, parameter :: failure_undecided_friction = 1407
+  integer, parameter :: last_event_failure = failure_undecided_friction
 end module mech9_event_failures

@@ -6,7 +6,7 @@ module mech9_event_tolerances
   implicit none
   private
   public :: round_off_of_limit, touching, drawn_behind_stop, round_off_of_impacts, least_rebound, endless_part, most_events, &
-    most_events_at_once
+    most_events_at_once, limit_of_sticking, at_rest, tied, round_off_of_sticking
 
   ! Drives and outputs.
 
@@ -30,6 +30,18 @@ module mech9_event_tolerances
   !> ... and if they would end within this part of the duration of the motion. Their end is worked out; the contact pushes as much
   !> until then as the impacts that are left out.
   real(wp), parameter :: endless_part = 1.0e-6_wp
+  ! Frictions.
+
+  !> Utilization of a friction at which it slips: the bound but for the round-off of reactions.
+  real(wp), parameter :: limit_of_sticking = 1.0_wp + 1.0e-12_wp
+  !> The bound is met at an event where the utilization is so near to it: the time of the event has the error of dense output.
+  real(wp), parameter :: round_off_of_sticking = 1.0e-8_wp
+  !> A pair is at rest below this part of the rates that make up its own: a thousand times their round-off.
+  real(wp), parameter :: at_rest = 1.0e-12_wp
+  !> A coordinate depends on another below this part of what is left of it beside the others, and does not depend on one that moves it
+  !> by less: the square root of the round-off of their mobilities.
+  real(wp), parameter :: tied = 1.0e-8_wp
+
   !> Most events of a motion, and most at one time: more mean that the motion makes no progress.
   integer, parameter :: most_events = 1000000, most_events_at_once = 1000
 end module mech9_event_tolerances

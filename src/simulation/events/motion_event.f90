@@ -1,13 +1,14 @@
-!> Events of a motion that is not smooth: impacts on stops, and stops that close and open.
+!> Events of a motion that is not smooth: impacts on stops, stops that close and open, and pairs that stick and slip.
 module mech9_motion_event
   use mech9_kinds, only: wp
   use mech9_event_tolerances, only: most_events, most_events_at_once
   implicit none
   private
-  public :: motion_event_type, motion_events_type, event_impact, event_close, event_open
+  public :: motion_event_type, motion_events_type, event_impact, event_close, event_open, event_stick, event_slip
 
   !> Kinds of events, as they are written.
-  character(len=*), parameter :: event_impact = 'impact', event_close = 'close ', event_open = 'open  '
+  character(len=*), parameter :: event_impact = 'impact', event_close = 'close ', event_open = 'open  ', &
+    event_stick = 'stick ', event_slip = 'slip  '
 
   !> One event.
   type :: motion_event_type
@@ -23,9 +24,11 @@ module mech9_motion_event
   type :: motion_events_type
     integer :: count = 0                                !< how many there are
     type(motion_event_type), allocatable :: items(:)    !< the events, then room for more; not allocated: there was none yet
+    real(wp), private :: t_met = 0.0_wp                 !< time of the last meeting of contacts and frictions [s]
+    integer, private :: meetings = 0                    !< how many there were before it at this time
   contains
     procedure :: add
-    procedure :: makes_no_progress
+    procedure :: judge_progress
   end type motion_events_type
 
 contains
@@ -52,13 +55,18 @@ contains
     self%items(i) = event
   end subroutine add
 
-  !> Whether there are so many events, or so many at the time of the last one, that the motion makes no progress.
-  pure logical function makes_no_progress(self, before)
-    class(motion_events_type), intent(in) :: self   !< the events
-    integer, intent(in) :: before                   !< how many there were before the last ones
+  !> Judge whether there are so many events, or so many at the present time, that the motion makes no progress. Meetings that change
+  !> nothing count, too.
+  pure subroutine judge_progress(self, before, t, stalls)
+    class(motion_events_type), intent(inout) :: self   !< the events
+    integer, intent(in) :: before                      !< how many there were before the last ones
+    real(wp), intent(in) :: t                          !< the present time [s]
+    logical, intent(out) :: stalls                     !< the motion makes no progress
 
-    makes_no_progress = self%count > most_events
-    if (makes_no_progress .or. self%count == before .or. self%count <= most_events_at_once) return
-    makes_no_progress = .not. abs(self%items(self%count)%t - self%items(self%count - most_events_at_once)%t) > 0.0_wp
-  end function makes_no_progress
+    self%meetings = merge(0, self%meetings + 1, abs(t - self%t_met) > 0.0_wp)
+    self%t_met = t
+    stalls = self%count > most_events .or. self%meetings > most_events_at_once
+    if (stalls .or. self%count == before .or. self%count <= most_events_at_once) return
+    stalls = .not. abs(self%items(self%count)%t - self%items(self%count - most_events_at_once)%t) > 0.0_wp
+  end subroutine judge_progress
 end module mech9_motion_event

@@ -260,6 +260,10 @@ contains
     carried%state%t = state%t
     carried%state%dq = state%dq
     if (allocated(state%pressed)) carried%state%pressed = state%pressed
+    if (allocated(state%friction)) then
+      carried%state%friction = state%friction
+      carried%state%heat = state%heat
+    end if
     if (.not. allocated(state%motor)) return
     carried%state%motor = state%motor
     carried%state%motor_rate = state%motor_rate

@@ -3,7 +3,7 @@ module mech9_integration_failures
   implicit none
   private
   public :: failure_singular_step, failure_unclosed_step, failure_other_branch, failure_drive_jumps, &
-    failure_jump_sensitivity, last_integration_failure
+    failure_jump_sensitivity, failure_no_friction, last_integration_failure
 
   !> A position inside a step is too near to a singular one for the independent coordinates.
   integer, parameter :: failure_singular_step = 1301
@@ -15,5 +15,7 @@ module mech9_integration_failures
   integer, parameter :: failure_drive_jumps = 1304
   !> Rates jump at a joint of laws whose time a parameter sets: name, t.
   integer, parameter :: failure_jump_sensitivity = 1305
-  integer, parameter :: last_integration_failure = failure_jump_sensitivity
+  !> Frictions have no solution, or it was not found: coordinates, t.
+  integer, parameter :: failure_no_friction = 1306
+  integer, parameter :: last_integration_failure = failure_no_friction
 end module mech9_integration_failures

@@ -6,7 +6,7 @@ module mech9_integration_tolerances
   implicit none
   private
   public :: trusted_closing, trusted_between_steps, worthwhile_improvement, short_way, round_off_of_jumps, &
-    steepest_slope
+    steepest_slope, third_derivative_step
 
   ! Closed chains.
 
@@ -35,4 +35,7 @@ module mech9_integration_tolerances
   real(wp), parameter :: round_off_of_jumps = 1.0e-9_wp
   !> Steepest slope between two neighbouring triple zeros, times their distance, against the height: 3.4.
   real(wp), parameter :: steepest_slope = 4.0_wp
+  !> Distance in time of two evaluations whose difference gives third derivatives, over the time that the motion takes for
+  !> 1 rad: the square of this and round-off over it are both the error, about 1e-10.
+  real(wp), parameter :: third_derivative_step = 1.0e-5_wp
 end module mech9_integration_tolerances

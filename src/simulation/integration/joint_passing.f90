@@ -48,11 +48,11 @@ contains
     rates_jump = any(abs(jumps(:, 1))*duration > round_off_of_jumps*system%plan%unit_of)
     of_held = 0.0_wp
     if (maxval(abs(jumps)) > 0.0_wp) then
-      if (allocated(system%held_stops)) then
+      if (allocated(system%held)) then
         call find_impulse(system%model, system%plan, system%dynamics, system%state, system%work, jumps, err, &
-                          system%held_stops%coordinate)
-        do i = 1, size(system%held_stops)
-          of_held(system%held_stops(i)%coordinate) = jumps(system%held_stops(i)%coordinate, 1)
+                          system%held%coordinate)
+        do i = 1, size(system%held)
+          of_held(system%held(i)%coordinate) = jumps(system%held(i)%coordinate, 1)
         end do
       else
         call find_impulse(system%model, system%plan, system%dynamics, system%state, system%work, jumps, err)

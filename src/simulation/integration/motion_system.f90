@@ -31,7 +31,8 @@ module mech9_motion_system
   use mech9_branch_stepping, only: set_inputs
   use mech9_held_angles, only: copy_drives
   use mech9_smooth_interval, only: smooth_interval_type
-  use mech9_stop_forces, only: held_stop_type, find_stop_forces
+  use mech9_stop_forces, only: held_coordinate_type, find_stop_forces
+  use mech9_friction_motion, only: friction_motion_type, begin_frictions, prepare_frictions, find_frictions, find_heat_rates
   use mech9_variable_model, only: variable_model_type
   use mech9_motion_sensitivity, only: motion_sensitivity_type, new_motion_sensitivity
   implicit none
@@ -54,10 +55,12 @@ module mech9_motion_system
     logical, private :: just_projected = .false.
     logical, private :: has_inertia = .false.        !< all free coordinates had inertia in the position with which it was made
     type(smooth_interval_type) :: interval           !< in which the present steps lie
-    type(held_stop_type), allocatable :: held_stops(:)          !< rigid stops that hold their coordinates; not allocated: none
+    type(held_coordinate_type), allocatable :: held(:)          !< coordinates that stops or friction hold; not allocated: none
+    type(friction_motion_type), allocatable :: friction         !< frictions of pairs; not allocated: there are none
     type(motion_sensitivity_type), allocatable :: sensitivity   !< derivatives by parameters, where they are integrated, too
   contains
     procedure :: make_room
+    procedure :: hand_on_modes
     procedure :: size_of_vector
     procedure :: size_of_motion
     procedure :: count_varied
@@ -110,6 +113,11 @@ contains
     call make_work(system%plan, system%dynamics, system%work)
     call place_motors(system, err)
     if (allocated(err)) return
+    if (model%mechanism%has_frictions()) then
+      if (.not. allocated(system%friction)) allocate (system%friction)
+      call begin_frictions(model%mechanism, system%state, system%friction)
+      call prepare_frictions(model%mechanism, system%plan, system%state, system%friction)
+    end if
     call system%interval%begin(model, system%state%t)
     ! reports show the coefficients of the start; articulated bodies do without
     if (system%dynamics%articulated) &
@@ -142,12 +150,22 @@ contains
 
   !> Rates and accelerations by the equations of motion. A coordinate without inertia is a fault of the data only in the position
   !> with which the system was made; in later ones it is a failure of the integration, which a smaller step may avoid.
-  subroutine accelerate(self, err)
+  subroutine accelerate(self, err, with_sticking)
     class(motion_system_type), intent(inout) :: self    !< the motion system, with placed frames and independent rates
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    logical, intent(in), optional :: with_sticking      !< frictions of pairs that stick are found, too; not unless given
     integer :: k
+    logical :: rubs
 
-    call find_motion(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, err)
+    rubs = .false.
+    if (allocated(self%friction)) rubs = present(with_sticking) .or. self%friction%modes%any_slips() .or. &
+                                         any(self%model%mechanism%frictions%is_smooth)
+    if (rubs) then
+      call find_frictions(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, self%friction, err)
+    else
+      if (allocated(self%friction)) self%state%friction = 0.0_wp
+      call find_motion(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, err)
+    end if
     if (.not. (allocated(err) .and. self%has_inertia)) return
     if (.not. allocated(err%failure)) return
     if (err%failure%kind /= failure_no_inertia) return
@@ -170,6 +188,19 @@ contains
     call start_motors(self%model%mechanism, self%state)
     call find_limits(self%model%mechanism, self%state, err)
   end subroutine place_motors
+
+  !> Let another system hold the same coordinates, and let its frictions act in the same way.
+  subroutine hand_on_modes(self, other)
+    class(motion_system_type), intent(in) :: self        !< the present system
+    class(motion_system_type), intent(inout) :: other    !< the other one, before it is set
+
+    if (allocated(self%held)) other%held = self%held
+    if (.not. allocated(self%friction)) return
+    allocate (other%friction)
+    other%friction%modes = self%friction%modes
+    other%friction%held = self%friction%held
+    other%friction%wrenches%unique = self%friction%wrenches%unique
+  end subroutine hand_on_modes
 
   !> Length of the vector that is integrated.
   pure integer function size_of_vector(self)
@@ -425,11 +456,12 @@ contains
     class(motion_system_type), intent(inout) :: self    !< the motion system
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call accelerate(self, err)
+    call accelerate(self, err, with_sticking=.true.)
     if (allocated(err)) return
     call complete_accelerations(self%plan, self%dynamics, self%work, self%state)
-    if (allocated(self%held_stops)) &
-      call find_stop_forces(self%model%mechanism, self%plan, self%dynamics, self%held_stops, self%state, self%work, err)
+    if (allocated(self%friction)) call find_heat_rates(self%model%mechanism, self%state, self%friction)
+    if (allocated(self%held)) &
+      call find_stop_forces(self%model%mechanism, self%plan, self%dynamics, self%held, self%state, self%work, err)
     if (.not. allocated(err)) call find_motor_rates(self%model%mechanism, self%state, err)
     if (.not. allocated(err)) call show_state(self%plan, self%dynamics, self%state, self%work%view)
     if (allocated(self%sensitivity) .and. .not. allocated(err)) call vary_accelerations(self, err)

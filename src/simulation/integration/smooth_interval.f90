@@ -1,4 +1,5 @@
-!> The interval of time in which the laws of a motion are smooth, its motors work as they do now, and its stops stay closed or open.
+!> The interval of time in which the laws of a motion are smooth, its motors work as they do now, its stops stay closed or open, and its
+!> pairs stick or slip.
 !>
 !> Laws of time have joints, where their derivatives may jump, the forces of motors have kinks at their limits, and rates jump at
 !> stops. Steps of the integration end there, so that no step contains such a place.
@@ -19,6 +20,7 @@ module mech9_smooth_interval
     logical :: laws_end = .false.      !< a law of time has a joint
     real(wp) :: joint = 0.0_wp    !< the next joint of the laws of time; the largest number, with the direction's sign, if none comes [s]
     integer :: contact = 0        !< number of the end of a stop that is met or left at the end; 0: none is
+    integer :: friction = 0       !< number of the friction whose pair comes to rest or begins to slip at the end; 0: none does
   contains
     procedure :: begin
     procedure :: time_inside
@@ -102,17 +104,19 @@ contains
     is_before_end = 0.5_wp*(from_inside(t, direction) - t)*direction <= (self%ahead - t)*direction
   end function is_before_end
 
-  !> End the interval where a motor passes its limit, or an end of a stop is met or left.
-  pure subroutine end_at_event(self, t, motor, contact)
+  !> End the interval where a motor passes its limit, an end of a stop is met or left, or friction changes.
+  pure subroutine end_at_event(self, t, motor, contact, friction)
     class(smooth_interval_type), intent(inout) :: self   !< the interval
     real(wp), intent(in) :: t                            !< time of the event, ahead [s]
     integer, intent(in) :: motor                         !< number of the motor; 0: none
     integer, intent(in) :: contact                       !< number of the end; 0: none
+    integer, intent(in) :: friction                      !< number of the friction; 0: none
 
     self%ends = .true.
     self%ahead = t
     self%motor = motor
     self%contact = contact
+    self%friction = friction
   end subroutine end_at_event
 
   !> Whether a joint of the laws lies at a time.
@@ -131,5 +135,6 @@ contains
     self%ahead = self%joint
     self%motor = 0
     self%contact = 0
+    self%friction = 0
   end subroutine forget_event
 end module mech9_smooth_interval

@@ -1,4 +1,4 @@
-!> The forces of rigid stops that hold their coordinates like drives.
+!> Coordinates that rigid stops and sticking pairs hold like drives, and the forces of these stops.
 module mech9_stop_forces
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -9,14 +9,14 @@ module mech9_stop_forces
   use mech9_lagrange, only: find_equations, complete_accelerations
   implicit none
   private
-  public :: held_stop_type, find_stop_forces
+  public :: held_coordinate_type, find_stop_forces
 
-  !> A rigid stop that holds its coordinate.
-  type :: held_stop_type
-    integer :: stop = 0                  !< its number
+  !> A coordinate that a rigid stop or friction holds.
+  type :: held_coordinate_type
+    integer :: stop = 0                  !< number of the stop; 0: friction holds it
     integer :: coordinate = 0            !< number of the coordinate, which is driven
     real(wp) :: size_of_terms = 0.0_wp   !< sum of the terms of its force, by which round-off is judged [N m, N]
-  end type held_stop_type
+  end type held_coordinate_type
 
 contains
 
@@ -25,7 +25,7 @@ contains
     type(mechanism_type), intent(in) :: mechanism         !< the mechanism
     type(plan_type), intent(in) :: plan                   !< its plan
     type(dynamics_plan_type), intent(in) :: dynamics      !< its plan of dynamics
-    type(held_stop_type), intent(inout) :: held(:)        !< the stops; get the size of terms
+    type(held_coordinate_type), intent(inout) :: held(:)        !< the coordinates; get the size of terms
     type(state_type), intent(inout) :: state              !< the state, with all accelerations; gets the forces
     type(lagrange_work_type), intent(inout) :: work       !< with the accelerations of the independent coordinates
     type(error_type), allocatable, intent(out) :: err     !< allocated if a load fails
@@ -41,6 +41,7 @@ contains
       call complete_accelerations(plan, dynamics, work, state)
     end if
     do i = 1, size(held)
+      if (held(i)%stop == 0) cycle
       p = dynamics%place_of(held(i)%coordinate)
       do j = 1, size(plan%independent)
         terms(j) = work%coefficients(max(p, j), min(p, j))*work%accelerations(j)

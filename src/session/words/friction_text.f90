@@ -1,0 +1,66 @@
+!> Frictions in a check and in reports.
+module mech9_friction_text
+  use mech9_text, only: to_text
+  use mech9_counted, only: counted
+  use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: force_unit_name
+  use mech9_driven_frictions, only: rest_range_type
+  implicit none
+  private
+  public :: print_frictions, print_rest, print_left_out
+
+contains
+
+  !> Print all frictions; nothing where there are none.
+  subroutine print_frictions(unit, mechanism)
+    integer, intent(in) :: unit                        !< the output unit
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    character(len=:), allocatable :: words
+    integer :: i
+
+    if (.not. mechanism%has_frictions()) return
+    write (unit, '(a)') 'frictions:'
+    do i = 1, size(mechanism%frictions)
+      associate (friction => mechanism%frictions(i))
+        words = 'friction '//to_text(i)//': coordinate '//to_text(friction%coordinate)//' '
+        if (friction%is_helical()) then
+          words = words//'on a thread of the mean radius '//to_text(friction%radius, 4)//' m; from the coefficient '// &
+                  to_text(abs(friction%lead)/friction%radius, 6)//' on it holds a force along its axis by itself'
+        else if (friction%turns) then
+          words = words//'turns in a bearing of the radius '//to_text(friction%radius, 4)//' m'
+          if (friction%face_radius > 0.0) words = words//', on a face of the mean radius '//to_text(friction%face_radius, 4)//' m'
+        else
+          words = words//'slides'
+          if (friction%arm > 0.0) words = words//' in a guide of the half length '//to_text(friction%arm, 4)//' m'
+        end if
+        words = words//'; coefficients '//to_text(friction%static, 4)//' at rest, '//to_text(friction%dynamic, 4)//' in motion'
+        if (friction%is_smooth) words = words//', smooth'
+        write (unit, '(2x,a)') words
+      end associate
+    end do
+  end subroutine print_frictions
+
+  !> Print at how many outputs of a driven motion friction counts as zero, and the range of the drive's force at the first one.
+  subroutine print_rest(unit, mechanism, rest)
+    integer, intent(in) :: unit                        !< the output unit
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(rest_range_type), intent(in) :: rest          !< outputs at rest
+    character(len=:), allocatable :: words
+
+    if (rest%outputs == 0) return
+    words = 'pairs are at rest at '//counted(rest%outputs, 'output')//', where their friction counts as 0'
+    if (rest%coordinate > 0) words = words//'; at t = '//to_text(rest%t, 8)//' s the force of drive '//to_text(rest%coordinate)// &
+                                     ' lies between '//to_text(rest%force(1), 6)//' and '//to_text(rest%force(2), 6)//' '// &
+                                     trim(force_unit_name(mechanism, rest%coordinate))
+    write (unit, '(a)') words
+  end subroutine print_rest
+
+  !> Say that frictions do not count in an equilibrium; nothing where there are none.
+  subroutine print_left_out(unit, mechanism)
+    integer, intent(in) :: unit                        !< the output unit
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+
+    if (mechanism%has_frictions()) write (unit, '(a)') &
+      'friction counts as 0: with it, the mechanism may rest in other positions near an equilibrium, too'
+  end subroutine print_left_out
+end module mech9_friction_text

@@ -1,0 +1,196 @@
+!> Frictions in a driven motion: by the reactions that they cause, in the directions of the rates.
+!>
+!> At rest a friction counts as zero: the drives could have any force in a range, which is found where all coordinates go with one drive.
+module mech9_driven_frictions
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, add_place, exit_singular
+  use mech9_integration_failures, only: failure_no_friction
+  use mech9_simulation_failures, only: failure_self_locking
+  use mech9_friction, only: friction_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_reaction_plan, only: is_made_for
+  use mech9_friction_wrenches, only: friction_wrenches_type, prepare_friction_wrenches
+  use mech9_friction_balance, only: friction_balance_type, friction_modes_type, new_friction_balance
+  implicit none
+  private
+  public :: driven_frictions_type, rest_range_type
+
+  !> The first output at which pairs with friction are at rest, and how many there are.
+  type :: rest_range_type
+    integer :: outputs = 0                   !< at which any pair with friction is at rest
+    real(wp) :: t = 0.0_wp                   !< time of the first one [s]
+    integer :: coordinate = 0                !< the coordinate of the only drive; 0: there are several, or the range is not known
+    real(wp) :: force(2) = 0.0_wp            !< least and greatest force of this drive there [N m, N]
+  end type rest_range_type
+
+  !> The frictions of a driven motion.
+  type :: driven_frictions_type
+    type(friction_wrenches_type), private :: wrenches
+    type(friction_balance_type), private :: balance
+    type(rest_range_type) :: rest
+  contains
+    procedure :: find
+    procedure, private :: find_rest_range
+  end type driven_frictions_type
+
+  !> A pair is at rest below this part of the rate by which rest is judged: a thousand times round-off.
+  real(wp), parameter :: at_rest = 1.0e-12_wp
+
+contains
+
+  !> Find the frictions in a state whose frames have their accelerations. Fails where no drive force moves the mechanism this way.
+  subroutine find(self, mechanism, plan, state, err)
+    class(driven_frictions_type), intent(inout) :: self   !< the frictions
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< its plan, with all blocks
+    type(state_type), intent(inout) :: state              !< the state; gets the frictions
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    type(friction_modes_type) :: modes
+    real(wp) :: fastest
+    integer :: i
+    logical :: solved, unique, prepared
+
+    associate (frictions => mechanism%frictions, balance => self%balance)
+      prepared = allocated(self%wrenches%plan)
+      if (prepared) prepared = is_made_for(self%wrenches%plan, plan)
+      if (.not. prepared) then
+        call prepare_friction_wrenches(mechanism, plan, state, self%wrenches)
+        self%balance = new_friction_balance(size(frictions))
+      end if
+      allocate (modes%group(size(frictions)), source=0)
+      allocate (modes%direction(size(frictions)), source=0.0_wp)
+      allocate (modes%leader(0))
+      fastest = fastest_rate(plan, state)
+      do i = 1, size(frictions)
+        associate (rate => state%dq(frictions(i)%coordinate))
+          if (abs(rate)/plan%unit_of(frictions(i)%coordinate) > at_rest*fastest) modes%direction(i) = sign(1.0_wp, rate)
+          if (frictions(i)%is_smooth) modes%direction(i) = tanh(rate/frictions(i)%transition)
+        end associate
+      end do
+      call find_balance(self, mechanism, plan, state, err)
+      if (allocated(err)) return
+      if (any(.not. (abs(modes%direction) > 0.0_wp .or. frictions%is_smooth))) then
+        if (self%rest%outputs == 0) call self%find_rest_range(mechanism, plan, state, err)
+        if (allocated(err)) return
+        self%rest%outputs = self%rest%outputs + 1
+      end if
+      call balance%solve(frictions, modes, solved)
+      if (solved) call balance%find_least_determinant(frictions, modes)
+      unique = solved
+      if (solved) unique = balance%least_determinant > 0.0_wp
+      if (unique) then
+        state%friction = balance%force
+      else
+        call fail(self, frictions, modes, plan, state, solved, err)
+      end if
+    end associate
+  end subroutine find
+
+  !> The rate by which rest is judged: the largest one of all coordinates in their units, or what their accelerations give in the time in
+  !> which they move by their units [1/s].
+  pure real(wp) function fastest_rate(plan, state)
+    type(plan_type), intent(in) :: plan      !< the plan
+    type(state_type), intent(in) :: state    !< the state
+
+    fastest_rate = max(maxval(abs(state%dq)/plan%unit_of), sqrt(maxval(abs(state%ddq)/plan%unit_of)))
+  end function fastest_rate
+
+  !> Find the equations of the frictions: wrenches without them, and by a unit of each.
+  subroutine find_balance(self, mechanism, plan, state, err)
+    class(driven_frictions_type), intent(inout) :: self   !< gets the equations
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< its plan, with all blocks
+    type(state_type), intent(inout) :: state              !< the state; its frictions are zero afterwards
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    real(wp) :: probes(size(mechanism%frictions))
+    integer :: j
+
+    associate (frictions => mechanism%frictions, balance => self%balance)
+      if (.not. allocated(state%friction)) allocate (state%friction(size(frictions)))
+      state%friction = 0.0_wp
+      call self%wrenches%find(mechanism, plan, state, balance%wrenches, err)
+      if (allocated(err)) return
+      probes = [(self%wrenches%probe(frictions(j), balance%wrenches(:, j)), j=1, size(frictions))]
+      do j = 1, size(frictions)
+        state%friction(j) = probes(j)
+        call self%wrenches%find(mechanism, plan, state, balance%by_force(:, :, j), err)
+        if (allocated(err)) return
+        balance%by_force(:, :, j) = (balance%by_force(:, :, j) - balance%wrenches)/probes(j)
+        state%friction(j) = 0.0_wp
+      end do
+    end associate
+  end subroutine find_balance
+
+  !> Find the range of the force of the only drive at rest. All coordinates go with the drive, so that their accelerations show how.
+  subroutine find_rest_range(self, mechanism, plan, state, err)
+    class(driven_frictions_type), intent(inout) :: self   !< with the equations; gets the range
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< its plan
+    type(state_type), intent(inout) :: state              !< the state; its frictions are zero afterwards
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    type(friction_modes_type) :: modes
+    type(friction_type) :: at_bound(size(mechanism%frictions))
+    real(wp) :: needed(2)
+    integer :: i, side
+    logical :: solved
+
+    self%rest%t = state%t
+    if (size(plan%independent) /= 1) return
+    associate (frictions => mechanism%frictions, drive => plan%independent(1))
+      if (any(abs(state%dq)/plan%unit_of > at_rest*fastest_rate(plan, state))) return
+      at_bound = frictions
+      at_bound%dynamic = frictions%static
+      allocate (modes%group(size(frictions)), source=0)
+      allocate (modes%direction(size(frictions)), source=0.0_wp)
+      allocate (modes%leader(0))
+      do side = 1, 2
+        do i = 1, size(frictions)
+          associate (slope => state%ddq(frictions(i)%coordinate)*sign(1.0_wp, state%ddq(drive)))
+            if (abs(slope) > 0.0_wp .and. .not. frictions(i)%is_smooth) modes%direction(i) = (2*side - 3)*sign(1.0_wp, slope)
+          end associate
+        end do
+        call self%balance%solve(at_bound, modes, solved)
+        if (.not. solved) return
+        state%friction = self%balance%force
+        call self%wrenches%find(mechanism, plan, state, self%balance%wrenches, err)
+        if (allocated(err)) return
+        needed(side) = self%wrenches%reactions%needed(drive)
+        state%friction = 0.0_wp
+        call self%wrenches%find(mechanism, plan, state, self%balance%wrenches, err)
+        if (allocated(err)) return
+      end do
+      self%rest%coordinate = drive
+      self%rest%force = [minval(needed), maxval(needed)]
+    end associate
+  end subroutine find_rest_range
+
+  !> Fail because the frictions lock the mechanism against its drives, or because they are not found.
+  subroutine fail(self, frictions, modes, plan, state, solved, err)
+    class(driven_frictions_type), intent(inout) :: self   !< with the equations
+    type(friction_type), intent(in) :: frictions(:)       !< the frictions
+    type(friction_modes_type), intent(in) :: modes        !< how they act
+    type(plan_type), intent(in) :: plan                   !< the plan
+    type(state_type), intent(in) :: state                 !< the state
+    logical, intent(in) :: solved                         !< there are forces that move it this way
+    type(error_type), allocatable, intent(out) :: err     !< the failure
+    integer :: k, worst
+
+    call self%balance%find_least_determinant(frictions, modes)
+    if (self%balance%least_determinant > 0.0_wp) then
+      call raise(err, exit_singular, failure_no_friction)
+      err%failure%coordinates = pack(frictions%coordinate, abs(modes%direction) > 0.0_wp)
+    else
+      k = plan%independent(maxloc(abs(state%dq(plan%independent))/plan%unit_of(plan%independent), dim=1))
+      worst = self%balance%steepest(frictions, modes)
+      call raise(err, exit_singular, failure_self_locking)
+      err%failure%coordinates = [frictions(worst)%coordinate, k]
+      err%failure%values = reshape(frictions(worst)%dynamic*[1.0_wp, self%balance%least_factor(frictions, modes)], [1, 2])
+      err%failure%number = nint(sign(1.0_wp, state%dq(k)))
+      err%failure%limit = merge(2, 1, solved)
+      call add_place(err, place=frictions(worst)%place)
+    end if
+    err%failure%t = state%t
+  end subroutine fail
+end module mech9_driven_frictions

@@ -1,0 +1,140 @@
+!> The search for the time within the last step at which a value passes zero, on the motion itself.
+module mech9_event_search
+  use mech9_kinds, only: wp
+  use mech9_event_tolerances, only: round_off_of_impacts, limit_of_sticking, at_rest
+  use mech9_simulation_tolerances, only: round_off_of_gaps
+  use mech9_error, only: error_type
+  use mech9_limit_watch, only: find_excess
+  use mech9_integrated_motion, only: integrated_motion_type
+  implicit none
+  private
+  public :: locate, value_at, of_motor, of_contact, of_rate, of_friction, of_paradox
+
+  !> Values that are zero at a time that is searched: the excess of a motor, the passing of an end of a stop, the rate of its coordinate,
+  !> how far a pair with friction is beyond its present mode, and minus the determinant of frictions.
+  integer, parameter :: of_motor = 1, of_contact = 2, of_rate = 3, of_friction = 4, of_paradox = 5
+  !> Trials of the search for a time.
+  integer, parameter :: most_trials = 100
+
+  !> Times within a step that is shorter than this, in parts of the round-off of time, are its end: round-off hides what is between.
+  real(wp), parameter :: shortest = 1000.0_wp
+
+contains
+
+  !> Find the time at which a value passes zero upward, by false position with halved values (Illinois) on the motion within the step.
+  subroutine locate(motion, what, i, from, t, passed, err)
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
+    integer, intent(in) :: what                             !< the value: one of the constants above; negative: minus it
+    integer, intent(in) :: i                                !< number of the motor, of the end of a stop, or of the friction
+    real(wp), intent(in) :: from                            !< a time before the passing [s]
+    real(wp), intent(inout) :: t                            !< a time behind it; then the time of the passing [s]
+    logical, intent(out) :: passed                          !< the value there is above zero
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp) :: a, b, value_a, value_b, value
+    integer :: trial, side
+
+    a = from
+    b = t
+    call value_at(motion, what, i, b, value_b, err)
+    passed = value_b > 0.0_wp
+    if (.not. passed .or. allocated(err)) return
+    call value_at(motion, what, i, a, value_a, err)
+    if (allocated(err)) return
+    t = a
+    side = 0
+    do trial = 1, most_trials
+      if (value_a >= 0.0_wp .or. abs(b - a) <= 4.0_wp*spacing(b)) exit
+      t = b - value_b*(b - a)/(value_b - value_a)
+      if (.not. (t - a)*(b - t) > 0.0_wp) exit
+      call value_at(motion, what, i, t, value, err)
+      if (allocated(err) .or. abs(value) <= epsilon(value)) return
+      if (value > 0.0_wp) then
+        b = t
+        value_b = value
+        if (side > 0) value_a = 0.5_wp*value_a
+        side = 1
+      else
+        a = t
+        value_a = value
+        if (side < 0) value_b = 0.5_wp*value_b
+        side = -1
+      end if
+    end do
+  end subroutine locate
+
+  !> A value at a time within the last step. Where the motion there cannot be found, it is that of the end of the step.
+  subroutine value_at(motion, what, i, t, value, err)
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
+    integer, intent(in) :: what                             !< the value: one of the constants above; negative: minus it
+    integer, intent(in) :: i                                !< number of the motor, of the end of a stop, or of the friction
+    real(wp), intent(in) :: t                               !< time within the last step [s]
+    real(wp), intent(out) :: value                          !< of a motor in parts of its limit
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp) :: from, y(size(motion%y))
+    logical :: found
+
+    call motion%dense_output%start_of_step(from, y)
+    found = .false.
+    if (.not. abs(t - from) > 0.0_wp) then
+      call motion%system%move_to(from, y, err)
+      found = .true.
+    else if (abs(t - motion%t) > 0.0_wp .and. abs(motion%t - from) > shortest*spacing(t)) then
+      call motion%look_between(t, found)
+    end if
+    if (.not. found) call motion%system%move_to(motion%t, motion%y, err)
+    if (allocated(err)) return
+    select case (abs(what))
+    case (of_motor)
+      call find_excess(motion%system, i, value, err)
+    case (of_contact)
+      value = passing_of_contact(motion, i)
+    case (of_friction)
+      value = passing_of_friction(motion, i)
+    case (of_paradox)
+      call motion%system%friction%balance%find_least_determinant(motion%system%model%mechanism%frictions, &
+                                                                 motion%system%friction%modes)
+      value = -motion%system%friction%balance%least_determinant
+    case default
+      value = motion%system%state%dq(motion%contacts%ends(i)%coordinate)
+    end select
+    if (what < 0) value = -value
+  end subroutine value_at
+
+  !> How far a contact has passed, in the state of the system: above zero where it should be met, left or released.
+  pure real(wp) function passing_of_contact(motion, i) result(value)
+    type(integrated_motion_type), intent(in) :: motion   !< the motion
+    integer, intent(in) :: i                             !< number of the end
+    integer :: j
+
+    associate (end => motion%contacts%ends(i), system => motion%system)
+      if (end%held) then
+        value = -end%direction*system%state%stop_force(end%stop)
+        do j = 1, size(system%held)
+          if (system%held(j)%stop == end%stop) value = value - round_off_of_impacts*system%held(j)%size_of_terms
+        end do
+      else
+        value = -end%gap(system%state%q(end%coordinate))
+        if (end%closed) value = -value
+        if (end%is_rigid) value = value - round_off_of_gaps*max(system%plan%unit_of(end%coordinate), abs(end%limit))
+      end if
+    end associate
+  end function passing_of_contact
+
+  !> How far a pair with friction is beyond its present mode, in the state of the system: above zero where it should act otherwise.
+  pure real(wp) function passing_of_friction(motion, i) result(value)
+    type(integrated_motion_type), intent(in) :: motion   !< the motion
+    integer, intent(in) :: i                             !< number of the friction
+
+    associate (system => motion%system, friction => motion%system%friction)
+      associate (rate => system%state%dq(system%model%mechanism%frictions(i)%coordinate))
+        if (friction%modes%slips(i)) then
+          value = -friction%modes%direction(i)*rate
+        else if (friction%modes%group(i) > 0) then
+          value = abs(friction%balance%utilization(i)) - limit_of_sticking
+        else
+          value = abs(rate) - 2.0_wp*at_rest*sum(abs(friction%rows(:, i)*system%state%dq(system%plan%independent)))
+        end if
+      end associate
+    end associate
+  end function passing_of_friction
+end module mech9_event_search

@@ -1,0 +1,210 @@
+!> Frictions in the equations of motion: their forces by Coulomb's law, with the reactions that they and the accelerations cause.
+!>
+!> The accelerations and the wrenches of the pairs are linear in the forces. Those without frictions and those by a unit of each friction
+!> make the equations of mech9_friction_balance; their solution gives the accelerations, without another evaluation.
+module mech9_friction_motion
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_integrator, exit_data
+  use mech9_dynamics_failures, only: failure_no_inertia
+  use mech9_integration_failures, only: failure_no_friction
+  use mech9_cholesky, only: cholesky_factorize, cholesky_solve
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
+  use mech9_jacobian, only: rates_by_independent
+  use mech9_lagrange, only: find_equations, complete_accelerations
+  use mech9_friction_wrenches, only: friction_wrenches_type, prepare_friction_wrenches
+  use mech9_friction_balance, only: friction_balance_type, friction_modes_type, new_friction_balance
+  implicit none
+  private
+  public :: friction_motion_type, begin_frictions, prepare_frictions, find_friction_balance, find_frictions, find_heat_rates
+
+  !> The frictions of a motion in its present coordinates.
+  type :: friction_motion_type
+    type(friction_modes_type) :: modes                 !< how they act
+    integer, allocatable :: held(:)                    !< coordinates that drives hold in place of sticking pairs
+    type(friction_wrenches_type) :: wrenches
+    type(friction_balance_type) :: balance
+    logical, allocatable :: moves(:)                   !< (independent) no drive but those of sticking pairs moves the coordinate
+    real(wp), allocatable :: rows(:, :)                !< (independent,frictions) rates of their coordinates by those of the independent ones
+    real(wp), allocatable :: accelerations(:)          !< (independent) without frictions [rad/s^2, m/s^2]
+    real(wp), allocatable :: by_force(:, :)            !< (independent,frictions) accelerations by the forces
+    real(wp), allocatable :: heat_rate(:)              !< (frictions) power that they take [W]
+  end type friction_motion_type
+
+contains
+
+  !> Begin the frictions of a motion: none acts yet, and none has taken energy.
+  pure subroutine begin_frictions(mechanism, state, self)
+    type(mechanism_type), intent(in) :: mechanism                  !< the mechanism
+    type(state_type), intent(inout) :: state                       !< gets frictions and energies
+    type(friction_motion_type), intent(inout) :: self              !< the frictions
+
+    associate (n => size(mechanism%frictions))
+      if (.not. allocated(self%modes%group)) then
+        allocate (self%modes%group(n), source=0)
+        allocate (self%modes%direction(n), source=0.0_wp)
+        allocate (self%modes%leader(0), self%held(0))
+      end if
+      if (allocated(state%friction)) return
+      allocate (state%friction(n), state%heat(n), source=0.0_wp)
+    end associate
+  end subroutine begin_frictions
+
+  !> Prepare the frictions in a plan.
+  subroutine prepare_frictions(mechanism, plan, state, self)
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(plan_type), intent(in) :: plan                    !< its plan, with all blocks
+    type(state_type), intent(in) :: state                  !< an assembled position
+    type(friction_motion_type), intent(inout) :: self      !< the frictions, with modes
+
+    associate (n => size(mechanism%frictions), m => size(plan%independent))
+      call prepare_friction_wrenches(mechanism, plan, state, self%wrenches)
+      self%balance = new_friction_balance(n)
+      self%balance%force = state%friction
+      if (allocated(self%rows)) deallocate (self%rows, self%accelerations, self%by_force, self%heat_rate)
+      allocate (self%rows(m, n), self%accelerations(m), self%by_force(m, n), self%heat_rate(n), source=0.0_wp)
+    end associate
+  end subroutine prepare_frictions
+
+  !> Find the equations of the frictions in a state with placed frames and independent rates. The frictions of the state and
+  !> work%accelerations are those of the last trial afterwards.
+  subroutine find_friction_balance(mechanism, plan, dynamics, state, work, self, err)
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< its plan
+    type(dynamics_plan_type), intent(in) :: dynamics      !< its plan of dynamics
+    type(state_type), intent(inout) :: state              !< the state; gets rates, and accelerations that rates alone give
+    type(lagrange_work_type), intent(inout) :: work       !< scratch; gets the equations of motion without frictions
+    type(friction_motion_type), intent(inout) :: self     !< gets the equations
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    real(wp) :: by_rates(size(state%ddq)), factors(size(plan%independent), size(plan%independent))
+    real(wp) :: probes(size(mechanism%frictions))
+    integer :: i, j, n, failed_at
+    integer, allocatable :: free(:)
+
+    state%friction = 0.0_wp
+    call find_equations(mechanism, plan, dynamics, state, work, err)
+    if (allocated(err)) return
+    by_rates = state%ddq
+    self%moves = .not. plan%driven(plan%independent)
+    do i = 1, size(self%held)
+      if (dynamics%place_of(self%held(i)) > 0) self%moves(dynamics%place_of(self%held(i))) = .true.
+    end do
+    free = pack([(i, i=1, size(plan%independent))], self%moves)
+    n = size(free)
+    do j = 1, n
+      do i = 1, j
+        factors(j, i) = work%coefficients(max(free(i), free(j)), min(free(i), free(j)))
+        factors(i, j) = factors(j, i)
+      end do
+    end do
+    call factorize(factors(:n, :n), failed_at)
+    if (failed_at > 0) then
+      call raise(err, exit_data, failure_no_inertia)
+      err%failure%coordinates = [plan%independent(free(failed_at))]
+      return
+    end if
+    self%accelerations = 0.0_wp
+    self%accelerations(free) = work%forces(free) - work%velocity_terms(free)
+    call solve(self%accelerations)
+    do i = 1, size(mechanism%frictions)
+      call rates_by_independent(plan, dynamics, work%jacobian, mechanism%frictions(i)%coordinate, self%rows(:, i))
+      self%by_force(:, i) = 0.0_wp
+      self%by_force(free, i) = self%rows(free, i)
+      call solve(self%by_force(:, i))
+    end do
+    associate (balance => self%balance, frictions => mechanism%frictions)
+      work%accelerations = self%accelerations
+      call find_wrenches(balance%wrenches, err)
+      if (allocated(err)) return
+      balance%accelerations = state%ddq(frictions%coordinate)
+      probes = [(max(abs(balance%force(j)), self%wrenches%probe(frictions(j), balance%wrenches(:, j))), j=1, size(frictions))]
+      do j = 1, size(frictions)
+        balance%mobility(:, j) = [(dot_product(self%rows(:, i), self%by_force(:, j)), i=1, size(frictions))]
+        balance%by_force(:, :, j) = 0.0_wp
+        if (.not. frictions(j)%is_smooth .and. self%modes%group(j) == 0 .and. .not. abs(self%modes%direction(j)) > 0.0_wp) cycle
+        state%friction(j) = probes(j)
+        work%accelerations = self%accelerations + probes(j)*self%by_force(:, j)
+        call find_wrenches(balance%by_force(:, :, j), err)
+        if (allocated(err)) return
+        balance%by_force(:, :, j) = (balance%by_force(:, :, j) - balance%wrenches)/probes(j)
+        state%friction(j) = 0.0_wp
+      end do
+    end associate
+    state%ddq = by_rates
+  contains
+    !> Factorize the coefficients of the coordinates that move.
+    pure subroutine factorize(matrix, failed_at)
+      real(wp), intent(inout), contiguous :: matrix(:, :)   !< the coefficients; then their factors
+      integer, intent(out) :: failed_at                     !< place of one without inertia; 0: all have inertia
+
+      call cholesky_factorize(n, matrix, failed_at)
+    end subroutine factorize
+
+    !> Turn forces on the coordinates that move into accelerations.
+    subroutine solve(values)
+      real(wp), intent(inout) :: values(:)   !< (independent) forces; then accelerations
+      real(wp) :: right(n), matrix(n, n)
+
+      if (n == 0) return
+      right = values(free)
+      matrix = factors(:n, :n)
+      call cholesky_solve(n, matrix, right)
+      values(free) = right
+    end subroutine solve
+
+    !> Find the wrenches under the present frictions and accelerations of the independent coordinates.
+    subroutine find_wrenches(wrenches, err)
+      real(wp), intent(out) :: wrenches(:, :)               !< (6,frictions) the wrenches
+      type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+
+      state%ddq = by_rates
+      call complete_accelerations(plan, dynamics, work, state)
+      call self%wrenches%find(mechanism, plan, state, wrenches, err)
+    end subroutine find_wrenches
+  end subroutine find_friction_balance
+
+  !> Find rates and accelerations under frictions, as find_motion does without them. Fails where the forces do not exist.
+  subroutine find_frictions(mechanism, plan, dynamics, state, work, self, err)
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< its plan
+    type(dynamics_plan_type), intent(in) :: dynamics      !< its plan of dynamics
+    type(state_type), intent(inout) :: state              !< the state, with placed frames and independent rates; gets the frictions
+    type(lagrange_work_type), intent(inout) :: work       !< scratch; gets `accelerations`, and `forces` with frictions
+    type(friction_motion_type), intent(inout) :: self     !< the frictions, with their modes
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    integer :: i
+    logical :: solved
+
+    call find_friction_balance(mechanism, plan, dynamics, state, work, self, err)
+    if (allocated(err)) return
+    do i = 1, size(mechanism%frictions)
+      associate (friction => mechanism%frictions(i))
+        if (friction%is_smooth) self%modes%direction(i) = tanh(state%dq(friction%coordinate)/friction%transition)
+      end associate
+    end do
+    call self%balance%solve(mechanism%frictions, self%modes, solved)
+    if (.not. solved) then
+      call raise(err, exit_integrator, failure_no_friction)
+      err%failure%coordinates = pack(mechanism%frictions%coordinate, [(self%modes%slips(i), i=1, size(mechanism%frictions))])
+      err%failure%t = state%t
+      return
+    end if
+    state%friction = self%balance%force
+    work%accelerations = self%accelerations + matmul(self%by_force, state%friction)
+    work%forces = work%forces + matmul(self%rows, state%friction)
+    do i = 1, size(self%held)
+      if (dynamics%place_of(self%held(i)) > 0) work%accelerations(dynamics%place_of(self%held(i))) = 0.0_wp
+    end do
+  end subroutine find_frictions
+
+  !> Find the power that each friction takes, in a state with its frictions and all rates.
+  pure subroutine find_heat_rates(mechanism, state, self)
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(state_type), intent(in) :: state                  !< the state
+    type(friction_motion_type), intent(inout) :: self      !< gets the powers
+
+    self%heat_rate = -state%friction*state%dq(mechanism%frictions%coordinate)
+  end subroutine find_heat_rates
+end module mech9_friction_motion
