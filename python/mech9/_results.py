@@ -85,9 +85,9 @@ class Results(Mapping[str, np.ndarray]):
 
     @property
     def events(self) -> list[dict[str, Any]]:
-        """The events of a run under forces, in their order: impacts, and stops that close and open.
+        """The events of a run under forces, in their order: impacts, stops that close and open, pairs that stick and slip.
 
-        Each has `time` [s], `kind` ('impact', 'close', 'open'), `group` ('stop'), `number` (of the group in the data file), and
+        Each has `time` [s], `kind` ('impact', 'close', 'open', 'stick', 'slip'), `group` ('stop', 'friction'), `number` (of the group in the data file), and
         `impulse` on the coordinate [N m s, N s], positive where it increases its rate; None where there is none. Impacts of
         a run with reactions have `pairs`, too: `pair`, `force` [N s] and `moment` [N m s] of each.
         """

@@ -45,7 +45,7 @@ module mech9_failure
     real(wp), allocatable :: values(:, :)       !< positions or rates, in the units of the data file
     character(len=:), allocatable :: name       !< as the user wrote it
     integer :: link = 0                         !< on which a chain closes
-    integer :: growing = 0                      !< coordinate that grows without bound
+    integer :: growing = 0                      !< coordinate that grows without bound, or number of frictions that slip
     integer :: number = 0                       !< of things, or the place of one in its row
     integer :: limit = 0                        !< the largest number allowed
     real(wp) :: t = 0.0_wp                      !< time [s]

@@ -363,7 +363,7 @@ contains
       call raise(err, exit_singular, 'other coordinates are integrated in this position')
     else if (any(plan%independent /= self%independent)) then
       call raise(err, exit_singular, 'other coordinates than those of cq are integrated, near a singular position or while a '// &
-                 'stop holds one of them')
+                 'stop or friction holds one of them')
     end if
     if (.not. allocated(err)) call find_coefficients(self%model%mechanism, plan, state, found, err)
     if (allocated(err)) then
@@ -556,7 +556,7 @@ contains
     end if
   end subroutine coordinate_changes
 
-  !> The impacts so far, and the stops that closed and opened, in the order of time.
+  !> The impacts so far, the stops that closed and opened, and the pairs that stuck and slipped, in the order of time.
   subroutine events(self, list)
     class(motion_type), intent(in) :: self                             !< the motion
     type(motion_event_type), allocatable, intent(out) :: list(:)       !< none of a driven motion

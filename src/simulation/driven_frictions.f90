@@ -29,6 +29,7 @@ module mech9_driven_frictions
   type :: driven_frictions_type
     type(friction_wrenches_type), private :: wrenches
     type(friction_balance_type), private :: balance
+    real(wp), allocatable, private :: ratios(:)   !< (frictions) rates of their coordinates by that of the first drive
     type(rest_range_type) :: rest
   contains
     procedure :: find
@@ -104,7 +105,7 @@ contains
     type(plan_type), intent(in) :: plan                   !< its plan, with all blocks
     type(state_type), intent(inout) :: state              !< the state; its frictions are zero afterwards
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
-    real(wp) :: probes(size(mechanism%frictions))
+    real(wp) :: probes(size(mechanism%frictions)), without
     integer :: j
 
     associate (frictions => mechanism%frictions, balance => self%balance)
@@ -112,18 +113,24 @@ contains
       state%friction = 0.0_wp
       call self%wrenches%find(mechanism, plan, state, balance%wrenches, err)
       if (allocated(err)) return
+      associate (drive => plan%independent(1), needed => self%wrenches%reactions%needed)
+        without = needed(drive)
+      end associate
+      if (.not. allocated(self%ratios)) allocate (self%ratios(size(frictions)))
       probes = [(self%wrenches%probe(frictions(j), balance%wrenches(:, j)), j=1, size(frictions))]
       do j = 1, size(frictions)
         state%friction(j) = probes(j)
         call self%wrenches%find(mechanism, plan, state, balance%by_force(:, :, j), err)
         if (allocated(err)) return
+        ! virtual work: the drive takes the force of the coordinate times its rate
+        self%ratios(j) = (without - self%wrenches%reactions%needed(plan%independent(1)))/probes(j)
         balance%by_force(:, :, j) = (balance%by_force(:, :, j) - balance%wrenches)/probes(j)
         state%friction(j) = 0.0_wp
       end do
     end associate
   end subroutine find_balance
 
-  !> Find the range of the force of the only drive at rest. All coordinates go with the drive, so that their accelerations show how.
+  !> Find the range of the force of the only drive at rest, with which all coordinates go.
   subroutine find_rest_range(self, mechanism, plan, state, err)
     class(driven_frictions_type), intent(inout) :: self   !< with the equations; gets the range
     type(mechanism_type), intent(in) :: mechanism         !< the mechanism
@@ -139,7 +146,7 @@ contains
     self%rest%t = state%t
     if (size(plan%independent) /= 1) return
     associate (frictions => mechanism%frictions, drive => plan%independent(1))
-      if (any(abs(state%dq)/plan%unit_of > at_rest*fastest_rate(plan, state))) return
+      if (any(abs(state%dq)/plan%unit_of > at_rest*max(fastest_rate(plan, state), tiny(1.0_wp)/at_rest))) return
       at_bound = frictions
       at_bound%dynamic = frictions%static
       allocate (modes%group(size(frictions)), source=0)
@@ -147,9 +154,8 @@ contains
       allocate (modes%leader(0))
       do side = 1, 2
         do i = 1, size(frictions)
-          associate (slope => state%ddq(frictions(i)%coordinate)*sign(1.0_wp, state%ddq(drive)))
-            if (abs(slope) > 0.0_wp .and. .not. frictions(i)%is_smooth) modes%direction(i) = (2*side - 3)*sign(1.0_wp, slope)
-          end associate
+          if (abs(self%ratios(i)) > at_rest .and. .not. frictions(i)%is_smooth) &
+            modes%direction(i) = (2*side - 3)*sign(1.0_wp, self%ratios(i))
         end do
         call self%balance%solve(at_bound, modes, solved)
         if (.not. solved) return
@@ -189,6 +195,7 @@ contains
       err%failure%values = reshape(frictions(worst)%dynamic*[1.0_wp, self%balance%least_factor(frictions, modes)], [1, 2])
       err%failure%number = nint(sign(1.0_wp, state%dq(k)))
       err%failure%limit = merge(2, 1, solved)
+      err%failure%growing = count(abs(modes%direction) > 0.0_wp)
       call add_place(err, place=frictions(worst)%place)
     end if
     err%failure%t = state%t

@@ -19,7 +19,7 @@ contains
 
   !> Find the friction that changes first, and the time. Fails where frictions have no solution or several from a time before that on.
   subroutine find_friction(motion, from, y, friction, t, err)
-    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step, where the system stands
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step; its system may stand elsewhere
     real(wp), intent(in) :: from                            !< start of the step [s]
     real(wp), intent(in) :: y(:)                            !< the vector there
     integer, intent(out) :: friction                        !< its number; 0: none changes
@@ -32,6 +32,8 @@ contains
 
     friction = 0
     t = motion%t
+    call motion%system%move_to(motion%t, motion%y, err)
+    if (allocated(err)) return
     call keep(2)
     call find_paradox(motion, from, paradox_at, paradox, err)
     if (allocated(err)) return
@@ -81,7 +83,7 @@ contains
     real(wp), intent(out) :: t                              !< the time [s]
     logical, intent(out) :: passed                          !< it lies within the step
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: h, before, x, value, at, least
+    real(wp) :: h, before, x, value, at, least, round_off
     integer :: look
     logical :: leaves
 
@@ -93,6 +95,10 @@ contains
     least = 0.05_wp*maxval(abs([rate(2) - rate(1), h*acceleration]))
     ! a pair that turned back begins with what the error of the time has left of its rate
     leaves = rate(1) <= 0.0_wp .and. h*acceleration(1) > 0.0_wp
+    ! rates within the step come from positions, whose round-off is large over a short step
+    associate (plan => motion%system%plan, k => motion%system%model%mechanism%frictions(i)%coordinate)
+      round_off = 16.0_wp*epsilon(h)*max(plan%unit_of(k), abs(motion%system%state%q(k)))/abs(h)
+    end associate
     do look = 1, looks
       x = real(look, wp)/looks
       t = from + x*h
@@ -107,7 +113,7 @@ contains
       call value_at(motion, of_friction, i, t, value, err)
       if (allocated(err)) return
       leaves = leaves .and. value >= 0.0_wp
-      passed = value > 0.0_wp .and. .not. leaves
+      passed = value > merge(0.0_wp, round_off, look == looks) .and. .not. leaves
       if (passed) exit
       before = t
     end do

@@ -25,7 +25,7 @@ module mech9_integrated_motion
   use mech9_dense_output, only: dense_output_type
   use mech9_limit_watch, only: limit_watch_type
   use mech9_stop_contacts, only: stop_contacts_type
-  use mech9_contact_events, only: meet_contacts
+  use mech9_contact_events, only: meet_contacts, find_pressed
   use mech9_friction_events, only: choose_modes
   use mech9_held_coordinates, only: choose_held, hold_by_drives
   use mech9_motion_event, only: motion_events_type
@@ -441,10 +441,8 @@ contains
         (self%angles%give_same_wrenches() .or. .not. self%angles%in_use())) &
       call impacts%take(self%system%plan, self%system%state, impulses, changes, err)
     if (allocated(err)) return
-    if (allocated(self%system%friction)) then
-      call meet_frictions(self, friction, at_start, holds_change, events, err)
-      if (allocated(err)) return
-    end if
+    if (allocated(self%system%friction)) call meet_frictions(self, friction, at_start, holds_change, events, err)
+    if (allocated(err)) return
     call events%judge_progress(before, self%t, stalls)
     if (stalls) then
       call raise(err, exit_integrator, failure_many_events)
@@ -460,7 +458,8 @@ contains
     end if
   end subroutine meet_events
 
-  !> Choose which pairs stick and which slip from now on. Where stops hold other coordinates, these are changed first.
+  !> Choose which pairs stick and which slip from now on. Where stops hold other coordinates, these are changed first. Frictions may
+  !> press a contact that touches, which then closes, until both agree.
   subroutine meet_frictions(self, friction, at_start, holds_change, events, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion, whose system has the rates of all independent coordinates
     integer, intent(in) :: friction                        !< number of the friction that changes; 0: none
@@ -468,25 +467,23 @@ contains
     logical, intent(inout) :: holds_change                 !< other coordinates are to be held
     type(motion_events_type), intent(inout) :: events      !< gets pairs that stick and slip
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    integer, allocatable :: sticking(:), group(:)
-    integer :: i
+    real(wp), dimension(self%system%plan%n_coordinates) :: impulses, changes
+    integer, allocatable :: sticking(:)
+    integer :: round
+    logical :: pressed
 
-    if (holds_change) then
-      group = self%system%friction%modes%group
-      self%system%friction%modes%group = 0
-      self%system%friction%modes%leader = [integer ::]
-      self%system%friction%held = [integer ::]
-      call self%hold_coordinates(err)
+    do round = 0, size(self%contacts%ends)
+      if (holds_change) self%system%friction%held = [integer ::]
+      if (holds_change) call self%hold_coordinates(err)
       if (allocated(err)) return
-      self%system%friction%modes%group = group
-    end if
-    call choose_modes(self%system, friction, at_start, sticking, events, err)
-    if (allocated(err)) return
-    associate (held => self%system%friction%held)
-      holds_change = size(sticking) /= size(held)
-      if (.not. holds_change) holds_change = .not. all([(any(held == sticking(i)), i=1, size(sticking))])
-    end associate
-    self%system%friction%held = sticking
+      call choose_modes(self%system, merge(friction, 0, round == 0), at_start, sticking, events, err)
+      if (.not. allocated(err)) call find_pressed(self%system, self%contacts, pressed, err)
+      if (allocated(err)) return
+      if (.not. pressed) exit
+      call meet_contacts(self%system, 0, 0.0_wp*self%system%state%dq, self%contacts, impulses, changes, holds_change, events, err)
+      if (allocated(err)) return
+    end do
+    call self%system%friction%take_held(sticking, holds_change)
   end subroutine meet_frictions
 
   !> Go on with the coordinates held whose stops are closed, or whose pairs stick, and with all others released, at the present state.

@@ -61,6 +61,7 @@ def scaled(groups, s):
               'pair': {'point': 1, 'moving_point': 1, 'pitch': 1},
               'coupling': {'radius': 1, 'radii': 1, 'pitch': 1},
               'spring': {'position': 1, 'second_position': 1, 'free_length': 1},
+              'friction': {'radius': 1, 'face_radius': 1, 'arm': 1},
               'force': {'position': 1, 'force': 1}, 'torque': {'torque': 2}}
     along = {'initial': {'position': 1, 'velocity': 1},
              'drive': {'coefficients': 1, 'mean': 1, 'amplitude': 1, 'values': 1},
@@ -114,9 +115,11 @@ def power_of(column, slides):
     coordinate = re.fullmatch(r'd{0,2}q(\d+)', column)
     if coordinate:
         return 1 if int(coordinate.group(1)) in slides else 0
-    drive = re.fullmatch(r'F(\d+)', column)
+    if column.endswith(('.loss', '.heat')):
+        return 2
+    drive = re.fullmatch(r'F(\d+)|R(\d+)\.friction', column)
     if drive:
-        return 1 if int(drive.group(1)) in slides else 2
+        return 1 if int(drive.group(1) or drive.group(2)) in slides else 2
     if re.fullmatch(r'C\d+', column):
         return 1 if column in slides else 2
     if re.fullmatch(r'R\d+\.m[xyz]', column):

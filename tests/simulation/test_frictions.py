@@ -240,6 +240,13 @@ def test_threads(checks, mech9d, mech9k, tmp_path):
 """, 1.0, 4)
             b = atan(mu) * (1 if speed < 0 else -1)
             checks.near(table['F1'], -load * r * tan(a + b), 1e-11, f'mu = {mu}, speed = {speed}: torque', scale=load * r)
+    _, _, said = go(mech9k, tmp_path, jack + """&structure cq=1 /
+&drive coordinate=1, kind='polynomial', coefficients=0.5 /
+&friction coordinate=2, dynamic=0.1, static=0.2, radius=0.015 /
+&output drive_forces=.true. /
+""", 1.0, 4)
+    low, high = (float(number) for number in re.search(r'lies between (\S+) and (\S+) N m', said).groups())
+    checks.near([low, high], [-load * r * tan(a + atan(0.2)), -load * r * tan(a - atan(0.2))], 1e-5, 'range at rest', scale=load * r)
     start = "&structure cq=1 /\n&initial coordinate=1, position=0, velocity=0 /\n&body link=2, mass=2, inertia=0,0,1e-3,0,0,0 /\n"
     for mu, holds in ((h / r * (1 + 1e-9), True), (h / r * (1 - 1e-9), False), (0.02, False)):
         table, _, _ = go(mech9d, tmp_path, jack + start + f"&friction coordinate=2, dynamic={mu!r}, radius=0.015 /\n", 0.1, 10)
@@ -310,6 +317,28 @@ def test_stops_and_friction(checks, mech9d, tmp_path):
     checks.near([e['time'] for e in events if e['kind'] == 'impact'], [hit], 1e-11, 'it hits its stop')
     checks.near(times(events, 'stick'), [hit + 0.5 * rate / slowing], 1e-10, 'and comes back half as fast, to rest')
     checks.near(table['q1'][-1], 0.125 * rate**2 / slowing, 1e-10, 'where its energy is used up')
+
+
+def test_a_block_bounces_on_a_slope(checks, mech9d, tmp_path):
+    """Down and up a slope of 30 degrees against a stop: each flight is r times as fast as the one before, r = e sqrt(down/up)."""
+    a, mu, e = radians(30), 0.3, 0.5
+    down, up = G * (sin(a) - mu * cos(a)), G * (sin(a) + mu * cos(a))
+    text = SLIDER + TIGHT + f"""&gravity acceleration={-G * sin(a)!r},{-G * cos(a)!r},0 /
+&initial coordinate=1, position=1 /
+&stop coordinate=1, low=0, restitution={e} /
+&friction coordinate=1, dynamic={mu} /
+"""
+    first, rate, r = sqrt(2 / down), e * sqrt(2 * down), e * sqrt(down / up)
+    flight = rate / up + rate / sqrt(down * up)
+    end = first + flight / (1 - r)
+    for until in (2.0, 2.75563, 5.0):
+        table, events, _ = go(mech9d, tmp_path, text, until, 40)
+        hits = np.array([event['time'] for event in events if event['kind'] == 'impact'])
+        checks.near(hits[:8], first + flight * (1 - r**np.arange(8)) / (1 - r), 1e-9, f'until {until}: times of impacts')
+        checks.true(np.all(table['R1.loss'] >= 0.0), f'until {until}: friction never drives')
+        if until > end:
+            checks.near(table['q1'][-1], 0.0, 1e-11, f'until {until}: it rests on the stop')
+            checks.near([event['time'] for event in events if event['kind'] == 'close'], [end], 1e-6, f'until {until}: at the end of all flights')
 
 
 def test_the_paradox(checks, mech9d, tmp_path):

@@ -14,7 +14,10 @@ module mech9_contact_events
   use mech9_contact_equations, only: contact_equations_type, find_contact_equations, find_impact, find_pushing
   implicit none
   private
-  public :: begin_contacts, meet_contacts
+  public :: begin_contacts, meet_contacts, find_pressed
+
+  !> A contact is pressed where its acceleration towards the end is more than this part of the largest: far above round-off.
+  real(wp), parameter :: pressing = 1.0e-9_wp
 
 contains
 
@@ -93,6 +96,31 @@ contains
       end associate
     end do
   end subroutine meet_contacts
+
+  !> Find whether frictions and loads press a contact that touches and rests, but does not hold its coordinate.
+  subroutine find_pressed(system, contacts, pressed, err)
+    class(motion_system_type), intent(inout) :: system     !< the system, with the rates of independent coordinates and its modes of friction
+    type(stop_contacts_type), intent(in) :: contacts       !< all ends
+    logical, intent(out) :: pressed                        !< there is one
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(contact_equations_type) :: equations
+    integer, allocatable :: touch(:)
+    integer :: i
+
+    pressed = .false.
+    touch = pack([(i, i=1, size(contacts%ends))], [(touches(system, contacts%ends(i)), i=1, size(contacts%ends))] &
+                 .and. contacts%ends%is_rigid .and. .not. contacts%ends%held)
+    if (size(touch) == 0) return
+    call find_contact_equations(system, contacts%held_coordinates(system%plan%n_coordinates), contacts%ends(touch), equations, err)
+    if (.not. allocated(err)) call system%present(err)
+    if (allocated(err)) return
+    do i = 1, size(touch)
+      associate (end => contacts%ends(touch(i)))
+        pressed = pressed .or. (abs(equations%rates(i)) <= equations%round_off(i) .and. .not. equations%g(i, i) <= 0.0_wp .and. &
+                                end%direction*system%state%ddq(end%coordinate) < -pressing*maxval(abs(system%state%ddq)))
+      end associate
+    end do
+  end subroutine find_pressed
 
   !> Whether a rigid end touches.
   pure logical function touches(system, end)

@@ -6,7 +6,7 @@ module mech9_event_tolerances
   implicit none
   private
   public :: round_off_of_limit, touching, drawn_behind_stop, round_off_of_impacts, least_rebound, endless_part, most_events, &
-    most_events_at_once, limit_of_sticking, at_rest, tied, round_off_of_sticking
+    most_events_at_once, limit_of_sticking, at_rest, still, tied, round_off_of_sticking
 
   ! Drives and outputs.
 
@@ -38,6 +38,8 @@ module mech9_event_tolerances
   real(wp), parameter :: round_off_of_sticking = 1.0e-8_wp
   !> A pair is at rest below this part of the rates that make up its own: a thousand times their round-off.
   real(wp), parameter :: at_rest = 1.0e-12_wp
+  !> A pair that sticks goes on to do so below this part of the largest rate: errors of integration are taken from the rates at an event.
+  real(wp), parameter :: still = 1.0e-9_wp
   !> A coordinate depends on another below this part of what is left of it beside the others, and does not depend on one that moves it
   !> by less: the square root of the round-off of their mobilities.
   real(wp), parameter :: tied = 1.0e-8_wp

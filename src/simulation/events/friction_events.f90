@@ -6,7 +6,7 @@ module mech9_friction_events
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, add_place, exit_singular
   use mech9_event_failures, only: failure_paradox, failure_shared_sticking, failure_undecided_friction
-  use mech9_event_tolerances, only: limit_of_sticking, at_rest, tied, round_off_of_sticking
+  use mech9_event_tolerances, only: limit_of_sticking, at_rest, still, tied, round_off_of_sticking
   use mech9_friction_balance, only: friction_modes_type
   use mech9_friction_motion, only: find_friction_balance
   use mech9_motion_event, only: motion_event_type, motion_events_type, event_stick, event_slip
@@ -54,7 +54,7 @@ contains
           if (allocated(err)) return
         end if
       end if
-      call find_directions(system, met, modes, resting%rests)
+      call find_directions(system, met, before%group > 0, modes, resting%rests)
       call find_freedoms(system, modes, resting)
       call release(system, before, met, modes, resting, err)
       if (allocated(err)) return
@@ -78,14 +78,18 @@ contains
   end subroutine choose_modes
 
   !> Find the directions of pairs that slip, and the pairs at rest.
-  subroutine find_directions(system, met, modes, rests)
+  subroutine find_directions(system, met, stuck, modes, rests)
     class(motion_system_type), intent(in) :: system            !< the system, with all rates
     integer, intent(in) :: met                                 !< number of the friction that comes to rest; 0: none
+    logical, intent(in) :: stuck(:)                            !< (frictions) the pair sticks up to now
     type(friction_modes_type), intent(out) :: modes            !< gets the directions
     logical, allocatable, intent(out) :: rests(:)              !< (frictions) the pair is at rest
-    real(wp) :: speed
+    real(wp) :: speed, duration
     integer :: i
 
+    associate (time => system%model%request%time)
+      duration = max(abs(time%end - time%start), tiny(1.0_wp)/epsilon(1.0_wp))
+    end associate
     associate (frictions => system%model%mechanism%frictions, state => system%state, plan => system%plan)
       allocate (modes%group(size(frictions)), source=0)
       allocate (modes%direction(size(frictions)), source=0.0_wp)
@@ -97,18 +101,14 @@ contains
           if (.not. rests(i)) cycle
           speed = sum(abs(system%friction%rows(:, i)*state%dq(plan%independent)))
           rests(i) = i == met .or. abs(rate) <= at_rest*speed &
-                     .or. abs(rate) <= epsilon(rate)*plan%unit_of(frictions(i)%coordinate)/duration()
+                     .or. abs(rate) <= epsilon(rate)*plan%unit_of(frictions(i)%coordinate)/duration
+          ! a pair that sticks keeps at rest while errors are taken from the rate of another one
+          if (stuck(i)) rests(i) = rests(i) .or. abs(rate) <= &
+            still*plan%unit_of(frictions(i)%coordinate)*maxval(abs(state%dq)/plan%unit_of)
           if (.not. rests(i)) modes%direction(i) = sign(1.0_wp, rate)
         end associate
       end do
     end associate
-  contains
-    !> How long the whole motion lasts [s].
-    real(wp) function duration()
-      associate (time => system%model%request%time)
-        duration = max(abs(time%end - time%start), tiny(1.0_wp)/epsilon(1.0_wp))
-      end associate
-    end function duration
   end subroutine find_directions
 
   !> Whether a pair with the rate zero does not stick, but turns back while others move on, as the slider of a crank does at its dead point
@@ -346,6 +346,7 @@ contains
       err%failure%coordinates = [frictions(worst)%coordinate]
       err%failure%values = reshape(frictions(worst)%dynamic*[1.0_wp, balance%least_factor(frictions, modes)], [1, 2])
       err%failure%number = merge(1, 2, balance%grows(frictions, modes, worst))
+      err%failure%growing = count(modes%group == 0 .and. abs(modes%direction) > 0.0_wp)
       call add_place(err, place=frictions(worst)%place)
     end associate
   end subroutine fail_in_paradox

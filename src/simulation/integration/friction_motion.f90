@@ -31,6 +31,8 @@ module mech9_friction_motion
     real(wp), allocatable :: accelerations(:)          !< (independent) without frictions [rad/s^2, m/s^2]
     real(wp), allocatable :: by_force(:, :)            !< (independent,frictions) accelerations by the forces
     real(wp), allocatable :: heat_rate(:)              !< (frictions) power that they take [W]
+  contains
+    procedure :: take_held
   end type friction_motion_type
 
 contains
@@ -51,6 +53,18 @@ contains
       allocate (state%friction(n), state%heat(n), source=0.0_wp)
     end associate
   end subroutine begin_frictions
+
+  !> Take other coordinates that drives hold.
+  pure subroutine take_held(self, sticking, changes)
+    class(friction_motion_type), intent(inout) :: self     !< the frictions
+    integer, intent(in) :: sticking(:)                     !< the coordinates
+    logical, intent(out) :: changes                        !< they are others than before
+    integer :: i
+
+    changes = size(sticking) /= size(self%held)
+    if (.not. changes) changes = .not. all([(any(self%held == sticking(i)), i=1, size(sticking))])
+    self%held = sticking
+  end subroutine take_held
 
   !> Prepare the frictions in a plan.
   subroutine prepare_frictions(mechanism, plan, state, self)
