@@ -19,6 +19,9 @@ module mech9_event_search
   !> Times within a step that is shorter than this, in parts of the round-off of time, are its end: round-off hides what is between.
   real(wp), parameter :: shortest = 1000.0_wp
 
+  !> A pair that drives alone move begins to move where it would come this far in the whole motion, in its unit.
+  real(wp), parameter :: least_motion = 1.0e-9_wp
+
 contains
 
   !> Find the time at which a value passes zero upward, by false position with halved values (Illinois) on the motion within the step.
@@ -132,7 +135,11 @@ contains
         else if (friction%modes%group(i) > 0) then
           value = abs(friction%balance%utilization(i)) - limit_of_sticking
         else
-          value = abs(rate) - 2.0_wp*at_rest*sum(abs(friction%rows(:, i)*system%state%dq(system%plan%independent)))
+          associate (time => system%model%request%time)
+            value = abs(rate) - 2.0_wp*at_rest*sum(abs(friction%rows(:, i)*system%state%dq(system%plan%independent))) &
+                    - least_motion*system%plan%unit_of(system%model%mechanism%frictions(i)%coordinate) &
+                    /max(abs(time%end - time%start), least_motion)
+          end associate
         end if
       end associate
     end associate

@@ -179,6 +179,7 @@ contains
         if (found .and. allocated(motion%system%friction)) call show_heat(motion, t, found, err)
         if (found .or. allocated(err)) exit
         self%steps_onto = .true.
+        if (allocated(motion%system%friction)) motion%heat = motion%heat_before
         call motion%step_back(t, err)
         if (allocated(err)) return
       end do
@@ -304,8 +305,10 @@ contains
         associate (time => self%model%request%time)
           longest = longest_stick*(time%end - time%start)
         end associate
-        if (size(motion%system%friction%held) > 0) target = nearer(target, motion%t + longest, motion%t)
-        if (size(motion%system%friction%held) > 0) farthest = nearer(farthest, motion%t + longest, motion%t)
+        if (abs(longest) > 0.0_wp .and. size(motion%system%friction%held) > 0) then
+          target = nearer(target, motion%t + longest, motion%t)
+          farthest = nearer(farthest, motion%t + longest, motion%t)
+        end if
       end if
       if (motion%system%interval%ends) then
         target = nearer(target, motion%system%interval%ahead, motion%t)

@@ -12,6 +12,10 @@ module mech9_friction_passing
 
   !> Points within a step at which rates and utilizations are looked at; the last one is its end.
   integer, parameter :: looks = 16
+  !> Places within a step at which a utilization is looked at: a load that swings does not have all of them in one phase. Divisions of the
+  !> step where it does not change evenly.
+  real(wp), parameter :: looks_within(3) = [0.29_wp, 0.53_wp, 0.81_wp]
+  integer, parameter :: deepest = 8
   !> Halvings on the way back to the start of a step, where a pair began to slip or to stick.
   integer, parameter :: most_halvings = 30
 
@@ -173,26 +177,35 @@ contains
       real(wp), intent(in) :: b         !< the second time [s]
       real(wp), intent(in) :: value_b   !< there
       integer, intent(in) :: depth      !< halvings so far
-      real(wp) :: middle, value, deviation
+      real(wp) :: times(3), values(3), deviation
+      integer :: k
 
-      middle = 0.5_wp*(a + b)
-      call value_at(motion, of_friction, i, middle, value, err)
-      if (allocated(err)) return
-      deviation = abs(value - 0.5_wp*(value_a + value_b))
-      if (value <= 0.0_wp .and. depth < 6 .and. &
-          max(value, value_a, value_b) + 4.0_wp*deviation > 0.0_wp .and. deviation > 1.0e-6_wp) then
-        call look_within(a, value_a, middle, value, depth + 1)
-        if (passed .or. allocated(err)) return
-        call look_within(middle, value, b, value_b, depth + 1)
+      times = a + looks_within*(b - a)
+      values = -1.0_wp
+      deviation = 0.0_wp
+      do k = 1, 3
+        call value_at(motion, of_friction, i, times(k), values(k), err)
+        if (allocated(err)) return
+        deviation = max(deviation, abs(values(k) - (value_a + looks_within(k)*(value_b - value_a))))
+        if (values(k) > 0.0_wp) exit
+      end do
+      k = min(k, 3)
+      if (values(k) <= 0.0_wp .and. depth < deepest .and. max(maxval(values), value_a, value_b) + 4.0_wp*deviation > 0.0_wp .and. &
+          deviation > 1.0e-6_wp) then
+        call look_within(a, value_a, times(1), values(1), depth + 1)
+        if (.not. (passed .or. allocated(err))) call look_within(times(1), values(1), times(2), values(2), depth + 1)
+        if (.not. (passed .or. allocated(err))) call look_within(times(2), values(2), times(3), values(3), depth + 1)
+        if (.not. (passed .or. allocated(err))) call look_within(times(3), values(3), b, value_b, depth + 1)
         return
       end if
-      if (value > 0.0_wp) then
+      if (values(k) > 0.0_wp) then
         passed = .true.
         before = a
-        t = middle
+        if (k > 1) before = times(k - 1)
+        t = times(k)
       else if (value_b > 0.0_wp) then
         passed = .true.
-        before = middle
+        before = times(3)
         t = b
       end if
     end subroutine look_within

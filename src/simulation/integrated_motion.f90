@@ -441,7 +441,7 @@ contains
         (self%angles%give_same_wrenches() .or. .not. self%angles%in_use())) &
       call impacts%take(self%system%plan, self%system%state, impulses, changes, err)
     if (allocated(err)) return
-    if (allocated(self%system%friction)) call meet_frictions(self, friction, at_start, holds_change, events, err)
+    if (allocated(self%system%friction)) call meet_frictions(self, met, friction, at_start, holds_change, events, err)
     if (allocated(err)) return
     call events%judge_progress(before, self%t, stalls)
     if (stalls) then
@@ -460,8 +460,9 @@ contains
 
   !> Choose which pairs stick and which slip from now on. Where stops hold other coordinates, these are changed first. Frictions may
   !> press a contact that touches, which then closes, until both agree.
-  subroutine meet_frictions(self, friction, at_start, holds_change, events, err)
+  subroutine meet_frictions(self, met, friction, at_start, holds_change, events, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion, whose system has the rates of all independent coordinates
+    integer, intent(in) :: met                             !< number of the end that is met, left or released; 0: none
     integer, intent(in) :: friction                        !< number of the friction that changes; 0: none
     logical, intent(in) :: at_start                        !< there was no step yet
     logical, intent(inout) :: holds_change                 !< other coordinates are to be held
@@ -477,12 +478,14 @@ contains
       if (holds_change) call self%hold_coordinates(err)
       if (allocated(err)) return
       call choose_modes(self%system, merge(friction, 0, round == 0), at_start, sticking, events, err)
-      if (.not. allocated(err)) call find_pressed(self%system, self%contacts, pressed, err)
+      if (.not. allocated(err)) call find_pressed(self%system, self%contacts, met, pressed, err)
       if (allocated(err)) return
-      if (.not. pressed) exit
+      if (.not. pressed .or. round == size(self%contacts%ends)) exit
       call meet_contacts(self%system, 0, 0.0_wp*self%system%state%dq, self%contacts, impulses, changes, holds_change, events, err)
       if (allocated(err)) return
     end do
+    if (pressed) call raise(err, exit_integrator, failure_many_events)
+    if (pressed) err%failure%t = self%t
     call self%system%friction%take_held(sticking, holds_change)
   end subroutine meet_frictions
 

@@ -341,6 +341,77 @@ def test_a_block_bounces_on_a_slope(checks, mech9d, tmp_path):
             checks.near([event['time'] for event in events if event['kind'] == 'close'], [end], 1e-6, f'until {until}: at the end of all flights')
 
 
+STACK = """&mechanism title='a block on a block' /
+&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=1,0,0 /
+&body link=3, mass=1 /
+&initial coordinate=1, position=0, velocity=0 /
+"""
+
+
+def test_a_pair_that_sticks_stays(checks, mech9d, tmp_path):
+    """The upper block comes to rest while the lower one sticks, whose friction at rest is six times that in motion."""
+    text = STACK + """&body link=2, mass=1 /
+&gravity acceleration=1.5,-10,0 /
+&initial coordinate=2, position=0, velocity=-1 /
+&friction coordinate=1, dynamic=0.1, static=0.6 /
+&friction coordinate=2, dynamic=0.3, static=0.6 /
+&load kind='coordinate', coordinate=2, stiffness=0.1, rest=1 /
+"""
+    table, events, _ = go(mech9d, tmp_path, text, 10.0, 10)
+    checks.true(np.all(table['q1'] == 0.0), 'the lower block does not move')
+    checks.equal([(e['kind'], e['number']) for e in events], [('stick', 2)], 'the upper one alone comes to rest')
+
+
+def test_an_impact_while_a_pair_sticks(checks, mech9d, tmp_path):
+    """An inelastic impact within the stack sets the lower block, 2 kg, in motion with the upper one; both slide to rest."""
+    text = STACK + TIGHT + """&body link=2, mass=2 /
+&gravity acceleration=0,-10,0 /
+&initial coordinate=2, position=0, velocity=-2 /
+&stop coordinate=2, low=-0.3, high=0.3, restitution=0 /
+&friction coordinate=1, dynamic=0.15 /
+&friction coordinate=2, dynamic=0.1 /
+"""
+    table, events, _ = go(mech9d, tmp_path, text, 3.0, 30)
+    rate = sqrt(4 - 2 * 0.3) / 3
+    checks.near(table['q1'][-1], -rate**2 / (2 * 0.15 * 10), 1e-9, 'momentum is kept, and the floor stops both')
+    checks.near(table['q2'][-1], -0.3, 1e-11, 'at the stop')
+
+
+def test_a_load_that_vibrates(checks, mech9d, tmp_path):
+    """A load of 50 Hz on a slow one: the pair slips where both exceed its bound, however long the run is."""
+    text = SLIDER + """&initial coordinate=1, position=0 /
+&gravity acceleration=0,-10,0 /
+&load kind='force', link=2, position=0,0,0, force=1,0,0, law='harmonic', amplitude=1, angular_frequency=314.1592653589793 /
+&load kind='force', link=2, position=0,0,0, force=1,0,0, law='polynomial', coefficients=0,0.2 /
+&friction coordinate=1, dynamic=0.29, static=0.3 /
+"""
+    for end in (12.0, 20.0, 40.0):
+        _, events, _ = go(mech9d, tmp_path, text, end, 1)
+        checks.near(times(events, 'slip')[0], 10.00486, 1e-5, f'end = {end}: the first slip')
+    checks.near(0.2 * 10.00486 + sin(100 * pi * 10.00486), 3.0, 1e-3, 'where the loads are 3 N')
+
+
+def test_let_go_from_rest(checks, mech9d, tmp_path):
+    """A double pendulum whose lower pair sticks once the upper one slips, though it would slip first beside an upper one that sticks."""
+    text = """&mechanism title='double pendulum let go' /
+&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=0,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=1,0,0 /
+&initial coordinate=1, position=0, velocity=0 /
+&initial coordinate=2, position=0, velocity=0 /
+&body link=2, mass=1, centre=0.5,0,0, inertia=0,0,0.083,0,0,0 /
+&body link=3, mass=1, centre=1.5,0,0, inertia=0,0,0.083,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&friction coordinate=1, dynamic=1, preload=8 /
+&friction coordinate=2, dynamic=1, preload=1.5 /
+"""
+    table, _, _ = go(mech9d, tmp_path, text, 0.1, 2)
+    checks.true(table['R1.friction'][0] == 8.0 and abs(table['R2.friction'][0]) <= 1.5, 'one slips, and the other holds', table['R2.friction'])
+    checks.near(table['ddq2'][0], 0.0, 1e-12, 'without an acceleration')
+
+
 def test_the_paradox(checks, mech9d, tmp_path):
     """A ladder whose foot alone rubs: mu sin 2a >= 4/3 has no solution downward and two upward; it begins there in a motion, too."""
     def start(angle, speed):

@@ -98,9 +98,10 @@ contains
   end subroutine meet_contacts
 
   !> Find whether frictions and loads press a contact that touches and rests, but does not hold its coordinate.
-  subroutine find_pressed(system, contacts, pressed, err)
+  subroutine find_pressed(system, contacts, met, pressed, err)
     class(motion_system_type), intent(inout) :: system     !< the system, with the rates of independent coordinates and its modes of friction
     type(stop_contacts_type), intent(in) :: contacts       !< all ends
+    integer, intent(in) :: met                             !< number of the end that was met or released, and judged; 0: none
     logical, intent(out) :: pressed                        !< there is one
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(contact_equations_type) :: equations
@@ -108,8 +109,9 @@ contains
     integer :: i
 
     pressed = .false.
-    touch = pack([(i, i=1, size(contacts%ends))], [(touches(system, contacts%ends(i)), i=1, size(contacts%ends))] &
+    touch = pack([(i, i=1, size(contacts%ends))], [(touches(system, contacts%ends(i)) .and. i /= met, i=1, size(contacts%ends))] &
                  .and. contacts%ends%is_rigid .and. .not. contacts%ends%held)
+    if (all(system%model%mechanism%frictions%is_smooth)) return
     if (size(touch) == 0) return
     call find_contact_equations(system, contacts%held_coordinates(system%plan%n_coordinates), contacts%ends(touch), equations, err)
     if (.not. allocated(err)) call system%present(err)
@@ -139,7 +141,7 @@ contains
     integer, intent(in) :: touch(:)                        !< numbers of the rigid ones that touch
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(contact_equations_type) :: equations
-    real(wp) :: gap, t, y(system%size_of_vector())
+    real(wp) :: gap, t, y(system%size_of_vector()), rates(size(system%plan%independent))
     integer :: i
 
     if (all(contacts%ends(touch)%held)) return
@@ -156,7 +158,10 @@ contains
     end associate
     t = system%state%t
     y = system%vector()
+    ! drives that hold sticking pairs must not take the rates that an impact has given these
+    rates = system%state%dq(system%plan%independent)
     call system%project(t, y, err)
+    system%state%dq(system%plan%independent) = rates
     if (.not. allocated(err)) call system%present(err)
     system%state%t = t
   end subroutine settle

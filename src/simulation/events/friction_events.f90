@@ -25,6 +25,8 @@ module mech9_friction_events
 
   !> A pair does not stick where its acceleration is so many times that by its largest friction.
   real(wp), parameter :: beyond_all_bounds = 1.0e6_wp
+  !> Most groups whose choices are all tried.
+  integer, parameter :: most_enumerated = 5
 
 contains
 
@@ -39,7 +41,7 @@ contains
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     type(friction_modes_type) :: before, modes
     type(resting_pairs_type) :: resting
-    integer :: i
+    integer :: i, comes_to_rest
 
     before = system%friction%modes
     associate (mechanism => system%model%mechanism)
@@ -54,7 +56,9 @@ contains
           if (allocated(err)) return
         end if
       end if
-      call find_directions(system, met, before%group > 0, modes, resting%rests)
+      comes_to_rest = 0
+      if (met > 0) comes_to_rest = merge(met, 0, before%slips(met) .or. before%group(met) > 0)
+      call find_directions(system, comes_to_rest, before%group > 0, modes, resting%rests)
       call find_freedoms(system, modes, resting)
       call release(system, before, met, modes, resting, err)
       if (allocated(err)) return
@@ -78,9 +82,9 @@ contains
   end subroutine choose_modes
 
   !> Find the directions of pairs that slip, and the pairs at rest.
-  subroutine find_directions(system, met, stuck, modes, rests)
+  subroutine find_directions(system, comes_to_rest, stuck, modes, rests)
     class(motion_system_type), intent(in) :: system            !< the system, with all rates
-    integer, intent(in) :: met                                 !< number of the friction that comes to rest; 0: none
+    integer, intent(in) :: comes_to_rest                       !< number of the friction that comes to rest; 0: none
     logical, intent(in) :: stuck(:)                            !< (frictions) the pair sticks up to now
     type(friction_modes_type), intent(out) :: modes            !< gets the directions
     logical, allocatable, intent(out) :: rests(:)              !< (frictions) the pair is at rest
@@ -100,7 +104,7 @@ contains
           if (.not. rests(i)) modes%direction(i) = tanh(rate/frictions(i)%transition)
           if (.not. rests(i)) cycle
           speed = sum(abs(system%friction%rows(:, i)*state%dq(plan%independent)))
-          rests(i) = i == met .or. abs(rate) <= at_rest*speed &
+          rests(i) = i == comes_to_rest .or. abs(rate) <= at_rest*speed &
                      .or. abs(rate) <= epsilon(rate)*plan%unit_of(frictions(i)%coordinate)/duration
           ! a pair that sticks keeps at rest while errors are taken from the rate of another one
           if (stuck(i)) rests(i) = rests(i) .or. abs(rate) <= &
@@ -129,10 +133,13 @@ contains
   subroutine bring_to_rest(system, i)
     class(motion_system_type), intent(inout) :: system         !< the system; its independent rates change
     integer, intent(in) :: i                                   !< number of the friction
+    real(wp) :: held(size(system%friction%held))
 
     associate (friction => system%friction, state => system%state, independent => system%plan%independent)
+      held = state%dq(friction%held)
       state%dq(independent) = state%dq(independent) - friction%by_force(:, i) &
                               *(dot_product(friction%rows(:, i), state%dq(independent))/friction%balance%mobility(i, i))
+      state%dq(friction%held) = held
     end associate
   end subroutine bring_to_rest
 
@@ -214,7 +221,7 @@ contains
     end do
   end subroutine find_rates
 
-  !> Let groups slip that cannot hold, one after the other.
+  !> Let groups slip that cannot hold, one after the other. Where that does not lead to modes that agree with themselves, all are tried.
   subroutine release(system, before, met, modes, resting, err)
     class(motion_system_type), intent(inout) :: system         !< the system, with the equations of all frictions
     type(friction_modes_type), intent(in) :: before            !< how frictions acted before
@@ -222,9 +229,9 @@ contains
     type(friction_modes_type), intent(inout) :: modes          !< the modes, with the directions of pairs that slip; complete
     type(resting_pairs_type), intent(in) :: resting            !< the pairs at rest
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
-    real(wp) :: direction(size(resting%leaders)), used, most
-    integer :: round, l, worst, at_bound
-    logical :: slips(size(resting%leaders)), solved
+    real(wp) :: direction(size(resting%leaders))
+    integer :: at_bound
+    logical :: slips(size(resting%leaders)), agrees
 
     slips = .false.
     direction = 0.0_wp
@@ -232,48 +239,90 @@ contains
     if (met > 0) then
       if (before%group(met) > 0) at_bound = met
     end if
-    associate (balance => system%friction%balance, frictions => system%model%mechanism%frictions)
-      do round = 0, size(resting%leaders)
-        call join(err)
-        if (allocated(err)) return
-        call balance%solve(frictions, modes, solved)
-        if (.not. solved) then
-          call fail()
-          return
-        end if
-        worst = 0
-        most = limit_of_sticking
+    call release_worst(err)
+    if (agrees .or. allocated(err)) return
+    if (size(slips) <= most_enumerated) call try_all(err)
+    if (.not. (agrees .or. allocated(err))) call fail()
+  contains
+    !> Let the group slip that is used most, until the rest holds.
+    subroutine release_worst(err)
+      type(error_type), allocatable, intent(out) :: err   !< allocated if a pair would stick with several groups
+      real(wp) :: used, most
+      integer :: round, l, worst
+
+      associate (balance => system%friction%balance, frictions => system%model%mechanism%frictions)
+        do round = 0, size(resting%leaders)
+          call join(err)
+          if (allocated(err)) return
+          call balance%solve(frictions, modes, agrees)
+          if (.not. agrees) return
+          worst = 0
+          most = limit_of_sticking
+          do l = 1, size(slips)
+            if (slips(l)) cycle
+            used = abs(balance%utilization(resting%leaders(l)))
+            if (at_bound > 0) then
+              if (modes%group(at_bound) == modes%group(resting%leaders(l)) .and. used > 1.0_wp - round_off_of_sticking) &
+                used = max(used, 2.0_wp)
+            end if
+            if (used <= most) cycle
+            most = used
+            worst = l
+          end do
+          if (worst == 0) exit
+          slips(worst) = .true.
+          direction(worst) = sign(1.0_wp, balance%utilization(resting%leaders(worst)))
+        end do
+      end associate
+      call check_directions()
+    end subroutine release_worst
+
+    !> Check that pairs that begin to slip have accelerations in their directions. Where other frictions decide where a pair turns to, its
+    !> direction changes.
+    subroutine check_directions()
+      integer :: l
+
+      associate (balance => system%friction%balance, frictions => system%model%mechanism%frictions)
+        do l = 1, size(frictions)
+          if (.not. ((resting%rests(l) .or. resting%turns(l)) .and. modes%slips(l))) cycle
+          if (modes%direction(l)*balance%acceleration(l) >= -tied*(abs(balance%accelerations(l)) &
+                                                                  + sum(abs(balance%mobility(l, :)*balance%force)))) cycle
+          agrees = resting%turns(l)
+          if (agrees) then
+            modes%direction(l) = -modes%direction(l)
+            call balance%solve(frictions, modes, agrees)
+          end if
+          if (.not. agrees) return
+        end do
+      end associate
+    end subroutine check_directions
+
+    !> Try all choices of groups that stick or slip in either direction, until one agrees with itself.
+    subroutine try_all(err)
+      type(error_type), allocatable, intent(out) :: err   !< never allocated
+      type(error_type), allocatable :: unused
+      integer :: choice, l, way
+
+      do choice = 0, 3**size(slips) - 1
+        do l = 1, size(slips)
+          way = mod(choice/3**(l - 1), 3)
+          slips(l) = way > 0
+          direction(l) = real(merge(1, merge(-1, 0, way == 2), way == 1), wp)
+        end do
+        agrees = .false.
+        call join(unused)
+        if (allocated(unused)) cycle
+        call system%friction%balance%solve(system%model%mechanism%frictions, modes, agrees)
+        if (.not. agrees) cycle
         do l = 1, size(slips)
           if (slips(l)) cycle
-          used = abs(balance%utilization(resting%leaders(l)))
-          if (at_bound > 0) then
-            if (modes%group(at_bound) == modes%group(resting%leaders(l)) .and. used > 1.0_wp - round_off_of_sticking) &
-              used = max(used, 2.0_wp)
-          end if
-          if (used <= most) cycle
-          most = used
-          worst = l
+          agrees = agrees .and. abs(system%friction%balance%utilization(resting%leaders(l))) <= limit_of_sticking
         end do
-        if (worst == 0) exit
-        slips(worst) = .true.
-        direction(worst) = sign(1.0_wp, balance%utilization(resting%leaders(worst)))
+        if (agrees) call check_directions()
+        if (agrees) return
       end do
-      do l = 1, size(frictions)
-        if (.not. ((resting%rests(l) .or. resting%turns(l)) .and. modes%slips(l))) cycle
-        if (modes%direction(l)*balance%acceleration(l) >= -tied*(abs(balance%accelerations(l)) &
-                                                                + sum(abs(balance%mobility(l, :)*balance%force)))) cycle
-        solved = resting%turns(l)
-        if (solved) then
-          ! the other frictions decide where it turns to
-          modes%direction(l) = -modes%direction(l)
-          call balance%solve(frictions, modes, solved)
-        end if
-        if (solved) cycle
-        call fail()
-        return
-      end do
-    end associate
-  contains
+    end subroutine try_all
+
     !> Join the pairs at rest in groups. A pair moves with the leaders on whose rates it depends.
     subroutine join(err)
       type(error_type), allocatable, intent(out) :: err   !< allocated if a pair would stick with several groups
@@ -342,6 +391,12 @@ contains
     call raise(err, exit_singular, failure_paradox)
     associate (frictions => system%model%mechanism%frictions, modes => system%friction%modes, balance => system%friction%balance)
       worst = balance%steepest(frictions, modes)
+      if (worst == 0) then
+        call raise(err, exit_singular, failure_undecided_friction)
+        err%failure%t = system%state%t
+        err%failure%coordinates = frictions%coordinate
+        return
+      end if
       err%failure%t = system%state%t
       err%failure%coordinates = [frictions(worst)%coordinate]
       err%failure%values = reshape(frictions(worst)%dynamic*[1.0_wp, balance%least_factor(frictions, modes)], [1, 2])

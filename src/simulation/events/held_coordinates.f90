@@ -27,7 +27,7 @@ contains
     held = contacts%held_coordinates(size(held))
     held(sticking) = .true.
     independent = system%partition%independent()
-    call exchange(system, held, independent)
+    call exchange(system, held, [(is_held_now(k), k=1, size(held))], independent)
     partition = system%partition%in_same_order(independent)
     do k = 1, size(held)
       if (held(k)) then
@@ -47,9 +47,10 @@ contains
   end subroutine choose_held
 
   !> Exchange free coordinates for dependent ones that are held, by elimination with column pivoting.
-  subroutine exchange(system, held, independent)
+  subroutine exchange(system, held, held_now, independent)
     class(motion_system_type), intent(in) :: system   !< the system, with the columns of its frames
     logical, intent(in) :: held(:)                    !< (M) the coordinate is to be held
+    logical, intent(in) :: held_now(:)                !< (M) it is held now, and free unless it is to be held
     logical, intent(inout) :: independent(:)          !< (M) the coordinate is independent
     real(wp), allocatable :: rows(:, :)
     integer, allocatable :: dependent(:)
@@ -59,7 +60,7 @@ contains
     associate (plan => system%plan)
       dependent = pack([(i, i=1, size(held))], held .and. .not. independent)
       allocate (rows(size(plan%independent), size(dependent)))
-      may_leave = .not. (plan%driven(plan%independent) .or. held(plan%independent))
+      may_leave = .not. held(plan%independent) .and. (.not. plan%driven(plan%independent) .or. held_now(plan%independent))
       do i = 1, size(dependent)
         call rates_by_independent(plan, system%dynamics, system%work%jacobian, dependent(i), rows(:, i))
         rows(:, i) = rows(:, i)*plan%unit_of(plan%independent)/plan%unit_of(dependent(i))
