@@ -16,7 +16,10 @@ contains
   pure subroutine explain_friction_failure(failure, text)
     type(failure_type), intent(in) :: failure             !< any kind
     character(len=:), allocatable, intent(inout) :: text  !< the message
+    character(len=:), allocatable :: alike
 
+    alike = ''
+    if (failure%growing > 1) alike = ', if all coefficients are changed alike,'
     select case (failure%kind)
     case (failure_shared_bearing)
       text = 'the friction of coordinate '//to_text(failure%coordinates)//' depends on the component '//failure%name// &
@@ -29,14 +32,14 @@ contains
       text = 'the friction of coordinate '//to_text(failure%coordinates)//' has '// &
              trim(merge('no solution      ', 'several solutions', failure%number == 1))//' from t = '//to_text(failure%t, 10)// &
              ' s on (the paradox of Painleve): its coefficient is '//to_text(failure%values(1, 1), 8)// &
-             ', and from '//to_text(failure%values(1, 2), 8)//' on'//alike(failure)// &
+             ', and from '//to_text(failure%values(1, 2), 8)//' on'//alike// &
              ' rigid bodies with dry friction cannot slip this way. Lower the coefficient, or end the motion before'
     case (failure_self_locking)
       text = 'coordinate '//to_text(failure%coordinates(2))//' cannot be driven in the '// &
              trim(merge('positive', 'negative', failure%number > 0))//' direction at t = '//to_text(failure%t, 10)// &
              ' s: the mechanism locks itself by the friction of coordinate '//to_text(failure%coordinates(1))// &
              ', whose coefficient is '//to_text(failure%values(1, 1), 8)//'; from '//to_text(failure%values(1, 2), 8)// &
-             ' on'//alike(failure)//trim(merge(' no force moves it this way                          ', &
+             ' on'//alike//trim(merge(' no force moves it this way                          ', &
                                                ' it may jam, and the force of the drive is not unique', failure%limit == 1))// &
              '. Lower the coefficient, or drive another coordinate'
     case (failure_shared_sticking)
@@ -49,13 +52,4 @@ contains
              'law=''smooth'''
     end select
   end subroutine explain_friction_failure
-
-  !> The words that other coefficients change, too, where the least one of several frictions is told.
-  pure function alike(failure) result(text)
-    type(failure_type), intent(in) :: failure             !< with the number of frictions that slip
-    character(len=:), allocatable :: text
-
-    text = ''
-    if (failure%growing > 1) text = ', if all coefficients are changed alike,'
-  end function alike
 end module mech9_friction_words
