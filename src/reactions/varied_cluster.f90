@@ -100,7 +100,7 @@ contains
     real(wp), intent(in), contiguous :: required(:, :)       !< (6,nodes) scaled
     real(wp), intent(inout), contiguous :: wrenches(:, :)    !< (6,pairs) scaled
     logical, intent(out) :: balanced                         !< the links are in balance
-    real(wp), intent(out), optional :: displacements(:, :)   !< (6,nodes) that belong to the wrenches, scaled
+    real(wp), intent(out) :: displacements(:, :)             !< (6,nodes) that belong to the wrenches, scaled
     real(wp), intent(in), optional :: size_of_all            !< by which balance is judged where wrenches are smaller
     real(wp) :: lacking(size(required, 1), size(required, 2)), given(size(wrenches, 1), size(wrenches, 2))
 
@@ -234,7 +234,7 @@ contains
     real(wp), intent(out) :: changes(:, :)                   !< (6,pairs) forces [N per unit] and moments [N m per unit]
     logical, intent(out) :: regular                          !< the derivatives are found
     real(wp), dimension(6, size(equations%cluster%pairs)) :: wrenches
-    real(wp), dimension(6, size(equations%cluster%links)) :: required
+    real(wp), dimension(6, size(equations%cluster%links)) :: required, displacements
     real(wp) :: lever(3), largest
     integer :: i
 
@@ -257,7 +257,7 @@ contains
     largest = by%size*equations%present%largest
     if (by%p > 0) &
       largest = max(largest, largest_of(reactions, equations, position%changes, position%links%largest_changes(by%p, :)))
-    call equations%complete(required, wrenches, regular, size_of_all=largest)
+    call equations%complete(required, wrenches, regular, displacements, largest)
     changes(1:3, :) = wrenches(1:3, :)
     changes(4:6, :) = reactions%length*wrenches(4:6, :) + by%longer*equations%present%wrenches(4:6, :)
   end subroutine vary_balance

@@ -23,7 +23,8 @@ contains
     type(model_type), intent(inout), target :: model      !< gets the tolerances where an accuracy is requested
     real(wp), intent(out) :: numbers(:)                   !< (quantities)
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
-    real(wp), intent(inout), optional :: rows(:, :)       !< (columns,outputs) gets the columns of all outputs that are reached
+    real(wp), allocatable, intent(inout), optional :: rows(:, :)   !< (columns,outputs) gets the columns of all outputs that are
+                                                          !< reached, where it is allocated
     class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
     type(run_type), target :: run
 
@@ -54,7 +55,8 @@ contains
     type(run_type), intent(inout), target :: run          !< made anew, and closed on return
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     class(variable_model_type), intent(inout), optional, target :: variable     !< the model as a function of its parameters
-    real(wp), intent(inout), optional :: rows(:, :)       !< (columns,outputs) gets the columns of all outputs that are reached
+    real(wp), allocatable, intent(inout), optional :: rows(:, :)   !< (columns,outputs) gets the columns of all outputs that are
+                                                          !< reached, where it is allocated
     class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
 
     if (present(interruption)) call interruption%begin_run()

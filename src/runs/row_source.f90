@@ -210,10 +210,14 @@ contains
   subroutine go_through(self, err, numbers)
     class(row_source_type), intent(inout) :: self              !< the row source, before the start
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
-    real(wp), intent(inout), optional :: numbers(:, :)         !< (columns,outputs) gets the columns of all outputs that are reached
+    real(wp), allocatable, intent(inout), optional :: numbers(:, :)   !< (columns,outputs) gets the columns of all outputs that
+                                                               !< are reached, where it is allocated
     real(wp), allocatable :: rows(:, :)
     integer :: i, first, last, count
+    logical :: wanted
 
+    wanted = .false.
+    if (present(numbers)) wanted = allocated(numbers)
     allocate (rows(self%columns%width(), batch_size))
     associate (time => self%simulation%model%request%time)
       do first = 0, time%intervals, batch_size
@@ -224,7 +228,7 @@ contains
           if (allocated(err)) exit
         end do
         if (.not. allocated(err)) call self%complete(rows, count, err)
-        if (present(numbers)) then
+        if (wanted) then
           ! a parameter that sets the accuracy may add or take away the last column
           associate (n => min(size(rows, 1), size(numbers, 1)))
             numbers(:n, first + 1:first + count) = rows(:n, :count)

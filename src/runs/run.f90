@@ -70,7 +70,8 @@ contains
   subroutine make(self, err, rows, interruption)
     class(run_type), intent(inout) :: self                !< the run, prepared
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
-    real(wp), intent(inout), optional :: rows(:, :)       !< (columns,outputs) gets the columns of all outputs that are reached
+    real(wp), allocatable, intent(inout), optional :: rows(:, :)   !< (columns,outputs) gets the columns of all outputs that are
+                                                          !< reached, where it is allocated
     class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
 
     if (present(interruption)) self%source%interruption => interruption

@@ -120,6 +120,7 @@ contains
     logical, intent(in), optional :: inner(:)   !< (M) another coordinate of its joint stands for it in C
     type(finding_list_type) :: list
     integer :: n
+    logical :: is_inner(max(n_coordinates, 0))
 
     n = size(c, 1)
     structure%n_links = n
@@ -132,7 +133,9 @@ contains
       call check_counts(n, n_coordinates, 'c', list)
       call check_diagonal(c, list)
       call check_symmetry(c, list)
-      call take_links(c, structure%links, list, inner)
+      is_inner = .false.
+      if (present(inner)) is_inner = inner
+      call take_links(c, structure%links, is_inner, list)
       call check_connected(n, joined_in_matrix(c), 'c', list)
     end if
     call take_independent(cq, structure%n_coordinates, independent, list)
@@ -271,11 +274,11 @@ contains
 
   !> Links of each coordinate, with findings for numbers out of range, repeated or missing.
   !> A number counts as present but not as repeated where C is not symmetric, so that one error makes one finding.
-  pure subroutine take_links(c, links, list, inner)
+  pure subroutine take_links(c, links, is_inner, list)
     integer, intent(in) :: c(:, :)                   !< (N,N) the coincidence matrix
     integer, intent(inout) :: links(:, :)            !< (2,M) zeros on entry
+    logical, intent(in) :: is_inner(:)               !< (M) another coordinate of its joint stands for it in C
     type(finding_list_type), intent(inout) :: list   !< gets the findings
-    logical, intent(in), optional :: inner(:)        !< (M) another coordinate of its joint stands for it in C
     integer :: i, j, k, m
     logical :: present_in_c(size(links, 2))
     integer, allocatable :: missing(:)
@@ -292,7 +295,7 @@ contains
           cycle
         end if
         present_in_c(k) = .true.
-        if (is_inner(k, inner)) then
+        if (is_inner(k)) then
           if (j > i) call list%add('c', [i, j], trim(entry_text(c, i, j))//': a joint with several coordinates stands in C by '// &
                                    'the first of them; leave the others out')
           cycle
@@ -307,23 +310,13 @@ contains
         end if
       end do
     end do
-    missing = numbers_of(.not. present_in_c)
-    if (present(inner)) missing = pack(missing, .not. inner(missing))
+    missing = numbers_of(.not. (present_in_c .or. is_inner))
     if (size(missing) == 1) then
       call list%add('c', [0, 0], 'coordinate '//some_of(missing, longest_list)//' is missing in C')
     else if (size(missing) > 1) then
       call list%add('c', [0, 0], 'coordinates '//some_of(missing, longest_list)//' are missing in C')
     end if
   end subroutine take_links
-
-  !> Whether another coordinate of its joint stands for a coordinate.
-  pure logical function is_inner(k, inner)
-    integer, intent(in) :: k                    !< number of the coordinate
-    logical, intent(in), optional :: inner(:)   !< (M) another coordinate of its joint stands for it; absent: for none
-
-    is_inner = .false.
-    if (present(inner)) is_inner = inner(k)
-  end function is_inner
 
   !> Links that C joins by any number, right or wrong, in either half.
   pure function joined_in_matrix(c) result(links)

@@ -124,8 +124,11 @@ contains
     real(wp), intent(in) :: shift(2)                !< to the right and down [px]; see item_type
     integer, intent(in), optional :: above(:)       !< numbers of items below this one; the first four count, and zeros do not
 
-    call self%add_item(shape, style, nodes, above=above)
-    self%items(self%n_items)%shift = shift
+    call self%add_item(shape, style, nodes)
+    associate (item => self%items(self%n_items))
+      item%shift = shift
+      if (present(above)) item%above(:min(4, size(above))) = above(:min(4, size(above)))
+    end associate
   end subroutine add_shifted
 
   !> One more label is added.
