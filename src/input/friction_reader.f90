@@ -7,7 +7,7 @@ module mech9_friction_reader
   use mech9_request, only: time_grid_type
   use mech9_friction, only: friction_type
   use mech9_friction_load, only: friction_load_type
-  use mech9_load, only: load_slot_type
+  use mech9_load, only: load_slot_type, append_loads
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, has_name, get_integer, get_real, get_text, span_of
   use mech9_drive_reader, only: unit_of_coordinate
@@ -144,18 +144,12 @@ contains
   subroutine add_loads(frictions, loads)
     type(friction_type), intent(in) :: frictions(:)                !< all frictions
     type(load_slot_type), allocatable, intent(inout) :: loads(:)   !< the loads of the data file; gets those of frictions
-    type(load_slot_type), allocatable :: all(:)
-    integer :: i, n
+    type(load_slot_type) :: more(size(frictions))
+    integer :: i
 
-    if (size(frictions) == 0) return
-    n = size(loads)
-    allocate (all(n + size(frictions)))
-    do i = 1, n
-      call move_alloc(loads(i)%load, all(i)%load)
-    end do
     do i = 1, size(frictions)
-      allocate (all(n + i)%load, source=friction_load_type(coordinate=frictions(i)%coordinate, number=i, place=frictions(i)%place))
+      allocate (more(i)%load, source=friction_load_type(coordinate=frictions(i)%coordinate, number=i, place=frictions(i)%place))
     end do
-    call move_alloc(all, loads)
+    call append_loads(more, loads)
   end subroutine add_loads
 end module mech9_friction_reader

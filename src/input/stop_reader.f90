@@ -6,7 +6,7 @@ module mech9_stop_reader
   use mech9_request, only: time_grid_type
   use mech9_stop, only: stop_type
   use mech9_stop_load, only: stop_load_type
-  use mech9_load, only: load_slot_type
+  use mech9_load, only: load_slot_type, append_loads
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, has_name, get_integer, get_real, span_of
   use mech9_drive_reader, only: unit_of_coordinate
@@ -109,20 +109,15 @@ contains
   subroutine add_loads(stops, loads)
     type(stop_type), intent(in) :: stops(:)                     !< all stops
     type(load_slot_type), allocatable, intent(inout) :: loads(:)   !< the loads of the data file; gets those of stops
-    type(load_slot_type), allocatable :: all(:)
+    type(load_slot_type) :: more(count(.not. stops%is_rigid))
     integer :: i, n
 
-    if (count(.not. stops%is_rigid) == 0) return
-    n = size(loads)
-    allocate (all(n + count(.not. stops%is_rigid)))
-    do i = 1, n
-      call move_alloc(loads(i)%load, all(i)%load)
-    end do
+    n = 0
     do i = 1, size(stops)
       if (stops(i)%is_rigid) cycle
       n = n + 1
-      allocate (all(n)%load, source=stop_load_type(stop=stops(i), number=i, place=stops(i)%place))
+      allocate (more(n)%load, source=stop_load_type(stop=stops(i), number=i, place=stops(i)%place))
     end do
-    call move_alloc(all, loads)
+    call append_loads(more, loads)
   end subroutine add_loads
 end module mech9_stop_reader

@@ -3,7 +3,7 @@ module mech9_lapack
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: ilaver, dgtsv, dgbsv, dgesvd, zgesvd, dormqr, dgeqp3, dsyev, dgeev
+  public :: ilaver, dgtsv, dgbsv, dgetrf, dgetrs, dgesvd, zgesvd, dormqr, dgeqp3, dsyev, dgeev
 
   interface
     !> The version of the library.
@@ -91,6 +91,31 @@ module mech9_lapack
       real(wp), intent(out) :: work(*)       !< scratch
       integer, intent(out) :: info           !< 0: all is well
     end subroutine dgeqp3
+
+    !> Triangular factors of a matrix, with row pivoting.
+    subroutine dgetrf(m, n, a, lda, ipiv, info)
+      import :: wp
+      integer, intent(in) :: m               !< number of rows
+      integer, intent(in) :: n               !< number of columns
+      integer, intent(in) :: lda             !< rows of `a` in memory
+      real(wp), intent(inout) :: a(lda, *)   !< (m,n) the matrix; its factors afterwards
+      integer, intent(out) :: ipiv(*)        !< (m) rows that were exchanged with each one
+      integer, intent(out) :: info           !< 0: all is well; above: number of a pivot that is zero
+    end subroutine dgetrf
+
+    !> Solution of linear equations by the factors of dgetrf.
+    subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
+      import :: wp
+      character, intent(in) :: trans         !< 'N': the matrix as it is; 'T': transposed
+      integer, intent(in) :: n               !< order of the matrix
+      integer, intent(in) :: nrhs            !< number of right sides
+      integer, intent(in) :: lda             !< rows of `a` in memory
+      integer, intent(in) :: ldb             !< rows of `b` in memory
+      real(wp), intent(in) :: a(lda, *)      !< (n,n) the factors
+      integer, intent(in) :: ipiv(*)         !< (n) rows that were exchanged with each one
+      real(wp), intent(inout) :: b(ldb, *)   !< (n,nrhs) right sides; solutions afterwards
+      integer, intent(out) :: info           !< 0: all is well
+    end subroutine dgetrs
 
     !> Eigenvalues and eigenvectors of a symmetric matrix.
     subroutine dsyev(jobz, uplo, n, a, lda, w, work, lwork, info)

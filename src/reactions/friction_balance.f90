@@ -11,10 +11,11 @@
 !> direction by direction.
 module mech9_friction_balance
   use mech9_kinds, only: wp
+  use mech9_lapack, only: dgetrf, dgetrs
   use mech9_friction, only: friction_type, bearing_terms
   implicit none
   private
-  public :: friction_balance_type, friction_modes_type, new_friction_balance
+  public :: friction_balance_type, friction_modes_type, new_friction_balance, new_friction_modes
 
   !> How each friction acts.
   type :: friction_modes_type
@@ -35,10 +36,9 @@ module mech9_friction_balance
     real(wp), allocatable :: mobility(:, :)        !< (n,n) accelerations by the forces
     real(wp), allocatable :: force(:)              !< (n) the forces [N m, N]
     real(wp), allocatable :: utilization(:)        !< (n) of its group, for a pair that sticks
-    real(wp) :: least_determinant = 1.0_wp         !< for all directions of the terms of pairs that slip
   contains
     procedure :: solve
-    procedure :: find_least_determinant
+    procedure :: least_determinant
     procedure :: acceleration
     procedure :: bearing_terms_of
     procedure :: least_factor
@@ -61,6 +61,16 @@ contains
     allocate (self%wrenches(6, n), self%by_force(6, n, n), self%accelerations(n), self%mobility(n, n), self%force(n), &
               self%utilization(n), source=0.0_wp)
   end function new_friction_balance
+
+  !> The modes of some frictions of which none acts.
+  pure function new_friction_modes(n) result(self)
+    integer, intent(in) :: n   !< how many there are
+    type(friction_modes_type) :: self
+
+    allocate (self%group(n), source=0)
+    allocate (self%direction(n), source=0.0_wp)
+    allocate (self%leader(0))
+  end function new_friction_modes
 
   !> Whether a pair slips.
   pure logical function slips(self, i)
@@ -106,14 +116,14 @@ contains
   end function acceleration
 
   !> Solve the equations from the present forces and utilizations on.
-  pure subroutine solve(self, frictions, modes, solved)
+  subroutine solve(self, frictions, modes, solved)
     class(friction_balance_type), intent(inout) :: self   !< the equations; gets forces and utilizations
     type(friction_type), intent(in) :: frictions(:)       !< (n) the frictions
     type(friction_modes_type), intent(in) :: modes        !< how they act
     logical, intent(out) :: solved                        !< a solution was found
     real(wp), dimension(size(frictions) + size(modes%leader)) :: x, residual, change, sizes
     real(wp) :: matrix(size(frictions) + size(modes%leader), size(frictions) + size(modes%leader))
-    real(wp) :: units(2, bearing_terms, size(frictions)), determinant, before, factor
+    real(wp) :: units(2, bearing_terms, size(frictions)), factor
     integer :: n, m, i, iteration
     logical :: regular
 
@@ -122,12 +132,12 @@ contains
     x(:n) = self%force
     where (modes%group == 0 .and. .not. abs(modes%direction) > 0.0_wp) x(:n) = 0.0_wp
     x(n + 1:) = [(self%utilization(modes%leader(i)), i=1, m)]
-    before = huge(before)
     factor = 1.0_wp
     solved = .false.
     do iteration = 1, most_iterations
       call set_equations(self, frictions, modes, x, units, matrix, residual)
-      call solve_linear(matrix, residual, change, determinant, regular)
+      change = residual
+      call solve_linear(matrix, change, regular)
       if (.not. regular) exit
       x = x - factor*change
       solved = maxval(abs(change(:n))) <= solved_part*max(maxval(abs(x(:n))), tiny(factor))
@@ -223,9 +233,9 @@ contains
     if (modes%group(i) > 0) coefficient = x(size(modes%group) + modes%group(i))*modes%direction(i)*friction%static
   end function coefficient_of
 
-  !> Find the least determinant for all directions of the terms of pairs that slip, divided by that of the equations without them.
-  subroutine find_least_determinant(self, frictions, modes, scale)
-    class(friction_balance_type), intent(inout) :: self   !< the equations, solved; gets the determinant
+  !> The least determinant for all directions of the terms of pairs that slip, divided by that of the equations without them.
+  real(wp) function least_determinant(self, frictions, modes, scale) result(least)
+    class(friction_balance_type), intent(in) :: self      !< the equations, solved
     type(friction_type), intent(in) :: frictions(:)       !< (n) the frictions
     type(friction_modes_type), intent(in) :: modes        !< how they act
     real(wp), intent(in), optional :: scale               !< by which all coefficients are multiplied; 1 unless given
@@ -237,7 +247,7 @@ contains
     integer, allocatable :: slipping(:)
 
     n = size(frictions)
-    self%least_determinant = 1.0_wp
+    least = 1.0_wp
     if (.not. modes%any_slips()) return
     scaled = frictions
     if (present(scale)) scaled%dynamic = scale*scaled%dynamic
@@ -253,15 +263,15 @@ contains
     end do
     reference = determinant_of(without)
     if (.not. abs(reference) > 0.0_wp) return
-    self%least_determinant = determinant_of(matrix)/reference
+    least = determinant_of(matrix)/reference
     do sweep = 1, most_sweeps
-      previous = self%least_determinant
+      previous = least
       do i = 1, size(slipping)
         do t = 1, bearing_terms
           call turn_term(slipping(i), t)
         end do
       end do
-      if (self%least_determinant >= previous - 1.0e-12_wp*max(1.0_wp, abs(previous))) exit
+      if (least >= previous - accepted_part*max(1.0_wp, abs(previous))) exit
     end do
   contains
     !> Turn one term into the direction in which the determinant is least.
@@ -281,31 +291,23 @@ contains
       end do
       units(:, t, i) = 0.0_wp
       if (norm2(slope) > 0.0_wp) units(:, t, i) = -slope/norm2(slope)
-      self%least_determinant = factor/reference - norm2(slope)
+      least = factor/reference - norm2(slope)
     end subroutine turn_term
-  end subroutine find_least_determinant
+  end function least_determinant
 
   !> The least factor of all coefficients at which the determinant vanishes, where it is negative at the factor 1.
   real(wp) function least_factor(self, frictions, modes) result(factor)
     class(friction_balance_type), intent(in) :: self      !< the equations, solved
     type(friction_type), intent(in) :: frictions(:)       !< (n) the frictions
     type(friction_modes_type), intent(in) :: modes        !< how they act
-    type(friction_balance_type) :: trial
     real(wp) :: low, high
     integer :: i
 
-    trial%wrenches = self%wrenches
-    trial%by_force = self%by_force
-    trial%accelerations = self%accelerations
-    trial%mobility = self%mobility
-    trial%force = self%force
-    trial%utilization = self%utilization
     low = 0.0_wp
     high = 1.0_wp
-    do i = 1, 60
+    do i = 1, digits(low)
       factor = 0.5_wp*(low + high)
-      call trial%find_least_determinant(frictions, modes, factor)
-      if (trial%least_determinant > 0.0_wp) then
+      if (self%least_determinant(frictions, modes, factor) > 0.0_wp) then
         low = factor
       else
         high = factor
@@ -352,48 +354,25 @@ contains
   end function steepest
 
   !> The determinant of a matrix.
-  pure real(wp) function determinant_of(matrix) result(determinant)
+  real(wp) function determinant_of(matrix) result(determinant)
     real(wp), intent(in) :: matrix(:, :)   !< the matrix
-    real(wp) :: nothing(size(matrix, 1)), solution(size(matrix, 1))
-    logical :: regular
+    real(wp) :: factors(size(matrix, 1), size(matrix, 1))
+    integer :: pivots(size(matrix, 1)), info, i
 
-    nothing = 0.0_wp
-    call solve_linear(matrix, nothing, solution, determinant, regular)
+    factors = matrix
+    call dgetrf(size(pivots), size(pivots), factors, size(pivots), pivots, info)
+    determinant = product([(merge(factors(i, i), -factors(i, i), pivots(i) == i), i=1, size(pivots))])
   end function determinant_of
 
-  !> Solve linear equations by elimination with row pivoting.
-  pure subroutine solve_linear(matrix, right, solution, determinant, regular)
-    real(wp), intent(in) :: matrix(:, :)        !< the matrix
-    real(wp), intent(in) :: right(:)            !< the right side
-    real(wp), intent(out) :: solution(:)        !< the solution; zero where there is none
-    real(wp), intent(out) :: determinant        !< of the matrix
-    logical, intent(out) :: regular             !< there is a solution
-    real(wp) :: a(size(matrix, 1), size(matrix, 1) + 1), row(size(matrix, 1) + 1)
-    integer :: n, i, j, pivot
+  !> Solve linear equations.
+  subroutine solve_linear(matrix, values, regular)
+    real(wp), intent(inout), contiguous :: matrix(:, :)   !< the matrix; then its factors
+    real(wp), intent(inout), contiguous :: values(:)      !< the right side; then the solution
+    logical, intent(out) :: regular                       !< there is a solution
+    integer :: pivots(size(values)), info
 
-    n = size(matrix, 1)
-    a(:, :n) = matrix
-    a(:, n + 1) = right
-    determinant = 1.0_wp
-    solution = 0.0_wp
-    do j = 1, n
-      pivot = j - 1 + maxloc(abs(a(j:, j)), dim=1)
-      determinant = determinant*a(pivot, j)
-      regular = abs(a(pivot, j)) > 0.0_wp
-      if (.not. regular) return
-      if (pivot /= j) then
-        determinant = -determinant
-        row = a(j, :)
-        a(j, :) = a(pivot, :)
-        a(pivot, :) = row
-      end if
-      do i = j + 1, n
-        a(i, j:) = a(i, j:) - a(i, j)/a(j, j)*a(j, j:)
-      end do
-    end do
-    do j = n, 1, -1
-      solution(j) = (a(j, n + 1) - dot_product(a(j, j + 1:n), solution(j + 1:)))/a(j, j)
-    end do
-    regular = .true.
+    call dgetrf(size(values), size(values), matrix, size(values), pivots, info)
+    regular = info == 0
+    if (regular) call dgetrs('N', size(values), 1, matrix, size(values), pivots, values, size(values), info)
   end subroutine solve_linear
 end module mech9_friction_balance

@@ -3,6 +3,7 @@ module mech9_friction_wrenches
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, add_place, exit_data
   use mech9_reaction_failures, only: failure_shared_bearing
+  use mech9_reaction_tolerances, only: counts_as_zero
   use mech9_rotation, only: turn_back, combine
   use mech9_friction, only: friction_type
   use mech9_mechanism, only: mechanism_type
@@ -15,10 +16,6 @@ module mech9_friction_wrenches
   implicit none
   private
   public :: friction_wrenches_type, prepare_friction_wrenches
-
-  !> A component that equilibrium does not determine counts as zero below this part of the whole wrench: a planar linkage under loads in
-  !> its plane leaves round-off of its dimensions across it.
-  real(wp), parameter :: counts_as_zero = 1.0e-9_wp
 
   !> Inverse dynamics of the frictions. Parts are polymorphic where these are copied by calls, which keeps the code of copies
   !> small.

@@ -5,7 +5,7 @@ module mech9_reaction_tolerances
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: balanced, balanced_singular, regular_balance, equal_lengths
+  public :: balanced, balanced_singular, regular_balance, equal_lengths, counts_as_zero
 
   !> Wrenches of pairs balance the links if what remains is below this part of the largest wrench: a thousand times the round-off
   !> of the sums.
@@ -18,4 +18,7 @@ module mech9_reaction_tolerances
   !> Lengths of links, and their changes with a parameter, are equal if they differ by less than this part: a thousand times the
   !> round-off of positions and of their derivatives.
   real(wp), parameter :: equal_lengths = 1.0e-10_wp
+  !> A component that equilibrium does not determine counts as zero below this part of the whole wrench: a planar linkage under loads in
+  !> its plane leaves round-off of its dimensions across it.
+  real(wp), parameter :: counts_as_zero = 1.0e-9_wp
 end module mech9_reaction_tolerances

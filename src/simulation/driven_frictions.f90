@@ -4,6 +4,7 @@
 module mech9_driven_frictions
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, add_place, exit_singular
+  use mech9_event_tolerances, only: at_rest
   use mech9_integration_failures, only: failure_no_friction
   use mech9_simulation_failures, only: failure_self_locking
   use mech9_friction, only: friction_type
@@ -12,7 +13,8 @@ module mech9_driven_frictions
   use mech9_state, only: state_type
   use mech9_reaction_plan, only: is_made_for
   use mech9_friction_wrenches, only: friction_wrenches_type, prepare_friction_wrenches
-  use mech9_friction_balance, only: friction_balance_type, friction_modes_type, new_friction_balance
+  use mech9_friction_balance, only: friction_balance_type, friction_modes_type, new_friction_balance, &
+    new_friction_modes
   implicit none
   private
   public :: driven_frictions_type, rest_range_type
@@ -36,9 +38,6 @@ module mech9_driven_frictions
     procedure, private :: find_rest_range
   end type driven_frictions_type
 
-  !> A pair is at rest below this part of the rate by which rest is judged: a thousand times round-off.
-  real(wp), parameter :: at_rest = 1.0e-12_wp
-
 contains
 
   !> Find the frictions in a state whose frames have their accelerations. Fails where no drive force moves the mechanism this way.
@@ -60,9 +59,7 @@ contains
         call prepare_friction_wrenches(mechanism, plan, state, self%wrenches)
         self%balance = new_friction_balance(size(frictions))
       end if
-      allocate (modes%group(size(frictions)), source=0)
-      allocate (modes%direction(size(frictions)), source=0.0_wp)
-      allocate (modes%leader(0))
+      modes = new_friction_modes(size(frictions))
       fastest = fastest_rate(plan, state)
       do i = 1, size(frictions)
         associate (rate => state%dq(frictions(i)%coordinate))
@@ -78,9 +75,8 @@ contains
         self%rest%outputs = self%rest%outputs + 1
       end if
       call balance%solve(frictions, modes, solved)
-      if (solved) call balance%find_least_determinant(frictions, modes)
       unique = solved
-      if (solved) unique = balance%least_determinant > 0.0_wp
+      if (solved) unique = balance%least_determinant(frictions, modes) > 0.0_wp
       if (unique) then
         state%friction = balance%force
       else
@@ -113,9 +109,7 @@ contains
       state%friction = 0.0_wp
       call self%wrenches%find(mechanism, plan, state, balance%wrenches, err)
       if (allocated(err)) return
-      associate (drive => plan%independent(1), needed => self%wrenches%reactions%needed)
-        without = needed(drive)
-      end associate
+      without = self%wrenches%reactions%needed(plan%independent(1))
       if (.not. allocated(self%ratios)) allocate (self%ratios(size(frictions)))
       probes = [(self%wrenches%probe(frictions(j), balance%wrenches(:, j)), j=1, size(frictions))]
       do j = 1, size(frictions)
@@ -139,7 +133,7 @@ contains
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(friction_modes_type) :: modes
     type(friction_type) :: at_bound(size(mechanism%frictions))
-    real(wp) :: needed(2)
+    real(wp) :: needed(2), wrenches(6, size(mechanism%frictions))
     integer :: i, side
     logical :: solved
 
@@ -149,9 +143,7 @@ contains
       if (any(abs(state%dq)/plan%unit_of > at_rest*max(fastest_rate(plan, state), tiny(1.0_wp)/at_rest))) return
       at_bound = frictions
       at_bound%dynamic = frictions%static
-      allocate (modes%group(size(frictions)), source=0)
-      allocate (modes%direction(size(frictions)), source=0.0_wp)
-      allocate (modes%leader(0))
+      modes = new_friction_modes(size(frictions))
       do side = 1, 2
         do i = 1, size(frictions)
           if (abs(self%ratios(i)) > at_rest .and. .not. frictions(i)%is_smooth) &
@@ -160,13 +152,11 @@ contains
         call self%balance%solve(at_bound, modes, solved)
         if (.not. solved) return
         state%friction = self%balance%force
-        call self%wrenches%find(mechanism, plan, state, self%balance%wrenches, err)
+        call self%wrenches%find(mechanism, plan, state, wrenches, err)
         if (allocated(err)) return
         needed(side) = self%wrenches%reactions%needed(drive)
-        state%friction = 0.0_wp
-        call self%wrenches%find(mechanism, plan, state, self%balance%wrenches, err)
-        if (allocated(err)) return
       end do
+      state%friction = 0.0_wp
       self%rest%coordinate = drive
       self%rest%force = [minval(needed), maxval(needed)]
     end associate
@@ -183,8 +173,7 @@ contains
     type(error_type), allocatable, intent(out) :: err     !< the failure
     integer :: k, worst
 
-    call self%balance%find_least_determinant(frictions, modes)
-    if (self%balance%least_determinant > 0.0_wp) then
+    if (self%balance%least_determinant(frictions, modes) > 0.0_wp) then
       call raise(err, exit_singular, failure_no_friction)
       err%failure%coordinates = pack(frictions%coordinate, abs(modes%direction) > 0.0_wp)
     else

@@ -34,7 +34,7 @@ module mech9_driven_simulation
     class(dynamics_plan_type), allocatable, private :: dynamics  !< made when energies are asked for first
     type(motion_view_type), allocatable, private :: view         !< of the present state, as loads see it
     type(stop_contacts_type), private :: contacts                !< ends of stops, with the motion at the last output
-    type(driven_frictions_type), allocatable :: frictions        !< not allocated: there are none, or no forces are requested
+    class(driven_frictions_type), allocatable :: frictions       !< not allocated: there are none, or no forces are requested
     type(driven_counts_type), private :: kept_work(batch_size)   !< of positions that wait for their derivatives
   contains
     procedure :: begin

@@ -1,6 +1,5 @@
 !> The time within a step at which a motor passes the limit of its force, an end of a stop is met or left, or a pair with friction comes
-!> to rest or begins to slip. The motion goes back to
-!> the start of the step and stops there, as at a joint of a law of time.
+!> to rest or begins to slip. The motion goes back to the start of the step and stops at that time, as at a joint of a law of time.
 !>
 !> A coordinate comes to an end of its stop where the gap is zero; a polynomial of the fifth degree through the ends of the
 !> step shows where it may come near, also where it turns back within the step. What counts is the motion itself there.
@@ -32,8 +31,8 @@ contains
   subroutine stop_at_events(motion, err)
     type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: from, t, t_contact, t_friction, soonest, y(size(motion%y))
-    integer :: motor, contact, friction, met, rubbing
+    real(wp) :: from, times(3), y(size(motion%y))
+    integer :: motor, contact, friction, found(3), soonest, met, rubbing
     logical :: motors, contacts, frictions
 
     motors = motion%limits%is_needed(motion%system)
@@ -54,41 +53,26 @@ contains
         rubbing = interval%friction
         motors = .false.
         ! the step was judged before it was made anew up to the event
-        contacts = contacts .and. interval%motor == 0 .and. interval%contact == 0 .and. interval%friction == 0
-        frictions = frictions .and. interval%motor == 0 .and. interval%contact == 0 .and. interval%friction == 0
+        contacts = contacts .and. .not. interval%ends_at_event()
+        frictions = frictions .and. .not. interval%ends_at_event()
         met = interval%contact
         if (met > 0) call correct_landing(motion, from, met, err)
         if (rubbing > 0 .and. .not. allocated(err)) call correct_rest(motion, from, rubbing, err)
       end if
     end associate
     if (allocated(err)) return
-    if (motors) call find_motor(motion, from, motor, t, err)
-    if (contacts .and. .not. allocated(err)) call find_contact(motion, from, y, contact, t_contact, err)
-    if (frictions .and. .not. allocated(err)) call find_friction(motion, from, y, friction, t_friction, err)
+    times = motion%t
+    if (motors) call find_motor(motion, from, motor, times(1), err)
+    if (contacts .and. .not. allocated(err)) call find_contact(motion, from, y, contact, times(2), err)
+    if (frictions .and. .not. allocated(err)) call find_friction(motion, from, y, friction, times(3), err)
     if (allocated(err)) return
-    soonest = huge(soonest)
-    if (motor > 0) soonest = abs(t - from)
-    if (contact > 0) then
-      if (abs(t_contact - from) < soonest) then
-        soonest = abs(t_contact - from)
-        t = t_contact
-        motor = 0
-      else
-        contact = 0
-      end if
-    end if
-    if (friction > 0) then
-      if (abs(t_friction - from) < soonest) then
-        t = t_friction
-        motor = 0
-        contact = 0
-      else
-        friction = 0
-      end if
-    end if
-    if (motor > 0 .or. contact > 0 .or. friction > 0) then
-      call motion%step_back(t, err)
-      call motion%system%interval%end_at_event(t, motor, contact, friction)
+    found = [motor, contact, friction]
+    if (any(found > 0)) then
+      soonest = minloc(abs(times - from), dim=1, mask=found > 0)
+      found(:soonest - 1) = 0
+      found(soonest + 1:) = 0
+      call motion%step_back(times(soonest), err)
+      call motion%system%interval%end_at_event(times(soonest), motor=found(1), contact=found(2), friction=found(3))
       motion%contacts%corrections = 0
     else
       if (allocated(motion%system%friction) .and. abs(motion%t - from) > 0.0_wp) call take_heat(motion, err)

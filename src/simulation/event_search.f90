@@ -2,7 +2,7 @@
 module mech9_event_search
   use mech9_kinds, only: wp
   use mech9_event_tolerances, only: round_off_of_impacts, limit_of_sticking, at_rest
-  use mech9_simulation_tolerances, only: round_off_of_gaps
+  use mech9_simulation_tolerances, only: round_off_of_gaps, shortest_step, least_motion
   use mech9_error, only: error_type
   use mech9_limit_watch, only: find_excess
   use mech9_integrated_motion, only: integrated_motion_type
@@ -15,12 +15,6 @@ module mech9_event_search
   integer, parameter :: of_motor = 1, of_contact = 2, of_rate = 3, of_friction = 4, of_paradox = 5
   !> Trials of the search for a time.
   integer, parameter :: most_trials = 100
-
-  !> Times within a step that is shorter than this, in parts of the round-off of time, are its end: round-off hides what is between.
-  real(wp), parameter :: shortest = 1000.0_wp
-
-  !> A pair that drives alone move begins to move where it would come this far in the whole motion, in its unit.
-  real(wp), parameter :: least_motion = 1.0e-9_wp
 
 contains
 
@@ -81,7 +75,7 @@ contains
     if (.not. abs(t - from) > 0.0_wp) then
       call motion%system%move_to(from, y, err)
       found = .true.
-    else if (abs(t - motion%t) > 0.0_wp .and. abs(motion%t - from) > shortest*spacing(t)) then
+    else if (abs(t - motion%t) > 0.0_wp .and. abs(motion%t - from) > shortest_step*spacing(t)) then
       call motion%look_between(t, found)
     end if
     if (.not. found) call motion%system%move_to(motion%t, motion%y, err)
@@ -94,9 +88,9 @@ contains
     case (of_friction)
       value = passing_of_friction(motion, i)
     case (of_paradox)
-      call motion%system%friction%balance%find_least_determinant(motion%system%model%mechanism%frictions, &
-                                                                 motion%system%friction%modes)
-      value = -motion%system%friction%balance%least_determinant
+      associate (friction => motion%system%friction)
+        value = -friction%balance%least_determinant(motion%system%model%mechanism%frictions, friction%modes)
+      end associate
     case default
       value = motion%system%state%dq(motion%contacts%ends(i)%coordinate)
     end select

@@ -3,7 +3,7 @@
 module mech9_free_simulation
   use mech9_kinds, only: wp
   use mech9_number_lists, only: same_numbers
-  use mech9_simulation_tolerances, only: doubtful_conditioning, refused_conditioning, regular_conditioning
+  use mech9_simulation_tolerances, only: doubtful_conditioning, refused_conditioning, regular_conditioning, longest_stick
   use mech9_error, only: error_type, raise, exit_singular, exit_integrator
   use mech9_simulation_failures, only: failure_lost_angles
   use mech9_model, only: model_type
@@ -62,9 +62,6 @@ module mech9_free_simulation
     procedure, private :: change_angles
     procedure, private :: continue_angles
   end type free_simulation_type
-
-  !> Longest step while a pair sticks, in parts of the duration of the motion.
-  real(wp), parameter :: longest_stick = 0.005_wp
 
 contains
 
@@ -300,15 +297,13 @@ contains
       if (motion%conditioning_here > regular_conditioning .and. .not. self%steps_onto .and. &
         (self%end - t)*(t - motion%t) > 0.0_wp) &
         farthest = self%end
-      if (allocated(motion%system%friction)) then
+      if (motion%system%any_sticks()) then
         ! steps do not see the loads on pairs that stick, which may change with time
         associate (time => self%model%request%time)
-          longest = longest_stick*(time%end - time%start)
+          longest = longest_stick*merge(time%end - time%start, farthest - motion%t, abs(time%end - time%start) > 0.0_wp)
         end associate
-        if (abs(longest) > 0.0_wp .and. size(motion%system%friction%held) > 0) then
-          target = nearer(target, motion%t + longest, motion%t)
-          farthest = nearer(farthest, motion%t + longest, motion%t)
-        end if
+        target = nearer(target, motion%t + longest, motion%t)
+        farthest = nearer(farthest, motion%t + longest, motion%t)
       end if
       if (motion%system%interval%ends) then
         target = nearer(target, motion%system%interval%ahead, motion%t)

@@ -1,6 +1,7 @@
 !> The energies that frictions take in a motion.
 module mech9_friction_heat
   use mech9_kinds, only: wp
+  use mech9_simulation_tolerances, only: shortest_step
   use mech9_error, only: error_type
   use mech9_integrated_motion, only: integrated_motion_type
   implicit none
@@ -29,7 +30,6 @@ contains
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     real(wp), parameter :: places(2) = [0.33998104358485626_wp, 0.86113631159405258_wp]
     real(wp), parameter :: weights(2) = [0.65214515486254614_wp, 0.34785484513745386_wp]
-    real(wp), parameter :: shortest = 1000.0_wp
     real(wp) :: from, y(size(motion%y))
     integer :: i, side
     logical :: found
@@ -38,7 +38,7 @@ contains
     call motion%dense_output%start_of_step(from, y)
     if (.not. motion%system%friction%modes%any_slips() .and. .not. any(motion%system%model%mechanism%frictions%is_smooth)) return
     ! round-off hides the points within so short a step
-    if (abs(t - from) < shortest*spacing(t)) then
+    if (abs(t - from) < shortest_step*spacing(t)) then
       heat = heat + (t - from)*motion%system%friction%heat_rate
       return
     end if

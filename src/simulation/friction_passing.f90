@@ -223,8 +223,8 @@ contains
     t = motion%t
     associate (friction => motion%system%friction)
       if (.not. friction%modes%any_slips()) return
-      call friction%balance%find_least_determinant(motion%system%model%mechanism%frictions, friction%modes)
-      if (friction%balance%least_determinant <= 0.0_wp) call locate(motion, of_paradox, 0, from, t, passed, err)
+      if (friction%balance%least_determinant(motion%system%model%mechanism%frictions, friction%modes) <= 0.0_wp) &
+        call locate(motion, of_paradox, 0, from, t, passed, err)
     end associate
   end subroutine find_paradox
 end module mech9_friction_passing

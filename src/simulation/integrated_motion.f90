@@ -393,7 +393,7 @@ contains
   subroutine pass_joint(self, events, impacts, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion
     type(motion_events_type), intent(inout) :: events      !< gets impacts, and stops that close and open
-    class(impact_watcher_type), allocatable, intent(inout) :: impacts   !< gets the impulses of pairs; not allocated: nobody wants them
+    class(impact_watcher_type), allocatable, intent(inout) :: impacts   !< gets the impulses of pairs; not allocated: they are not recorded
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     real(wp) :: of_held(self%system%plan%n_coordinates)
     integer :: met, motor, friction
@@ -424,7 +424,7 @@ contains
     real(wp), intent(in) :: of_held(:)                     !< (M) rates that held coordinates would have if nothing held them [rad/s, m/s]
     logical, intent(in) :: at_start                        !< there was no step yet
     type(motion_events_type), intent(inout) :: events      !< gets impacts, stops that close and open, and pairs that stick and slip
-    class(impact_watcher_type), allocatable, intent(inout) :: impacts   !< gets the impulses of pairs; not allocated: nobody wants them
+    class(impact_watcher_type), allocatable, intent(inout) :: impacts   !< gets the impulses of pairs; not allocated: they are not recorded
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     real(wp), dimension(self%system%plan%n_coordinates) :: impulses, changes
     integer :: before

@@ -7,7 +7,7 @@ module mech9_simulation_tolerances
   private
   public :: largest_closure, hidden_part, doubtful_conditioning, regular_conditioning, refused_conditioning, locked, &
     locked_together, short_part, long_part, many_short, nearly_singular, surely_singular, least_part, nearly_locked, &
-    drawn_near_by, round_off_of_gaps
+    drawn_near_by, round_off_of_gaps, shortest_step, longest_stick, least_motion
 
   ! The start.
 
@@ -54,11 +54,17 @@ module mech9_simulation_tolerances
   !> Distance of a ball joint from gimbal lock below which this is the cause [rad]: such motions stood at some 1e-4.
   real(wp), parameter :: nearly_locked = 1.0e-3_wp
 
-  ! Drives and outputs.
+  ! Events.
 
+  !> Times within a step that is shorter than this, in parts of the round-off of time, are its end: round-off hides what is between.
+  real(wp), parameter :: shortest_step = 1000.0_wp
+  !> Longest step while a pair sticks, in parts of the duration of the motion: with three looks in each, slow changes of loads are seen.
+  real(wp), parameter :: longest_stick = 0.005_wp
+  !> A pair that drives alone move begins to move where it would come this far in the whole motion, in its unit.
+  real(wp), parameter :: least_motion = 1.0e-9_wp
 
   ! Stops.
 
-  !> The same of the gap to an end, in the unit of the coordinate or parts of the limit: round-off of positions of well conditioned chains.
+  !> Round-off of the gap to an end, in the unit of the coordinate or parts of the limit: round-off of positions of well conditioned chains.
   real(wp), parameter :: round_off_of_gaps = 8.0_wp*epsilon(1.0_wp)
 end module mech9_simulation_tolerances

@@ -10,7 +10,7 @@ module mech9_load
   use mech9_force_sum, only: force_sum_type, new_force_sum
   implicit none
   private
-  public :: load_type, load_slot_type
+  public :: load_type, load_slot_type, append_loads
 
   !> A load of any kind.
   type, abstract :: load_type
@@ -262,4 +262,22 @@ contains
     end do
     found = all(ieee_is_finite(values))
   end subroutine sample
+
+  !> Append loads to others.
+  subroutine append_loads(more, loads)
+    type(load_slot_type), intent(inout) :: more(:)                 !< the loads; their slots are empty afterwards
+    type(load_slot_type), allocatable, intent(inout) :: loads(:)   !< the others; then all
+    type(load_slot_type), allocatable :: all(:)
+    integer :: i
+
+    if (size(more) == 0) return
+    allocate (all(size(loads) + size(more)))
+    do i = 1, size(loads)
+      call move_alloc(loads(i)%load, all(i)%load)
+    end do
+    do i = 1, size(more)
+      call move_alloc(more(i)%load, all(size(loads) + i)%load)
+    end do
+    call move_alloc(all, loads)
+  end subroutine append_loads
 end module mech9_load

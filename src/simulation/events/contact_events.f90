@@ -4,7 +4,7 @@
 !> flights last 2u/a, e 2u/a, e^2 2u/a, ..., together 2u/(a (1 - e)).
 module mech9_contact_events
   use mech9_kinds, only: wp
-  use mech9_event_tolerances, only: touching, drawn_behind_stop, least_rebound, endless_part
+  use mech9_event_tolerances, only: touching, drawn_behind_stop, least_rebound, endless_part, pressing
   use mech9_error, only: error_type, raise, exit_data, exit_singular
   use mech9_event_failures, only: failure_event_sensitivity, failure_stop_start
   use mech9_result_units, only: unit_of, unit_name
@@ -15,9 +15,6 @@ module mech9_contact_events
   implicit none
   private
   public :: begin_contacts, meet_contacts, find_pressed
-
-  !> A contact is pressed where its acceleration towards the end is more than this part of the largest: far above round-off.
-  real(wp), parameter :: pressing = 1.0e-9_wp
 
 contains
 

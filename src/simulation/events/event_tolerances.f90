@@ -6,7 +6,7 @@ module mech9_event_tolerances
   implicit none
   private
   public :: round_off_of_limit, touching, drawn_behind_stop, round_off_of_impacts, least_rebound, endless_part, most_events, &
-    most_events_at_once, limit_of_sticking, at_rest, still, tied, round_off_of_sticking
+    most_events_at_once, limit_of_sticking, at_rest, still, tied, round_off_of_sticking, beyond_all_bounds, pressing
 
   ! Drives and outputs.
 
@@ -30,6 +30,9 @@ module mech9_event_tolerances
   !> ... and if they would end within this part of the duration of the motion. Their end is worked out; the contact pushes as much
   !> until then as the impacts that are left out.
   real(wp), parameter :: endless_part = 1.0e-6_wp
+  !> A contact that touches is pressed where its acceleration towards the end is more than this part of the largest: far above round-off.
+  real(wp), parameter :: pressing = 1.0e-9_wp
+
   ! Frictions.
 
   !> Utilization of a friction at which it slips: the bound but for the round-off of reactions.
@@ -43,6 +46,9 @@ module mech9_event_tolerances
   !> A coordinate depends on another below this part of what is left of it beside the others, and does not depend on one that moves it
   !> by less: the square root of the round-off of their mobilities.
   real(wp), parameter :: tied = 1.0e-8_wp
+
+  !> A pair does not stick where its acceleration is so many times that by its largest friction: it has hardly any mobility there.
+  real(wp), parameter :: beyond_all_bounds = 1.0e6_wp
 
   !> Most events of a motion, and most at one time: more mean that the motion makes no progress.
   integer, parameter :: most_events = 1000000, most_events_at_once = 1000

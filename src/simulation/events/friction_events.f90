@@ -6,8 +6,10 @@ module mech9_friction_events
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, add_place, exit_singular
   use mech9_event_failures, only: failure_paradox, failure_shared_sticking, failure_undecided_friction
-  use mech9_event_tolerances, only: limit_of_sticking, at_rest, still, tied, round_off_of_sticking
-  use mech9_friction_balance, only: friction_modes_type
+  use mech9_event_tolerances, only: limit_of_sticking, at_rest, still, tied, round_off_of_sticking, &
+    beyond_all_bounds
+  use mech9_cholesky, only: cholesky_factorize, cholesky_solve
+  use mech9_friction_balance, only: friction_modes_type, new_friction_modes
   use mech9_friction_motion, only: find_friction_balance
   use mech9_motion_event, only: motion_event_type, motion_events_type, event_stick, event_slip
   use mech9_motion_system, only: motion_system_type
@@ -23,8 +25,6 @@ module mech9_friction_events
     real(wp), allocatable :: by_leaders(:, :)  !< (leaders,frictions) rates of the pairs by those of the leaders
   end type resting_pairs_type
 
-  !> A pair does not stick where its acceleration is so many times that by its largest friction.
-  real(wp), parameter :: beyond_all_bounds = 1.0e6_wp
   !> Most groups whose choices are all tried.
   integer, parameter :: most_enumerated = 5
 
@@ -64,8 +64,7 @@ contains
       if (allocated(err)) return
       system%friction%modes = modes
       system%state%friction = system%friction%balance%force
-      call system%friction%balance%find_least_determinant(mechanism%frictions, modes)
-      if (system%friction%balance%least_determinant <= 0.0_wp) then
+      if (system%friction%balance%least_determinant(mechanism%frictions, modes) <= 0.0_wp) then
         call fail_in_paradox(system, err)
         return
       end if
@@ -95,9 +94,8 @@ contains
       duration = max(abs(time%end - time%start), tiny(1.0_wp)/epsilon(1.0_wp))
     end associate
     associate (frictions => system%model%mechanism%frictions, state => system%state, plan => system%plan)
-      allocate (modes%group(size(frictions)), source=0)
-      allocate (modes%direction(size(frictions)), source=0.0_wp)
-      allocate (modes%leader(0), rests(size(frictions)))
+      modes = new_friction_modes(size(frictions))
+      allocate (rests(size(frictions)))
       do i = 1, size(frictions)
         associate (rate => state%dq(frictions(i)%coordinate))
           rests(i) = .not. frictions(i)%is_smooth
@@ -202,22 +200,16 @@ contains
     real(wp), intent(in) :: mobility(:, :)        !< (n,n) accelerations by forces
     integer, intent(in) :: leaders(:)             !< numbers of the leaders
     real(wp), intent(out) :: by_leaders(:, :)     !< (leaders,n) the rates
-    real(wp) :: a(size(leaders), size(leaders)), factor
-    integer :: i, j, m
+    real(wp) :: factors(size(leaders), size(leaders)), rates(size(leaders))
+    integer :: i, failed_at
 
-    m = size(leaders)
-    a = mobility(leaders, leaders)
-    by_leaders = mobility(leaders, :)
-    do j = 1, m
-      do i = 1, m
-        if (i == j) cycle
-        factor = a(i, j)/a(j, j)
-        a(i, :) = a(i, :) - factor*a(j, :)
-        by_leaders(i, :) = by_leaders(i, :) - factor*by_leaders(j, :)
-      end do
-    end do
-    do j = 1, m
-      by_leaders(j, :) = by_leaders(j, :)/a(j, j)
+    factors = mobility(leaders, leaders)
+    ! leaders are independent of each other, so that this does not fail
+    call cholesky_factorize(size(leaders), factors, failed_at)
+    do i = 1, size(mobility, 2)
+      rates = mobility(leaders, i)
+      call cholesky_solve(size(leaders), factors, rates)
+      by_leaders(:, i) = rates
     end do
   end subroutine find_rates
 
@@ -363,23 +355,15 @@ contains
 
     !> Fail because it was not found which pairs stick.
     subroutine fail()
-      if (modes%any_slips()) then
-        call balance_of_slip()
-        if (system%friction%balance%least_determinant <= 0.0_wp) then
-          system%friction%modes = modes
-          call fail_in_paradox(system, err)
-          return
-        end if
+      if (system%friction%balance%least_determinant(system%model%mechanism%frictions, modes) <= 0.0_wp) then
+        system%friction%modes = modes
+        call fail_in_paradox(system, err)
+        return
       end if
       call raise(err, exit_singular, failure_undecided_friction)
       err%failure%t = system%state%t
       err%failure%coordinates = pack(system%model%mechanism%frictions%coordinate, resting%rests)
     end subroutine fail
-
-    !> Find the determinant of the frictions that slip.
-    subroutine balance_of_slip()
-      call system%friction%balance%find_least_determinant(system%model%mechanism%frictions, modes)
-    end subroutine balance_of_slip
   end subroutine release
 
   !> Fail because frictions have no solution or several in the present state of the system.

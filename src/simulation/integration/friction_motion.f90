@@ -15,7 +15,7 @@ module mech9_friction_motion
   use mech9_jacobian, only: rates_by_independent
   use mech9_lagrange, only: find_equations, complete_accelerations
   use mech9_friction_wrenches, only: friction_wrenches_type, prepare_friction_wrenches
-  use mech9_friction_balance, only: friction_balance_type, friction_modes_type, new_friction_balance
+  use mech9_friction_balance, only: friction_balance_type, friction_modes_type, new_friction_balance, new_friction_modes
   implicit none
   private
   public :: friction_motion_type, begin_frictions, prepare_frictions, find_friction_balance, find_frictions, find_heat_rates
@@ -44,10 +44,9 @@ contains
     type(friction_motion_type), intent(inout) :: self              !< the frictions
 
     associate (n => size(mechanism%frictions))
-      if (.not. allocated(self%modes%group)) then
-        allocate (self%modes%group(n), source=0)
-        allocate (self%modes%direction(n), source=0.0_wp)
-        allocate (self%modes%leader(0), self%held(0))
+      if (.not. allocated(self%held)) then
+        self%modes = new_friction_modes(n)
+        allocate (self%held(0))
       end if
       if (allocated(state%friction)) return
       allocate (state%friction(n), state%heat(n), source=0.0_wp)

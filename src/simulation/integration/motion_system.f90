@@ -56,11 +56,12 @@ module mech9_motion_system
     logical, private :: has_inertia = .false.        !< all free coordinates had inertia in the position with which it was made
     type(smooth_interval_type) :: interval           !< in which the present steps lie
     type(held_coordinate_type), allocatable :: held(:)          !< coordinates that stops or friction hold; not allocated: none
-    type(friction_motion_type), allocatable :: friction         !< frictions of pairs; not allocated: there are none
+    class(friction_motion_type), allocatable :: friction        !< frictions of pairs; not allocated: there are none
     type(motion_sensitivity_type), allocatable :: sensitivity   !< derivatives by parameters, where they are integrated, too
   contains
     procedure :: make_room
     procedure :: hand_on_modes
+    procedure :: any_sticks
     procedure :: size_of_vector
     procedure :: size_of_motion
     procedure :: count_varied
@@ -201,6 +202,14 @@ contains
     other%friction%held = self%friction%held
     other%friction%wrenches%unique = self%friction%wrenches%unique
   end subroutine hand_on_modes
+
+  !> Whether drives hold coordinates in place of pairs that stick.
+  pure logical function any_sticks(self)
+    class(motion_system_type), intent(in) :: self        !< the system
+
+    any_sticks = .false.
+    if (allocated(self%friction)) any_sticks = size(self%friction%held) > 0
+  end function any_sticks
 
   !> Length of the vector that is integrated.
   pure integer function size_of_vector(self)

@@ -27,6 +27,7 @@ module mech9_smooth_interval
     procedure :: is_end
     procedure :: is_before_end
     procedure :: end_at_event
+    procedure :: ends_at_event
     procedure :: is_joint
     procedure :: forget_event
   end type smooth_interval_type
@@ -118,6 +119,13 @@ contains
     self%contact = contact
     self%friction = friction
   end subroutine end_at_event
+
+  !> Whether an event ends the interval, and not a joint of the laws alone.
+  pure logical function ends_at_event(self)
+    class(smooth_interval_type), intent(in) :: self   !< the interval
+
+    ends_at_event = self%motor > 0 .or. self%contact > 0 .or. self%friction > 0
+  end function ends_at_event
 
   !> Whether a joint of the laws lies at a time.
   pure logical function is_joint(self, t)
